@@ -1,0 +1,158 @@
+"""The depth camera as a pinhole: its pixels, their rays, and the projection that both render paths share (paper 1, 3.3).
+
+Optical frame: x right, y down, z forward. A point (X, Y, Z) falls on column u = fx X / Z + cx, row v = fy Y / Z + cy;
+pixel centres are at integer coordinates, so pixel (0, 0) covers u in [-0.5, 0.5). Depth is Z, along the optical axis.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class DepthCamera:
+    """Pinhole depth camera.
+
+    width, height: pixels. fx, fy: focal lengths in pixels (they differ for an SR4000). cx, cy: principal point in
+    pixels, pixel centres at integers. near, far: clip planes in metres; a surface outside them is not hit.
+    Raises `ValueError` for a size below one pixel, focal lengths or clip planes that are not positive and finite, or
+    near >= far.
+    """
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    near: float = 0.1
+    far: float = 30.0
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height"):
+            value = getattr(self, name)
+            if int(value) != value or value < 1:
+                raise ValueError(f"{name} must be a whole number of pixels, at least 1; got {value!r}")
+            object.__setattr__(self, name, int(value))
+        for name in ("fx", "fy", "near", "far"):
+            value = float(getattr(self, name))
+            if not (np.isfinite(value) and value > 0):
+                raise ValueError(f"{name} must be positive and finite; got {value!r}")
+            object.__setattr__(self, name, value)
+        for name in ("cx", "cy"):
+            value = float(getattr(self, name))
+            if not np.isfinite(value):
+                raise ValueError(f"{name} must be finite; got {value!r}")
+            object.__setattr__(self, name, value)
+        if self.near >= self.far:
+            raise ValueError(f"near must be below far; got near={self.near}, far={self.far}")
+
+    @classmethod
+    def from_fov(
+        cls,
+        width: int,
+        height: int,
+        horizontal_fov_deg: float,
+        vertical_fov_deg: float,
+        near: float = 0.1,
+        far: float = 30.0,
+    ) -> DepthCamera:
+        """Camera whose image edges span the given fields of view: fx = (width / 2) / tan(fov / 2), centred."""
+        for name, value in (("horizontal_fov_deg", horizontal_fov_deg), ("vertical_fov_deg", vertical_fov_deg)):
+            if not 0 < value < 180:
+                raise ValueError(f"{name} must lie between 0 and 180 degrees; got {value!r}")
+        fx = 0.5 * width / np.tan(np.deg2rad(horizontal_fov_deg) / 2)
+        fy = 0.5 * height / np.tan(np.deg2rad(vertical_fov_deg) / 2)
+        return cls(width, height, fx, fy, (width - 1) / 2, (height - 1) / 2, near, far)
+
+    @classmethod
+    def sr4000(cls, near: float = 0.1, far: float = 30.0) -> DepthCamera:
+        """The paper's camera (section 4): 176 x 144 pixels; 43.6 x 34.6 degrees by its maker's data sheet."""
+        return cls.from_fov(176, 144, 43.6, 34.6, near, far)
+
+    @classmethod
+    def from_matrix(
+        cls, matrix: np.ndarray, width: int, height: int, near: float = 0.1, far: float = 30.0
+    ) -> DepthCamera:
+        """Camera from a 3 x 3 intrinsic matrix K = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]; skew is not modelled."""
+        k = np.asarray(matrix, dtype=np.float64)
+        if k.shape != (3, 3) or not np.isfinite(k).all():
+            raise ValueError(f"intrinsics must be a finite 3 x 3 matrix; got shape {k.shape}")
+        if not np.allclose([k[0, 1], k[1, 0], k[2, 0], k[2, 1], k[2, 2] - 1], 0):
+            raise ValueError(f"intrinsics must read [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]; got {k.tolist()}")
+        if not (-0.5 <= k[0, 2] <= width - 0.5 and -0.5 <= k[1, 2] <= height - 0.5):
+            raise ValueError(
+                f"the principal point ({k[0, 2]:g}, {k[1, 2]:g}) lies outside an image of {width} x {height} pixels: "
+                "these intrinsics are for another image size; scale fx, cx by the width and fy, cy by the height"
+            )
+        return cls(width, height, k[0, 0], k[1, 1], k[0, 2], k[1, 2], near, far)
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """Intrinsic matrix K `(3, 3)`."""
+        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Shape (height, width) of its depth image."""
+        return self.height, self.width
+
+    def resized(self, width: int, height: int) -> DepthCamera:
+        """The same view on another pixel grid: image *edges* stay where they are, so centres shift by half a pixel."""
+        scale_x, scale_y = width / self.width, height / self.height
+        return dataclasses.replace(
+            self,
+            width=width,
+            height=height,
+            fx=self.fx * scale_x,
+            fy=self.fy * scale_y,
+            cx=(self.cx + 0.5) * scale_x - 0.5,
+            cy=(self.cy + 0.5) * scale_y - 0.5,
+        )
+
+    def with_clip_planes(self, near: float, far: float) -> DepthCamera:
+        """The same camera with other clip planes, in metres."""
+        return dataclasses.replace(self, near=near, far=far)
+
+    def rays(self) -> np.ndarray:
+        """Directions `(height, width, 3)` through the pixel centres, optical frame, forward component one.
+
+        The distance along such a ray is depth, not ray length.
+        """
+        u, v = np.meshgrid(np.arange(self.width), np.arange(self.height))
+        return np.stack([(u - self.cx) / self.fx, (v - self.cy) / self.fy, np.ones(self.shape)], axis=-1)
+
+    def project(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Column, row and depth of points `(..., 3)` in the optical frame; points not in front of it give NaN pixels."""
+        points = np.asarray(points, dtype=np.float64)
+        x, y, z = points[..., 0], points[..., 1], points[..., 2]
+        safe = np.where(z > 0, z, np.nan)
+        return self.fx * x / safe + self.cx, self.fy * y / safe + self.cy, z
+
+    def points(self, depth: np.ndarray) -> np.ndarray:
+        """Points `(height, width, 3)` in the optical frame of a depth image `(height, width)`; NaN stays NaN."""
+        depth = np.asarray(depth)
+        if depth.shape != self.shape:
+            raise ValueError(f"depth image must have shape {self.shape} (height, width); got {depth.shape}")
+        with np.errstate(invalid="ignore"):
+            return self.rays() * depth[..., None].astype(np.float64)
+
+    def projection_matrix(self) -> np.ndarray:
+        """OpenGL projection `(4, 4)` of the optical frame turned to x right, y up, z backward.
+
+        Set explicitly because a view angle alone assumes fx = fy and a centred principal point. Image edges lie half a
+        pixel outside the outer pixel centres. Depth buffer value (window range 0 to 1):
+        b = far (Z - near) / (Z (far - near)).
+        """
+        w, h, n, f = self.width, self.height, self.near, self.far
+        return np.array(
+            [
+                [2 * self.fx / w, 0.0, 1 - 2 * (self.cx + 0.5) / w, 0.0],
+                [0.0, 2 * self.fy / h, 2 * (self.cy + 0.5) / h - 1, 0.0],
+                [0.0, 0.0, -(f + n) / (f - n), -2 * f * n / (f - n)],
+                [0.0, 0.0, -1.0, 0.0],
+            ]
+        )

@@ -1,0 +1,174 @@
+"""Rigid transforms, roll-pitch-yaw angles and means on the circle: what both methods share.
+
+A state is `(..., 6)` float64 `[x, y, z, roll, pitch, yaw]`: the pose of the body (x forward, y left, z up) in the world
+(z up), metres and radians, with R = Rz(yaw) Ry(pitch) Rx(roll). That is the state vector of eq. (1) of paper 1
+(Hatakeyama, Kanai, Date), whose phi, theta, psi are roll, pitch and yaw; a particle set, eq. (2), is an array `(N, 6)`.
+
+Near pitch = +-90 degrees roll and yaw turn about the same axis (gimbal lock): a state still names one pose there, but
+neighbouring poses have far-apart angles. Whoever perturbs or averages all three angles does it on rotations, through
+`rotation_exp` and `rotation_log`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+# Body (x forward, y left, z up) from camera optical (x right, y down, z forward): columns are the optical axes in body.
+BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+
+# Below this cosine of pitch roll and yaw cannot be told apart in float64, and roll is set to zero.
+_GIMBAL_LOCK_COSINE = 1e-9
+
+
+def as_states(states: np.ndarray, name: str = "states") -> np.ndarray:
+    """Checked float64 copy-free view of states `(..., 6)`; `ValueError` for another last axis or values not finite."""
+    array = np.asarray(states, dtype=np.float64)
+    if array.ndim == 0 or array.shape[-1] != 6:
+        raise ValueError(f"{name} must have shape (..., 6) [x, y, z, roll, pitch, yaw]; got {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite; got NaN or infinity in {np.argwhere(~np.isfinite(array))[0]}")
+    return array
+
+
+def pose_matrix(states: np.ndarray) -> np.ndarray:
+    """Body-to-world matrices `(..., 4, 4)` of states `(..., 6)`.
+
+    T = [[R, t], [0, 1]] with R = Rz(yaw) Ry(pitch) Rx(roll), t = [x, y, z]. Metres, radians.
+    Raises `ValueError` for a wrong shape or values that are not finite.
+    Source: paper 1, eq. (1): X = [x, y, z, phi, theta, psi]; the order of the rotations is REP 103's.
+    """
+    states = as_states(states)
+    cosine, sine = np.cos(states[..., 3:]), np.sin(states[..., 3:])
+    (c_roll, c_pitch, c_yaw), (s_roll, s_pitch, s_yaw) = np.moveaxis(cosine, -1, 0), np.moveaxis(sine, -1, 0)
+    matrices = np.zeros((*states.shape[:-1], 4, 4))
+    matrices[..., 0, 0] = c_yaw * c_pitch
+    matrices[..., 0, 1] = c_yaw * s_pitch * s_roll - s_yaw * c_roll
+    matrices[..., 0, 2] = c_yaw * s_pitch * c_roll + s_yaw * s_roll
+    matrices[..., 1, 0] = s_yaw * c_pitch
+    matrices[..., 1, 1] = s_yaw * s_pitch * s_roll + c_yaw * c_roll
+    matrices[..., 1, 2] = s_yaw * s_pitch * c_roll - c_yaw * s_roll
+    matrices[..., 2, 0] = -s_pitch
+    matrices[..., 2, 1] = c_pitch * s_roll
+    matrices[..., 2, 2] = c_pitch * c_roll
+    matrices[..., :3, 3] = states[..., :3]
+    matrices[..., 3, 3] = 1.0
+    return matrices
+
+
+def state_from_matrix(matrices: np.ndarray) -> np.ndarray:
+    """States `(..., 6)` of body-to-world matrices `(..., 4, 4)`: the inverse of `pose_matrix`.
+
+    roll = atan2(R21, R22), pitch = atan2(-R20, hypot(R00, R10)), yaw = atan2(R10, R00), pitch within +-90 degrees.
+    In gimbal lock (pitch = +-90 degrees) roll is 0 and yaw carries the whole turn; the pose is kept.
+    Raises `ValueError` for a wrong shape, values that are not finite, or a 3 x 3 block that is not a rotation.
+    """
+    matrices = np.asarray(matrices, dtype=np.float64)
+    if matrices.ndim < 2 or matrices.shape[-2:] != (4, 4):
+        raise ValueError(f"matrices must have shape (..., 4, 4); got {matrices.shape}")
+    if not np.isfinite(matrices).all():
+        raise ValueError("matrices must be finite; got NaN or infinity")
+    rotation = matrices[..., :3, :3]
+    if not is_rotation(rotation).all():
+        raise ValueError("the upper left 3 x 3 of every matrix must be a rotation (orthonormal, determinant +1)")
+    states = np.empty((*matrices.shape[:-2], 6))
+    cos_pitch = np.hypot(rotation[..., 0, 0], rotation[..., 1, 0])
+    locked = cos_pitch < _GIMBAL_LOCK_COSINE
+    states[..., :3] = matrices[..., :3, 3]
+    states[..., 3] = np.where(locked, 0.0, np.arctan2(rotation[..., 2, 1], rotation[..., 2, 2]))
+    states[..., 4] = np.arctan2(-rotation[..., 2, 0], cos_pitch)
+    states[..., 5] = np.where(
+        locked,
+        np.arctan2(-rotation[..., 0, 1], rotation[..., 1, 1]),
+        np.arctan2(rotation[..., 1, 0], rotation[..., 0, 0]),
+    )
+    return states
+
+
+def is_rotation(matrices: np.ndarray, tolerance: float = 1e-4) -> np.ndarray:
+    """Whether each `(..., 3, 3)` matrix is orthonormal with determinant +1, to `tolerance` in every element of R^T R."""
+    matrices = np.asarray(matrices, dtype=np.float64)
+    gram = np.swapaxes(matrices, -1, -2) @ matrices
+    orthonormal = np.abs(gram - np.eye(3)).max(axis=(-1, -2)) <= tolerance
+    return orthonormal & (np.linalg.det(matrices) > 0)
+
+
+def wrap_angle(a: np.ndarray | float) -> np.ndarray | float:
+    """Angles in radians brought to [-pi, pi)."""
+    wrapped = (np.asarray(a, dtype=np.float64) + np.pi) % (2 * np.pi) - np.pi
+    # The remainder of a tiny negative number rounds up to the modulus itself, which would read +pi.
+    wrapped = np.where(wrapped >= np.pi, -np.pi, wrapped)
+    return float(wrapped) if wrapped.ndim == 0 else wrapped
+
+
+def circular_mean(angles: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray | float:
+    """Mean direction of angles along their first axis, in [-pi, pi): atan2(sum w sin a, sum w cos a).
+
+    angles `(N, ...)` radians; weights `(N,)`, not negative, not all zero (None: equal). Result `(...)`.
+    A sum that vanishes (two opposite angles) has no direction; the result is then NaN.
+    Raises `ValueError` for no angles or weights that do not fit.
+    """
+    angles = np.asarray(angles, dtype=np.float64)
+    if angles.ndim == 0 or len(angles) == 0:
+        raise ValueError(f"angles must have at least one element along the first axis; got shape {angles.shape}")
+    w = np.ones(len(angles)) if weights is None else np.asarray(weights, dtype=np.float64)
+    if w.shape != angles.shape[:1] or not np.isfinite(w).all() or (w < 0).any() or w.sum() == 0:
+        raise ValueError(f"weights must be {len(angles)} numbers, none negative, not all zero; got {w.shape}")
+    w = w / w.sum()
+    sine, cosine = np.tensordot(w, np.sin(angles), 1), np.tensordot(w, np.cos(angles), 1)
+    mean = np.where(np.hypot(sine, cosine) < 1e-12, np.nan, wrap_angle(np.arctan2(sine, cosine)))
+    return float(mean) if mean.ndim == 0 else mean
+
+
+def rotation_exp(rotation_vector: np.ndarray) -> np.ndarray:
+    """Rotation matrices `(..., 3, 3)` of rotation vectors `(..., 3)` (axis times angle, radians): Rodrigues' formula.
+
+    R = I + sin(a)/a [v]x + (1 - cos(a))/a^2 [v]x^2, a = |v|.
+    """
+    v = np.asarray(rotation_vector, dtype=np.float64)
+    angle = np.linalg.norm(v, axis=-1)[..., None, None]
+    skew = np.zeros((*v.shape[:-1], 3, 3))
+    skew[..., 0, 1], skew[..., 0, 2], skew[..., 1, 2] = -v[..., 2], v[..., 1], -v[..., 0]
+    skew[..., 1, 0], skew[..., 2, 0], skew[..., 2, 1] = v[..., 2], -v[..., 1], v[..., 0]
+    # np.sinc(x) is sin(pi x)/(pi x), finite at zero.
+    return np.eye(3) + np.sinc(angle / np.pi) * skew + 0.5 * np.sinc(angle / (2 * np.pi)) ** 2 * (skew @ skew)
+
+
+def rotation_angle(rotation: np.ndarray) -> np.ndarray:
+    """Angle in [0, pi] radians by which each rotation `(..., 3, 3)` turns: atan2(|axial part|, trace - 1)."""
+    rotation = np.asarray(rotation, dtype=np.float64)
+    axial = np.stack(
+        [
+            rotation[..., 2, 1] - rotation[..., 1, 2],
+            rotation[..., 0, 2] - rotation[..., 2, 0],
+            rotation[..., 1, 0] - rotation[..., 0, 1],
+        ],
+        axis=-1,
+    )
+    return np.arctan2(np.linalg.norm(axial, axis=-1), np.trace(rotation, axis1=-2, axis2=-1) - 1.0)
+
+
+def rotation_mean(rotations: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
+    """Chordal mean `(3, 3)` of rotations `(N, 3, 3)`: the rotation nearest to sum w R (SVD, determinant kept at +1).
+
+    Unlike a mean of Euler angles it does not depend on the choice of axes and knows no gimbal lock.
+    """
+    rotations = np.asarray(rotations, dtype=np.float64)
+    w = np.full(len(rotations), 1.0 / len(rotations)) if weights is None else np.asarray(weights) / np.sum(weights)
+    u, _, vt = np.linalg.svd(np.tensordot(w, rotations, 1))
+    return u @ np.diag([1.0, 1.0, np.linalg.det(u) * np.linalg.det(vt)]) @ vt
+
+
+def optical_pose(states: np.ndarray) -> np.ndarray:
+    """Camera-to-world matrices `(..., 4, 4)` in the optical convention (x right, y down, z forward) of states."""
+    matrices = pose_matrix(states)
+    matrices[..., :3, :3] = matrices[..., :3, :3] @ BODY_FROM_OPTICAL
+    return matrices
+
+
+def state_from_optical_pose(matrices: np.ndarray) -> np.ndarray:
+    """States `(..., 6)` of camera-to-world matrices `(..., 4, 4)` in the optical convention; inverse of `optical_pose`."""
+    matrices = np.array(matrices, dtype=np.float64)
+    if matrices.ndim < 2 or matrices.shape[-2:] != (4, 4):
+        raise ValueError(f"matrices must have shape (..., 4, 4); got {matrices.shape}")
+    matrices[..., :3, :3] = matrices[..., :3, :3] @ BODY_FROM_OPTICAL.T
+    return state_from_matrix(matrices)
