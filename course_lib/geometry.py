@@ -85,7 +85,7 @@ def state_from_matrix(matrices: np.ndarray) -> np.ndarray:
 
 
 def is_rotation(matrices: np.ndarray, tolerance: float = 1e-4) -> np.ndarray:
-    """Whether each `(..., 3, 3)` matrix is orthonormal with determinant +1, to `tolerance` in every element of R^T R."""
+    """Whether each `(..., 3, 3)` matrix is orthonormal (R^T R = I to `tolerance`) with determinant +1."""
     matrices = np.asarray(matrices, dtype=np.float64)
     gram = np.swapaxes(matrices, -1, -2) @ matrices
     orthonormal = np.abs(gram - np.eye(3)).max(axis=(-1, -2)) <= tolerance
@@ -166,7 +166,7 @@ def optical_pose(states: np.ndarray) -> np.ndarray:
 
 
 def state_from_optical_pose(matrices: np.ndarray) -> np.ndarray:
-    """States `(..., 6)` of camera-to-world matrices `(..., 4, 4)` in the optical convention; inverse of `optical_pose`."""
+    """States `(..., 6)` of camera-to-world matrices `(..., 4, 4)`, optical convention; inverse of `optical_pose`."""
     matrices = np.array(matrices, dtype=np.float64)
     if matrices.ndim < 2 or matrices.shape[-2:] != (4, 4):
         raise ValueError(f"matrices must have shape (..., 4, 4); got {matrices.shape}")

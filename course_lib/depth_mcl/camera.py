@@ -1,4 +1,4 @@
-"""The depth camera as a pinhole: its pixels, their rays, and the projection that both render paths share (paper 1, 3.3).
+"""The depth camera as a pinhole: its pixels, their rays, and the projection both render paths share (paper 1, 3.3).
 
 Optical frame: x right, y down, z forward. A point (X, Y, Z) falls on column u = fx X / Z + cx, row v = fy Y / Z + cy;
 pixel centres are at integer coordinates, so pixel (0, 0) covers u in [-0.5, 0.5). Depth is Z, along the optical axis.
@@ -126,7 +126,7 @@ class DepthCamera:
         return np.stack([(u - self.cx) / self.fx, (v - self.cy) / self.fy, np.ones(self.shape)], axis=-1)
 
     def project(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Column, row and depth of points `(..., 3)` in the optical frame; points not in front of it give NaN pixels."""
+        """Column, row and depth of points `(..., 3)` in the optical frame; points behind it give NaN pixels."""
         points = np.asarray(points, dtype=np.float64)
         x, y, z = points[..., 0], points[..., 1], points[..., 2]
         safe = np.where(z > 0, z, np.nan)

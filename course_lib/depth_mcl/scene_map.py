@@ -1,0 +1,103 @@
+"""The environment map of paper 1: a triangle mesh in the world frame, from a terrestrial laser scan (section 1)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+# Below this area (square metres) a triangle has no inside that a pixel centre could hit.
+_DEGENERATE_AREA = 1e-16
+
+
+class SceneMapError(ValueError):
+    """A map that cannot be used: unreadable, empty, or with values that are no geometry."""
+
+
+class SceneMap:
+    """Triangles in the world frame.
+
+    vertices: `(V, 3)` float64 metres. faces: `(F, 3)` int32 vertex indices; the winding does not matter, both sides of
+    a triangle are seen. origin: `(3,)` float64, the middle of the bounding box; renderers subtract it before anything
+    becomes float32, so that a map a kilometre from its coordinate origin keeps its millimetres.
+    Raises `SceneMapError` (a `ValueError`) for an empty mesh, no faces, vertices that are not finite, or indices out of
+    range. Triangles without area are dropped.
+    """
+
+    def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
+        vertices = np.asarray(vertices, dtype=np.float64)
+        faces = np.asarray(faces)
+        if vertices.ndim != 2 or vertices.shape[-1] != 3 or len(vertices) == 0:
+            raise SceneMapError(f"the map needs vertices of shape (V, 3), V at least 3; got {vertices.shape}")
+        if faces.ndim != 2 or faces.shape[-1] != 3 or len(faces) == 0:
+            raise SceneMapError(
+                f"the map needs triangles: faces of shape (F, 3), F at least 1; got {faces.shape}. "
+                "A point cloud has none: mesh it first"
+            )
+        if not np.isfinite(vertices).all():
+            n_bad = int((~np.isfinite(vertices)).any(axis=1).sum())
+            raise SceneMapError(f"{n_bad} of {len(vertices)} vertices are NaN or infinite; remove them from the mesh")
+        if not np.issubdtype(faces.dtype, np.integer) or faces.min() < 0 or faces.max() >= len(vertices):
+            raise SceneMapError(
+                f"faces must be whole numbers from 0 to {len(vertices) - 1} (the vertices); got {faces.dtype} from "
+                f"{faces.min()} to {faces.max()}"
+            )
+        corners = vertices[faces]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        keep = 0.5 * np.linalg.norm(normals, axis=1) > _DEGENERATE_AREA
+        if not keep.any():
+            raise SceneMapError(f"none of the {len(faces)} triangles has an area")
+        self.vertices = vertices
+        self.faces = np.ascontiguousarray(faces[keep], dtype=np.int32)
+        used = vertices[np.unique(self.faces)]
+        self.bounds = np.stack([used.min(axis=0), used.max(axis=0)])
+        self.origin = self.bounds.mean(axis=0)
+        for array in (self.vertices, self.faces, self.bounds, self.origin):
+            array.setflags(write=False)
+
+    @classmethod
+    def load(cls, path: str | Path) -> SceneMap:
+        """Map from any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
+
+        Raises `FileNotFoundError` where there is no file, `SceneMapError` where it cannot be read or holds no
+        triangles.
+        """
+        import trimesh
+
+        path = Path(path)
+        if not path.is_file():
+            raise FileNotFoundError(f"no map at {path}: give the path of a mesh file (PLY, OBJ, STL or GLB)")
+        try:
+            mesh = trimesh.load(path, process=False)
+            if isinstance(mesh, trimesh.Scene):
+                mesh = mesh.to_mesh() if mesh.geometry else None
+            vertices = getattr(mesh, "vertices", np.empty((0, 3)))
+            faces = getattr(mesh, "faces", np.empty((0, 3), dtype=np.int32))
+        except Exception as error:  # trimesh's readers raise whatever their parsing stumbles on
+            raise SceneMapError(
+                f"{path} cannot be read as a mesh ({type(error).__name__}: {error}): is it complete, and PLY, OBJ, STL "
+                "or GLB?"
+            ) from error
+        if faces is None or len(faces) == 0:
+            raise SceneMapError(f"{path} holds no triangles ({len(vertices)} vertices): mesh it first")
+        return cls(vertices, faces)
+
+    def transformed(self, matrix: np.ndarray) -> SceneMap:
+        """The map moved by a rigid transform `(4, 4)`."""
+        matrix = np.asarray(matrix, dtype=np.float64)
+        if matrix.shape != (4, 4):
+            raise ValueError(f"matrix must have shape (4, 4); got {matrix.shape}")
+        return SceneMap(self.vertices @ matrix[:3, :3].T + matrix[:3, 3], self.faces)
+
+    def contains(self, positions: np.ndarray, margin: float = 0.0) -> np.ndarray:
+        """Whether positions `(..., 3)` lie in the map's bounding box grown by `margin` metres: `(...)` bool."""
+        positions = np.asarray(positions)
+        low, high = self.bounds[0] - margin, self.bounds[1] + margin
+        return ((positions >= low) & (positions <= high)).all(axis=-1)
+
+    def __len__(self) -> int:
+        return len(self.faces)
+
+    def __repr__(self) -> str:
+        size = self.bounds[1] - self.bounds[0]
+        return f"SceneMap({len(self.faces)} triangles, {size[0]:.1f} x {size[1]:.1f} x {size[2]:.1f} m)"

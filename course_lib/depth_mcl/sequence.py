@@ -1,0 +1,304 @@
+"""Depth-camera recordings: a folder of depth images with intrinsics and poses, as in the 7-Scenes dataset.
+
+    depth/NNNNNN*.png   16-bit, depth along the optical axis in millimetres, 0 = no measurement
+    intrinsics.txt      3 x 3 matrix K in pixels, pixel centres at integer coordinates
+    poses.txt           frame number, then a row-major 4 x 4 camera-to-world matrix (x right, y down, z forward)
+    up.txt              optional: which world axis points up (x, -x, y, -y, z, -z); without it nothing is known
+    groundtruth.txt     optional: the same poses with time stamps, TUM format (t tx ty tz qx qy qz qw)
+    path_on_floor.txt   optional: the surveyed line on the floor below the camera, x y z per row (the paper's truth)
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from course_lib.geometry import is_rotation, rotation_angle
+
+UP_AXES = {
+    "x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1),
+}  # fmt: skip
+
+
+class SequenceError(ValueError):
+    """A recording that cannot be used: a missing or malformed file, or files that do not fit each other."""
+
+
+class DepthSequence:
+    """A recording on disk; images are read when asked for.
+
+    frames: frame numbers, ascending. camera_to_world: `(T, 4, 4)` float64, optical convention. intrinsics: `(3, 3)`.
+    image_shape: (height, width). up: "z" and the like, or None where nothing is known. times: `(T,)` seconds or None.
+    path_on_floor: `(P, 3)` metres or None.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        frames: list[int],
+        files: list[Path],
+        camera_to_world: np.ndarray,
+        intrinsics: np.ndarray,
+        image_shape: tuple[int, int],
+        up: str | None,
+        times: np.ndarray | None,
+        path_on_floor: np.ndarray | None,
+    ) -> None:
+        self.folder = folder
+        self.frames = frames
+        self.files = files
+        self.camera_to_world = camera_to_world
+        self.intrinsics = intrinsics
+        self.image_shape = image_shape
+        self.up = up
+        self.times = times
+        self.path_on_floor = path_on_floor
+
+    def __len__(self) -> int:
+        return len(self.frames)
+
+    def depth(self, index: int) -> np.ndarray:
+        """Depth image `(H, W)` float32 metres of the index-th frame; NaN where nothing was measured."""
+        depth = read_depth_png(self.files[index])
+        if depth.shape != self.image_shape:
+            raise SequenceError(
+                f"{self.files[index]} is {depth.shape[1]} x {depth.shape[0]} pixels, the first image of the sequence "
+                f"{self.image_shape[1]} x {self.image_shape[0]}: a sequence has one image size"
+            )
+        return depth
+
+    def __iter__(self) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+        """Yields (frame number, depth image, camera-to-world matrix)."""
+        for index, frame in enumerate(self.frames):
+            yield frame, self.depth(index), self.camera_to_world[index]
+
+    def __repr__(self) -> str:
+        return f"DepthSequence({str(self.folder)!r}, {len(self)} frames, up={self.up!r})"
+
+
+def read_sequence(folder: str | Path) -> DepthSequence:
+    """The recording in a folder (format: top of this module).
+
+    Raises `FileNotFoundError` for a missing folder or file, `SequenceError` (a `ValueError`) for malformed ones,
+    intrinsics that do not fit the images, and poses whose frame numbers are not those of the images.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise FileNotFoundError(f"no sequence at {folder}: give a folder with depth/, intrinsics.txt and poses.txt")
+    images = _depth_files(folder)
+    frames, camera_to_world = _read_poses(folder / "poses.txt")
+    _require_same_frames(folder, frames, sorted(images))
+    intrinsics = _read_numbers(folder / "intrinsics.txt")
+    if intrinsics.shape != (3, 3):
+        raise SequenceError(f"{folder / 'intrinsics.txt'} must hold a 3 x 3 matrix; got {intrinsics.shape}")
+    image_shape = read_depth_png(images[frames[0]]).shape
+    height, width = image_shape
+    if not (-0.5 <= intrinsics[0, 2] <= width - 0.5 and -0.5 <= intrinsics[1, 2] <= height - 0.5):
+        raise SequenceError(
+            f"intrinsics.txt puts the principal point at ({intrinsics[0, 2]:g}, {intrinsics[1, 2]:g}), outside the "
+            f"images of {width} x {height} pixels: it is for another image size; scale fx, cx by the width and fy, cy "
+            "by the height"
+        )
+    times = None
+    if (folder / "groundtruth.txt").is_file():
+        times, timed_poses = read_tum(folder / "groundtruth.txt")
+        if len(times) != len(frames) or not np.allclose(timed_poses, camera_to_world, atol=1e-3):
+            raise SequenceError(f"groundtruth.txt and poses.txt in {folder} do not hold the same {len(frames)} poses")
+    path_file = folder / "path_on_floor.txt"
+    path_on_floor = _read_numbers(path_file) if path_file.is_file() else None
+    if path_on_floor is not None and (path_on_floor.ndim != 2 or path_on_floor.shape[1] != 3):
+        raise SequenceError(f"{path_file} must hold x y z per row; got shape {path_on_floor.shape}")
+    return DepthSequence(
+        folder, frames, [images[f] for f in frames], camera_to_world, intrinsics, image_shape, _read_up(folder), times,
+        path_on_floor,
+    )  # fmt: skip
+
+
+def write_sequence(
+    folder: str | Path,
+    intrinsics: np.ndarray,
+    frames: list[int],
+    depths: list[np.ndarray],
+    camera_to_world: np.ndarray,
+    times: np.ndarray | None = None,
+    up: str | None = None,
+    path_on_floor: np.ndarray | None = None,
+) -> None:
+    """Writes a recording as `read_sequence` reads it.
+
+    depths: one `(H, W)` float array a frame, metres, NaN = no measurement. camera_to_world: `(T, 4, 4)`, optical.
+    times: `(T,)` seconds; with them the poses are also written as a TUM trajectory. Raises `ValueError`, before any
+    file is written, where the lengths differ or the folder already holds a recording.
+    """
+    folder = Path(folder)
+    camera_to_world = np.asarray(camera_to_world, dtype=np.float64)
+    if not len(frames) == len(depths) == len(camera_to_world):
+        raise ValueError(f"{len(frames)} frame numbers, {len(depths)} images, {len(camera_to_world)} poses: must agree")
+    if times is not None and len(times) != len(frames):
+        raise ValueError(f"{len(times)} times for {len(frames)} frames: must agree")
+    if up is not None and up not in UP_AXES:
+        raise ValueError(f"up must be one of {', '.join(UP_AXES)} or None; got {up!r}")
+    if (folder / "poses.txt").exists():
+        raise ValueError(f"{folder} already holds a recording: give a new folder, or delete that one first")
+    (folder / "depth").mkdir(parents=True, exist_ok=True)
+    for frame, depth in zip(frames, depths, strict=True):
+        write_depth_png(folder / "depth" / f"{frame:06d}.png", depth)
+    np.savetxt(folder / "intrinsics.txt", intrinsics, fmt="%.6f", header="K, pixel centres at integer coordinates")
+    if up is not None:
+        (folder / "up.txt").write_text(up + "\n")
+    if times is not None:
+        write_tum(folder / "groundtruth.txt", times, camera_to_world)
+    if path_on_floor is not None:
+        np.savetxt(folder / "path_on_floor.txt", path_on_floor, fmt="%.4f", header="x y z, metres")
+    np.savetxt(
+        folder / "poses.txt",
+        np.column_stack([frames, camera_to_world.reshape(-1, 16)]),
+        fmt=["%d"] + ["%.9g"] * 16,
+        header="frame  T_world_cam row-major 4x4 (camera-to-world, metres)",
+    )
+
+
+def read_depth_png(path: str | Path) -> np.ndarray:
+    """Depth image `(H, W)` float32 metres from a 16-bit PNG in millimetres; 0 becomes NaN (no measurement)."""
+    import cv2
+
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"no depth image at {path}")
+    image = cv2.imdecode(np.fromfile(path, dtype=np.uint8), cv2.IMREAD_UNCHANGED) if path.stat().st_size else None
+    if image is None:
+        raise SequenceError(f"{path} cannot be read as a PNG: is it complete?")
+    if image.dtype != np.uint16 or image.ndim != 2:
+        raise SequenceError(
+            f"{path} must be a 16-bit single-channel PNG in millimetres; got {image.dtype} with shape {image.shape}"
+        )
+    depth = image.astype(np.float32) * np.float32(1e-3)
+    depth[image == 0] = np.nan
+    return depth
+
+
+def write_depth_png(path: str | Path, depth: np.ndarray) -> None:
+    """Writes a depth image in metres as a 16-bit PNG in mm; NaN, infinity and what 16 bits cannot hold as 0."""
+    import cv2
+
+    depth = np.asarray(depth, dtype=np.float64)
+    millimetres = np.rint(np.nan_to_num(depth * 1000.0, nan=0.0, posinf=0.0, neginf=0.0))
+    image = np.where((millimetres > 0) & (millimetres <= 65535), millimetres, 0).astype(np.uint16)
+    ok, encoded = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 9])
+    if not ok:
+        raise SequenceError(f"{path}: the image of shape {depth.shape} could not be encoded as PNG")
+    Path(path).write_bytes(encoded.tobytes())
+
+
+def read_tum(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
+    """Times `(T,)` and poses `(T, 4, 4)` of a TUM trajectory file (t tx ty tz qx qy qz qw per row)."""
+    from scipy.spatial.transform import Rotation
+
+    rows = _read_numbers(Path(path))
+    if rows.ndim != 2 or rows.shape[1] != 8:
+        raise SequenceError(f"{path} must hold rows of 8 numbers (t tx ty tz qx qy qz qw); got shape {rows.shape}")
+    norms = np.linalg.norm(rows[:, 4:], axis=1)
+    if (np.abs(norms - 1) > 1e-2).any():
+        raise SequenceError(f"{path}: quaternions must have length one; row {int(np.abs(norms - 1).argmax())} has not")
+    poses = np.tile(np.eye(4), (len(rows), 1, 1))
+    poses[:, :3, :3] = Rotation.from_quat(rows[:, 4:]).as_matrix()
+    poses[:, :3, 3] = rows[:, 1:4]
+    return rows[:, 0], poses
+
+
+def write_tum(path: str | Path, times: np.ndarray, poses: np.ndarray) -> None:
+    """Writes poses `(T, 4, 4)` with times `(T,)` in seconds as a TUM trajectory."""
+    from scipy.spatial.transform import Rotation
+
+    poses = np.asarray(poses, dtype=np.float64)
+    quaternions = Rotation.from_matrix(poses[:, :3, :3]).as_quat(canonical=True)
+    rows = np.column_stack([times, poses[:, :3, 3], quaternions])
+    np.savetxt(path, rows, fmt="%.9f", header="t tx ty tz qx qy qz qw")
+
+
+def rotation_to_z_up(up: str) -> np.ndarray:
+    """Rotation `(4, 4)` that turns the named up axis ("y", "-z", ...) of a world into +z, by the shortest turn."""
+    if up not in UP_AXES:
+        raise ValueError(f"up must be one of {', '.join(UP_AXES)}; got {up!r}")
+    from scipy.spatial.transform import Rotation
+
+    matrix = np.eye(4)
+    axis = np.asarray(UP_AXES[up], dtype=np.float64)
+    if up == "-z":
+        matrix[:3, :3] = np.diag([1.0, -1.0, -1.0])
+    elif up != "z":
+        turn = np.cross(axis, [0.0, 0.0, 1.0])
+        matrix[:3, :3] = np.rint(Rotation.from_rotvec(turn * np.pi / 2).as_matrix())
+    return matrix
+
+
+def pose_errors(estimated: np.ndarray, true: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distance in metres and angle in radians between poses `(..., 4, 4)`: |t_a - t_b| and the angle of R_a^T R_b."""
+    position = np.linalg.norm(estimated[..., :3, 3] - true[..., :3, 3], axis=-1)
+    relative = np.swapaxes(estimated[..., :3, :3], -1, -2) @ true[..., :3, :3]
+    return position, rotation_angle(relative)
+
+
+def _depth_files(folder: Path) -> dict[int, Path]:
+    """Depth images of a recording by frame number: the first run of digits in the name."""
+    if not (folder / "depth").is_dir():
+        raise FileNotFoundError(f"{folder} has no folder depth/ with 16-bit PNG images")
+    files: dict[int, Path] = {}
+    for path in sorted((folder / "depth").glob("*.png")):
+        digits = re.search(r"\d+", path.name)
+        if digits is None:
+            raise SequenceError(f"{path.name} in {folder / 'depth'} has no frame number in its name")
+        files[int(digits.group())] = path
+    if not files:
+        raise SequenceError(f"{folder / 'depth'} holds no PNG images")
+    return files
+
+
+def _read_poses(path: Path) -> tuple[list[int], np.ndarray]:
+    rows = _read_numbers(path)
+    if rows.ndim != 2 or rows.shape[1] != 17:
+        raise SequenceError(f"{path} must hold rows of 17 numbers (frame, then a 4 x 4 matrix); got {rows.shape}")
+    if (rows[:, 0] != np.rint(rows[:, 0])).any() or (np.diff(rows[:, 0]) <= 0).any():
+        raise SequenceError(f"{path}: frame numbers must be whole and ascending, each once")
+    poses = rows[:, 1:].reshape(-1, 4, 4)
+    good = is_rotation(poses[:, :3, :3], tolerance=1e-3) & (np.abs(poses[:, 3] - [0, 0, 0, 1]).max(axis=-1) < 1e-6)
+    if not good.all():
+        frame = int(rows[np.argmin(good), 0])
+        raise SequenceError(f"{path}: the matrix of frame {frame} is not rigid (a rotation, and 0 0 0 1 below)")
+    return rows[:, 0].astype(int).tolist(), poses
+
+
+def _require_same_frames(folder: Path, pose_frames: list[int], image_frames: list[int]) -> None:
+    if pose_frames == image_frames:
+        return
+    without_image = sorted(set(pose_frames) - set(image_frames))[:3]
+    without_pose = sorted(set(image_frames) - set(pose_frames))[:3]
+    raise SequenceError(
+        f"poses.txt and depth/ in {folder} name other frames: {len(pose_frames)} poses, {len(image_frames)} images; "
+        f"poses without an image start {without_image}, images without a pose {without_pose}"
+    )
+
+
+def _read_up(folder: Path) -> str | None:
+    path = folder / "up.txt"
+    if not path.is_file():
+        return None
+    up = path.read_text().strip()
+    if up not in UP_AXES:
+        raise SequenceError(f"{path} must name one of {', '.join(UP_AXES)}; got {up!r}")
+    return up
+
+
+def _read_numbers(path: Path) -> np.ndarray:
+    if not path.is_file():
+        raise FileNotFoundError(f"no file {path}")
+    try:
+        numbers = np.loadtxt(path, dtype=np.float64, ndmin=2)
+    except ValueError as error:
+        raise SequenceError(f"{path} must hold rows of numbers, all of one length: {error}") from error
+    if numbers.size == 0 or not np.isfinite(numbers).all():
+        raise SequenceError(f"{path} is empty or holds values that are not finite")
+    return numbers
