@@ -1,0 +1,355 @@
+#!/usr/bin/env python3
+"""Sets the course up and starts it: `python3 course.py lab`, `python3 course.py test`.
+
+The standard library only. The first call makes `.venv` from environment.txt, installs course_lib into it and sees to
+the system's OpenGL libraries; every call then hands over to `python -m course_lib` in `.venv`. What is said on the way
+goes to standard error, so that `--json` output stays clean.
+
+`.venv/course-ready.json` is written last and says what was installed, from where: without it `.venv` is not trusted.
+`.venv/course-incomplete` stands there while an installation runs: what was killed half-way is made anew.
+This file must be readable by an old Python (3.6), which has to get as far as saying that it is too old.
+"""
+
+import contextlib
+import hashlib
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+ROOT = os.path.dirname(os.path.abspath(__file__))
+VENV = os.path.join(ROOT, ".venv")
+PYTHON = os.path.join(VENV, "Scripts", "python.exe") if os.name == "nt" else os.path.join(VENV, "bin", "python")
+READY = os.path.join(VENV, "course-ready.json")
+INCOMPLETE = os.path.join(VENV, "course-incomplete")
+OPENGL_READY = os.path.join(VENV, "course-opengl-ready")
+OPENGL_PACKAGES = ["libegl1", "libgl1-mesa-dri", "libgl1"]
+
+USAGE = """\
+usage: python3 course.py COMMAND [options]
+
+  lab                   open the lessons in JupyterLab (on this computer only)
+  test                  run every test, the notebooks included; arguments go on to pytest
+  check                 look at the environment: packages, OpenGL, one rendered depth image
+  demo corridor         run paper 1's corridor experiment and print its table
+  localize              localize a recorded depth-camera sequence in a mesh map
+  make-data corridor    make data/corridor again: the world, its map and the recorded runs
+  refresh               run the lessons again and store their outputs
+
+Options of one command: python3 course.py COMMAND --help
+The first call sets up .venv (a download of about 600 MB, some minutes).
+"""
+
+# Asks for what VTK asks for: an EGL device, a display without a surface, or the default one. It runs in a process of
+# its own, because a broken driver crashes the process that loads it.
+OPENGL_PROBE = """
+import ctypes, sys
+ctypes.CDLL("libGL.so.1")
+egl = ctypes.CDLL("libEGL.so.1")
+pointer = ctypes.c_void_p
+egl.eglGetProcAddress.restype = egl.eglGetDisplay.restype = pointer
+egl.eglInitialize.argtypes = [pointer, pointer, pointer]
+egl.eglGetDisplay.argtypes = [pointer]
+find = lambda name, result, *kinds: (lambda a: a and ctypes.CFUNCTYPE(result, *kinds)(a))(egl.eglGetProcAddress(name))
+platform_display = find(b"eglGetPlatformDisplayEXT", pointer, ctypes.c_int, pointer, pointer)
+query_devices = find(b"eglQueryDevicesEXT", ctypes.c_int, ctypes.c_int, pointer, pointer)
+displays = [egl.eglGetDisplay(None)]
+if platform_display:
+    displays.insert(0, platform_display(0x31DD, None, None))
+    devices, count = (pointer * 16)(), ctypes.c_int(0)
+    if query_devices and query_devices(16, devices, ctypes.byref(count)):
+        displays[:0] = [platform_display(0x313F, device, None) for device in devices[: count.value]]
+sys.exit(0 if any(display and egl.eglInitialize(display, None, None) for display in displays) else 1)
+"""
+
+
+class SetupError(Exception):
+    """What stopped the set-up, and what to do about it, in one or two sentences."""
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def python_version():
+    return ".".join(str(number) for number in sys.version_info[:2])
+
+
+def main(arguments):
+    if sys.version_info < (3, 11):  # noqa: UP036
+        say(
+            f"The course needs Python 3.11 or newer; this is Python {python_version()}. Install a newer one from your "
+            "system's packages or python.org and call it by name, for example: python3.11 course.py lab"
+        )
+        return 1
+    if not arguments or arguments[0] in ("-h", "--help", "help"):
+        print(USAGE, end="")
+        return 0 if arguments else 2
+    try:
+        if why_not_ready() is not None:
+            if {"-h", "--help"} & set(arguments):
+                print(USAGE, end="")
+                return 0
+            set_up()
+        see_to_opengl()
+        return hand_over(arguments)
+    except SetupError as error:
+        say(f"error: {error}")
+    except KeyboardInterrupt:
+        say("\nStopped. Call course.py again to go on.")
+        return 130
+    except OSError as error:
+        say(f"error: {explain_os_error(error)}")
+    return 1
+
+
+def hand_over(arguments):
+    command = [PYTHON, "-P", "-m", "course_lib", *arguments]
+    if os.name == "nt":  # execv does not wait there
+        return subprocess.call(command)
+    sys.stdout.flush()
+    os.execv(PYTHON, command)
+
+
+# ---------------------------------------------------------------------------------------------- the environment
+
+
+def wanted():
+    """What a trusted `.venv` was made from: the lock and the package's metadata, this folder, and its Python."""
+    digest = hashlib.sha256()
+    for name in ("environment.txt", "pyproject.toml"):
+        with open(os.path.join(ROOT, name), "rb") as file:
+            digest.update(file.read())
+    return {"environment": digest.hexdigest(), "folder": ROOT, "python": os.path.realpath(PYTHON)}
+
+
+def count_packages():
+    """Number of installed packages in `.venv`: one that was deleted by hand shows here, at no cost."""
+    library = os.path.join(VENV, "Lib", "site-packages") if os.name == "nt" else os.path.join(VENV, "lib")
+    if os.name != "nt" and os.path.isdir(library):
+        library = os.path.join(library, next(iter(sorted(os.listdir(library))), ""), "site-packages")
+    return sum(name.endswith(".dist-info") for name in os.listdir(library)) if os.path.isdir(library) else 0
+
+
+def why_not_ready():
+    """None when `.venv` can be used; else (the sentence to say, whether it must be made anew)."""
+    if not os.path.lexists(VENV):
+        return "There is no .venv yet: setting it up.", True
+    if not os.path.isdir(VENV):
+        raise SetupError(f"{VENV} is not a folder. Move it away and call course.py again.")
+    if os.path.exists(INCOMPLETE):
+        return "An earlier set-up was interrupted and left .venv half-made: making it anew.", True
+    if not os.path.exists(PYTHON):
+        return "The .venv here has no working Python (half-made, or its Python was removed): making it anew.", True
+    try:
+        with open(READY, encoding="utf-8") as file:
+            found = json.load(file)
+        count = found.pop("packages")
+    except (OSError, ValueError, KeyError, AttributeError):
+        return "The .venv here is half-made or was not made by course.py: completing it.", False
+    now = wanted()
+    if found.get("folder") != now["folder"] or found.get("python") != now["python"]:
+        return "The .venv here was made in another folder or by another Python: making it anew.", True
+    if found != now:
+        return "environment.txt or pyproject.toml has changed: bringing .venv up to date.", False
+    if not isinstance(count, int) or count_packages() < count:
+        return "Packages are missing from .venv: completing it.", False
+    return None
+
+
+def set_up():
+    """Makes or repairs `.venv`; only one course.py does it at a time."""
+    if not os.path.exists(os.path.join(ROOT, "environment.txt")):
+        raise SetupError("environment.txt is missing beside course.py. Download the course again, whole.")
+    for module in ("venv", "ensurepip"):
+        if importlib.util.find_spec(module) is None:
+            raise SetupError(
+                f"this Python {python_version()} comes without its module {module!r}, which makes .venv. On Debian or "
+                f"Ubuntu: apt-get install python{python_version()}-venv; then call course.py again."
+            )
+    with only_one_at_a_time() as lock:
+        state = why_not_ready()  # another course.py may have done it meanwhile
+        if state is None:
+            return
+        sentence, anew = state
+        say(sentence)
+        os.makedirs(VENV, exist_ok=True)
+        if not anew and run([PYTHON, "-c", "import pip, sys; sys.exit(sys.version_info < (3, 11))"], lock)[0]:
+            say("Its Python is too old or has no pip: making .venv anew.")
+            anew = True
+        with open(INCOMPLETE, "w", encoding="utf-8"):
+            pass
+        if anew:
+            make_venv(lock)
+        install(lock)
+        stamp = wanted()
+        stamp["packages"] = count_packages()
+        with open(READY + ".part", "w", encoding="utf-8") as file:
+            json.dump(stamp, file, indent=1)
+        os.replace(READY + ".part", READY)
+        os.remove(INCOMPLETE)
+
+
+def make_venv(lock):
+    """An empty environment; the mark of an unfinished one is never away while files are."""
+    for name in os.listdir(VENV):
+        path = os.path.join(VENV, name)
+        if path != INCOMPLETE:
+            shutil.rmtree(path) if os.path.isdir(path) and not os.path.islink(path) else os.remove(path)
+    code, lines = run([getattr(sys, "_base_executable", sys.executable), "-m", "venv", VENV], lock)
+    if code:
+        raise SetupError(
+            "could not make .venv. If Python's module venv is incomplete, on Debian or Ubuntu: apt-get install "
+            f"python{python_version()}-venv; then call course.py again. Python said: {last_lines(lines)}"
+        )
+
+
+def install(lock):
+    with open(os.path.join(ROOT, "environment.txt"), encoding="utf-8") as file:
+        total = sum(line[0] not in "# \n" for line in file)
+    say("Installing the environment into .venv, a minute or a few:")
+    pip = [PYTHON, "-m", "pip", "install", "--no-deps", "--no-user", "--disable-pip-version-check", "--no-input"]
+    started = {"count": 0}
+
+    def progress(line):
+        # pip names each package once before it installs them together.
+        if line.startswith(("Collecting ", "Requirement already satisfied: ")):
+            started["count"] += 1
+            name = line.split(": ")[-1].replace("Collecting ", "").split("==")[0].split(" ")[0]
+            show(f"  {started['count']} of up to {total} packages: {name}", started["count"] % 50 == 0)
+        elif line.startswith("Installing collected packages"):
+            show("  writing the packages into .venv ...", True)
+
+    code, lines = run([*pip, "-r", os.path.join(ROOT, "environment.txt")], lock, progress)
+    if not code:
+        code, lines = run([*pip, "--no-build-isolation", "-e", ROOT], lock)
+    if sys.stderr.isatty():
+        say("\r\033[K  done." if not code else "")
+    if code:
+        if code > 0:
+            os.remove(INCOMPLETE)  # pip ended by itself and left nothing half-written: the next call goes on from here
+        raise SetupError(explain_pip(lines))
+
+
+def show(text, milestone):
+    """One line that rewrites itself on a terminal; elsewhere only the milestones."""
+    if sys.stderr.isatty():
+        print("\r\033[K" + text[: shutil.get_terminal_size().columns - 1], end="", file=sys.stderr, flush=True)
+    elif milestone:
+        say(text)
+
+
+def run(command, lock, each_line=None):
+    """Exit code and output lines of a command. It inherits the lock: an orphan of a killed course.py keeps it."""
+    inherited = {} if os.name == "nt" or lock is None else {"pass_fds": [lock.fileno()]}
+    process = subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **inherited
+    )
+    lines = []
+    try:
+        for raw in process.stdout:
+            lines.append(raw.decode("utf-8", "replace").rstrip())
+            if each_line:
+                each_line(lines[-1].strip())
+        return process.wait(), lines
+    except BaseException:
+        process.terminate()
+        process.wait()
+        raise
+
+
+@contextlib.contextmanager
+def only_one_at_a_time():
+    """Holds a lock on course.py itself: the system lets go of it however the process ends, and no file is left."""
+    path = os.path.abspath(__file__)
+    try:
+        lock = open(path, "r+b")  # some network file systems lock only files open for writing
+    except OSError:
+        lock = open(path, "rb")
+    with lock:
+        if os.name == "nt":
+            import msvcrt
+
+            lock.seek(1 << 30)  # beyond the file's end, so that nobody is kept from reading it
+
+            def take(wait):
+                msvcrt.locking(lock.fileno(), msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            def take(wait):
+                fcntl.flock(lock, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+
+        try:
+            take(wait=False)
+        except (BlockingIOError, PermissionError):
+            say("Another course.py is setting up .venv: waiting for it to finish (Ctrl-C stops waiting).")
+            take(wait=True)
+        yield lock
+
+
+# -------------------------------------------------------------------------------------------------------- OpenGL
+
+
+def see_to_opengl():
+    """Installs the system's OpenGL libraries, or prints the line that does; remembers a success."""
+    if not sys.platform.startswith("linux") or os.path.exists(OPENGL_READY):
+        return
+    if not opengl_works():
+        install_line = "apt-get install -y --no-install-recommends " + " ".join(OPENGL_PACKAGES)
+        if not shutil.which("apt-get"):
+            say("OpenGL is missing: install Mesa's EGL and OpenGL drivers with your system's package manager.")
+            return
+        if os.geteuid() != 0:
+            say("OpenGL is missing, and installing it needs an administrator: sudo " + install_line)
+            return
+        say("OpenGL is missing: installing " + " ".join(OPENGL_PACKAGES))
+        os.environ.setdefault("DEBIAN_FRONTEND", "noninteractive")
+        run(["apt-get", "update"], None)
+        code, lines = run(install_line.split(), None)
+        if code or not opengl_works():
+            say(f"OpenGL could not be installed ({last_lines(lines)}). Run: {install_line}")
+            return
+    with contextlib.suppress(OSError), open(OPENGL_READY, "w", encoding="utf-8"):
+        pass
+
+
+def opengl_works():
+    return run([sys.executable, "-c", OPENGL_PROBE], None)[0] == 0
+
+
+# ------------------------------------------------------------------------------------------------------- sentences
+
+
+def last_lines(lines, count=3):
+    return " / ".join([line.strip() for line in lines if line.strip()][-count:])[-400:] or "nothing"
+
+
+def explain_pip(lines):
+    """What stopped pip, in a sentence, with its last lines."""
+    text = "\n".join(lines)
+    network = ("NewConnectionError", "Timeout", "ProxyError", "resolve", "Connection refused", "timed out", "SSLError")
+    if "No space left" in text:
+        return "the disk is full: the environment needs about 2.5 GB. Make room and call course.py again."
+    if "Permission denied" in text:
+        return "pip may not write here. Put the course into a folder of your own. " + last_lines(lines)
+    errors = [line for line in lines if line.startswith("ERROR")] or lines
+    if any(word in text for word in network):
+        return (
+            "no package could be downloaded: is there a network connection, and does pip need a proxy? "
+            "Connect and call course.py again; it goes on where it stopped. pip said: " + last_lines(errors, 1)
+        )
+    return "pip could not install the environment. Call course.py again, or see what pip said: " + last_lines(errors)
+
+
+def explain_os_error(error):
+    if isinstance(error, PermissionError):
+        place = error.filename or ROOT
+        return f"no permission to write {place}. Put the course into a folder of your own and call course.py there."
+    return f"{error}. Repair that and call course.py again."
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

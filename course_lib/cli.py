@@ -1,0 +1,103 @@
+"""The course's command line: a table of commands, each a module of `course_lib.commands`.
+
+A command module has `add_arguments(parser)` and `run(arguments) -> int` (the exit code), and its first docstring line
+is the description that `--help` shows. It is imported only when it is called: the list of commands never waits for VTK.
+A module that sets `PASSES_ARGUMENTS_ON = True` gets what its parser does not know as `arguments.passed_on`, a list.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+import traceback
+
+# Name as typed -> (module of course_lib.commands, one line for the list of commands).
+COMMANDS: dict[str, tuple[str, str]] = {
+    "lab": ("lab", "open the lessons in JupyterLab (on this computer only)"),
+    "test": ("test", "run every test, the notebooks included; arguments go on to pytest"),
+    "check": ("check", "look at the environment: packages, OpenGL, one rendered depth image"),
+    "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
+    "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
+    "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
+    "refresh": ("refresh", "run the lessons again and store their outputs"),
+}
+
+EXIT_BAD_INPUT = 2
+EXIT_FAULT = 1
+EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
+
+
+def usage() -> str:
+    """The list of commands."""
+    lines = [f"  {name:<20}  {line}" for name, (_, line) in COMMANDS.items()]
+    return "usage: python3 course.py COMMAND [options]\n\n" + "\n".join(lines) + "\n"
+
+
+def find_command(words: list[str]) -> tuple[str, list[str]] | None:
+    """The command that `words` begin with (the longest name wins) and the words after it; None when there is none."""
+    for length in (2, 1):
+        name = " ".join(words[:length])
+        if len(words) >= length and name in COMMANDS:
+            return name, words[length:]
+    return None
+
+
+def main(words: list[str]) -> int:
+    """Runs the command named by `words`; returns its exit code, and prints one line instead of a traceback."""
+    if not words or words[0] in ("-h", "--help"):
+        print(usage(), end="")
+        return 0 if words else EXIT_BAD_INPUT
+    found = find_command(words)
+    if found is None:
+        longer = [name for name in COMMANDS if name.split()[0] == words[0]]
+        meant = f"did you mean: {', '.join(longer)}?" if longer else f"the commands are: {', '.join(COMMANDS)}"
+        print(f"error: there is no command {' '.join(words[:2])!r}; {meant}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    debug = os.environ.get("COURSE_DEBUG", "") not in ("", "0")
+    try:
+        name, rest = found
+        module = importlib.import_module(f"course_lib.commands.{COMMANDS[name][0]}")
+        arguments = parse(name, module, rest)
+        debug = debug or arguments.debug
+        code = module.run(arguments)
+        sys.stdout.flush()
+        return code
+    except KeyboardInterrupt:
+        if debug:
+            traceback.print_exc()
+        print("\nStopped.", file=sys.stderr)
+        return EXIT_INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read our output (head, less) has gone; Python would complain once more when it closes stdout.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_FAULT
+    except Exception as error:
+        if debug:
+            traceback.print_exc()
+        return report(error)
+
+
+def parse(name: str, module, words: list[str]) -> argparse.Namespace:
+    """The arguments of one command; argparse itself exits, with code 2 and the usage, on arguments that do not fit."""
+    description = (module.__doc__ or "").strip().split("\n")[0]
+    parser = argparse.ArgumentParser(prog=f"course.py {name}", description=description, allow_abbrev=False)
+    module.add_arguments(parser)
+    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    if not getattr(module, "PASSES_ARGUMENTS_ON", False):
+        return parser.parse_args(words)
+    arguments, arguments.passed_on = parser.parse_known_args(words)
+    return arguments
+
+
+def report(error: Exception) -> int:
+    """Prints one line about `error` and returns the exit code: 2 for what the user can mend, 1 for a fault of ours."""
+    if isinstance(error, ImportError):
+        print(f"error: {error}. See what is missing: python3 course.py check", file=sys.stderr)
+        return EXIT_FAULT
+    if isinstance(error, (ValueError, OSError, RuntimeError)):
+        print(f"error: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    print(f"error: {type(error).__name__}: {error} (--debug shows where)", file=sys.stderr)
+    return EXIT_FAULT

@@ -1,0 +1,121 @@
+"""Open the lessons in JupyterLab, on this computer only.
+
+The server listens on 127.0.0.1 with its token on. Its settings, the student's own included, live in a folder of the
+environment (`.venv/course-lab`), so that nothing in the user's home is read or changed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+FIRST_LESSON = "notebooks/00_start_here.ipynb"
+
+# Parts of JupyterLab that a student does not need: what other packages bring along, and what would ask or load things.
+DISABLED_SERVER_EXTENSIONS = (
+    "jupyter_lsp",
+    "jupyter_server_proxy",
+    "jupyter_server_terminals",
+    "trame_jupyter_extension",
+)
+DISABLED_LAB_EXTENSIONS = (
+    "@jupyterhub/jupyter-server-proxy",
+    "@jupyterlab/apputils-extension:announcements",
+    "@jupyterlab/extensionmanager-extension",
+    "@jupyterlab/hub-extension",
+    "@jupyterlab/lsp-extension",
+    "@jupyterlab/notebook-extension:language-server",
+    "@jupyterlab/terminal-extension",
+    "trame_jupyter_extension",
+)
+SETTINGS = {
+    "@jupyterlab/apputils-extension:notification": {"fetchNews": "false", "checkForUpdates": False},
+    # Lessons bring their kernel; cells outside the view are drawn too, so that links and searches find them.
+    "@jupyterlab/notebook-extension:tracker": {"autoStartDefaultKernel": True, "windowingMode": "none"},
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--port", type=int, help="port to listen on (default: 8888, or the next one that is free)")
+    parser.add_argument("--no-browser", action="store_true", help="open no browser, only print the address")
+    parser.add_argument(
+        "--notebook", default=FIRST_LESSON, metavar="PATH", help="the notebook to open (default: lesson 00)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    if arguments.port is not None and not 1 <= arguments.port <= 65535:
+        raise ValueError(f"--port must lie between 1 and 65535; got {arguments.port}")
+    if not (ROOT / arguments.notebook).is_file():
+        raise ValueError(f"there is no notebook {arguments.notebook} in {ROOT}; see the folder notebooks/")
+    command, environment = lab_command(arguments.port, not arguments.no_browser, arguments.notebook)
+    print("Starting JupyterLab. Keep this window open; Ctrl-C ends it. Its address:", flush=True)
+    if os.name == "nt":  # execve does not wait there
+        return subprocess.call(command, env=environment, cwd=ROOT)
+    os.execve(command[0], command, environment)
+
+
+def lab_command(
+    port: int | None = None,
+    browser: bool = False,
+    notebook: str = FIRST_LESSON,
+    state_folder: str | os.PathLike | None = None,
+) -> tuple[list[str], dict[str, str]]:
+    """Command and environment variables that start the lessons' JupyterLab; writes its settings into `state_folder`.
+
+    port: None takes 8888 or the next free one; a given port is taken or the start fails. notebook: path below the
+    repository root. state_folder: where settings, workspaces and the kernel's history are kept (None:
+    `.venv/course-lab`). JUPYTER_TOKEN in the environment, where it is set, is the token; else a random one is printed.
+    """
+    state = Path(state_folder) if state_folder is not None else Path(sys.prefix) / "course-lab"
+    write_settings(state / "config")
+    command = [
+        *(sys.executable, "-m", "jupyterlab"),
+        "--ServerApp.ip=127.0.0.1",
+        f"--ServerApp.port={8888 if port is None else port}",
+        f"--ServerApp.port_retries={50 if port is None else 0}",
+        f"--ServerApp.open_browser={browser}",
+        f"--ServerApp.root_dir={ROOT}",
+        f"--LabApp.default_url=/lab/tree/{notebook}",
+        "--Application.log_level=WARN",
+        "--ServerApp.answer_yes=True",  # Ctrl-C ends it without a question
+    ]
+    if hasattr(os, "geteuid") and os.geteuid() == 0:
+        command.append("--ServerApp.allow_root=True")  # containers run as root; the server still listens here only
+    environment = dict(os.environ)
+    if not environment.get("JUPYTER_TOKEN"):
+        environment.pop("JUPYTER_TOKEN", None)  # set but empty, it would switch the token off
+    environment.update(
+        JUPYTER_CONFIG_DIR=str(state / "config"),
+        JUPYTER_DATA_DIR=str(state / "data"),
+        JUPYTER_RUNTIME_DIR=str(state / "runtime"),
+        JUPYTERLAB_SETTINGS_DIR=str(state / "user-settings"),
+        JUPYTERLAB_WORKSPACES_DIR=str(state / "workspaces"),
+        IPYTHONDIR=str(state / "ipython"),
+    )
+    return command, environment
+
+
+def write_settings(folder: Path) -> None:
+    """Writes the server's and JupyterLab's settings files into `folder`, Jupyter's configuration folder."""
+    files = {
+        "jupyter_server_config.json": {
+            "ServerApp": {"jpserver_extensions": dict.fromkeys(DISABLED_SERVER_EXTENSIONS, False)},
+            "LabApp": {"news_url": None, "check_for_updates_class": "jupyterlab.NeverCheckForUpdate"},
+        },
+        "labconfig/page_config.json": {
+            "buildAvailable": False,
+            "buildCheck": False,
+            "disabledExtensions": dict.fromkeys(DISABLED_LAB_EXTENSIONS, True),
+        },
+        "labconfig/default_setting_overrides.json": SETTINGS,
+    }
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(content, indent=1), encoding="utf-8")
