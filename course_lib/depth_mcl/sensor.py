@@ -1,0 +1,48 @@
+"""The depth camera's data (paper 1, 3.3.2): its points become a depth image by the rules of the simulated views."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course_lib.depth_mcl.camera import DepthCamera
+
+
+def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarray:
+    """Depth image `(H, W)` float32 metres of points `(..., 3)` in the optical frame; NaN where no point fell.
+
+    A point (X, Y, Z) with near <= Z <= far falls on the pixel nearest to u = fx X / Z + cx, v = fy Y / Z + cy; of
+    several on one pixel the nearest counts:  z^j = min { Z : point on pixel j }.
+    NaN points are no measurement. Raises `ValueError` for a wrong shape.
+    Source: paper 1, eq. (7); NumPy reference of `DepthRenderer.render_points`.
+    """
+    points = np.asarray(points, dtype=np.float64)
+    if points.ndim == 0 or points.shape[-1] != 3:
+        raise ValueError(f"points must have shape (..., 3); got {points.shape}")
+    points = points.reshape(-1, 3)
+    points = points[np.isfinite(points).all(axis=1)]
+    points = points[(points[:, 2] >= camera.near) & (points[:, 2] <= camera.far)]
+    u, v, z = camera.project(points)
+    # Pixel j covers [j - 0.5, j + 0.5): floor(u + 0.5), as a rasterizer does it, not rint, which rounds to even.
+    column, row = np.floor(u + 0.5), np.floor(v + 0.5)
+    on_image = (column >= 0) & (column < camera.width) & (row >= 0) & (row < camera.height)
+    image = np.full(camera.shape, np.inf, dtype=np.float32)
+    pixels = (row[on_image].astype(np.intp), column[on_image].astype(np.intp))
+    np.minimum.at(image, pixels, z[on_image].astype(np.float32))
+    image[np.isinf(image)] = np.nan
+    return image
+
+
+def subsample_depth(depth: np.ndarray, camera: DepthCamera, coarse: DepthCamera) -> np.ndarray:
+    """Depth image of a coarser grid with the same view: the fine pixel nearest to each coarse pixel's centre.
+
+    depth: `(H, W)` of `camera`. coarse: `camera.resized(w, h)`. Result `(h, w)`. Values are picked, not averaged, since
+    the mean of depths across an edge is a surface that is not there.
+    """
+    depth = np.asarray(depth)
+    if depth.shape != camera.shape:
+        raise ValueError(f"depth image must have shape {camera.shape} (height, width); got {depth.shape}")
+    u = (np.arange(coarse.width) - coarse.cx) * camera.fx / coarse.fx + camera.cx
+    v = (np.arange(coarse.height) - coarse.cy) * camera.fy / coarse.fy + camera.cy
+    column = np.clip(np.floor(u + 0.5), 0, camera.width - 1).astype(int)
+    row = np.clip(np.floor(v + 0.5), 0, camera.height - 1).astype(int)
+    return depth[np.ix_(row, column)]
