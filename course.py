@@ -308,7 +308,7 @@ def see_to_opengl():
         say("OpenGL is missing: installing " + " ".join(OPENGL_PACKAGES))
         os.environ.setdefault("DEBIAN_FRONTEND", "noninteractive")
         run(["apt-get", "update"], None)
-        code, lines = run(install_line.split(), None)
+        code, lines = run([*install_line.split(), "-o", "DPkg::Lock::Timeout=120"], None)
         if code or not opengl_works():
             say(f"OpenGL could not be installed ({last_lines(lines)}). Run: {install_line}")
             return

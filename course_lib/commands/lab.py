@@ -27,6 +27,7 @@ DISABLED_LAB_EXTENSIONS = (
     "@jupyterhub/jupyter-server-proxy",
     "@jupyterlab/apputils-extension:announcements",
     "@jupyterlab/extensionmanager-extension",
+    "@jupyterlab/fileeditor-extension:language-server",
     "@jupyterlab/hub-extension",
     "@jupyterlab/lsp-extension",
     "@jupyterlab/notebook-extension:language-server",
@@ -73,7 +74,8 @@ def lab_command(
     `.venv/course-lab`). JUPYTER_TOKEN in the environment, where it is set, is the token; else a random one is printed.
     """
     state = Path(state_folder) if state_folder is not None else Path(sys.prefix) / "course-lab"
-    write_settings(state / "config")
+    write_settings(state)
+    trust_lessons(state)
     command = [
         *(sys.executable, "-m", "jupyterlab"),
         "--ServerApp.ip=127.0.0.1",
@@ -82,7 +84,7 @@ def lab_command(
         f"--ServerApp.open_browser={browser}",
         f"--ServerApp.root_dir={ROOT}",
         f"--LabApp.default_url=/lab/tree/{notebook}",
-        "--Application.log_level=WARN",
+        "--Application.log_level=ERROR",  # the address is printed all the same
         "--ServerApp.answer_yes=True",  # Ctrl-C ends it without a question
     ]
     if hasattr(os, "geteuid") and os.geteuid() == 0:
@@ -101,21 +103,39 @@ def lab_command(
     return command, environment
 
 
-def write_settings(folder: Path) -> None:
-    """Writes the server's and JupyterLab's settings files into `folder`, Jupyter's configuration folder."""
+def write_settings(state: Path) -> None:
+    """Writes the settings files of the server, of JupyterLab and of the kernel below the folder `state`."""
     files = {
-        "jupyter_server_config.json": {
+        "config/jupyter_server_config.json": {
             "ServerApp": {"jpserver_extensions": dict.fromkeys(DISABLED_SERVER_EXTENSIONS, False)},
-            "LabApp": {"news_url": None, "check_for_updates_class": "jupyterlab.NeverCheckForUpdate"},
+            "LabApp": {
+                "extension_manager": "readonly",
+                "news_url": None,
+                "check_for_updates_class": "jupyterlab.NeverCheckForUpdate",
+            },
         },
-        "labconfig/page_config.json": {
+        "config/labconfig/page_config.json": {
             "buildAvailable": False,
             "buildCheck": False,
             "disabledExtensions": dict.fromkeys(DISABLED_LAB_EXTENSIONS, True),
         },
-        "labconfig/default_setting_overrides.json": SETTINGS,
+        "config/labconfig/default_setting_overrides.json": SETTINGS,
+        # Every kernel would warn that it talks to the server unencrypted; both are on this computer.
+        "ipython/profile_default/ipython_kernel_config.json": {"IPKernelApp": {"log_level": "ERROR"}},
     }
     for name, content in files.items():
-        path = folder / name
+        path = state / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(content, indent=1), encoding="utf-8")
+
+
+def trust_lessons(state: Path) -> None:
+    """Signs the lessons, so that their stored 3D scenes show before a cell is run: they come with the course's code."""
+    from nbformat import read
+    from nbformat.sign import NotebookNotary
+
+    data = state / "data"
+    data.mkdir(parents=True, exist_ok=True)
+    notary = NotebookNotary(data_dir=str(data))
+    for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
+        notary.sign(read(path, as_version=4))
