@@ -35,7 +35,8 @@ def pose_matrix(states: np.ndarray) -> np.ndarray:
 
     T = [[R, t], [0, 1]] with R = Rz(yaw) Ry(pitch) Rx(roll), t = [x, y, z]. Metres, radians.
     Raises `ValueError` for a wrong shape or values that are not finite.
-    Source: paper 1, eq. (1): X = [x, y, z, phi, theta, psi]; the order of the rotations is REP 103's.
+    X = [x, y, z, phi, theta, psi], P = {X_1, ..., X_N}; the order of the rotations is REP 103's.
+    Source: paper 1, eqs (1), (2).
     """
     states = as_states(states)
     cosine, sine = np.cos(states[..., 3:]), np.sin(states[..., 3:])
@@ -131,6 +132,14 @@ def rotation_exp(rotation_vector: np.ndarray) -> np.ndarray:
     skew[..., 1, 0], skew[..., 2, 0], skew[..., 2, 1] = v[..., 2], -v[..., 1], v[..., 0]
     # np.sinc(x) is sin(pi x)/(pi x), finite at zero.
     return np.eye(3) + np.sinc(angle / np.pi) * skew + 0.5 * np.sinc(angle / (2 * np.pi)) ** 2 * (skew @ skew)
+
+
+def rotation_log(rotation: np.ndarray) -> np.ndarray:
+    """Rotation vectors `(..., 3)` (axis times angle, radians, angle up to pi) of matrices: `rotation_exp` undone."""
+    from scipy.spatial.transform import Rotation
+
+    rotation = np.asarray(rotation, dtype=np.float64)
+    return Rotation.from_matrix(rotation.reshape(-1, 3, 3)).as_rotvec().reshape(*rotation.shape[:-2], 3)
 
 
 def rotation_angle(rotation: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.geometry import is_rotation, rotation_angle
+from course_lib.geometry import is_rotation
 
 UP_AXES = {
     "x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1),
@@ -233,13 +233,6 @@ def rotation_to_z_up(up: str) -> np.ndarray:
         turn = np.cross(axis, [0.0, 0.0, 1.0])
         matrix[:3, :3] = np.rint(Rotation.from_rotvec(turn * np.pi / 2).as_matrix())
     return matrix
-
-
-def pose_errors(estimated: np.ndarray, true: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distance in metres and angle in radians between poses `(..., 4, 4)`: |t_a - t_b| and the angle of R_a^T R_b."""
-    position = np.linalg.norm(estimated[..., :3, 3] - true[..., :3, 3], axis=-1)
-    relative = np.swapaxes(estimated[..., :3, :3], -1, -2) @ true[..., :3, :3]
-    return position, rotation_angle(relative)
 
 
 def _depth_files(folder: Path) -> dict[int, Path]:

@@ -1,0 +1,69 @@
+"""The formats that readers can bring and take away (all in one place; the code of depth sequences is in depth_mcl).
+
+Meshes: whatever trimesh reads (`SceneMap.load`). Depth sequences: a folder with depth/*.png, intrinsics.txt and
+poses.txt (`read_sequence`, `write_sequence`). Trajectories: TUM (`read_tum`, `write_tum`). Results: JSON and CSV with
+seed and versions inside (`write_results`).
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import platform
+from importlib.metadata import version
+from pathlib import Path
+
+import course_lib
+from course_lib.depth_mcl.sequence import (
+    DepthSequence,
+    SequenceError,
+    read_depth_png,
+    read_sequence,
+    read_tum,
+    write_depth_png,
+    write_sequence,
+    write_tum,
+)
+
+__all__ = [
+    "DepthSequence",
+    "SequenceError",
+    "read_depth_png",
+    "read_sequence",
+    "read_tum",
+    "versions",
+    "write_depth_png",
+    "write_results",
+    "write_sequence",
+    "write_tum",
+]
+
+
+def versions() -> dict[str, str]:
+    """Versions that a result depends on: Python, this library, and the packages that compute."""
+    packages = ("numpy", "scipy", "vtk", "trimesh", "opencv-python-headless")
+    return {"python": platform.python_version(), "course_lib": course_lib.__version__} | {
+        name: version(name) for name in packages
+    }
+
+
+def write_results(path: str | Path, results: dict, rows: list[dict] | None = None) -> None:
+    """Writes results as JSON, with the versions inside, and per-frame rows beside it as CSV of the same name.
+
+    A file is complete or not there: it is written under another name first. Raises `ValueError` for NaN or infinite
+    numbers, which JSON has not.
+    """
+    path = Path(path)
+    text = json.dumps(results | {"versions": versions()}, indent=2, allow_nan=False) + "\n"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if rows:
+        partial = path.with_suffix(".csv.partial")
+        with partial.open("w", newline="") as file:
+            writer = csv.DictWriter(file, fieldnames=list(rows[0]))
+            writer.writeheader()
+            writer.writerows(rows)
+        os.replace(partial, path.with_suffix(".csv"))
+    partial = path.with_suffix(".json.partial")
+    partial.write_text(text)
+    os.replace(partial, path)

@@ -1,0 +1,56 @@
+"""Paper 1: Hatakeyama, Kanai, Date, "3D Monte Carlo localization with a depth camera". A module for each step.
+
+    camera, scene_map    what is given: the depth camera and the mesh map
+    renderer             3.3.1, eq. (6): a depth image of the map for every particle
+    sensor               3.3.2, eq. (7): the camera's own points, made comparable
+    likelihood           3.3.3 and 3.3.4, eqs (8) to (11): A-2
+    particle_filter      3.1, 3.2 and 3.4, eqs (3) to (5), (12): start, A-1, A-3
+    localizer            figure 1: all of it in order
+    evaluation           section 4: table 1
+    fallon, planar_map   the method that table 1 compares with
+    sequence             recordings on disk
+
+State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`.
+"""
+
+from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
+from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
+from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.particle_filter import (
+    effective_sample_size,
+    initial_particles,
+    propagate,
+    resample,
+    weighted_mean_state,
+)
+from course_lib.depth_mcl.renderer import DepthRenderer, OpenGLError, RendererClosedError
+from course_lib.depth_mcl.scene_map import SceneMap, SceneMapError
+from course_lib.depth_mcl.sensor import depth_image_from_points
+from course_lib.depth_mcl.sequence import SequenceError, read_sequence
+
+__all__ = [
+    "DepthCamera",
+    "DepthImageError",
+    "DepthRenderer",
+    "Estimate",
+    "MonteCarloLocalizer",
+    "NoMeasurementWarning",
+    "OpenGLError",
+    "RendererClosedError",
+    "SceneMap",
+    "SceneMapError",
+    "SequenceError",
+    "depth_image_from_points",
+    "effective_sample_size",
+    "initial_particles",
+    "likelihood",
+    "nearest_path_error",
+    "normalize_likelihood",
+    "propagate",
+    "read_sequence",
+    "resample",
+    "timed_error",
+    "weighted_mean_state",
+    "weights",
+]

@@ -1,0 +1,94 @@
+"""Likelihood and weight of every particle (paper 1, sections 3.3.3 and 3.3.4, step A-2)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+ALPHA = 0.1  # metres, paper 1, section 4
+BETA = 0.01  # no unit (a normalized likelihood), paper 1, section 4
+
+
+class DepthImageError(ValueError):
+    """Depth images that do not fit each other or the camera."""
+
+
+def valid_pixels(measured: np.ndarray) -> np.ndarray:
+    """Which pixels of a measured image were measured at all: finite and in front of the camera."""
+    measured = np.asarray(measured)
+    return np.isfinite(measured) & (np.nan_to_num(measured, posinf=0.0, neginf=0.0) > 0)
+
+
+def paired_pixels(measured: np.ndarray, simulated: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Measured values `(m,)` and the simulated ones `(N, H, W)`, checked, with the mask of pixels to compare `(H, W)`.
+
+    Raises `DepthImageError` for images of other sizes, or simulated values that are NaN (a miss is `inf`).
+    """
+    measured, simulated = np.asarray(measured), np.asarray(simulated)
+    if measured.ndim != 2 or simulated.ndim != 3 or simulated.shape[1:] != measured.shape:
+        raise DepthImageError(
+            f"measured must have shape (H, W) and simulated (N, H, W); got {measured.shape} and {simulated.shape}"
+        )
+    return valid_pixels(measured), simulated
+
+
+def likelihood(measured: np.ndarray, simulated: np.ndarray, alpha: float = ALPHA) -> np.ndarray:
+    """Likelihood `(N,)` of every particle: how well its simulated depth image agrees with the measured one.
+
+    l_(i) = sum_j ( 1 - |z_t^j - z_(i)^j| / (alpha + |z_t^j - z_(i)^j|) )
+
+    measured: `(H, W)` metres, NaN = no measurement. simulated: `(N, H, W)` metres, `inf` = nothing hit. alpha: metres,
+    the difference at which a pixel counts half. Result between 0 and the number of pixels compared.
+    The paper is silent on empty pixels. Those that the camera did not measure are left out, for all particles alike. A
+    simulated miss contributes the limit of its term for a growing difference, 0, and stays in the count: were it left
+    out, a particle that looks into holes of the map would pay nothing for it.
+    Raises `ValueError` for alpha not positive, `DepthImageError` for images that do not fit.
+    Source: paper 1, eq. (8).
+    """
+    if not (np.isfinite(alpha) and alpha > 0):
+        raise ValueError(f"alpha must be a positive number of metres; got {alpha!r}")
+    valid, simulated = paired_pixels(measured, simulated)
+    z = np.asarray(measured, dtype=np.float32)[valid]
+    result = np.empty(len(simulated))
+    for i, image in enumerate(simulated):
+        # 1 - d / (alpha + d) = alpha / (alpha + d), which is 0, not NaN, at d = inf.
+        difference = np.abs(z - image[valid])
+        result[i] = np.sum(alpha / (alpha + difference), dtype=np.float64)
+    return result
+
+
+def normalize_likelihood(l: np.ndarray) -> np.ndarray:  # noqa: E741 - the paper's letter
+    """Likelihoods `(N,)` spread over [0, 1]: 0 for the worst particle, 1 for the best.
+
+    l~_(i) = (l_(i) - l_min) / (l_max - l_min)
+
+    Where all likelihoods agree this is 0/0; nothing then speaks for one particle over another, and all get 1.
+    Raises `ValueError` for no likelihoods or values that are not finite.
+    Source: paper 1, eq. (9).
+    """
+    values = np.asarray(l, dtype=np.float64)
+    if values.ndim != 1 or len(values) == 0 or not np.isfinite(values).all():
+        raise ValueError(f"likelihoods must be a non-empty array (N,) of finite numbers; got shape {values.shape}")
+    spread = values.max() - values.min()
+    return np.ones_like(values) if spread == 0 else (values - values.min()) / spread
+
+
+def weights(l_normalized: np.ndarray, beta: float = BETA) -> np.ndarray:
+    """Weights `(N,)` of the particles, summing to one.
+
+    w_(i) = exp( -(l~_(i) - 1)^2 / beta^2 ),    w~_(i) = w_(i) / sum_i w_(i)
+
+    l_normalized: `(N,)` in [0, 1], from `normalize_likelihood`. beta: how far below the best a particle may be and
+    still count; with 0.01 those within about one hundredth of the spread. The best particle has w = 1 however badly it
+    fits, so these weights cannot tell a lost filter from a found one: keep the raw likelihood for that.
+    Raises `ValueError` for beta not positive or values outside [0, 1].
+    Source: paper 1, eqs (10), (11).
+    """
+    values = np.asarray(l_normalized, dtype=np.float64)
+    if not (np.isfinite(beta) and beta > 0):
+        raise ValueError(f"beta must be a positive number; got {beta!r}")
+    if values.ndim != 1 or len(values) == 0 or not ((values >= 0) & (values <= 1)).all():
+        raise ValueError("l_normalized must be a non-empty array (N,) of numbers from 0 to 1 (normalize_likelihood)")
+    # Relative to the best particle: exp() of all of them could vanish, were the best not at 1.
+    exponent = -(((values - 1) / beta) ** 2)
+    w = np.exp(exponent - exponent.max())
+    return w / w.sum()

@@ -1,0 +1,212 @@
+"""The whole filter in the order of paper 1's figure 1: propagate (A-1), weigh (A-2), estimate and resample (A-3).
+
+    localizer = MonteCarloLocalizer(renderer, n_particles=200, sigma=sigma, seed=0)
+    localizer.initialize(state0)
+    for depth in recording:
+        estimate = localizer.step(depth)
+
+How particles are weighed is a part that can be exchanged: `paper_weighting` here, Fallon's in fallon.py.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.depth_mcl.likelihood import (
+    ALPHA,
+    BETA,
+    DepthImageError,
+    likelihood,
+    normalize_likelihood,
+    valid_pixels,
+    weights,
+)
+from course_lib.depth_mcl.particle_filter import (
+    checked_sigma,
+    effective_sample_size,
+    initial_particles,
+    propagate,
+    propagate_tangent,
+    resample,
+    weighted_mean_pose,
+    weighted_mean_state,
+)
+from course_lib.depth_mcl.renderer import DepthRenderer
+from course_lib.geometry import as_states, pose_matrix, rotation_log, wrap_angle
+
+# Standard deviations of the system noise a frame for the paper's experiment (x, y, yaw), metres and radians. Chosen on
+# tuning seeds; the paper says "set by hand". Along the corridor, x, 1.5 of its longest steps (0.1 m).
+SIGMA_XY_YAW = (0.15, 0.04, 0.0, 0.0, 0.0, np.deg2rad(1.5))
+
+# How far outside the map's bounding box a start is still taken for a camera that looks at it, metres (chosen).
+MAP_MARGIN = 1.0
+
+
+class NoMeasurementWarning(UserWarning):
+    """A frame without a single measured pixel: the filter kept its particles."""
+
+
+class Weighting(NamedTuple):
+    """What a weighting rule says of N particles."""
+
+    weights: np.ndarray
+    """`(N,)`, summing to one."""
+    scores: np.ndarray
+    """`(N,)`, the raw score of every particle, larger is better, not normalized over particles."""
+
+
+WeightingRule = Callable[[np.ndarray, np.ndarray], Weighting]
+"""(measured `(H, W)`, simulated `(N, H, W)`) -> Weighting."""
+
+
+def paper_weighting(alpha: float = ALPHA, beta: float = BETA) -> WeightingRule:
+    """The paper's weighting: likelihood, min-max normalization, weight, one after the other.
+
+    The score is l_(i) divided by the number of pixels compared: 1 for perfect agreement, whatever the camera saw.
+    """
+
+    def weigh(measured: np.ndarray, simulated: np.ndarray) -> Weighting:
+        l = likelihood(measured, simulated, alpha)  # noqa: E741 - the paper's letter
+        return Weighting(weights(normalize_likelihood(l), beta), l / max(1, valid_pixels(measured).sum()))
+
+    return weigh
+
+
+class Estimate(NamedTuple):
+    """What one frame gave."""
+
+    state: np.ndarray
+    """`(6,)` the weighted mean of the particles."""
+    covariance: np.ndarray
+    """`(6, 6)` of the weighted particles about it, metres and radians."""
+    score: float
+    """Raw score of the best particle; unlike its weight it falls when the filter is lost."""
+    ess: float
+    """Effective sample size of the weights, 1 to N."""
+    particles: np.ndarray
+    """`(N, 6)` before resampling, as weighed."""
+    weights: np.ndarray
+    """`(N,)` of these particles."""
+    status: str
+    """"ok", or "no measurement" where the frame held none and the particles were kept as they were."""
+
+
+class MonteCarloLocalizer:
+    """Particle filter that compares a depth camera's image with renders of the map.
+
+    renderer: draws the map for the camera. sigma: `(6,)` system noise a frame, metres and radians; 0 keeps a component
+    at its initial value (the paper's experiment estimates x, y and yaw). noise: "euler" adds it to the angles as
+    eq. (5) does; "tangent" turns about the body's own axes, for all six degrees of freedom. weighting: how particles
+    are weighed; None for the paper's rule with alpha (metres) and beta. seed: of the one generator that all draws come
+    from.
+    Raises `ValueError` for zero particles, a bad sigma, alpha, beta, noise or resampling scheme.
+    Source: paper 1, figure 1.
+    """
+
+    def __init__(
+        self,
+        renderer: DepthRenderer,
+        n_particles: int = 200,
+        sigma: np.ndarray = SIGMA_XY_YAW,
+        alpha: float = ALPHA,
+        beta: float = BETA,
+        seed: int = 0,
+        *,
+        noise: str = "euler",
+        resampling: str = "systematic",
+        weighting: WeightingRule | None = None,
+    ) -> None:
+        if int(n_particles) != n_particles or n_particles < 1:
+            raise ValueError(f"n_particles must be a whole number, at least 1; got {n_particles!r}")
+        for name, value in (("alpha", alpha), ("beta", beta)):
+            if not (np.isfinite(value) and value > 0):
+                raise ValueError(f"{name} must be positive; got {value!r}")
+        if noise not in ("euler", "tangent"):
+            raise ValueError(f"noise must be 'euler' (eq. (5)) or 'tangent' (rotations); got {noise!r}")
+        resample(np.ones(1), np.random.default_rng(0), resampling)  # an unknown scheme is told now, not at frame one
+        self.renderer = renderer
+        self.n_particles = int(n_particles)
+        self.sigma = checked_sigma(sigma)
+        self.noise = noise
+        self.resampling = resampling
+        self.weighting = weighting or paper_weighting(alpha, beta)
+        self.rng = np.random.default_rng(seed)
+        self.particles: np.ndarray | None = None
+
+    def initialize(self, state0: np.ndarray) -> None:
+        """Puts every particle at the initial state `(6,)`, eqs (3), (4).
+
+        Raises `ValueError` for a state that is not finite or lies outside the map (by more than a metre).
+        """
+        particles = initial_particles(state0, self.n_particles)
+        scene_map = self.renderer.scene_map
+        if not scene_map.contains(particles[0, :3], MAP_MARGIN):
+            raise ValueError(
+                f"the initial position {particles[0, :3].round(3).tolist()} lies outside the map, which reaches from "
+                f"{scene_map.bounds[0].round(2).tolist()} to {scene_map.bounds[1].round(2).tolist()} m"
+            )
+        self.particles = particles
+
+    def step(self, depth: np.ndarray) -> Estimate:
+        """One round of the paper's figure 1 for a depth image `(H, W)` in metres, NaN = no measurement.
+
+        A frame without any measurement keeps the particles as they are, warns (`NoMeasurementWarning`), and says so in
+        the estimate's status. Raises `DepthImageError` for an image of another size, `RuntimeError` before
+        `initialize`.
+        """
+        if self.particles is None:
+            raise RuntimeError("call initialize(state0) before the first step: the paper's filter is given its start")
+        measured = self._measure(depth)
+        if not valid_pixels(measured).any():
+            warnings.warn(
+                "this frame holds no measurement between the camera's near and far planes; the particles are kept",
+                NoMeasurementWarning,
+                stacklevel=2,
+            )
+            w = np.full(self.n_particles, 1.0 / self.n_particles)
+            return self._estimate(self.particles, w, float("nan"), "no measurement")
+        move = propagate_tangent if self.noise == "tangent" else propagate
+        particles = move(self.particles, self.sigma, self.rng)
+        simulated = self.renderer.render(particles)
+        w, scores = self.weighting(measured, simulated)
+        self.particles = particles[resample(w, self.rng, self.resampling)]
+        return self._estimate(particles, w, float(scores.max()), "ok")
+
+    def _measure(self, depth: np.ndarray) -> np.ndarray:
+        """Eq. (7): the camera's own points through the projection and z-buffer of the simulated views."""
+        depth = np.asarray(depth)
+        camera = self.renderer.camera
+        if depth.shape != camera.shape:
+            raise DepthImageError(
+                f"the depth image has shape {depth.shape}; the camera gives {camera.shape} (height, width)"
+            )
+        return self.renderer.render_points(camera.points(depth))
+
+    def _estimate(self, particles: np.ndarray, w: np.ndarray, score: float, status: str) -> Estimate:
+        mean = weighted_mean_pose if self.noise == "tangent" else weighted_mean_state
+        state = mean(particles, w)
+        deviations = self._deviations(particles, state)
+        covariance = (w[:, None] * deviations).T @ deviations
+        return Estimate(state, covariance, score, effective_sample_size(w), particles, w, status)
+
+    def _deviations(self, particles: np.ndarray, state: np.ndarray) -> np.ndarray:
+        """Particles minus estimate `(N, 6)`: angles wrapped, or rotation vectors about the body's axes."""
+        deviations = particles - state
+        if self.noise == "tangent":
+            rotation = pose_matrix(state)[:3, :3]
+            deviations[:, 3:] = rotation_log(rotation.T @ pose_matrix(particles)[:, :3, :3])
+        else:
+            deviations[:, 3:] = wrap_angle(deviations[:, 3:])
+        return deviations
+
+
+def run_localizer(
+    localizer: MonteCarloLocalizer, state0: np.ndarray, depths: list[np.ndarray], progress: Callable = iter
+) -> list[Estimate]:
+    """Initializes the filter and steps it through depth images; `progress` may wrap them in a progress bar."""
+    localizer.initialize(as_states(state0, "state0"))
+    return [localizer.step(depth) for depth in progress(depths)]

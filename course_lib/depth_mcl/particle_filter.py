@@ -1,0 +1,156 @@
+"""The particle filter's steps that know nothing of images (paper 1, sections 3.1, 3.2, 3.4): A-1 and A-3.
+
+Particles are an array `(N, 6)` of states [x, y, z, roll, pitch, yaw], eqs (1) and (2). Every function is pure: arrays
+and a `numpy.random.Generator` in, arrays out. All four resampling schemes share one signature.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course_lib.geometry import (
+    as_states,
+    circular_mean,
+    pose_matrix,
+    rotation_exp,
+    rotation_mean,
+    state_from_matrix,
+    wrap_angle,
+)
+
+
+def initial_particles(state0: np.ndarray, n: int) -> np.ndarray:
+    """Particle set `(n, 6)` at the start: every particle has the given initial state.
+
+    X_0 = [x_0, y_0, z_0, phi_0, theta_0, psi_0],    P_0 = {X_0, ..., X_0}
+
+    Raises `ValueError` for a state of a wrong shape or not finite, or n below 1.
+    Source: paper 1, eqs (3), (4).
+    """
+    state0 = as_states(state0, "state0")
+    if state0.shape != (6,):
+        raise ValueError(f"state0 must be one state (6,); got {state0.shape}")
+    if int(n) != n or n < 1:
+        raise ValueError(f"the number of particles must be a whole number, at least 1; got {n!r}")
+    return np.tile(state0, (int(n), 1))
+
+
+def checked_sigma(sigma: np.ndarray) -> np.ndarray:
+    """Standard deviations `(6,)` as float64; `ValueError` for another length, negative numbers or NaN."""
+    array = np.asarray(sigma, dtype=np.float64)
+    if array.shape != (6,):
+        raise ValueError(
+            f"sigma needs six standard deviations [x, y, z (metres), roll, pitch, yaw (radians)]; got {array.shape}"
+        )
+    if not np.isfinite(array).all() or (array < 0).any():
+        raise ValueError(f"sigma must be finite and not negative (0 keeps a component fixed); got {array.tolist()}")
+    return array
+
+
+def propagate(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Particles moved by system noise (A-1): the model knows nothing of the motion but how large it may be.
+
+    X_t = X_{t-1} + V_t,    V_t ~ N(0, sigma^2)
+
+    particles: `(N, 6)`. sigma: `(6,)` standard deviations, metres and radians, a frame; 0 keeps a component fixed.
+    Angles come back in [-pi, pi). Raises `ValueError` for a bad sigma or particles.
+    Source: paper 1, eq. (5).
+    """
+    particles, sigma = as_states(particles, "particles"), checked_sigma(sigma)
+    moved = particles + sigma * rng.standard_normal(particles.shape)
+    moved[..., 3:] = wrap_angle(moved[..., 3:])
+    return moved
+
+
+def propagate_tangent(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Particles moved by noise in the tangent space of the rotations, for all six degrees of freedom.
+
+    t' = t + v,  R' = R Exp(w),  (v, w) ~ N(0, sigma^2): v along the world's axes, w about the body's own axes.
+    The paper's eq. (5) adds noise to roll, pitch and yaw, which near pitch = +-90 degrees (gimbal lock) turns a camera
+    by other amounts, about other axes, than sigma says. Same arguments and errors as `propagate`.
+    """
+    particles, sigma = as_states(particles, "particles"), checked_sigma(sigma)
+    noise = sigma * rng.standard_normal(particles.shape)
+    matrices = pose_matrix(particles)
+    matrices[..., :3, :3] = matrices[..., :3, :3] @ rotation_exp(noise[..., 3:])
+    matrices[..., :3, 3] += noise[..., :3]
+    return state_from_matrix(matrices)
+
+
+def weighted_mean_state(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """Estimate `(6,)`: the weighted sum of the particles, its angles on the circle.
+
+    x~_t = sum_i w~_(i) p_t^i
+
+    particles: `(N, 6)`. w: `(N,)`, summing to one. As printed, the sum of angles fails at the wrap: half the weight at
+    179 and half at -179 degrees would give 0, not 180. Positions are summed as printed; angles by `circular_mean`.
+    Three Euler angles averaged one by one are a rotation's mean only while pitch stays away from +-90 degrees; where it
+    does not, `weighted_mean_pose` serves. Raises `ValueError` for shapes that do not fit.
+    Source: paper 1, eq. (12).
+    """
+    particles, w = _checked_pair(particles, w)
+    return np.concatenate([w @ particles[:, :3], circular_mean(particles[:, 3:], w)])
+
+
+def weighted_mean_pose(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """The same estimate `(6,)` with the mean taken on rotation matrices: independent of axes and of gimbal lock."""
+    particles, w = _checked_pair(particles, w)
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation_mean(pose_matrix(particles)[:, :3, :3], w)
+    matrix[:3, 3] = w @ particles[:, :3]
+    return state_from_matrix(matrix)
+
+
+def effective_sample_size(w: np.ndarray) -> float:
+    """How many equally weighted particles the weights `(N,)` are worth: 1 / sum w~^2, from 1 to N."""
+    return float(1.0 / np.sum(np.asarray(w, dtype=np.float64) ** 2))
+
+
+def resample(w: np.ndarray, rng: np.random.Generator, scheme: str = "systematic") -> np.ndarray:
+    """Indices `(N,)` of the particles that live on: heavy ones are copied, light ones vanish (A-3).
+
+    Every scheme is unbiased: particle i is drawn N w~_i times in the mean. They differ in how far single draws stray.
+        systematic   one random offset, then N equal steps through the cumulative weights
+        stratified   one random point in each of N equal strata
+        multinomial  N independent draws
+        residual     floor(N w~_i) copies for certain, the rest by multinomial draws from N w~_i - floor(N w~_i)
+    w: `(N,)` not negative, with a positive sum. Indices ascend.
+    Raises `ValueError` for bad weights or an unknown scheme. The paper says only that particles are copied and removed
+    by weight. Source: paper 1, section 3.4.
+    """
+    w = np.asarray(w, dtype=np.float64)
+    if w.ndim != 1 or len(w) == 0 or not np.isfinite(w).all() or (w < 0).any() or w.sum() <= 0:
+        raise ValueError("weights must be a non-empty array (N,) of finite numbers, none negative, not all zero")
+    w, n = w / w.sum(), len(w)
+    if scheme == "systematic":
+        return _pick(w, (np.arange(n) + rng.random()) / n)
+    if scheme == "stratified":
+        return _pick(w, (np.arange(n) + rng.random(n)) / n)
+    if scheme == "multinomial":
+        return _pick(w, np.sort(rng.random(n)))
+    if scheme == "residual":
+        copies = np.floor(n * w).astype(int)
+        n_rest = n - copies.sum()
+        if n_rest > 0:
+            rest = n * w - copies
+            copies += np.bincount(_pick(rest / rest.sum(), np.sort(rng.random(n_rest))), minlength=n)
+        return np.repeat(np.arange(n), copies)
+    raise ValueError(f"scheme must be systematic, stratified, multinomial or residual; got {scheme!r}")
+
+
+def _pick(w: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """For each point in [0, 1) the particle whose share of the cumulative weights it falls into."""
+    cumulative = np.cumsum(w)
+    # The last sum may round to just below one: a point above it would name a particle that is not there, and a
+    # particle without weight at the end must not be drawn in its place.
+    cumulative[np.flatnonzero(w)[-1] :] = 1.0
+    return np.searchsorted(cumulative, points, side="right")
+
+
+def _checked_pair(particles: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    particles, w = as_states(particles, "particles"), np.asarray(w, dtype=np.float64)
+    if particles.ndim != 2 or w.shape != (len(particles),):
+        raise ValueError(f"particles must be (N, 6) and weights (N,); got {particles.shape} and {w.shape}")
+    if not np.isfinite(w).all() or (w < 0).any() or abs(w.sum() - 1) > 1e-6:
+        raise ValueError(f"weights must be finite, not negative, and sum to one; their sum is {w.sum():g}")
+    return particles, w
