@@ -336,7 +336,7 @@ def explain_pip(lines):
     if "Permission denied" in text:
         return "pip may not write here. Put the course into a folder of your own. " + last_lines(lines)
     errors = [line for line in lines if line.startswith("ERROR")] or lines
-    if any(word in text for word in network):
+    if any(word in text for word in network) or "(from versions: none)" in text:
         return (
             "no package could be downloaded: is there a network connection, and does pip need a proxy? "
             "Connect and call course.py again; it goes on where it stopped. pip said: " + last_lines(errors, 1)

@@ -1,0 +1,129 @@
+"""The command line: which command is meant, what is imported for it, and one line for every error."""
+
+import argparse
+import subprocess
+import sys
+import types
+
+import pytest
+
+from course_lib import cli
+
+
+@pytest.fixture
+def command(monkeypatch):
+    """Puts a command "try it" into the table; call it with the function that stands for its `run`."""
+
+    def put(run, add_arguments=lambda parser: None, **attributes):
+        module = types.SimpleNamespace(run=run, add_arguments=add_arguments, __doc__="Try it.", **attributes)
+        monkeypatch.setitem(cli.COMMANDS, "try it", ("try_it", "a try"))
+        monkeypatch.setitem(sys.modules, "course_lib.commands.try_it", module)
+        monkeypatch.delenv("COURSE_DEBUG", raising=False)
+
+    return put
+
+
+def raising(error):
+    def run(arguments):
+        raise error
+
+    return run
+
+
+def test_help_lists_every_command(capsys):
+    assert cli.main(["--help"]) == 0
+    printed = capsys.readouterr().out
+    for name, (_, text) in cli.COMMANDS.items():
+        assert name in printed
+        assert text in printed
+
+
+def test_help_imports_no_command_and_no_library():
+    script = "import sys; from course_lib import cli; cli.main(['--help']); print(sorted(sys.modules))"
+    modules = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
+    for name in ("numpy", "vtk", "course_lib.commands"):
+        assert f"'{name}" not in modules
+
+
+def test_every_command_has_a_module_that_declares_its_arguments(capsys):
+    for name in cli.COMMANDS:
+        with pytest.raises(SystemExit) as ended:
+            cli.main([*name.split(), "--help"])
+        assert ended.value.code == 0, name
+        assert f"course.py {name}" in capsys.readouterr().out
+
+
+def test_a_command_gets_its_arguments_and_its_code_is_returned(command):
+    seen = []
+    command(lambda arguments: seen.append(arguments.seed) or 7, lambda parser: parser.add_argument("--seed", type=int))
+    assert cli.main(["try", "it", "--seed", "3"]) == 7
+    assert seen == [3]
+
+
+def test_unknown_arguments_are_refused_unless_the_command_passes_them_on(command, capsys):
+    command(lambda arguments: 0)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["try", "it", "-k", "foo"])
+    assert ended.value.code == 2
+    assert "-k foo" in capsys.readouterr().err
+    command(lambda arguments: print(arguments.passed_on) or 0, PASSES_ARGUMENTS_ON=True)
+    assert cli.main(["try", "it", "-k", "foo", "tests/a.py"]) == 0
+    assert capsys.readouterr().out == "['-k', 'foo', 'tests/a.py']\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(["demo"], "demo corridor"), (["make-data", "room"], "make-data corridor"), (["lba"], "lab, test")],
+)
+def test_an_unknown_command_is_told_the_known_ones(words, said, capsys):
+    assert cli.main(words) == 2
+    errors = capsys.readouterr().err
+    assert errors.startswith("error: there is no command")
+    assert said in errors
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (ValueError("n_particles must be at least 1; got 0"), 2),
+        (FileNotFoundError(2, "No such file or directory", "map.ply"), 2),
+        (RuntimeError("OpenGL cannot start"), 2),
+        (ImportError("No module named 'vtk'"), 1),
+        (TypeError("a fault"), 1),
+        (KeyboardInterrupt(), 130),
+    ],
+)
+def test_an_error_is_one_line_and_a_code(command, capsys, error, code):
+    command(raising(error))
+    assert cli.main(["try", "it"]) == code
+    errors = capsys.readouterr().err
+    assert len(errors.strip().splitlines()) == 1
+    assert str(error) in errors
+    assert "Traceback" not in errors
+
+
+@pytest.mark.parametrize("way", ["option", "variable"])
+def test_debug_shows_the_traceback(command, capsys, monkeypatch, way):
+    command(raising(ValueError("bad")))
+    if way == "variable":
+        monkeypatch.setenv("COURSE_DEBUG", "1")
+    assert cli.main(["try", "it", *(["--debug"] if way == "option" else [])]) == 2
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_a_reader_that_leaves_early_causes_no_complaint():
+    script = "from course_lib import cli; import sys; sys.exit(cli.main(['check']))"
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    process.stdout.close()
+    errors = process.stderr.read()
+    process.stderr.close()
+    process.wait(timeout=60)
+    assert errors == ""
+
+
+def test_descriptions_come_from_the_command_modules_docstring(command):
+    command(lambda arguments: 0)
+    module = sys.modules["course_lib.commands.try_it"]
+    assert isinstance(cli.parse("try it", module, []), argparse.Namespace)

@@ -1,0 +1,313 @@
+"""course.py sets up, repairs, explains, and hands over; tried in small copies of the course that install offline."""
+
+import ast
+import importlib.util
+import os
+import signal
+import socket
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from course_lib.cli import COMMANDS
+
+ROOT = Path(__file__).resolve().parents[1]
+COURSE = ROOT / "course.py"
+PYPROJECT = """
+[build-system]
+requires = []
+build-backend = "backend"
+backend-path = ["."]
+[project]
+name = "course-lib"
+version = "1"
+"""
+# A build backend of its own, so that the copy's package installs without a network and without setuptools.
+BACKEND = """
+import pathlib, zipfile
+def build_editable(folder, config_settings=None, metadata_directory=None):
+    name = "course_lib-1-py3-none-any.whl"
+    with zipfile.ZipFile(pathlib.Path(folder) / name, "w") as wheel:
+        wheel.writestr("course_lib.pth", str(pathlib.Path.cwd()))
+        info = "course_lib-1.dist-info"
+        wheel.writestr(info + "/METADATA", "Metadata-Version: 2.1\\nName: course-lib\\nVersion: 1\\n")
+        wheel.writestr(info + "/WHEEL", "Wheel-Version: 1.0\\nRoot-Is-Purelib: true\\nTag: py3-none-any\\n")
+        wheel.writestr(info + "/RECORD", "")
+    return name
+build_wheel = build_editable
+"""
+HANDED_OVER = 'import os, sys\nprint("handed over", sys.argv[1:], sys.prefix, os.getcwd())\n'
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """A folder with course.py, an environment of no package, and a package that says that it was called."""
+    folder = tmp_path / "course"
+    (folder / "course_lib").mkdir(parents=True)
+    (folder / "course.py").write_bytes(COURSE.read_bytes())
+    (folder / "environment.txt").write_text("# nothing\n")
+    (folder / "pyproject.toml").write_text(PYPROJECT)
+    (folder / "backend.py").write_text(BACKEND)
+    (folder / "course_lib" / "__init__.py").touch()
+    (folder / "course_lib" / "__main__.py").write_text(HANDED_OVER)
+    return folder
+
+
+def environment(**more):
+    """The user's environment without pip's settings: an address that nobody answers stands for every index."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(("PIP_", "UV_"))}
+    pip = {"PIP_CONFIG_FILE": os.devnull, "PIP_INDEX_URL": "http://127.0.0.1:9/simple", "PIP_RETRIES": "0"}
+    return {**kept, **pip, "PIP_NO_CACHE_DIR": "1", **more}
+
+
+def call(folder, *arguments, prelude="", cwd=None, **more):
+    """Runs the copy's course.py, after `prelude` has changed the Python that it finds; no traceback is ever shown."""
+    runner = f"import sys, os, runpy\n{prelude}\nsys.argv = ['course.py', *sys.argv[1:]]\n"
+    runner += f"runpy.run_path({str(folder / 'course.py')!r}, run_name='__main__')"
+    command = [sys.executable, "-c", runner] if prelude else [sys.executable, str(folder / "course.py")]
+    done = subprocess.run(
+        [*command, *arguments], capture_output=True, text=True, env=environment(**more), cwd=cwd, timeout=120
+    )
+    assert "Traceback" not in done.stdout + done.stderr
+    return done
+
+
+def load_course():
+    """course.py as a module of its own."""
+    spec = importlib.util.spec_from_file_location("course", COURSE)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_only_the_standard_library_is_imported():
+    names = set()
+    for node in ast.walk(ast.parse(COURSE.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names.add(node.module.split(".")[0])
+    assert names <= set(sys.stdlib_module_names)
+
+
+def test_an_old_python_can_read_the_file():
+    ast.parse(COURSE.read_text(encoding="utf-8"), feature_version=(3, 6))
+
+
+@pytest.mark.parametrize("version", [(3, 6, 15), (3, 10, 99)])
+def test_an_old_python_is_told_which_one_is_needed(copy, version):
+    done = call(copy, "check", prelude=f"sys.version_info = {version}")
+    assert done.returncode == 1
+    assert "needs Python 3.11 or newer" in done.stderr
+    assert f"{version[0]}.{version[1]}" in done.stderr
+    assert not (copy / ".venv").exists()
+
+
+@pytest.mark.parametrize("module", ["venv", "ensurepip"])
+def test_a_missing_venv_module_is_told_with_its_cure(copy, module):
+    done = call(copy, "check", prelude=f"sys.modules[{module!r}] = None")
+    assert done.returncode == 1
+    assert module in done.stderr
+    assert f"apt-get install python{sys.version_info[0]}.{sys.version_info[1]}-venv" in done.stderr
+
+
+def test_usage_lists_every_command_as_the_command_line_does():
+    listed = {}
+    for line in load_course().USAGE.splitlines():
+        if line.startswith("  "):
+            name, text = line.strip().split("  ", 1)
+            listed[name] = text.strip()
+    assert listed == {name: text for name, (_, text) in COMMANDS.items()}
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["lab", "--help"]])
+def test_help_before_any_set_up_installs_nothing(copy, arguments):
+    started = time.monotonic()
+    done = call(copy, *arguments)
+    assert time.monotonic() - started < 3
+    assert done.returncode == 0
+    assert "usage: python3 course.py" in done.stdout
+    assert not (copy / ".venv").exists()
+
+
+def test_no_command_shows_the_usage_and_fails(copy):
+    done = call(copy)
+    assert done.returncode == 2
+    assert "usage:" in done.stdout
+
+
+def test_first_call_sets_up_and_hands_over_and_the_second_is_quick_and_quiet(copy, tmp_path):
+    first = call(copy, "demo", "corridor", "--json", cwd=tmp_path)
+    # Only the command writes to standard output, or --json would be spoilt; the folder one is in stays.
+    assert first.stdout == f"handed over ['demo', 'corridor', '--json'] {copy / '.venv'} {tmp_path}\n"
+    assert "setting it up" in first.stderr
+    assert first.returncode == 0
+    seconds = []
+    for _ in range(5):
+        started = time.monotonic()
+        again = call(copy, "x")
+        seconds.append(time.monotonic() - started)
+        assert again.stderr == ""
+        assert again.stdout.startswith("handed over ['x']")
+    assert statistics.median(seconds) < 0.5
+
+
+def test_help_of_the_real_environment_takes_less_than_three_seconds():
+    if not (ROOT / ".venv" / "course-ready.json").exists():
+        pytest.skip("this checkout's .venv was not made by course.py")
+    for arguments in (["--help"], ["lab", "--help"], ["test", "--help"]):
+        started = time.monotonic()
+        done = subprocess.run([sys.executable, str(COURSE), *arguments], capture_output=True, text=True)
+        assert time.monotonic() - started < 3
+        assert done.returncode == 0
+        assert "usage:" in done.stdout
+
+
+def make_nothing(venv):
+    venv.mkdir()
+
+
+def make_a_mark_only(venv):
+    (venv / "bin").mkdir(parents=True)
+    (venv / "course-incomplete").touch()
+
+
+def make_a_dangling_python(venv):
+    (venv / "bin").mkdir(parents=True)
+    (venv / "bin" / "python").symlink_to("/nowhere/python3.11")
+
+
+def make_one_without_pip(venv):
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(venv)], check=True)
+
+
+@pytest.mark.parametrize("make", [make_nothing, make_a_mark_only, make_a_dangling_python, make_one_without_pip])
+def test_a_half_made_environment_is_made_anew(copy, make):
+    make(copy / ".venv")
+    done = call(copy, "x")
+    assert "half-made" in done.stderr
+    assert done.stdout.startswith("handed over")
+    assert not (copy / ".venv" / "course-incomplete").exists()
+
+
+def test_what_has_changed_is_told_and_repaired(copy):
+    call(copy, "x")
+    ready = copy / ".venv" / "course-ready.json"
+
+    ready.write_text(ready.read_text()[:20])
+    assert "half-made" in call(copy, "x").stderr
+    (copy / "environment.txt").write_text("# something else\n")
+    assert "environment.txt or pyproject.toml has changed" in call(copy, "x").stderr
+    library = next((copy / ".venv" / "lib").iterdir()) / "site-packages"
+    for name in ("course_lib.pth", "course_lib-1.dist-info"):
+        os.rename(library / name, copy / name)
+    done = call(copy, "x")
+    assert "Packages are missing" in done.stderr
+    assert done.stdout.startswith("handed over")
+    assert call(copy, "x").stderr == ""
+
+    moved = copy.parent / "moved"
+    copy.rename(moved)
+    done = call(moved, "x")
+    assert "another folder" in done.stderr
+    assert str(moved) in done.stdout
+
+
+def test_no_network_is_told_and_the_next_call_goes_on(copy):
+    (copy / "environment.txt").write_text("not-to-be-had==1\n")
+    done = call(copy, "check")
+    assert done.returncode == 1
+    assert "is there a network connection" in done.stderr
+    assert len(done.stderr) < 1500
+    assert not (copy / ".venv" / "course-ready.json").exists()
+    (copy / "environment.txt").write_text("# nothing\n")
+    again = call(copy, "check")
+    assert "completing it" in again.stderr
+    assert again.stdout.startswith("handed over")
+
+
+def test_a_folder_without_write_permission_is_told(copy):
+    def_denied = "def denied(path, *a, **k): raise PermissionError(13, 'Permission denied', path)\nos.makedirs = denied"
+    done = call(copy, "check", prelude=def_denied)
+    assert done.returncode == 1
+    assert "no permission to write" in done.stderr
+    assert "folder of your own" in done.stderr
+
+
+def test_a_file_in_the_place_of_the_environment_is_told(copy):
+    (copy / ".venv").write_text("mine")
+    done = call(copy, "check")
+    assert done.returncode == 1
+    assert "is not a folder" in done.stderr
+    assert (copy / ".venv").read_text() == "mine"
+
+
+def test_a_missing_lock_file_is_told(copy):
+    (copy / "environment.txt").unlink()
+    done = call(copy, "check")
+    assert done.returncode == 1
+    assert "environment.txt is missing" in done.stderr
+
+
+@pytest.fixture
+def silent_index():
+    """An index that accepts a connection and never answers: an installation that hangs."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield f"http://127.0.0.1:{server.getsockname()[1]}/simple", server
+
+
+def start_hanging_installation(copy, silent_index):
+    """course.py in a session of its own, in the middle of its pip."""
+    address, server = silent_index
+    (copy / "environment.txt").write_text("not-to-be-had==1\n")
+    process = subprocess.Popen(
+        [sys.executable, str(copy / "course.py"), "x"],
+        env=environment(PIP_INDEX_URL=address),
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    server.settimeout(60)
+    connection, _ = server.accept()  # pip asks: it runs
+    return process, connection
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_a_killed_installation_is_made_anew(copy, silent_index):
+    process, connection = start_hanging_installation(copy, silent_index)
+    with connection:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+    (copy / "environment.txt").write_text("# nothing\n")
+    done = call(copy, "x")
+    assert "interrupted and left .venv half-made" in done.stderr
+    assert done.stdout.startswith("handed over")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_control_c_stops_with_a_sentence(copy, silent_index):
+    process, connection = start_hanging_installation(copy, silent_index)
+    with connection:
+        os.killpg(process.pid, signal.SIGINT)
+        errors = process.communicate(timeout=60)[1]
+    assert process.returncode == 130
+    assert "Call course.py again to go on" in errors
+    assert "Traceback" not in errors
+
+
+def test_two_at_once_wait_for_each_other(copy):
+    command = [sys.executable, str(copy / "course.py"), "x"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": environment()}
+    first = subprocess.Popen(command, **pipes)
+    while not (copy / ".venv").exists():
+        time.sleep(0.01)
+    second = subprocess.Popen(command, **pipes)
+    results = [process.communicate(timeout=120) for process in (first, second)]
+    assert [process.returncode for process in (first, second)] == [0, 0]
+    assert all(output.startswith("handed over") for output, _ in results)
+    assert "waiting for it to finish" in results[1][1]
+    assert "Installing" not in results[1][1]
