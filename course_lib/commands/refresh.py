@@ -1,0 +1,157 @@
+"""Run the lessons and store what they show: every output, every picture, and no widget state.
+
+Each notebook runs in a fresh kernel, in the folder notebooks/, without a network. It is written back only after its
+last cell ran without an error, in one step, and in one form, so that a difference in git is a difference in the lesson.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import tempfile
+import time
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
+
+from course_lib.lessons.paths import REPOSITORY, notebook_paths
+
+MAX_BYTES = 400_000
+MAX_SECONDS = 60.0
+WIDGET_VIEW = "application/vnd.jupyter.widget-view+json"
+METADATA = {
+    "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
+    "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
+}
+KEPT_CELL_METADATA = ("exercise", "tags", "jupyter")
+# Whatever asks for the network through a proxy finds none.
+OFFLINE = {name: "http://127.0.0.1:9" for name in ("http_proxy", "https_proxy", "HTTP_PROXY", "HTTPS_PROXY")}
+
+
+class RefreshError(RuntimeError):
+    """A notebook did not run to its end, took too long or became too large; its file is unchanged."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("lessons", nargs="*", metavar="NN", help="lesson numbers, such as 03 (default: all)")
+    parser.add_argument(
+        "--cell-timeout", type=float, default=MAX_SECONDS, metavar="S", help="seconds a cell may take (default: 60)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    failed = 0
+    for path in select(arguments.lessons):
+        try:
+            seconds, size = refresh(path, arguments.cell_timeout)
+            print(f"{path.name}: {seconds:.1f} s, {size / 1000:.0f} kB", flush=True)
+        except RefreshError as error:
+            failed += 1
+            print(f"{path.name}: FAILED, left as it was. {error}", flush=True)
+    return 1 if failed else 0
+
+
+def select(lessons: list[str]) -> list[Path]:
+    """Notebooks of these lesson numbers, all of them for none. Raises `ValueError` for a number without a notebook."""
+    paths = {path.name[:2]: path for path in notebook_paths()}
+    wanted = [number.zfill(2) for number in lessons] or sorted(paths)
+    unknown = sorted(set(wanted) - set(paths))
+    if unknown or not wanted:
+        raise ValueError(f"no lesson {', '.join(unknown)}; there are: {', '.join(sorted(paths)) or 'none'}")
+    return [paths[number] for number in wanted]
+
+
+def refresh(path: Path, cell_timeout: float = MAX_SECONDS) -> tuple[float, int]:
+    """Run one notebook and store its outputs; returns its seconds and bytes. Raises `RefreshError`, file unchanged."""
+    notebook = nbformat.read(path, as_version=4)
+    seconds = execute(notebook, path.parent, cell_timeout)
+    normalize(notebook)
+    text = nbformat.writes(notebook) + "\n"
+    size = len(text.encode("utf-8"))
+    if size > MAX_BYTES:
+        raise RefreshError(
+            f"{size / 1000:.0f} kB with its outputs, at most {MAX_BYTES / 1000:.0f}: use smaller pictures"
+        )
+    if seconds > MAX_SECONDS:
+        raise RefreshError(f"it ran for {seconds:.0f} s, at most {MAX_SECONDS:.0f}")
+    write_at_once(path, text)
+    return seconds, size
+
+
+def execute(notebook: nbformat.NotebookNode, folder: Path, cell_timeout: float) -> float:
+    """Run all cells of `notebook` in place, in a fresh kernel; returns the seconds that the cells took."""
+    with tempfile.TemporaryDirectory(prefix="course-refresh-") as home:
+        environment = os.environ | OFFLINE | {"IPYTHONDIR": home}
+        search = [str(REPOSITORY), *filter(None, [os.environ.get("PYTHONPATH")])]
+        environment["PYTHONPATH"] = os.pathsep.join(search)
+        client = NotebookClient(
+            notebook,
+            timeout=cell_timeout,
+            kernel_name="python3",
+            resources={"metadata": {"path": str(folder)}},
+            store_widget_state=False,
+            allow_errors=False,
+        )
+        try:
+            with client.setup_kernel(env=environment):
+                started = time.perf_counter()
+                for index, cell in enumerate(notebook.cells):
+                    client.execute_cell(cell, index)
+                return time.perf_counter() - started
+        except CellTimeoutError as error:
+            raise RefreshError(f"a cell took longer than {cell_timeout:g} s: {str(error).splitlines()[-1]}") from error
+        except (CellExecutionError, DeadKernelError) as error:
+            raise RefreshError(strip_colour(str(error))) from error
+
+
+def normalize(notebook: nbformat.NotebookNode) -> None:
+    """Bring a notebook to the one stored form: counts 1 to n, no widget views or state, no traces of a session."""
+    notebook.metadata = nbformat.from_dict(METADATA)
+    notebook.nbformat, notebook.nbformat_minor = 4, 5
+    count = 0
+    for cell in notebook.cells:
+        cell.metadata = {key: cell.metadata[key] for key in KEPT_CELL_METADATA if key in cell.metadata}
+        if cell.cell_type != "code":
+            continue
+        count += 1
+        cell.execution_count = count
+        for output in cell.outputs:
+            output.get("data", {}).pop(WIDGET_VIEW, None)
+            output.pop("transient", None)
+            if "execution_count" in output:
+                output["execution_count"] = count
+        cell.outputs = merge_streams(cell.outputs)
+
+
+def merge_streams(outputs: list) -> list:
+    """Outputs with neighbouring pieces of one stream joined: how it was cut up is a matter of timing."""
+    merged = []
+    for output in outputs:
+        last = merged[-1] if merged else None
+        if output.output_type == "stream" and last is not None and last.get("name") == output.name:
+            last["text"] += output.text
+        else:
+            merged.append(output)
+    return merged
+
+
+def write_at_once(path: Path, text: str) -> None:
+    """Replace a file in one step: a reader sees the old text or the new one, never half of it."""
+    json.loads(text)
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, suffix=".part", delete=False) as part:
+        part.write(text)
+    try:
+        os.chmod(part.name, path.stat().st_mode & 0o777 if path.exists() else 0o644)
+        os.replace(part.name, path)
+    except OSError:
+        Path(part.name).unlink(missing_ok=True)
+        raise
+
+
+def strip_colour(text: str) -> str:
+    """Text of a traceback without its terminal colours."""
+    return re.sub(r"\x1b\[[0-9;]*m", "", text)
