@@ -1,0 +1,37 @@
+"""Make data/corridor from its seed: the true world, the surveyed map, the recorded runs.
+
+Old data are replaced at the end, all at once: a run that is stopped leaves them as they were.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+SEED = 4  # the shipped data's
+FOLDER = Path(__file__).resolve().parents[2] / "data" / "corridor"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds this command's options to its parser."""
+    parser.add_argument("--seed", type=int, default=SEED, metavar="N", help=f"default {SEED}, the shipped data's")
+    parser.add_argument("--out", type=Path, default=FOLDER, metavar="FOLDER", help="default: data/corridor")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Makes the data and prints the measured numbers; returns the exit code."""
+    if arguments.seed < 0:
+        raise ValueError(f"--seed must be 0 or more; got {arguments.seed}")
+    if arguments.out.exists() and not arguments.out.is_dir():
+        raise ValueError(f"--out must name a folder; {arguments.out} is a file")
+    from tqdm import tqdm
+
+    from course_lib.worlds.corridor_data import make_corridor_data
+
+    summary = make_corridor_data(
+        arguments.out, arguments.seed, progress=lambda items, text: tqdm(items, desc=f"{text:28s}", ascii=True)
+    )
+    print(json.dumps(summary["measured"], indent=2))
+    print(f"wrote {arguments.out}")
+    return 0

@@ -1,0 +1,145 @@
+"""The two recorded runs: a wagon pushed down the corridor, and the camera carried by hand.
+
+Trajectories are smooth curves through drawn knots; the states are exact, and become the ground truth. Metres, radians.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+FRAME_RATE = 10.0  # frames per second; chosen, within the SR4000's rates
+
+
+@dataclass(frozen=True)
+class WagonModel:
+    """How the wagon is pushed. All chosen; the wagon's size is that of a laboratory trolley."""
+
+    frames: int = 312
+    start: float = 2.4  # m along x
+    mean_step: float = 0.094  # m between frames
+    step_spread: float = 0.025  # share of the mean step by which the pushing speed varies, slowly
+    height: float = 1.0  # m, camera above the floor
+    wander: float = 0.28  # m, greatest sideways wish of the path
+    knot_spacing: float = 3.1  # m between the path's knots
+    clearance: float = 0.42  # m from the path to clutter: half the wagon and a hand's breadth
+    heading_wobble_deg: float = 1.0  # degrees, one sigma about the path's direction, smooth over about a second
+    height_jitter: float = 0.001  # m, one sigma, cut at two sigma: wheels on linoleum
+    tilt_jitter_deg: float = 0.1  # degrees, one sigma, cut at two sigma, roll and pitch
+
+
+@dataclass(frozen=True)
+class HandModel:
+    """How the camera is carried by hand. All chosen."""
+
+    frames: int = 150
+    start: float = 13.0  # m along x, before the first portal
+    mean_step: float = 0.068  # m between frames
+    heights: tuple[float, float] = (1.2, 1.6)  # m
+    tilt_deg: float = 18.0  # degrees, greatest roll and pitch
+    look_deg: float = 38.0  # degrees, greatest turn of the view from the way forward
+    knot_seconds: float = 2.2  # s between knots of the angles
+    wander: float = 0.30  # m, greatest sideways wish
+    tremor_deg: float = 0.15  # degrees, one sigma, frame to frame
+    greatest_step: float = 0.1  # m
+    greatest_turn_deg: float = 5.0  # degrees between frames
+
+
+@dataclass(frozen=True)
+class FloorSurveyModel:
+    """How the drawn line under the wagon is surveyed. All chosen."""
+
+    spacing: float = 0.01  # m between points along the line
+    noise: float = 0.002  # m, one sigma per axis
+    registration: float = 0.003  # m, one sigma per axis, one offset for the whole line
+
+
+def wagon_run(model: WagonModel, clutter_boxes: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """States `(T, 6)` and times `(T,)` of the wagon; its path keeps clear of the clutter `(n, 2, 2)`."""
+    length = model.mean_step * model.frames * (1 + model.step_spread) + 1.0
+    path = _clear_path(model.start, length, model.wander, model.knot_spacing, model.clearance, clutter_boxes, rng)
+    # Arc length along the path, so that steps are steps along the floor.
+    x = np.linspace(model.start, model.start + length, 8000)
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(path(x))))])
+    speed = 1 + np.clip(_smooth(model.frames, 25, rng), -2, 2) * model.step_spread
+    travelled = np.cumsum(model.mean_step * speed) - model.mean_step * speed[0]
+    at = np.interp(travelled, arc, x)
+    heading = np.arctan(path(at, 1)) + np.deg2rad(model.heading_wobble_deg) * _smooth(model.frames, 6, rng)
+    jitter = np.clip(rng.normal(size=(model.frames, 3)), -2, 2)
+    tilt = np.deg2rad(model.tilt_jitter_deg)
+    z = model.height + model.height_jitter * jitter[:, 0]
+    states = np.column_stack([at, path(at), z, tilt * jitter[:, 1], tilt * jitter[:, 2], heading])
+    return states, np.arange(model.frames) / FRAME_RATE
+
+
+def hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """States `(T, 6)` and times `(T,)` of the camera carried by hand, all six degrees of freedom moving."""
+    times = np.arange(model.frames) / FRAME_RATE
+    length = model.mean_step * model.frames + 2.0
+    path = _clear_path(model.start, length, model.wander, 2.3, 0.40, clutter_boxes, rng)
+    x = model.start + model.mean_step * np.arange(model.frames) + 0.05 * _smooth(model.frames, 12, rng)
+    knots = np.arange(0, times[-1] + 2 * model.knot_seconds, model.knot_seconds)
+
+    def wave(low: float, high: float) -> np.ndarray:
+        values = rng.uniform(low, high, len(knots))
+        return PchipInterpolator(knots, values)(times)
+
+    # Steps of the body while walking: two steps a second, up and down and from side to side.
+    gait = 2 * np.pi * 1.7 * times
+    z = wave(model.heights[0] + 0.02, model.heights[1] - 0.02) + 0.012 * np.sin(gait)
+    y = path(x) + 0.012 * np.sin(gait / 2)
+    angles = np.stack([wave(-model.tilt_deg, model.tilt_deg), wave(-model.tilt_deg, model.tilt_deg),
+                       wave(-model.look_deg, model.look_deg)], axis=1)  # fmt: skip
+    angles += model.tremor_deg * rng.normal(size=angles.shape)
+    return np.column_stack([x, y, z, np.deg2rad(angles)]), times
+
+
+def survey_floor_line(states: np.ndarray, model: FloorSurveyModel, rng: np.random.Generator) -> np.ndarray:
+    """Points `(P, 3)` on the line on the floor below the camera, as a laser survey, registered to the map, has them."""
+    xy = states[:, :2]
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=1))])
+    line = CubicSpline(arc, xy)(np.arange(0.0, arc[-1], model.spacing))
+    points = np.column_stack([line, np.zeros(len(line))])
+    offset = model.registration * rng.normal(size=3)
+    return points + offset + model.noise * rng.normal(size=points.shape)
+
+
+def _clear_path(
+    start: float,
+    length: float,
+    wander: float,
+    spacing: float,
+    clearance: float,
+    boxes: np.ndarray,
+    rng: np.random.Generator,
+):
+    """Smooth y(x) in metres through drawn knots, moved aside where clutter boxes would come nearer than `clearance`."""
+    knots = np.arange(start - spacing, start + length + 2 * spacing, spacing)
+    wish = CubicSpline(knots, rng.uniform(-wander, wander, len(knots)))
+    x = np.arange(start - 1.0, start + length + 1.0, 0.05)
+    y = wish(x)
+    low, high = np.full_like(x, -0.55), np.full_like(x, 0.55)
+    for (x_low, y_low), (x_high, y_high) in boxes:
+        beside = (x > x_low - 0.6) & (x < x_high + 0.6)
+        if y_low > 0 or (y_low + y_high) / 2 > 0.0:
+            high[beside] = np.minimum(high[beside], y_low - clearance)
+        else:
+            low[beside] = np.maximum(low[beside], y_high + clearance)
+    wrong = low > high
+    if wrong.any():
+        raise ValueError(f"no way past the clutter at x = {x[wrong][0]:.2f} m: move it towards the walls")
+    # Clamp, smooth the corners that clamping makes, and clamp only by what smoothing may undo (centimetres).
+    window = np.hanning(41) / np.hanning(41).sum()
+    clamped = np.clip(y, low + 0.02, high - 0.02)
+    padded = np.concatenate([np.full(20, clamped[0]), clamped, np.full(20, clamped[-1])])
+    return CubicSpline(x, np.convolve(padded, window, mode="valid"))
+
+
+def _smooth(n: int, width: float, rng: np.random.Generator) -> np.ndarray:
+    """Smooth random signal `(n,)` with zero mean and standard deviation one; `width` in frames."""
+    margin = int(4 * width)
+    kernel = np.exp(-0.5 * (np.arange(-margin, margin + 1) / width) ** 2)
+    signal = np.convolve(rng.normal(size=n + 2 * margin), kernel, mode="valid")
+    return signal / np.sqrt(np.sum(kernel**2))
