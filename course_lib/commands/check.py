@@ -137,7 +137,8 @@ def check_depth_images() -> Iterator[Finding]:
         result = read_result(output) if code == 0 else None
         cure = INSTALL_OPENGL if backend == "vtk" else MAKE_ANEW
         if result is None:
-            last = (output.strip().splitlines() or [""])[-1]
+            # The first sentence of its last line: the cure that errors name as well follows here anyway.
+            last = (output.strip().splitlines() or [""])[-1].split(". ")[0]
             why = f"{describe_exit(code)}{': ' if last else ''}{last[:300]}"
             yield Finding(False, f"no depth image by {name}: {why}", cure)
             continue

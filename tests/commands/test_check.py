@@ -87,7 +87,7 @@ def test_opengl_that_cannot_start_fails_with_its_cure(monkeypatch):
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere/mesa.json")
     findings = list(check.check_depth_images())
     vtk = [finding for finding in findings if "z-buffer" in finding.text]
-    ray = [finding for finding in findings if "by ray casting" in finding.text]
+    ray = [finding for finding in findings if "image by ray casting" in finding.text]
     assert [finding.ok for finding in vtk] == [False]
     assert "apt-get install" in vtk[0].cure
     assert [finding.ok for finding in ray] == [True]

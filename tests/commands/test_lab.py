@@ -1,0 +1,146 @@
+"""`course.py lab`: a server for this computer only, with its token, without news, and without touching the home."""
+
+import argparse
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+from course_lib.commands import lab
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    """The lessons' server as `lab` starts it: its address, its token, its process, and the (empty) home it ran in."""
+    home, state = tmp_path_factory.mktemp("home"), tmp_path_factory.mktemp("state")
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    command, environment = lab.lab_command(port, browser=False, state_folder=state)
+    environment |= {"HOME": str(home), "JUPYTER_TOKEN": "a-token-for-the-tests"}
+    with open(state / "log", "wb") as log:
+        process = subprocess.Popen(command, env=environment, stdout=log, stderr=log, cwd=home)
+    address = f"http://127.0.0.1:{port}"
+    for _ in range(300):
+        try:
+            get(f"{address}/api")
+            break
+        except OSError:
+            assert process.poll() is None, (state / "log").read_text()
+            time.sleep(0.1)
+    yield address, "a-token-for-the-tests", process, home
+    process.send_signal(signal.SIGTERM)
+    process.wait(timeout=30)
+
+
+def get(address):
+    with urllib.request.urlopen(address, timeout=30) as answer:
+        return answer.read().decode()
+
+
+def test_the_token_is_needed(server):
+    address, token, _, _ = server
+    for path in ("/api/status", "/api/contents", "/api/kernels"):
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            get(address + path)
+        assert refused.value.code == 403
+    assert json.loads(get(f"{address}/api/status?token={token}"))["kernels"] == 0
+
+
+@pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="reads Linux's list of sockets")
+def test_it_listens_on_this_computer_only(server):
+    port = int(server[0].rsplit(":", 1)[1])
+    listening = set()
+    for name in ("tcp", "tcp6"):
+        for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]:
+            local, state = line.split()[1], line.split()[3]
+            if int(local.split(":")[1], 16) == port and state == "0A":  # LISTEN
+                listening.add(local.split(":")[0])
+    assert listening == {"0100007F"}  # 127.0.0.1, its bytes reversed
+
+
+def test_news_updates_builds_and_needless_extensions_are_off(server):
+    address, token, _, _ = server
+    page = get(f"{address}/lab?token={token}")
+    config = json.loads(page.split('id="jupyter-config-data"', 1)[1].split(">", 1)[1].split("</script>", 1)[0])
+    assert config["news"] == {"disabled": True}
+    assert config["buildAvailable"] is False
+    assert config["buildCheck"] is False
+    assert config["extensionManager"]["can_install"] is False
+    for name in ("jupyter-server-proxy", "announcements", "lsp-extension", "terminal-extension"):
+        assert any(name in disabled for disabled in config["disabledExtensions"]), name
+    for needless in ("lsp/status", "server-proxy/servers-info", "api/terminals"):
+        with pytest.raises(urllib.error.HTTPError) as missing:
+            get(f"{address}/{needless}?token={token}")
+        assert missing.value.code == 404
+
+
+@pytest.mark.parametrize("plugin", lab.SETTINGS)
+def test_our_settings_are_the_defaults(server, plugin):
+    address, token, _, _ = server
+    properties = json.loads(get(f"{address}/lab/api/settings/{plugin}?token={token}"))["schema"]["properties"]
+    for name, value in lab.SETTINGS[plugin].items():
+        assert properties[name]["default"] == value
+
+
+def test_nothing_is_written_to_the_home(server):
+    address, token, _, home = server
+    get(f"{address}/lab?token={token}")
+    assert list(home.iterdir()) == []
+
+
+def test_the_first_lesson_is_what_opens():
+    command, _ = lab.lab_command()
+    assert "--LabApp.default_url=/lab/tree/notebooks/00_start_here.ipynb" in command
+    assert "--ServerApp.ip=127.0.0.1" in command
+    assert not any("token" in word or "password" in word for word in command)
+
+
+def test_port_and_browser_pass_through(tmp_path):
+    command, _ = lab.lab_command(8899, browser=True, state_folder=tmp_path)
+    assert {"--ServerApp.port=8899", "--ServerApp.port_retries=0", "--ServerApp.open_browser=True"} <= set(command)
+    command, _ = lab.lab_command(state_folder=tmp_path)
+    assert {"--ServerApp.port=8888", "--ServerApp.port_retries=50", "--ServerApp.open_browser=False"} <= set(command)
+
+
+def test_an_empty_token_in_the_environment_does_not_switch_the_token_off(tmp_path, monkeypatch):
+    monkeypatch.setenv("JUPYTER_TOKEN", "")
+    assert "JUPYTER_TOKEN" not in lab.lab_command(state_folder=tmp_path)[1]
+
+
+@pytest.mark.parametrize(
+    ("port", "notebook", "said"),
+    [(70000, lab.FIRST_LESSON, "between 1 and 65535"), (None, "notebooks/x.ipynb", "no notebook")],
+)
+def test_what_cannot_be_opened_is_told(port, notebook, said):
+    with pytest.raises(ValueError, match=said):
+        lab.run(argparse.Namespace(port=port, no_browser=True, notebook=notebook))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs a POSIX terminal")
+def test_control_c_ends_it_without_a_question(tmp_path):
+    import pty
+
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    command, environment = lab.lab_command(port, state_folder=tmp_path)
+    master, terminal = pty.openpty()
+    process = subprocess.Popen(command, env=environment, stdin=terminal, stdout=terminal, stderr=terminal, cwd=tmp_path)
+    printed = b""
+    while b"?token=" not in printed:
+        printed += os.read(master, 1000)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=30) == 0
+    os.close(terminal)
+    os.close(master)
+
+
+def test_the_command_runs_in_this_environment():
+    assert lab.lab_command()[0][:3] == [sys.executable, "-m", "jupyterlab"]
