@@ -57,8 +57,7 @@ def new_figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4
 
 def depth_image(axes: Axes, depth: np.ndarray, title: str, limits: tuple[float, float]) -> AxesImage:
     """Draw a depth image `(H, W)` in metres, coloured between `limits`; grey where nothing was hit (inf or nan)."""
-    colours = colormaps["cividis"].copy()
-    colours.set_bad(NOTHING_HIT)
+    colours = colormaps["cividis"].with_extremes(bad=NOTHING_HIT)
     drawn = np.ma.masked_invalid(depth)
     image = axes.imshow(drawn, cmap=colours, vmin=limits[0], vmax=limits[1], interpolation="nearest")
     axes.grid(False)

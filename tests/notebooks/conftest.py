@@ -1,0 +1,88 @@
+"""The lessons as the tests see them: every notebooks/NN_title.ipynb, so that a new one is covered at once."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from course_lib.lessons.paths import notebook_paths
+
+OPT_OUTS = ("NBVAL_IGNORE_OUTPUT", "NBVAL_SKIP", "NBVAL_RAISES_EXCEPTION", "PYTEST_VALIDATE_IGNORE_OUTPUT")
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """One stored notebook."""
+
+    path: Path
+    notebook: nbformat.NotebookNode
+
+    @property
+    def number(self) -> str:
+        return self.path.name[:2]
+
+    @property
+    def cells(self) -> list:
+        return self.notebook.cells
+
+    @property
+    def code_cells(self) -> list:
+        return [cell for cell in self.cells if cell.cell_type == "code"]
+
+    @property
+    def visible_code_cells(self) -> list:
+        return [cell for cell in self.code_cells if not cell.metadata.get("jupyter", {}).get("source_hidden")]
+
+    @property
+    def opted_out_cells(self) -> list:
+        """Code cells whose output nbval does not compare, by a comment or a tag."""
+        tags = {name.lower().replace("_", "-") for name in OPT_OUTS} | {"raises-exception"}
+        return [
+            cell
+            for cell in self.code_cells
+            if tags & {tag.lower() for tag in cell.metadata.get("tags", [])} or any(n in cell.source for n in OPT_OUTS)
+        ]
+
+    @property
+    def outputs(self) -> list:
+        return [output for cell in self.code_cells for output in cell.outputs]
+
+    @property
+    def markdown(self) -> str:
+        return "\n\n".join(cell.source for cell in self.cells if cell.cell_type == "markdown")
+
+    def exercise_cells(self, number: str, tag: str) -> list:
+        """Cells of one exercise that bear `tag`."""
+        return [
+            cell
+            for cell in self.cells
+            if cell.metadata.get("exercise") == number and tag in cell.metadata.get("tags", [])
+        ]
+
+    def exercise_numbers(self) -> list[str]:
+        """Numbers of the exercises in the order in which they appear."""
+        return list(dict.fromkeys(cell.metadata["exercise"] for cell in self.cells if "exercise" in cell.metadata))
+
+    def imports(self) -> str:
+        """All import statements of the lesson, for running one of its cells alone."""
+        nodes = [node for cell in self.code_cells for node in ast.parse(cell.source).body]
+        return "\n".join(ast.unparse(node) for node in nodes if isinstance(node, ast.Import | ast.ImportFrom))
+
+
+def read(path: Path) -> Lesson:
+    return Lesson(path, nbformat.read(path, as_version=4))
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    if "lesson" in metafunc.fixturenames:
+        lessons = [read(path) for path in notebook_paths()]
+        metafunc.parametrize("lesson", lessons, ids=[lesson.path.stem for lesson in lessons])
+
+
+@pytest.fixture
+def all_lessons() -> list[Lesson]:
+    return [read(path) for path in notebook_paths()]

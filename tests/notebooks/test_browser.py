@@ -1,0 +1,156 @@
+"""Lessons in JupyterLab in a real browser: all cells run, and a key on a panel's slider brings a new picture."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import statistics
+import subprocess
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+from course_lib.commands.lab import lab_command
+from course_lib.lessons.paths import REPOSITORY, notebook_paths
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+LESSONS = [path for path in notebook_paths() if path.name[:2] in ("00", "03", "08")]
+TOKEN = "for-this-test-only"
+# A key press has to show its new picture within this time: LESSONS, section 3.
+MAX_SECONDS = 0.4
+N_PRESSES = 9
+
+SESSION_IS_IDLE = """() => {
+    const kernel = window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel;
+    return kernel?.connectionStatus === 'connected' && kernel.status === 'idle';
+}"""
+RUN_ALL = "() => window.jupyterapp.commands.execute('notebook:run-all-cells').then(() => true)"
+STATES = """() => window.jupyterapp.shell.currentWidget.content.widgets
+    .filter(cell => cell.model.type === 'code')
+    .map(cell => [cell.model.executionCount, cell.model.outputs.toJSON().some(o => o.output_type === 'error')])"""
+# Milliseconds from a key press on the focused slider to a new picture in its panel, decoded and ready to be painted.
+KEY_TO_PICTURE = """([panel, key]) => new Promise((resolve, reject) => {
+    const old = panel.querySelector('img').src;
+    let started = null;
+    const late = setTimeout(() => reject(new Error('no new picture within 5 s')), 5000);
+    new MutationObserver((_, observer) => {
+        const image = panel.querySelector('img');
+        if (started === null || !image || image.src === old) return;
+        observer.disconnect();
+        image.decode().then(() => { clearTimeout(late); resolve(performance.now() - started); }, reject);
+    }).observe(panel, {subtree: true, childList: true, attributes: true});
+    document.addEventListener('keydown', () => { started = performance.now(); }, {once: true, capture: true});
+    window.courseIsWatching = true;
+})"""
+
+
+def chromium() -> str | None:
+    """Path of a Chromium or Chrome of the system; None where there is none."""
+    names = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+    return next((path for name in names if (path := shutil.which(name))), None)
+
+
+def require_chromium() -> str:
+    """The browser's path; without one the test is skipped, and says so, but fails where CI=true."""
+    path = chromium()
+    if path is None:
+        message = "no Chromium or Chrome found (on Debian or Ubuntu: apt-get install chromium): not driven in a browser"
+        if os.environ.get("CI", "").lower() == "true":
+            pytest.fail(message)
+        pytest.skip(message)
+    return path
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory):
+    """Address of the lessons' JupyterLab, on copies of the notebooks, so that no autosave touches the stored ones."""
+    require_chromium()
+    folder = tmp_path_factory.mktemp("lab")
+    shutil.copytree(REPOSITORY / "notebooks", folder / "notebooks", ignore=shutil.ignore_patterns(".*"))
+    port = free_port()
+    command, environment = lab_command(port, False, f"notebooks/{LESSONS[0].name}", state_folder=folder / "state")
+    root = f"--ServerApp.root_dir={REPOSITORY}"
+    assert root in command
+    command[command.index(root)] = f"--ServerApp.root_dir={folder}"
+    command.append("--LabApp.expose_app_in_browser=True")
+    log = (folder / "server.log").open("w")
+    server = subprocess.Popen(command, env=environment | {"JUPYTER_TOKEN": TOKEN}, stdout=log, stderr=log)
+    try:
+        wait_for_server(server, port, folder / "server.log")
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        server.terminate()
+        try:
+            server.wait(20)
+        except subprocess.TimeoutExpired:
+            server.kill()
+        log.close()
+
+
+def wait_for_server(server: subprocess.Popen, port: int, log: Path) -> None:
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline:
+        assert server.poll() is None, log.read_text()
+        try:
+            urllib.request.urlopen(f"http://127.0.0.1:{port}/api?token={TOKEN}", timeout=2)
+            return
+        except (urllib.error.URLError, OSError):
+            time.sleep(0.2)
+    pytest.fail(f"JupyterLab did not answer within 60 s: {log.read_text()}")
+
+
+@pytest.fixture(scope="module")
+def browser(lab):
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=require_chromium(), args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
+def test_a_lesson_runs_and_its_first_panel_answers_a_key(browser, lab, path):
+    page = browser.new_page(viewport={"width": 1400, "height": 1000})
+    errors: list[str] = []
+    page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(f"{lab}/lab/tree/notebooks/{path.name}?token={TOKEN}&reset")
+    page.wait_for_function(SESSION_IS_IDLE, timeout=90_000)
+    pictures = page.locator(".jp-OutputArea-output img[alt]")
+    assert pictures.count() > 0, "stored pictures, with their alternative text, are there before anything runs"
+
+    page.evaluate(RUN_ALL)
+    page.wait_for_function(SESSION_IS_IDLE, timeout=90_000)
+    states = page.evaluate(STATES)
+    assert [count for count, _ in states] == list(range(1, len(states) + 1))
+    assert not any(failed for _, failed in states)
+    assert page.locator(".jp-OutputArea-output img:not([alt])").count() == 0
+
+    panel = page.locator(".jp-OutputArea-output:has(.widget-slider)").first
+    panel.scroll_into_view_if_needed()
+    panel.locator(".noUi-handle").first.focus()
+    seconds = [press_and_wait(page, panel, key) for key in ("ArrowRight", "ArrowLeft") * N_PRESSES]
+    assert statistics.median(seconds) <= MAX_SECONDS, f"{seconds}"
+    assert "This panel failed" not in panel.inner_text()
+    assert errors == []
+    page.close()
+
+
+def press_and_wait(page, panel, key: str) -> float:
+    """Seconds from pressing `key` to the new picture."""
+    page.evaluate("() => { window.courseIsWatching = false; }")
+    element = panel.element_handle()
+    page.evaluate("([p, k]) => { window.courseWaits = (" + KEY_TO_PICTURE + ")([p, k]); }", [element, key])
+    page.wait_for_function("() => window.courseIsWatching")
+    page.keyboard.press(key)
+    return page.evaluate("() => window.courseWaits") / 1000

@@ -1,0 +1,106 @@
+"""Exercises in the notebooks: complete, foldable, and judged rightly by their own checks."""
+
+from __future__ import annotations
+
+import ast
+import re
+import types
+
+import pytest
+
+from course_lib.lessons.exercises import find_exercise, judge, lesson_exercises, lesson_numbers
+
+# Seeds other than that of `check`: what is right or wrong must not hang on one set of inputs.
+SEEDS = (0, 1, 2, 3)
+EXERCISES = [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]
+
+
+def functions_of(lesson, cell) -> dict[str, types.FunctionType]:
+    """The functions that one cell defines, run alone after the lesson's imports."""
+    namespace: dict = {}
+    exec(lesson.imports(), namespace)
+    before = set(namespace)
+    exec(compile(cell.source, cell.id, "exec"), namespace)
+    return {k: v for k, v in namespace.items() if k not in before and isinstance(v, types.FunctionType)}
+
+
+def only(cells: list):
+    assert len(cells) == 1, f"exactly one such cell, not {len(cells)}"
+    return cells[0]
+
+
+def stub_of(lesson, number: str):
+    return functions_of(lesson, only(lesson.exercise_cells(number, "exercise")))
+
+
+def test_a_lesson_has_two_or_three_exercises_and_the_library_knows_them(lesson):
+    numbers = lesson.exercise_numbers()
+    assert 2 <= len(numbers) <= 3
+    assert numbers == [exercise.number for exercise in lesson_exercises(lesson.number)]
+
+
+def test_every_exercise_is_complete(lesson):
+    for number in lesson.exercise_numbers():
+        task = only(lesson.exercise_cells(number, "task"))
+        assert task.cell_type == "markdown"
+        assert number in task.source
+        assert re.search(r"\d", task.source.replace(number, "")), "the task tells the expected number"
+        hints = lesson.exercise_cells(number, "hint")
+        assert all(cell.cell_type == "markdown" for cell in hints)
+        text = "".join(cell.source for cell in hints)
+        assert 2 <= len(re.findall(r"<details>", text)) <= 3
+        assert text.count("<details>") == text.count("</details>") == text.count("<summary>")
+        only(lesson.exercise_cells(number, "exercise"))
+        only(lesson.exercise_cells(number, "check"))
+        only(lesson.exercise_cells(number, "solution"))
+
+
+def test_the_check_cell_calls_check_with_the_stubs_function(lesson):
+    for number in lesson.exercise_numbers():
+        (name,) = stub_of(lesson, number)
+        cell = only(lesson.exercise_cells(number, "check"))
+        assert ast.unparse(ast.parse(cell.source)) == f"check('{number}', {name})"
+        assert "".join(o.text for o in cell.outputs).startswith(f"{number}: not attempted")
+
+
+def test_the_stub_has_a_docstring_and_is_not_passed(lesson):
+    for number in lesson.exercise_numbers():
+        ((_, stub),) = stub_of(lesson, number).items()
+        assert stub.__doc__
+        assert judge(find_exercise(number), stub).status == "not attempted"
+
+
+def test_the_solution_is_folded_starts_with_a_comment_and_passes(lesson):
+    for number in lesson.exercise_numbers():
+        cell = only(lesson.exercise_cells(number, "solution"))
+        assert cell.metadata["jupyter"]["source_hidden"] is True
+        assert cell.source.startswith("#")
+        solutions = functions_of(lesson, cell)
+        (name,) = stub_of(lesson, number)
+        assert name not in solutions, "the solution has a name of its own, so the student's work is never overwritten"
+        (solution,) = [f for key, f in solutions.items() if key.startswith(name)]
+        for seed in SEEDS:
+            assert judge(find_exercise(number), solution, seed).status == "right"
+
+
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
+def test_each_typical_mistake_fails_with_its_own_hint(exercise):
+    assert len(exercise.mistakes) >= 3
+    assert len({mistake.hint for mistake in exercise.mistakes}) == len(exercise.mistakes)
+    for mistake in exercise.mistakes:
+        for seed in SEEDS:
+            verdict = judge(exercise, mistake.function, seed)
+            assert verdict.status == "wrong"
+            assert mistake.hint in verdict.message
+
+
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
+def test_the_reference_is_right_on_every_seed(exercise):
+    assert all(judge(exercise, exercise.reference, seed).status == "right" for seed in SEEDS)
+
+
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
+def test_hints_do_not_give_the_answer_away_as_code(exercise):
+    for mistake in exercise.mistakes:
+        assert "return " not in mistake.hint
+        assert len(mistake.hint) <= 140

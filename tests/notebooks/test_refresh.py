@@ -1,0 +1,137 @@
+"""`refresh`: stores what ran to its end, in one form, and leaves the file alone otherwise. And nbval's strictness."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from course_lib.commands import refresh
+from course_lib.commands.refresh import RefreshError
+from course_lib.lessons.paths import REPOSITORY
+
+SANITIZE = REPOSITORY / "tests" / "nbval_sanitize.cfg"
+
+
+def written(folder, *sources: str):
+    cells = [new_markdown_cell("# A title")] + [new_code_cell(source) for source in sources]
+    for index, cell in enumerate(cells):
+        cell.id = f"99-{index}"
+    path = folder / "99_test.ipynb"
+    nbformat.write(new_notebook(cells=cells), path)
+    return path
+
+
+def run_nbval(path) -> subprocess.CompletedProcess:
+    options = ["--nbval", "--nbval-current-env", "--nbval-sanitize-with", str(SANITIZE), "-p", "no:cacheprovider"]
+    environment = os.environ | {"PYTHONPATH": str(REPOSITORY)}
+    command = [sys.executable, "-m", "pytest", "-q", *options, str(path)]
+    return subprocess.run(command, capture_output=True, text=True, env=environment, cwd=path.parent, timeout=120)
+
+
+PANEL = """
+from course_lib.lessons import figures
+from course_lib.lessons.panel import Drawing, Panel, Switch
+png = figures.png_bytes(figures.new_figure(size=(1, 1))[0])
+Panel("test", [Switch("on", "on")], lambda on: Drawing(png, "A small empty picture", "on: 1.25")).show()
+"""
+PROGRESS = """
+import time
+from course_lib.lessons import progress
+for step in progress(range(6), "six steps"):
+    time.sleep(0.12)
+print("done:", step + 1)
+"""
+
+
+@pytest.fixture(scope="module")
+def refreshed(tmp_path_factory):
+    """A notebook with a print, a panel and a progress bar, refreshed."""
+    path = written(tmp_path_factory.mktemp("lesson"), "x = 2\nprint('x =', x)", PANEL, PROGRESS)
+    seconds, size = refresh.refresh(path)
+    assert 0 < seconds < 60
+    assert size == path.stat().st_size
+    return path
+
+
+def test_outputs_are_stored_without_views_or_state(refreshed):
+    notebook = nbformat.read(refreshed, as_version=4)
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert [cell.execution_count for cell in code] == [1, 2, 3]
+    assert code[0].outputs[0].text == "x = 2\n"
+    assert set(code[1].outputs[0].data) == {"text/plain", "text/html"}
+    assert notebook.metadata == refresh.METADATA
+    assert [cell.id for cell in notebook.cells] == ["99-0", "99-1", "99-2", "99-3"]
+
+
+def test_a_progress_bar_leaves_nothing_that_changes(refreshed):
+    bar, printed = nbformat.read(refreshed, as_version=4).cells[3].outputs
+    assert bar.data == {"text/plain": "progress: six steps", "text/html": ""}
+    assert printed.text == "done: 6\n"
+
+
+def test_a_second_refresh_changes_no_byte(refreshed):
+    before = refreshed.read_bytes()
+    refresh.refresh(refreshed)
+    assert refreshed.read_bytes() == before
+
+
+def test_nbval_agrees_with_what_was_stored(refreshed):
+    result = run_nbval(refreshed)
+    assert result.returncode == 0, result.stdout
+    assert "3 passed" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("x = 2\\n", "x = 3\\n"), ("A small empty picture", "A small empty pictura"), ("on: 1.25", "on: 1.26")],
+    ids=["printed text", "alternative text", "number under a picture"],
+)
+def test_nbval_notices_a_changed_output(refreshed, tmp_path, old, new):
+    notebook = nbformat.read(refreshed, as_version=4)
+    for cell in notebook.cells:
+        for output in cell.get("outputs", []):
+            if "text" in output:
+                output.text = output.text.replace(old.replace("\\n", "\n"), new.replace("\\n", "\n"))
+            for kind in output.get("data", {}):
+                output.data[kind] = output.data[kind].replace(old, new)
+    changed = tmp_path / "99_changed.ipynb"
+    nbformat.write(notebook, changed)
+    assert changed.read_text() != refreshed.read_text()
+    assert run_nbval(changed).returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("sources", "words"),
+    [
+        (["x = 1", "1 / 0"], "ZeroDivisionError"),
+        (["import time; time.sleep(30)"], "longer than 2 s"),
+        (["import os; os._exit(3)"], "(?i)died|dead"),
+        (["print('x' * 500_000)"], "501 kB"),
+    ],
+    ids=["error", "time-out", "dead kernel", "too large"],
+)
+def test_what_fails_leaves_the_file_as_it_was(tmp_path, sources, words):
+    path = written(tmp_path, *sources)
+    before = path.read_bytes()
+    with pytest.raises(RefreshError, match=words):
+        refresh.refresh(path, cell_timeout=2)
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir() if p.suffix == ".part"] == []
+
+
+def test_numbers_choose_lessons_and_unknown_ones_are_named():
+    assert [path.name[:2] for path in refresh.select(["3"])] == ["03"]
+    assert len(refresh.select([])) >= 1
+    with pytest.raises(ValueError, match=r"no lesson 77; there are: .*03"):
+        refresh.select(["03", "77"])
+
+
+def test_only_addresses_and_kernel_paths_are_sanitized():
+    lines = [line for line in SANITIZE.read_text().splitlines() if line and not line.startswith("#")]
+    assert [line for line in lines if line.startswith("[")] == ["[address]", "[kernel-path]", "[picture]"]
+    assert len(lines) == 9

@@ -1,0 +1,110 @@
+"""Rules that every stored notebook keeps (nbval compares the outputs themselves)."""
+
+from __future__ import annotations
+
+import ast
+import re
+import statistics
+
+from course_lib.commands.refresh import MAX_BYTES, METADATA, WIDGET_VIEW
+from course_lib.lessons.paths import REPOSITORY
+
+FORBIDDEN_WIDGETS = {"Output", "interact", "interactive", "interactive_output", "interact_manual", "Play"}
+SHOWN_TYPES = {"text/plain", "text/html", "text/markdown", "text/latex"}
+
+
+def test_cells_were_run_once_from_top_to_bottom(lesson):
+    assert [cell.execution_count for cell in lesson.code_cells] == list(range(1, len(lesson.code_cells) + 1))
+
+
+def test_no_cell_ended_in_an_error(lesson):
+    assert [output for output in lesson.outputs if output.output_type == "error"] == []
+
+
+def test_nothing_is_written_to_the_error_stream(lesson):
+    assert [output.text for output in lesson.outputs if output.get("name") == "stderr"] == []
+
+
+def test_cells_end_in_print_or_semicolon_not_in_a_bare_object(lesson):
+    assert [output for output in lesson.outputs if output.output_type == "execute_result"] == []
+    for cell in lesson.code_cells:
+        last = ast.parse(cell.source).body[-1] if cell.source.strip() else None
+        if isinstance(last, ast.Expr) and not cell.source.rstrip().endswith(";"):
+            assert isinstance(last.value, ast.Call), f"{cell.id} ends in a bare object"
+
+
+def test_cells_are_short(lesson):
+    lengths = sorted(len(cell.source.splitlines()) for cell in lesson.visible_code_cells)
+    assert statistics.median(lengths) <= 6
+    assert sum(length <= 12 for length in lengths) >= 0.9 * len(lengths)
+    assert max(lengths) <= 25
+
+
+def test_lines_fit_the_page(lesson):
+    wide = [(cell.id, line) for cell in lesson.code_cells for line in cell.source.splitlines() if len(line) > 120]
+    assert wide == []
+
+
+def test_few_cells_opt_out_of_comparison_and_each_says_why(all_lessons):
+    opted_out = [cell for lesson in all_lessons for cell in lesson.opted_out_cells]
+    assert len(opted_out) <= 0.01 * sum(len(lesson.code_cells) for lesson in all_lessons)
+    for cell in opted_out:
+        assert re.search(r"^#\s*(because|reason:).{10,}", cell.source, re.M | re.I), f"{cell.id} says no reason"
+
+
+def test_the_file_is_small(lesson):
+    assert lesson.path.stat().st_size <= MAX_BYTES
+
+
+def test_no_widget_state_is_stored(lesson):
+    assert "widgets" not in lesson.notebook.metadata
+    assert WIDGET_VIEW not in lesson.path.read_text(encoding="utf-8")
+    assert lesson.notebook.metadata == METADATA
+
+
+def test_outputs_are_of_known_types(lesson):
+    for output in lesson.outputs:
+        assert set(output.get("data", {})) <= SHOWN_TYPES
+
+
+def test_every_picture_has_alternative_text(lesson):
+    html = [output.data.get("text/html", "") for output in lesson.outputs if "data" in output]
+    for text in [*html, lesson.markdown]:
+        for image in re.findall(r"<img\b[^>]*>", text):
+            alt = re.search(r'\balt="([^"]*)"', image)
+            assert alt, f"no alternative text: {image[:80]}"
+            assert len(alt.group(1).split()) >= 4, f"alternative text too short: {alt.group(1)}"
+        for frame in re.findall(r"<iframe\b[^>]*>", text):
+            assert re.search(r'\btitle="[^"]{8,}"', frame), f"a frame without a title: {frame[:80]}"
+    for alt in re.findall(r"!\[([^\]]*)\]\(", lesson.markdown):
+        assert len(alt.split()) >= 4, f"alternative text too short: {alt!r}"
+
+
+def test_scenes_are_small_and_there(lesson):
+    html = "".join(output.data.get("text/html", "") for output in lesson.outputs if "data" in output)
+    for source in re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', html + lesson.markdown):
+        scene = lesson.path.parent / source
+        assert scene.parent.name == "scenes"
+        assert scene.stat().st_size <= 2_000_000
+
+
+def test_cell_ids_are_the_lessons_own(lesson):
+    ids = [cell.id for cell in lesson.cells]
+    assert len(set(ids)) == len(ids)
+    assert all(re.fullmatch(rf"{lesson.number}-[a-z0-9-]+", id_) for id_ in ids)
+
+
+def test_no_lesson_uses_widgets_that_hang_or_global_random_numbers(lesson):
+    for cell in lesson.code_cells:
+        names = {node.attr for node in ast.walk(ast.parse(cell.source)) if isinstance(node, ast.Attribute)}
+        names |= {node.id for node in ast.walk(ast.parse(cell.source)) if isinstance(node, ast.Name)}
+        assert not names & FORBIDDEN_WIDGETS, cell.id
+        assert not re.search(r"np\.random\.(?!default_rng|Generator)", cell.source), cell.id
+
+
+def test_no_plumbing_uses_widgets_that_hang():
+    for path in (REPOSITORY / "course_lib" / "lessons").glob("*.py"):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        names = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+        names |= {a.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for a in node.names}
+        assert not names & FORBIDDEN_WIDGETS, path.name

@@ -1,0 +1,117 @@
+"""The shape of one lesson (nine parts in order) and what its text must have."""
+
+from __future__ import annotations
+
+import itertools
+import re
+
+import pytest
+
+SECTIONS = ["Predict", "The idea", "The code", "Play", "Measure", "Break it", "Exercises", "Recap"]
+
+
+def section(lesson, name: str) -> list:
+    """Cells from the heading `name` up to the next heading of its level."""
+    found, cells = False, []
+    for cell in lesson.cells:
+        heading = re.match(r"## (.+)", cell.source) if cell.cell_type == "markdown" else None
+        if heading:
+            found = heading.group(1).strip() == name
+        if found:
+            cells.append(cell)
+    return cells
+
+
+def text_of(cells: list) -> str:
+    return "\n\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
+
+
+def test_the_lessons_are_there(all_lessons):
+    assert "03" in [lesson.number for lesson in all_lessons]
+
+
+def test_sections_are_all_there_in_order(lesson):
+    assert re.findall(r"^## (.+?)\s*$", lesson.markdown, re.M) == SECTIONS
+
+
+def test_the_title_promises_and_says_how_long(lesson):
+    title = lesson.cells[0].source
+    assert re.match(rf"# {lesson.number} · \S", title), "the first cell starts with '# NN · Title'"
+    promises = re.findall(r"^\* ", title, re.M)
+    assert 1 <= len(promises) <= 3
+    minutes = re.search(r"\*\*(\d+) minutes", title)
+    assert minutes, "the title cell says how many **minutes** the lesson takes"
+    assert 20 <= int(minutes.group(1)) <= 50
+    assert re.search(r"[Pp]aper", title)
+
+
+def test_nothing_runs_before_the_prediction(lesson):
+    kinds = [cell.cell_type for cell in lesson.cells]
+    first_code = kinds.index("code")
+    assert "## Predict" in text_of(lesson.cells[:first_code])
+    assert "?" in text_of(section(lesson, "Predict"))
+
+
+def test_promised_equations_are_shown_with_their_number_and_symbols(lesson):
+    title = lesson.cells[0].source
+    promised = re.findall(r"\((\d+)\)", title)
+    if not promised:
+        pytest.skip("this lesson promises no equation")
+    taught = set(re.findall(r"\\tag\{(\d+)\}", lesson.markdown))
+    assert set(promised) <= taught
+    rows = re.findall(r"^\|.*\|$", text_of(section(lesson, "The idea")), re.M)
+    assert len(rows) >= 4, "the idea has a table of symbols"
+    assert "unit" in rows[0]
+
+
+def test_every_equation_that_the_text_refers_to_exists(lesson):
+    referred = {int(n) for n in re.findall(r"\beqs?\. \((\d+)\)", lesson.markdown)}
+    assert referred <= set(range(1, 13)), "paper 1 has equations (1) to (12), paper 2 has (1)"
+
+
+def test_the_idea_has_a_picture_before_its_first_equation(lesson):
+    for cell in section(lesson, "The idea"):
+        if cell.cell_type == "code" and any("<img" in o.get("data", {}).get("text/html", "") for o in cell.outputs):
+            return
+        if cell.cell_type == "markdown" and re.search(r"!\[[^\]]+\]\(|<img ", cell.source):
+            return
+        assert "$$" not in cell.source, "the picture comes first, then the equation"
+    pytest.fail("the idea has no picture")
+
+
+def test_play_has_a_panel_and_asks(lesson):
+    cells = section(lesson, "Play")
+    shown = [o.data["text/plain"] for c in cells if c.cell_type == "code" for o in c.outputs if "data" in o]
+    assert any(text.startswith("Panel '") for text in shown)
+    assert "?" in text_of(cells)
+
+
+def test_measure_and_break_it_print_numbers(lesson):
+    for name in ("Measure", "Break it"):
+        printed = "".join(
+            o.text for c in section(lesson, name) if c.cell_type == "code" for o in c.outputs if "text" in o
+        )
+        assert re.search(r"\d", printed), name
+
+
+def test_a_figure_never_stands_without_numbers(lesson):
+    for cell in lesson.code_cells:
+        shown = [o.data["text/plain"] for o in cell.outputs if "data" in o]
+        if any(text.startswith("Picture:") for text in shown):
+            printed = "".join(o.text for o in cell.outputs if "text" in o)
+            assert re.search(r"\d", printed), f"{cell.id}: print what the figure shows"
+
+
+def test_the_recap_names_terms_in_both_languages(lesson):
+    recap = text_of(section(lesson, "Recap"))
+    terms = [row for row in re.findall(r"^\|.*\|$", recap, re.M) if re.search(r"[\u3040-\u30ff\u4e00-\u9fff]", row)]
+    assert len(terms) >= 3
+    assert 3 <= len(re.findall(r"^\d\. ", recap, re.M)) <= 6
+    assert "Next" in recap
+
+
+def test_headings_step_down_one_level_at_a_time(lesson):
+    levels = [len(marks) for marks in re.findall(r"^(#+) ", lesson.markdown, re.M)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(b - a <= 1 for a, b in itertools.pairwise(levels))
