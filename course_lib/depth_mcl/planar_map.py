@@ -22,6 +22,7 @@ def planar_simplification(
     max_angle_deg: float = 20.0,
     n_trials: int = 200,
     join: float = 0.3,
+    reduction: float = 0.9,
 ) -> SceneMap:
     """The large planes of a map, each flattened; everything else is dropped.
 
@@ -29,13 +30,17 @@ def planar_simplification(
     triangles within `distance` metres of it whose normals lie within `max_angle_deg` of its own; the best plane is
     refitted to its support by area-weighted least squares. Its triangles are split into regions (no gap over `join`
     metres between their middles); regions of at least `min_area` square metres are projected onto the plane and kept.
-    The search ends when the best plane has less than `min_area`.
-    Raises `ValueError` for parameters that are not positive, or a map without any plane so large.
+    The search ends when the best plane has less than `min_area`. Last, the share `reduction` of the triangles is
+    decimated away (by quadric errors, which are zero within a plane).
+    Raises `ValueError` for parameters that are not positive, a reduction outside [0, 1), or a map without any plane so
+    large.
     Source: Fallon et al. 2012, section III (large planar segments); RANSAC: Fischler and Bolles 1981.
     """
     for name, value in (("distance", distance), ("min_area", min_area), ("join", join), ("n_trials", n_trials)):
         if not value > 0:
             raise ValueError(f"{name} must be positive; got {value!r}")
+    if not 0 <= reduction < 1:
+        raise ValueError(f"reduction must lie in [0, 1); got {reduction!r}")
     corners = scene_map.vertices[scene_map.faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = 0.5 * np.linalg.norm(normals, axis=1)
@@ -63,7 +68,7 @@ def planar_simplification(
     if not sum(len(flat) for flat in kept):
         raise ValueError(f"the map has no plane of {min_area:g} square metres: lower min_area")
     vertices, faces = np.unique(np.concatenate(kept).reshape(-1, 3), axis=0, return_inverse=True)
-    return SceneMap(vertices, faces.reshape(-1, 3))
+    return _decimated(vertices, faces.reshape(-1, 3), reduction)
 
 
 def _best_plane(
@@ -114,6 +119,18 @@ def _fit_plane(corners: np.ndarray, areas: np.ndarray, towards: np.ndarray) -> t
     _, vectors = np.linalg.eigh((offset * weights[:, None]).T @ offset)
     normal = vectors[:, 0] * np.sign(vectors[:, 0] @ towards or 1.0)
     return normal, float(normal @ centre)
+
+
+def _decimated(vertices: np.ndarray, faces: np.ndarray, reduction: float) -> SceneMap:
+    # VTK must hear which window to use before it is first imported, by whomever.
+    from course_lib.depth_mcl.vtk_backend import vtk_environment
+
+    with vtk_environment():
+        import pyvista
+    proper = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+    mesh = pyvista.PolyData.from_regular_faces(vertices, faces[proper].astype(np.int64))
+    mesh = mesh.decimate(reduction) if reduction > 0 else mesh
+    return SceneMap(np.asarray(mesh.points), np.asarray(mesh.regular_faces))
 
 
 def _regions(centres: np.ndarray, join: float) -> np.ndarray:
