@@ -24,7 +24,6 @@ from PIL import Image
 
 BLACK, ORANGE, SKY_BLUE, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
-NOTHING_HIT = "#B8B8B8"  # a grey that cividis does not pass through at this lightness: depth inf or nan
 _ORDER = (BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY_BLUE, BLACK)
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 _LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 3)), (0, (1, 1)))
@@ -56,8 +55,9 @@ def new_figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4
 
 
 def depth_image(axes: Axes, depth: np.ndarray, title: str, limits: tuple[float, float]) -> AxesImage:
-    """Draw a depth image `(H, W)` in metres, coloured between `limits`; grey where nothing was hit (inf or nan)."""
-    colours = colormaps["cividis"].with_extremes(bad=NOTHING_HIT)
+    """Draw a depth image `(H, W)` in metres, coloured between `limits`; hatched where nothing was hit (inf or nan)."""
+    colours = colormaps["cividis"].with_extremes(bad=(1, 1, 1, 0))  # clear: the hatched ground shows through
+    axes.patch.set(facecolor="white", edgecolor="0.55", hatch="////", linewidth=0)
     drawn = np.ma.masked_invalid(depth)
     image = axes.imshow(drawn, cmap=colours, vmin=limits[0], vmax=limits[1], interpolation="nearest")
     axes.grid(False)

@@ -16,6 +16,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.lessons import figures
 from course_lib.lessons.live_figure import LiveFigure
 from course_lib.lessons.panel import Choice, Drawing, Panel, Slider
+from course_lib.lessons.progress_bar import progress
 
 # Bits that tell depths apart in a depth buffer, whether 24-bit whole numbers or float32 just below 1.
 DEPTH_BUFFER_BITS = 24
@@ -80,19 +81,22 @@ def slanted_wall_error(near: float) -> np.ndarray:
     return np.abs(image - exact)
 
 
-def seconds_per_view(scene_map: SceneMap, camera: DepthCamera, states: np.ndarray, repeats: int = 5) -> tuple:
-    """Seconds a view, the best of a few repeats: all states as tiles of one window, and one after the other."""
-    tiled, single = [], []
+def seconds_per_view(
+    scene_map: SceneMap, camera: DepthCamera, states: np.ndarray, counts: list[int], repeats: int = 6
+) -> tuple[np.ndarray, np.ndarray]:
+    """Seconds a view for each count, the best of a few repeats: as tiles of one window, and one after the other."""
+    tiled, single = np.full((2, len(counts)), np.inf)
     with DepthRenderer(scene_map, camera) as window, DepthRenderer(scene_map, camera) as alone:
-        for _ in range(repeats):
-            started = time.perf_counter()
-            window.render(states)
-            between = time.perf_counter()
-            for state in states:
-                alone.render(state)
-            tiled.append((between - started) / len(states))
-            single.append((time.perf_counter() - between) / len(states))
-    return min(tiled), min(single)
+        for _ in progress(range(repeats), "measuring times"):
+            for index, count in enumerate(counts):
+                started = time.perf_counter()
+                window.render(states[:count])
+                between = time.perf_counter()
+                for state in states[:count]:
+                    alone.render(state)
+                tiled[index] = min(tiled[index], (between - started) / count)
+                single[index] = min(single[index], (time.perf_counter() - between) / count)
+    return tiled, single
 
 
 def pole_ahead(distance: float, width: float) -> SceneMap:
@@ -123,7 +127,7 @@ def wall_with_hole(radius: float) -> SceneMap:
 
 def idea_figure(hits: dict[str, list[tuple[float, float]]]) -> Figure:
     """Side view of eq. (6): rays through pixel centres, the nearest hit of each kept, the others hidden."""
-    figure, axes = figures.new_figure(size=(7.2, 3.2))
+    figure, axes = figures.new_figure(size=(8.2, 3.1))
     near, far = 0.6, 6.5
     for index, (start, end) in enumerate(_SURFACES):
         style = figures.line_style(index) | {"marker": "", "linewidth": 3}
@@ -142,7 +146,7 @@ def idea_figure(hits: dict[str, list[tuple[float, float]]]) -> Figure:
     axes.text(-0.1, -0.35, "virtual\ncamera", va="top")
     axes.set(xlim=(-0.2, 7), ylim=(-1.75, 1.75), title="What a z-buffer keeps, seen from the side")
     axes.set(xlabel="depth Z along the optical axis [m]", ylabel="height [m]")
-    axes.legend(loc="lower left", bbox_to_anchor=(0.22, 0.0), fontsize=8, framealpha=1)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
     return figure
 
 
@@ -179,12 +183,26 @@ def window_figure(images: np.ndarray, columns: int, limits: tuple[float, float])
 
 def buffer_figure(far: float = 30.0) -> Figure:
     """The depth buffer's value over depth for three near planes."""
-    figure, axes = figures.new_figure(size=(6.4, 3.2))
+    figure, axes = figures.new_figure(size=(6.4, 3.0))
     for index, near in enumerate((1.0, 0.1, 0.01)):
-        z = np.geomspace(near, far, 40)
-        axes.plot(z, far * (z - near) / (z * (far - near)), **figures.line_style(index), label=f"near = {near:g} m")
+        z = np.geomspace(near, far, 200)
+        style = figures.line_style(index) | {"markevery": 12}
+        axes.plot(z, far * (z - near) / (z * (far - near)), **style, label=f"near = {near:g} m")
     axes.set(title="The depth buffer's value is not linear in Z", xlabel="depth Z [m]", ylabel="buffer value b [-]")
+    axes.set(xlim=(-0.2, 10), ylim=(-0.02, 1.03))
     axes.legend(loc="lower right")
+    return figure
+
+
+def time_figure(counts: list[int], tiled: np.ndarray, single: np.ndarray) -> Figure:
+    """Milliseconds a view over the number of views, as tiles of one window and one after the other."""
+    figure, axes = figures.new_figure(size=(5.4, 2.8))
+    axes.plot(counts, tiled * 1000, **figures.line_style(0), label="tiles of one window")
+    axes.plot(counts, single * 1000, **figures.line_style(1), label="one after the other")
+    axes.set(title="Time for one view, on this computer", xlabel="views [-]", ylabel="time per view [ms]")
+    axes.set(xscale="log", xticks=counts, xticklabels=counts, ylim=(0, None))
+    axes.minorticks_off()
+    axes.legend()
     return figure
 
 
@@ -207,7 +225,7 @@ def camera_panel() -> Panel:
         plan.plot([x, x + length, x + length, x, x], [y, y, y + width, y + width, y], color=figures.BLACK)
     (wedge,) = plan.plot([], [], color=figures.VERMILION, linewidth=1.6)
     (near_line,) = plan.plot([], [], color=figures.PURPLE, linestyle=":", linewidth=2)
-    plan.set(xlim=(-0.5, 8.5), ylim=(-4.5, 4.5), title="From above", xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    plan.set(xlim=(-0.5, 8.5), ylim=(-3, 3), title="From above", xlabel="x [m]", ylabel="y [m]", aspect="equal")
     camera = DepthCamera.sr4000()
     depth = figures.depth_image(left, np.zeros(camera.shape), "What the virtual camera sees", (0, 8))
     figures.colour_bar(figure, depth, left)
@@ -232,10 +250,13 @@ def camera_panel() -> Panel:
         cut = plane / np.cos(half)
         near_line.set_data(x + cut * np.cos(ends[::2]), y + cut * np.sin(ends[::2]))
         middle = truth[camera.height // 2, camera.width // 2]
+        step = buffer_step(middle, plane, camera.far) * 1000
+        seen = (
+            f"Z = {middle:.2f} m; one step of the z-buffer there: {step:.2g} mm" if middle < np.inf else "nothing hit"
+        )
         missed, wrong = np.isinf(image).mean(), (off_mm > 1).mean()
         lines = [
-            f"middle pixel: Z = {middle:.2f} m; one step of the depth buffer there: "
-            f"{buffer_step(middle, plane, camera.far) * 1000:.2g} mm",
+            f"middle pixel: {seen}",
             f"pixels where nothing is hit: {missed:.0%}; pixels more than 1 mm off: {wrong:.0%}",
         ]
         alt = (

@@ -64,15 +64,12 @@ def test_series_differ_in_colour_marker_and_line():
         assert len({str(style[key]) for style in styles}) == 7
 
 
-def test_nothing_hit_is_drawn_in_a_colour_that_no_depth_has():
+def test_where_nothing_was_hit_the_hatched_ground_shows_through():
     _, axes = figures.new_figure()
-    image = figures.depth_image(axes, np.array([[1.0, np.inf, np.nan]]), "Depth", (0, 2))
-    colours = image.to_rgba(np.ma.masked_invalid([[1.0, np.inf, np.nan]]))
-    grey = np.array([int(figures.NOTHING_HIT[k : k + 2], 16) for k in (1, 3, 5)]) / 255
-    assert np.allclose(colours[0, 1, :3], grey)
-    assert np.allclose(colours[0, 2, :3], grey)
-    scale = image.cmap(np.linspace(0, 1, 256))[:, :3]
-    assert np.abs(scale - grey).max(axis=1).min() > 0.05
+    depth = np.array([[1.0, np.inf, np.nan]])
+    image = figures.depth_image(axes, depth, "Depth", (0, 2))
+    assert image.to_rgba(np.ma.masked_invalid(depth))[0, :, 3].tolist() == [1, 0, 0]
+    assert axes.patch.get_hatch()
 
 
 def test_compression_keeps_the_picture():

@@ -154,3 +154,13 @@ def press_and_wait(page, panel, key: str) -> float:
     page.wait_for_function("() => window.courseIsWatching")
     page.keyboard.press(key)
     return page.evaluate("() => window.courseWaits") / 1000
+
+
+def test_a_missing_browser_is_said_and_fails_only_where_ci_is_true(monkeypatch):
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    monkeypatch.setenv("CI", "")
+    with pytest.raises(pytest.skip.Exception, match="no Chromium"):
+        require_chromium()
+    monkeypatch.setenv("CI", "true")
+    with pytest.raises(pytest.fail.Exception, match="no Chromium"):
+        require_chromium()
