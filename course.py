@@ -39,7 +39,7 @@ usage: python3 course.py COMMAND [options]
   refresh               run the lessons again and store their outputs
 
 Options of one command: python3 course.py COMMAND --help
-The first call sets up .venv (a download of about 600 MB, some minutes).
+The first call sets up .venv: a download of about 400 MB, 1.6 GB on disk, one or a few minutes.
 """
 
 # Asks for what VTK asks for: an EGL device, a display without a surface, or the default one. It runs in a process of
@@ -111,9 +111,6 @@ def hand_over(arguments):
         return subprocess.call(command)
     sys.stdout.flush()
     os.execv(PYTHON, command)
-
-
-# ---------------------------------------------------------------------------------------------- the environment
 
 
 def wanted():
@@ -226,10 +223,10 @@ def install(lock):
     if not code:
         code, lines = run([*pip, "--no-build-isolation", "-e", ROOT], lock)
     if sys.stderr.isatty():
-        say("\r\033[K  done." if not code else "")
+        say("" if code else "\r\033[K  done.")
     if code:
         if code > 0:
-            os.remove(INCOMPLETE)  # pip ended by itself and left nothing half-written: the next call goes on from here
+            os.remove(INCOMPLETE)  # pip ended by itself, with nothing half-written: the next call goes on from here
         raise SetupError(explain_pip(lines))
 
 
@@ -290,9 +287,6 @@ def only_one_at_a_time():
         yield lock
 
 
-# -------------------------------------------------------------------------------------------------------- OpenGL
-
-
 def see_to_opengl():
     """Installs the system's OpenGL libraries, or prints the line that does; remembers a success."""
     if not sys.platform.startswith("linux") or os.path.exists(OPENGL_READY):
@@ -318,9 +312,6 @@ def see_to_opengl():
 
 def opengl_works():
     return run([sys.executable, "-c", OPENGL_PROBE], None)[0] == 0
-
-
-# ------------------------------------------------------------------------------------------------------- sentences
 
 
 def last_lines(lines, count=3):

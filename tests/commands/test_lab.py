@@ -28,16 +28,21 @@ def server(tmp_path_factory):
     with open(state / "log", "wb") as log:
         process = subprocess.Popen(command, env=environment, stdout=log, stderr=log, cwd=home)
     address = f"http://127.0.0.1:{port}"
-    for _ in range(300):
-        try:
-            get(f"{address}/api")
-            break
-        except OSError:
-            assert process.poll() is None, (state / "log").read_text()
-            time.sleep(0.1)
+    wait_until_it_answers(address, process)
     yield address, "a-token-for-the-tests", process, home
     process.send_signal(signal.SIGTERM)
     process.wait(timeout=30)
+
+
+def wait_until_it_answers(address, process):
+    for _ in range(600):
+        try:
+            get(f"{address}/api")
+            return
+        except OSError:
+            assert process.poll() is None, "the server ended by itself"
+            time.sleep(0.1)
+    raise AssertionError("the server did not answer within a minute")
 
 
 def get(address):
@@ -133,9 +138,7 @@ def test_control_c_ends_it_without_a_question(tmp_path):
     command, environment = lab.lab_command(port, state_folder=tmp_path)
     master, terminal = pty.openpty()
     process = subprocess.Popen(command, env=environment, stdin=terminal, stdout=terminal, stderr=terminal, cwd=tmp_path)
-    printed = b""
-    while b"?token=" not in printed:
-        printed += os.read(master, 1000)
+    wait_until_it_answers(f"http://127.0.0.1:{port}", process)
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=30) == 0
     os.close(terminal)
