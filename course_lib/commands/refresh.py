@@ -28,8 +28,17 @@ METADATA = {
     "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
 }
 KEPT_CELL_METADATA = ("exercise", "tags", "jupyter")
-# Whatever asks for the network through a proxy finds none.
-OFFLINE = {name: "http://127.0.0.1:9" for name in ("http_proxy", "https_proxy", "HTTP_PROXY", "HTTPS_PROXY")}
+# Runs in the kernel before the first cell: a lesson that reaches for the network fails here, not at a student's.
+OFFLINE_STARTUP = """
+import socket as _socket
+_connect = _socket.socket.connect
+def _connect_here_only(self, address):
+    if self.family != getattr(_socket, "AF_UNIX", None) and address[0] not in ("127.0.0.1", "::1", "localhost"):
+        raise OSError(f"lessons run offline: no connection to {address[0]}")
+    return _connect(self, address)
+_socket.socket.connect = _connect_here_only
+del _socket
+"""
 
 
 class RefreshError(RuntimeError):
@@ -85,7 +94,10 @@ def refresh(path: Path, cell_timeout: float = MAX_SECONDS) -> tuple[float, int]:
 def execute(notebook: nbformat.NotebookNode, folder: Path, cell_timeout: float) -> float:
     """Run all cells of `notebook` in place, in a fresh kernel; returns the seconds that the cells took."""
     with tempfile.TemporaryDirectory(prefix="course-refresh-") as home:
-        environment = os.environ | OFFLINE | {"IPYTHONDIR": home}
+        startup = Path(home) / "profile_default" / "startup"
+        startup.mkdir(parents=True)
+        (startup / "00-offline.py").write_text(OFFLINE_STARTUP, encoding="utf-8")
+        environment = os.environ | {"IPYTHONDIR": home}
         search = [str(REPOSITORY), *filter(None, [os.environ.get("PYTHONPATH")])]
         environment["PYTHONPATH"] = os.pathsep.join(search)
         client = NotebookClient(

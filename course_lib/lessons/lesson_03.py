@@ -171,7 +171,7 @@ def window_figure(images: np.ndarray, columns: int, limits: tuple[float, float])
     """Depth images `(N, H, W)` as the tiles of one window, N a multiple of `columns`."""
     n, height, width = images.shape
     window = images.reshape(n // columns, columns, height, width).swapaxes(1, 2).reshape(-1, columns * width)
-    figure, axes = figures.new_figure(size=(7.6, 3.6))
+    figure, axes = figures.new_figure(size=(7.4, 4.3))
     drawn = figures.depth_image(axes, window, f"One window, {n} tiles: one view per particle", limits)
     axes.set(xticks=np.arange(columns + 1) * width - 0.5, yticks=np.arange(n // columns + 1) * height - 0.5)
     axes.set(xticklabels=np.arange(columns + 1) * width, yticklabels=np.arange(n // columns + 1) * height)

@@ -111,9 +111,10 @@ def test_nbval_notices_a_changed_output(refreshed, tmp_path, old, new):
         (["x = 1", "1 / 0"], "ZeroDivisionError"),
         (["import time; time.sleep(30)"], "longer than 2 s"),
         (["import os; os._exit(3)"], "(?i)died|dead"),
+        (["import urllib.request", "urllib.request.urlopen('http://192.0.2.1/', timeout=1)"], "lessons run offline"),
         (["print('x' * 500_000)"], "501 kB"),
     ],
-    ids=["error", "time-out", "dead kernel", "too large"],
+    ids=["error", "time-out", "dead kernel", "network", "too large"],
 )
 def test_what_fails_leaves_the_file_as_it_was(tmp_path, sources, words):
     path = written(tmp_path, *sources)
