@@ -95,7 +95,9 @@ def is_rotation(matrices: np.ndarray, tolerance: float = 1e-4) -> np.ndarray:
 
 def wrap_angle(a: np.ndarray | float) -> np.ndarray | float:
     """Angles in radians brought to [-pi, pi)."""
-    wrapped = (np.asarray(a, dtype=np.float64) + np.pi) % (2 * np.pi) - np.pi
+    a = np.asarray(a, dtype=np.float64)
+    # An angle already in range is kept to the bit: adding and taking away pi would round it.
+    wrapped = np.where((a >= -np.pi) & (a < np.pi), a, (a + np.pi) % (2 * np.pi) - np.pi)
     # The remainder of a tiny negative number rounds up to the modulus itself, which would read +pi.
     wrapped = np.where(wrapped >= np.pi, -np.pi, wrapped)
     return float(wrapped) if wrapped.ndim == 0 else wrapped

@@ -22,7 +22,7 @@ from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import DepthSequence, rotation_to_z_up
 from course_lib.geometry import optical_pose, state_from_optical_pose
 
-NEAR, FAR = 0.1, 15.0  # metres, clip planes: beyond what an SR4000 (10 m) or a Kinect (5 m) measures
+NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
 
 
 class Method(NamedTuple):

@@ -122,15 +122,28 @@ def _fit_plane(corners: np.ndarray, areas: np.ndarray, towards: np.ndarray) -> t
 
 
 def _decimated(vertices: np.ndarray, faces: np.ndarray, reduction: float) -> SceneMap:
-    # VTK must hear which window to use before it is first imported, by whomever.
-    from course_lib.depth_mcl.vtk_backend import vtk_environment
+    """The map with the share `reduction` of its triangles decimated away (VTK's quadric decimation)."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
 
-    with vtk_environment():
-        import pyvista
-    proper = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
-    mesh = pyvista.PolyData.from_regular_faces(vertices, faces[proper].astype(np.int64))
-    mesh = mesh.decimate(reduction) if reduction > 0 else mesh
-    return SceneMap(np.asarray(mesh.points), np.asarray(mesh.regular_faces))
+    # Flattening makes triangles without area; SceneMap drops them.
+    flat = SceneMap(vertices, faces)
+    if reduction == 0:
+        return flat
+    points, cells, mesh = vtkPoints(), vtkCellArray(), vtkPolyData()
+    points.SetData(numpy_to_vtk(flat.vertices.copy(), deep=True))
+    cells.SetData(3, numpy_to_vtkIdTypeArray(flat.faces.astype(np.int64).ravel(), deep=True))
+    mesh.SetPoints(points)
+    mesh.SetPolys(cells)
+    decimation = vtkQuadricDecimation()
+    decimation.SetInputData(mesh)
+    decimation.SetTargetReduction(reduction)
+    decimation.Update()
+    result = decimation.GetOutput()
+    triangles = vtk_to_numpy(result.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    return SceneMap(vtk_to_numpy(result.GetPoints().GetData()), triangles)
 
 
 def _regions(centres: np.ndarray, join: float) -> np.ndarray:

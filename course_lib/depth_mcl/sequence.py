@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -289,7 +290,9 @@ def _read_numbers(path: Path) -> np.ndarray:
     if not path.is_file():
         raise FileNotFoundError(f"no file {path}")
     try:
-        numbers = np.loadtxt(path, dtype=np.float64, ndmin=2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of an empty file, which gets an error below
+            numbers = np.loadtxt(path, dtype=np.float64, ndmin=2)
     except ValueError as error:
         raise SequenceError(f"{path} must hold rows of numbers, all of one length: {error}") from error
     if numbers.size == 0 or not np.isfinite(numbers).all():

@@ -1,0 +1,59 @@
+"""Meshes whose depth image has a closed form, and random ones."""
+
+import numpy as np
+import trimesh
+
+from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.geometry import optical_pose
+
+SMALL = DepthCamera.from_fov(64, 48, 60, 45, near=0.1, far=15.0)
+OFF_CENTRE = DepthCamera(61, 47, 55.0, 83.0, 21.3, 30.8, near=0.1, far=15.0)  # fx unlike fy, odd sizes
+
+
+def wall(distance=2.0, half=50.0, offset=(0.0, 0.0, 0.0)):
+    """A square wall across the x axis, at x = distance."""
+    corners = np.array([[distance, y, z] for y, z in ((-half, -half), (half, -half), (half, half), (-half, half))])
+    return SceneMap(corners + offset, np.array([[0, 1, 2], [0, 2, 3]]))
+
+
+def room(size=6.0, offset=(0.0, 0.0, 0.0)):
+    """A closed cube of edge `size` around `offset`."""
+    box = trimesh.creation.box((size, size, size))
+    return SceneMap(box.vertices + offset, box.faces)
+
+
+def room_depth(camera, states, size=6.0, offset=(0.0, 0.0, 0.0)):
+    """Closed form of the depth inside `room`: the nearest wall along each pixel's ray. `(N, H, W)`."""
+    poses = optical_pose(np.atleast_2d(states))
+    directions = np.einsum("nij,hwj->nhwi", poses[:, :3, :3], camera.rays())
+    origins = (poses[:, :3, 3] - np.asarray(offset))[:, None, None, :]
+    with np.errstate(divide="ignore"):
+        return ((np.sign(directions) * size / 2 - origins) / directions).min(axis=-1)
+
+
+def random_triangles(n, rng, spread=8.0, edge=1.5):
+    """A soup of n triangles with corners within `edge` of centres spread over a cube."""
+    centres = rng.uniform(-spread / 2, spread / 2, (n, 1, 3))
+    corners = centres + rng.uniform(-edge, edge, (n, 3, 3))
+    return SceneMap(corners.reshape(-1, 3), np.arange(3 * n).reshape(-1, 3))
+
+
+def random_states(n, rng, spread=3.0):
+    """Poses with any attitude."""
+    states = rng.uniform(-spread, spread, (n, 6))
+    states[:, 3:] = rng.uniform(-np.pi, np.pi, (n, 3))
+    states[:, 4] /= 2
+    return states
+
+
+def neighbours_agree(image):
+    """Pixels `(N, H, W)` whose whole 3 x 3 neighbourhood holds the same value; image borders are left out."""
+    same = np.zeros(image.shape, dtype=bool)
+    inner = np.ones(image[:, 1:-1, 1:-1].shape, dtype=bool)
+    for row in (0, 1, 2):
+        for column in (0, 1, 2):
+            height, width = image.shape[1:]
+            inner &= image[:, row : row + height - 2, column : column + width - 2] == image[:, 1:-1, 1:-1]
+    same[:, 1:-1, 1:-1] = inner
+    return same

@@ -1,0 +1,181 @@
+"""The whole filter on small rooms, and what it does with bad input."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
+from course_lib.depth_mcl.fallon import fallon_weighting
+from course_lib.depth_mcl.likelihood import DepthImageError, likelihood
+from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning, run_localizer
+from course_lib.depth_mcl.renderer import DepthRenderer
+from course_lib.geometry import wrap_angle
+
+from .shapes import SMALL, random_triangles, room, room_depth
+
+START = np.array([0.5, -0.3, 0.2, 0.0, 0.0, 0.4])
+SIGMA = [0.05, 0.05, 0, 0, 0, 0.03]
+
+
+@pytest.fixture
+def renderer():
+    with DepthRenderer(room(), SMALL, "vtk") as opened:
+        yield opened
+
+
+def walk(n):
+    steps = np.zeros((n, 6))
+    steps[:, 0], steps[:, 5] = 0.04, 0.02
+    return START + np.cumsum(steps, axis=0)
+
+
+@pytest.mark.parametrize("noise", ["euler", "tangent"])
+@pytest.mark.parametrize(
+    ("weighting", "bound"),
+    [(None, 0.05), (fallon_weighting("depth"), 0.15), (fallon_weighting("disparity"), 0.15)],
+    ids=["paper", "Fallon, depth", "Fallon, disparity"],
+)
+def test_the_filter_follows_a_walk(renderer, noise, weighting, bound):
+    true = walk(12)
+    localizer = MonteCarloLocalizer(renderer, 150, SIGMA, seed=1, noise=noise, weighting=weighting)
+    estimates = run_localizer(localizer, START, [room_depth(SMALL, s)[0] for s in true])
+    states = np.array([e.state for e in estimates])
+    assert timed_error(states[:, :3], true[:, :3]).median < bound
+    assert np.median(np.abs(wrap_angle(states[:, 5] - true[:, 5]))) < bound
+    for estimate in estimates:
+        assert estimate.weights.sum() == pytest.approx(1)
+        assert 1 <= estimate.ess <= 150 + 1e-9
+        assert np.linalg.eigvalsh(estimate.covariance).min() > -1e-12
+
+
+def test_components_without_noise_stay_at_their_start(renderer):
+    localizer = MonteCarloLocalizer(renderer, 50, SIGMA)
+    estimates = run_localizer(localizer, START, [room_depth(SMALL, s)[0] for s in walk(3)])
+    assert estimates[-1].state[2:5] == pytest.approx(START[2:5])
+
+
+def test_likelihood_is_greatest_at_the_true_pose(rng):
+    with DepthRenderer(random_triangles(300, rng), SMALL, "vtk") as renderer:
+        true = np.array([0.1, 0.2, -0.3, 0.1, 0.05, 1.0])
+        off = true + np.concatenate([s * d * np.eye(6) for s in (-1, 1) for d in (0.03, 0.1)])
+        measured = renderer.render(true)[0]
+        l = likelihood(np.where(np.isinf(measured), np.nan, measured), renderer.render(np.vstack([true, off])))  # noqa: E741
+    assert l.argmax() == 0
+
+
+def test_moving_world_and_particles_together_changes_nothing():
+    shift = np.array([300.0, -200.0, 50.0])
+    estimates = []
+    for offset in (np.zeros(3), shift):
+        with DepthRenderer(room(offset=offset), SMALL, "vtk") as renderer:
+            localizer = MonteCarloLocalizer(renderer, 100, SIGMA, seed=3)
+            start = START + np.array([*offset, 0, 0, 0])
+            estimates.append(run_localizer(localizer, start, [room_depth(SMALL, s)[0] for s in walk(5)])[-1].state)
+    assert estimates[1] - [*shift, 0, 0, 0] == pytest.approx(estimates[0], abs=1e-4)
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_does_not(renderer):
+    depths = [room_depth(SMALL, s)[0] for s in walk(4)]
+    runs = [
+        np.array([e.particles for e in run_localizer(MonteCarloLocalizer(renderer, 60, SIGMA, seed=s), START, depths)])
+        for s in (7, 7, 8)
+    ]
+    assert runs[0].tobytes() == runs[1].tobytes()
+    assert runs[0].tobytes() != runs[2].tobytes()
+
+
+def test_a_frame_without_measurement_keeps_the_particles_says_so_and_the_filter_goes_on(renderer):
+    localizer = MonteCarloLocalizer(renderer, 80, SIGMA)
+    true = walk(3)
+    localizer.initialize(START)
+    localizer.step(room_depth(SMALL, true[0])[0])
+    before = localizer.particles.copy()
+    with pytest.warns(NoMeasurementWarning, match="no measurement"):
+        estimate = localizer.step(np.full(SMALL.shape, np.nan))
+    assert estimate.status == "no measurement"
+    assert np.array_equal(localizer.particles, before)
+    assert np.isfinite(estimate.state).all()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert localizer.step(room_depth(SMALL, true[2])[0]).status == "ok"
+
+
+def test_particles_that_all_miss_the_map_keep_equal_weights(renderer):
+    """All likelihoods are zero, hence equal: nothing is known, nothing is NaN."""
+    localizer = MonteCarloLocalizer(renderer, 40, [0] * 6)
+    localizer.initialize([3.9, 0, 0, 0, 0, 0])  # outside, looking away
+    estimate = localizer.step(np.full(SMALL.shape, 2.0))
+    assert estimate.weights == pytest.approx(np.full(40, 1 / 40))
+    assert estimate.score == 0
+    assert np.isfinite(estimate.state).all()
+
+
+def test_the_score_falls_when_the_filter_is_lost_though_the_best_weight_does_not(renderer):
+    depth = room_depth(SMALL, START)[0]
+    at_home, lost = (MonteCarloLocalizer(renderer, 40, SIGMA) for _ in range(2))
+    at_home.initialize(START)
+    lost.initialize(START + np.array([-2.0, 1.5, 0, 0, 0, 1.0]))
+    home_estimate, lost_estimate = at_home.step(depth), lost.step(depth)
+    assert home_estimate.score > 0.8
+    assert lost_estimate.score < 0.5
+    assert lost_estimate.weights.max() >= home_estimate.weights.max() / 40
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"n_particles": 0}, "n_particles"),
+        ({"n_particles": 2.5}, "n_particles"),
+        ({"sigma": [0.1] * 5}, "sigma"),
+        ({"sigma": [0.1, 0.1, 0, 0, 0, -0.1]}, "sigma"),
+        ({"sigma": [np.nan] * 6}, "sigma"),
+        ({"alpha": 0.0}, "alpha"),
+        ({"beta": -1.0}, "beta"),
+        ({"noise": "quaternion"}, "noise"),
+        ({"resampling": "lottery"}, "scheme"),
+    ],
+)
+def test_bad_settings_are_named_before_the_first_frame(renderer, arguments, said):
+    with pytest.raises(ValueError, match=said):
+        MonteCarloLocalizer(renderer, **arguments)
+
+
+@pytest.mark.parametrize("state", [[20.0, 0, 0, 0, 0, 0], [np.nan] * 6, np.zeros(5)])
+def test_a_state_outside_the_map_or_no_state_at_all_is_refused(renderer, state):
+    with pytest.raises(ValueError, match=r"outside the map|state0"):
+        MonteCarloLocalizer(renderer, 10, SIGMA).initialize(state)
+
+
+def test_a_depth_image_of_the_wrong_size_is_named(renderer):
+    localizer = MonteCarloLocalizer(renderer, 10, SIGMA)
+    localizer.initialize(START)
+    with pytest.raises(DepthImageError, match=r"\(48, 64\)"):
+        localizer.step(np.ones((64, 48)))
+
+
+def test_a_step_before_the_start_is_named(renderer):
+    with pytest.raises(RuntimeError, match="initialize"):
+        MonteCarloLocalizer(renderer, 10, SIGMA).step(np.ones(SMALL.shape))
+
+
+def test_the_nearest_path_error_hides_error_along_the_path_and_the_timed_error_does_not():
+    path = np.column_stack([np.arange(0, 10, 0.01), np.zeros(1000)])
+    true = path[::20]
+    estimated = true + np.array([0.4, 0.05])
+    nearest, timed = nearest_path_error(estimated[:40], path), timed_error(estimated[:40], true[:40])
+    assert nearest.median == pytest.approx(0.05, abs=1e-6)
+    assert timed.median == pytest.approx(np.hypot(0.4, 0.05))
+    assert (nearest.within_3sigma, timed.within_3sigma) == (1.0, 0.0)
+
+
+def test_sigma_is_the_root_mean_square_about_zero():
+    errors = nearest_path_error(np.array([[0, 0.3], [0, -0.4]]), np.zeros((1, 2)))
+    assert errors.sigma == pytest.approx(np.sqrt((0.09 + 0.16) / 2))
+    assert errors.within_3sigma == 0.5
+
+
+@pytest.mark.parametrize("positions", [np.zeros((0, 3)), np.zeros(3), [[np.nan, 0, 0]]])
+def test_positions_without_numbers_are_refused(positions):
+    with pytest.raises(ValueError, match="estimated_xyz"):
+        nearest_path_error(positions, np.zeros((4, 3)))

@@ -1,0 +1,179 @@
+"""Laws of the particle filter's steps: eqs (3) to (5), (12), and resampling."""
+
+import numpy as np
+import pytest
+from filterpy import monte_carlo
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from course_lib.depth_mcl.particle_filter import (
+    effective_sample_size,
+    initial_particles,
+    propagate,
+    propagate_tangent,
+    resample,
+    weighted_mean_pose,
+    weighted_mean_state,
+)
+from course_lib.geometry import pose_matrix, rotation_angle, rotation_log, state_from_matrix
+
+SCHEMES = ["systematic", "stratified", "multinomial", "residual"]
+STATE = np.array([1.0, -2.0, 0.5, 0.1, -0.2, 3.1])
+
+
+def test_all_particles_start_at_the_initial_state():
+    particles = initial_particles(STATE, 7)
+    assert particles.shape == (7, 6)
+    assert (particles == STATE).all()
+
+
+@pytest.mark.parametrize("n", [0, -1, 2.5])
+def test_no_particles_is_refused(n):
+    with pytest.raises(ValueError, match="number of particles"):
+        initial_particles(STATE, n)
+
+
+def test_system_noise_has_the_given_spread_and_no_bias(rng):
+    sigma = np.array([0.3, 0.1, 0.05, 0.02, 0.03, 0.04])
+    moved = propagate(initial_particles(np.zeros(6), 40_000), sigma, rng)
+    assert np.allclose(moved.std(axis=0), sigma, rtol=0.02)
+    assert np.allclose(moved.mean(axis=0), 0, atol=4 * sigma.max() / 200)
+
+
+def test_zero_sigma_keeps_a_component_exactly(rng):
+    moved = propagate(initial_particles(STATE, 100), [0.1, 0, 0, 0, 0, 0.1], rng)
+    assert (moved[:, 1:5] == STATE[1:5]).all()
+    assert (moved[:, 0] != STATE[0]).all()
+
+
+def test_propagated_angles_stay_wrapped(rng):
+    moved = propagate(initial_particles(STATE, 1000), [0, 0, 0, 1, 1, 1], rng)
+    assert (np.abs(moved[:, 3:]) <= np.pi).all()
+
+
+@pytest.mark.parametrize("move", [propagate, propagate_tangent])
+@pytest.mark.parametrize("sigma", [[0.1] * 5, [0.1, 0.1, 0.1, 0, 0, -0.1], [np.nan] * 6, 0.1])
+def test_a_bad_sigma_is_named(move, sigma, rng):
+    with pytest.raises(ValueError, match="sigma"):
+        move(initial_particles(STATE, 3), sigma, rng)
+
+
+@pytest.mark.parametrize("pitch", [0.0, np.pi / 2])
+def test_tangent_noise_is_the_same_in_gimbal_lock_as_out_of_it(pitch, rng):
+    start = np.array([0, 0, 0, 0.2, pitch, 0.3])
+    sigma = np.array([0, 0, 0, 0.02, 0.03, 0.04])
+    moved = propagate_tangent(initial_particles(start, 20_000), sigma, rng)
+    turn = np.swapaxes(pose_matrix(start)[None, :3, :3], -1, -2) @ pose_matrix(moved)[:, :3, :3]
+    assert np.allclose(rotation_log(turn).std(axis=0), sigma[3:], rtol=0.03)
+
+
+def test_the_same_seed_gives_the_same_particles():
+    first = propagate(initial_particles(STATE, 50), [0.1] * 6, np.random.default_rng(5))
+    second = propagate(initial_particles(STATE, 50), [0.1] * 6, np.random.default_rng(5))
+    assert first.tobytes() == second.tobytes()
+
+
+def test_the_mean_of_angles_crosses_the_wrap():
+    particles = np.zeros((2, 6))
+    particles[:, 5] = np.deg2rad([179, -179])
+    assert np.isclose(abs(weighted_mean_state(particles, [0.5, 0.5])[5]), np.pi)
+
+
+def test_the_weighted_mean_is_the_papers_sum_away_from_the_wrap(rng):
+    particles, w = rng.normal(0, 0.01, (200, 6)), rng.random(200)
+    w /= w.sum()
+    assert np.allclose(weighted_mean_state(particles, w), w @ particles, atol=1e-6)
+
+
+def test_the_order_of_particles_does_not_matter(rng):
+    particles, w = rng.normal(0, 1, (60, 6)), rng.random(60)
+    w /= w.sum()
+    order = rng.permutation(60)
+    for mean in (weighted_mean_state, weighted_mean_pose):
+        assert np.allclose(mean(particles, w), mean(particles[order], w[order]), atol=1e-12)
+
+
+def test_the_mean_pose_moves_with_the_world_even_into_gimbal_lock(rng):
+    particles = propagate_tangent(initial_particles(STATE, 80), [0.1] * 3 + [0.1] * 3, rng)
+    w = rng.random(80)
+    w /= w.sum()
+    move = pose_matrix([3.0, -1.0, 2.0, 0.4, np.pi / 2 - 0.2, 1.0])
+    moved = state_from_matrix(move @ pose_matrix(particles))
+    expected, got = move @ pose_matrix(weighted_mean_pose(particles, w)), pose_matrix(weighted_mean_pose(moved, w))
+    assert np.allclose(got[:3, 3], expected[:3, 3], atol=1e-9)
+    assert rotation_angle(got[:3, :3].T @ expected[:3, :3]) < 1e-9
+
+
+@pytest.mark.parametrize("w", [[0.5, 0.6], [1.5, -0.5], [np.nan, 1.0], [1.0]])
+def test_weights_that_do_not_fit_are_refused(w):
+    with pytest.raises(ValueError, match="weights"):
+        weighted_mean_state(np.zeros((2, 6)), w)
+
+
+def test_effective_sample_size_runs_from_one_to_n():
+    assert effective_sample_size(np.full(50, 0.02)) == pytest.approx(50)
+    assert effective_sample_size(np.eye(50)[3]) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_resampling_is_unbiased(scheme, rng):
+    w = np.array([0.003, 0.4, 0.0, 0.21, 0.037, 0.35])
+    n_trials = 20_000
+    counts = sum(np.bincount(resample(w, rng, scheme), minlength=6) for _ in range(n_trials)) / n_trials
+    # Multinomial counts have the greatest variance, n w (1 - w); five standard errors of the mean of the trials.
+    tolerance = 5 * np.sqrt(6 * w * (1 - w) / n_trials) + 1e-12
+    assert (np.abs(counts - 6 * w) <= tolerance).all()
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@settings(max_examples=60, deadline=None)
+@given(w=arrays(float, st.integers(1, 40), elements=st.floats(0, 1)), seed=st.integers(0, 2**32))
+def test_resampling_gives_n_ascending_indices_of_particles_with_weight(scheme, w, seed):
+    if w.sum() <= 0:
+        w = w + 1.0
+    indices = resample(w, np.random.default_rng(seed), scheme)
+    assert len(indices) == len(w)
+    assert (np.diff(indices) >= 0).all()
+    assert (w[indices] > 0).all()
+
+
+@pytest.mark.parametrize("scheme", ["systematic", "residual"])
+def test_a_particle_is_copied_at_least_floor_n_w_times(scheme, rng):
+    w = rng.random(100)
+    w /= w.sum()
+    counts = np.bincount(resample(w, rng, scheme), minlength=100)
+    assert (counts >= np.floor(100 * w)).all()
+
+
+@pytest.mark.parametrize(
+    ("scheme", "theirs"),
+    [("systematic", monte_carlo.systematic_resample), ("stratified", monte_carlo.stratified_resample)],
+)
+def test_filterpy_draws_the_same_indices_from_the_same_random_numbers(scheme, theirs, monkeypatch, rng):
+    w = rng.random(200)
+    w /= w.sum()
+    numbers = np.random.default_rng(9)
+    monkeypatch.setattr(monte_carlo.resampling, "random", lambda *n: numbers.random(*n))
+    assert np.array_equal(theirs(w), resample(w, np.random.default_rng(9), scheme))
+
+
+def test_filterpys_residual_resampling_starves_light_particles_and_ours_does_not(rng, monkeypatch):
+    """The reason why it is no oracle here: it forms w - floor(N w) where N w - floor(N w) is meant."""
+    w = np.array([0.55] + [0.45 / 9] * 9)
+    monkeypatch.setattr(monte_carlo.resampling, "random", lambda *n: rng.random(*n))
+    theirs = sum(np.bincount(monte_carlo.residual_resample(w), minlength=10) for _ in range(200)) / 200
+    assert (theirs[1:] == 0).all()
+    ours = sum(np.bincount(resample(w, rng, "residual"), minlength=10) for _ in range(4000)) / 4000
+    assert np.allclose(ours, 10 * w, atol=0.1)
+
+
+@pytest.mark.parametrize("w", [[], [0.0, 0.0], [np.nan, 1.0], [-0.1, 1.1], [[0.5, 0.5]]])
+def test_resampling_refuses_bad_weights(w, rng):
+    with pytest.raises(ValueError, match="weights"):
+        resample(np.asarray(w), rng)
+
+
+def test_an_unknown_scheme_is_named(rng):
+    with pytest.raises(ValueError, match="systematic"):
+        resample(np.ones(3), rng, "roulette")

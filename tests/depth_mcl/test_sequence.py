@@ -1,0 +1,152 @@
+"""Recordings: what is written is read, and what does not fit is named."""
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.sequence import (
+    UP_AXES,
+    SequenceError,
+    read_depth_png,
+    read_sequence,
+    read_tum,
+    rotation_to_z_up,
+    write_depth_png,
+    write_sequence,
+    write_tum,
+)
+from course_lib.geometry import optical_pose
+
+from .shapes import SMALL, random_states
+
+
+@pytest.fixture
+def folder(tmp_path, rng):
+    depths = [np.where(rng.random(SMALL.shape) < 0.1, np.nan, rng.uniform(0.5, 9, SMALL.shape)) for _ in range(4)]
+    poses = optical_pose(random_states(4, rng))
+    path = np.column_stack([np.arange(5.0), np.zeros((5, 2))])
+    write_sequence(tmp_path / "run", SMALL.matrix, [2, 5, 7, 9], depths, poses, np.arange(4) / 10, "z", path)
+    return tmp_path / "run"
+
+
+def test_what_is_written_is_read(folder):
+    sequence = read_sequence(folder)
+    assert sequence.frames == [2, 5, 7, 9]
+    assert (sequence.up, sequence.image_shape) == ("z", SMALL.shape)
+    assert np.allclose(sequence.intrinsics, SMALL.matrix, atol=1e-6)
+    assert np.allclose(sequence.times, [0, 0.1, 0.2, 0.3])
+    assert sequence.path_on_floor.shape == (5, 3)
+    assert [frame for frame, _, _ in sequence] == sequence.frames
+
+
+def test_depth_survives_to_half_a_millimetre_and_nan_stays_nan(tmp_path, rng):
+    depth = rng.uniform(0.01, 60, (20, 30))
+    depth[3, 4] = np.nan
+    depth[5, 6] = 70.0  # more than 16 bits of millimetres hold
+    write_depth_png(tmp_path / "d.png", depth)
+    again = read_depth_png(tmp_path / "d.png")
+    assert np.isnan(again[[3, 5], [4, 6]]).all()
+    assert np.isnan(again).sum() == 2
+    assert np.nanmax(np.abs(again - depth)[np.isfinite(again)]) <= 0.000505  # and the last digit of float32
+
+
+def test_tum_trajectories_survive(tmp_path, rng):
+    poses, times = optical_pose(random_states(9, rng)), np.sort(rng.random(9))
+    write_tum(tmp_path / "t.txt", times, poses)
+    read_times, read_poses = read_tum(tmp_path / "t.txt")
+    assert np.allclose(read_times, times, atol=1e-8)
+    assert np.allclose(read_poses, poses, atol=1e-7)
+
+
+def test_nothing_is_written_where_lengths_differ_or_a_recording_stands(folder, tmp_path):
+    with pytest.raises(ValueError, match="agree"):
+        write_sequence(tmp_path / "new", SMALL.matrix, [1, 2], [np.ones(SMALL.shape)], np.eye(4)[None])
+    assert not (tmp_path / "new").exists()
+    with pytest.raises(ValueError, match="already"):
+        write_sequence(folder, SMALL.matrix, [1], [np.ones(SMALL.shape)], np.eye(4)[None])
+
+
+def change_line(path, index, line):
+    lines = path.read_text().splitlines()
+    lines[index] = line
+    path.write_text("\n".join(lines))
+
+
+def drop(path):
+    path.unlink()
+
+
+def rename_a_frame(f):
+    change_line(f / "poses.txt", 1, "3" + (f / "poses.txt").read_text().splitlines()[1][1:])
+
+
+def truncate_an_image(f):
+    image = f / "depth" / "000002.png"
+    image.write_bytes(image.read_bytes()[:60])
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        (rename_a_frame, "other frames"),
+        (lambda f: drop(f / "depth" / "000005.png"), "other frames"),
+        (lambda f: change_line(f / "poses.txt", 2, "5 1 2 3"), "poses"),
+        (lambda f: change_line(f / "poses.txt", 2, "5 " + " ".join(["2"] * 16)), "frame 5"),
+        (lambda f: (f / "poses.txt").write_text("# nothing\n"), "poses"),
+        (lambda f: (f / "intrinsics.txt").write_text("1 2\n3 4\n"), "3 x 3"),
+        (lambda f: np.savetxt(f / "intrinsics.txt", [[500, 0, 300], [0, 500, 200], [0, 0, 1]]), "another image size"),
+        (lambda f: (f / "up.txt").write_text("north"), r"up\.txt"),
+        (truncate_an_image, "complete"),
+        (lambda f: (f / "depth" / "000002.png").write_bytes(b""), "complete"),
+        (lambda f: (f / "groundtruth.txt").write_text("0 0 0 0 0 0 0 1\n"), "same"),
+        (lambda f: (f / "path_on_floor.txt").write_text("1 2\n"), "x y z"),
+    ],
+)
+def test_a_damaged_recording_is_named(folder, damage, said):
+    damage(folder)
+    with pytest.raises(SequenceError, match=said):
+        read_sequence(folder)
+
+
+@pytest.mark.parametrize("name", ["poses.txt", "intrinsics.txt"])
+def test_a_missing_file_is_named(folder, name):
+    (folder / name).unlink()
+    with pytest.raises(FileNotFoundError, match=name):
+        read_sequence(folder)
+
+
+def test_a_missing_folder_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError, match="no sequence"):
+        read_sequence(tmp_path / "nowhere")
+
+
+def test_an_image_of_another_size_is_named(folder):
+    write_depth_png(folder / "depth" / "000007.png", np.ones((10, 10)))
+    with pytest.raises(SequenceError, match="one image size"):
+        read_sequence(folder).depth(2)
+
+
+def test_an_8_bit_picture_is_no_depth_image(tmp_path):
+    import cv2
+
+    cv2.imwrite(str(tmp_path / "d.png"), np.ones((4, 4), np.uint8))
+    with pytest.raises(SequenceError, match="16-bit"):
+        read_depth_png(tmp_path / "d.png")
+
+
+@pytest.mark.parametrize("up", UP_AXES)
+def test_turning_to_z_up_turns_the_named_axis_to_z(up):
+    rotation = rotation_to_z_up(up)[:3, :3]
+    assert np.array_equal(rotation @ UP_AXES[up], [0, 0, 1])
+    assert np.linalg.det(rotation) == pytest.approx(1)
+
+
+def test_an_unknown_axis_is_named():
+    with pytest.raises(ValueError, match="-y"):
+        rotation_to_z_up("up")
+
+
+def test_the_real_recording_is_read(kitchen_folder):
+    sequence = read_sequence(kitchen_folder)
+    assert len(sequence) == 167
+    assert sequence.up is None
+    assert 0.85 < np.mean([np.isfinite(sequence.depth(i)).mean() for i in range(0, 167, 20)]) < 0.95

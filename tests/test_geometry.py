@@ -1,0 +1,124 @@
+"""Laws of the rigid transforms and of angles on the circle."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from course_lib.geometry import (
+    circular_mean,
+    optical_pose,
+    pose_matrix,
+    rotation_angle,
+    rotation_exp,
+    rotation_log,
+    rotation_mean,
+    state_from_matrix,
+    state_from_optical_pose,
+    wrap_angle,
+)
+
+
+def random_states(n, rng):
+    states = rng.uniform(-10, 10, (n, 6))
+    states[:, 3:] = rng.uniform(-np.pi, np.pi, (n, 3))
+    return states
+
+
+def test_pose_matrix_is_yaw_pitch_roll_in_that_order(rng):
+    states = random_states(50, rng)
+    expected = Rotation.from_euler("ZYX", states[:, [5, 4, 3]]).as_matrix()
+    assert np.allclose(pose_matrix(states)[:, :3, :3], expected, atol=1e-14)
+    assert np.array_equal(pose_matrix(states)[:, :3, 3], states[:, :3])
+
+
+def test_state_and_matrix_are_inverse(rng):
+    matrices = pose_matrix(random_states(1000, rng))
+    assert np.allclose(pose_matrix(state_from_matrix(matrices)), matrices, atol=1e-12)
+
+
+@pytest.mark.parametrize("pitch", [np.pi / 2, -np.pi / 2, np.pi / 2 - 1e-10, -np.pi / 2 + 1e-7])
+def test_the_pose_survives_gimbal_lock(pitch, rng):
+    states = random_states(200, rng)
+    states[:, 4] = pitch
+    matrices = pose_matrix(states)
+    assert np.allclose(pose_matrix(state_from_matrix(matrices)), matrices, atol=1e-8)
+
+
+def test_functions_broadcast_over_leading_axes(rng):
+    states = random_states(12, rng).reshape(3, 4, 6)
+    assert pose_matrix(states).shape == (3, 4, 4, 4)
+    assert np.array_equal(pose_matrix(states)[1, 2], pose_matrix(states[1, 2]))
+    assert state_from_matrix(pose_matrix(states)).shape == (3, 4, 6)
+
+
+def test_the_camera_looks_along_body_x_with_rows_running_down():
+    level = optical_pose([1.0, 2.0, 3.0, 0, 0, 0])
+    assert np.array_equal(level[:3, 2], [1, 0, 0])
+    assert np.array_equal(level[:3, 1], [0, 0, -1])
+    assert np.array_equal(level[:3, 0], [0, -1, 0])
+
+
+def test_optical_pose_round_trip(rng):
+    poses = optical_pose(random_states(100, rng))
+    assert np.allclose(optical_pose(state_from_optical_pose(poses)), poses, atol=1e-12)
+
+
+@pytest.mark.parametrize(("states", "said"), [(np.zeros(5), "shape"), ([np.nan] * 6, "finite"), (3.0, "shape")])
+def test_bad_states_are_named(states, said):
+    with pytest.raises(ValueError, match=said):
+        pose_matrix(states)
+
+
+def test_a_matrix_that_is_no_rotation_is_refused():
+    with pytest.raises(ValueError, match="rotation"):
+        state_from_matrix(np.diag([1.0, 1.0, -1.0, 1.0]))
+
+
+@given(st.floats(-1e4, 1e4))
+def test_wrapped_angles_lie_in_range_and_mean_the_same_direction(angle):
+    wrapped = wrap_angle(angle)
+    assert -np.pi <= wrapped < np.pi
+    assert np.isclose(np.exp(1j * wrapped), np.exp(1j * angle), atol=1e-9)
+
+
+def test_pi_wraps_to_minus_pi():
+    assert wrap_angle(np.pi) == -np.pi
+    assert wrap_angle(-1e-20) > -np.pi
+
+
+def test_circular_mean_crosses_the_wrap():
+    assert np.isclose(abs(circular_mean(np.deg2rad([179.0, -179.0]))), np.pi)
+    assert np.isclose(circular_mean(np.deg2rad([170.0, -160.0]), [2, 1]), np.deg2rad(179.96), atol=2e-3)
+
+
+def test_circular_mean_of_opposite_angles_has_no_direction():
+    assert np.isnan(circular_mean([0.0, np.pi]))
+
+
+def test_circular_mean_works_column_by_column_with_weights(rng):
+    angles, w = rng.uniform(-0.5, 0.5, (30, 3)), rng.random(30)
+    expected = [circular_mean(column, w) for column in angles.T]
+    assert np.allclose(circular_mean(angles, w), expected)
+
+
+@pytest.mark.parametrize("weights", [[1, 1], [1, -1, 1], [0, 0, 0], [1, np.nan, 1]])
+def test_bad_weights_are_refused(weights):
+    with pytest.raises(ValueError, match="weights"):
+        circular_mean([0.1, 0.2, 0.3], weights)
+
+
+def test_rotation_exp_and_log_agree_with_scipy(rng):
+    vectors = rng.uniform(-1.5, 1.5, (200, 3))
+    vectors[0] = 0
+    assert np.allclose(rotation_exp(vectors), Rotation.from_rotvec(vectors).as_matrix(), atol=1e-13)
+    assert np.allclose(rotation_log(rotation_exp(vectors)), vectors, atol=1e-12)
+    assert np.allclose(rotation_angle(rotation_exp(vectors)), np.linalg.norm(vectors, axis=1), atol=1e-12)
+
+
+def test_rotation_mean_does_not_depend_on_the_axes(rng):
+    rotations = rotation_exp(rng.normal(0, 0.3, (40, 3)))
+    turn = rotation_exp(rng.normal(0, 1, 3))
+    assert np.allclose(rotation_mean(turn @ rotations), turn @ rotation_mean(rotations), atol=1e-12)
+    assert np.isclose(np.linalg.det(rotation_mean(rotations)), 1)
