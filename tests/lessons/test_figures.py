@@ -77,7 +77,15 @@ def test_compression_keeps_the_picture():
     rgb = np.kron(rng.integers(0, 255, (4, 5, 3)), np.ones((20, 20, 1))).astype(np.uint8)
     back = np.asarray(Image.open(io.BytesIO(figures.compress(rgb))).convert("RGB"))
     assert back.shape == rgb.shape
-    assert np.abs(back.astype(int) - rgb).max() <= 4
+    assert np.abs(back.astype(int) - rgb).max() <= 12
+
+
+def test_compression_keeps_the_colour_of_a_thin_line_on_a_smooth_ground():
+    ground = np.linspace(0, 1, 300)[:, None] * np.ones(400)
+    rgb = np.stack([200 * ground, 220 * ground, 255 - 200 * ground], axis=-1).astype(np.uint8)
+    rgb[:, 200] = (213, 94, 0)
+    back = np.asarray(Image.open(io.BytesIO(figures.compress(rgb))).convert("RGB")).astype(int)
+    assert np.abs(back[:, 200] - (213, 94, 0)).max() <= 12
 
 
 def test_a_live_figure_shows_new_data_like_a_fresh_one():
