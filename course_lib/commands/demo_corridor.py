@@ -91,6 +91,12 @@ def run(arguments: argparse.Namespace) -> int:
             "frame": frame,
             **{f"{key}_nearest_m": round(float(nearest[key].errors[i]), 5) for key in METHODS},
             **{f"{key}_timed_m": round(float(timed[key].errors[i]), 5) for key in METHODS},
+            **{
+                f"{key}_{axis}_m": round(float(runs[key].camera_to_world[i, j, 3]), 4)
+                for key in METHODS
+                for j, axis in enumerate("xy")
+            },
+            **{f"{key}_score": round(float(runs[key].scores[i]), 5) for key in METHODS},
         }
         for i, frame in enumerate(ours.frames)
     ]
