@@ -1,0 +1,45 @@
+"""Every equation of paper 1 is cited by exactly one function, and every function cites what it computes."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[1] / "course_lib"
+WHERE = {
+    1: "pose_matrix",
+    2: "pose_matrix",
+    3: "initial_particles",
+    4: "initial_particles",
+    5: "propagate",
+    6: "render",
+    7: "depth_image_from_points",
+    8: "likelihood",
+    9: "normalize_likelihood",
+    10: "weights",
+    11: "weights",
+    12: "weighted_mean_state",
+}
+
+
+def citations() -> dict[int, list[str]]:
+    """Equation number -> functions whose docstring names it as its source ("Source: paper 1, eq. (8)")."""
+    found: dict[int, list[str]] = {}
+    for path in sorted(PACKAGE.glob("**/*.py")):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if not isinstance(node, ast.FunctionDef):
+                continue
+            for numbers in re.findall(r"Source:\s+paper 1,\s+eqs?\.?\s+([(\d), ]+)", ast.get_docstring(node) or ""):
+                for number in re.findall(r"\d+", numbers):
+                    found.setdefault(int(number), []).append(node.name)
+    return found
+
+
+@pytest.mark.parametrize(("number", "function"), WHERE.items())
+def test_every_equation_is_cited_by_exactly_one_function(number, function):
+    assert citations().get(number) == [function]
+
+
+def test_no_other_equation_is_cited():
+    assert sorted(citations()) == sorted(WHERE)
