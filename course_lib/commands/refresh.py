@@ -106,6 +106,7 @@ def execute(notebook: nbformat.NotebookNode, folder: Path, cell_timeout: float) 
             kernel_name="python3",
             resources={"metadata": {"path": str(folder)}},
             store_widget_state=False,
+            extra_arguments=["--IPKernelApp.log_level=ERROR"],  # it listens on this computer only; no need to warn
             allow_errors=False,
         )
         try:
