@@ -82,7 +82,7 @@ def slanted_wall_error(near: float) -> np.ndarray:
 
 
 def seconds_per_view(
-    scene_map: SceneMap, camera: DepthCamera, states: np.ndarray, counts: list[int], repeats: int = 6
+    scene_map: SceneMap, camera: DepthCamera, states: np.ndarray, counts: list[int], repeats: int = 4
 ) -> tuple[np.ndarray, np.ndarray]:
     """Seconds a view for each count, the best of a few repeats: as tiles of one window, and one after the other."""
     tiled, single = np.full((2, len(counts)), np.inf)
