@@ -16,7 +16,7 @@ from course_lib.worlds import corridor_parts as parts
 from course_lib.worlds import materials as m
 from course_lib.worlds.mesh_building import MeshBuilder, Placement, WorldMesh
 
-LENGTH = 40.0  # m, the issue's "about 40 m"
+LENGTH = 40.0  # m, chosen
 LEFT, RIGHT, RIGHT_NARROW, STEP_AT = 1.2, -1.38, -1.2, 20.4  # m, chosen
 JUNCTION = (16.6, 18.8, 5.5)  # m: start and end along x, depth of the side corridor; chosen
 STAIRS = (29.3, 32.1)  # m: start and end along x; chosen
@@ -54,7 +54,8 @@ LEFT_BENCHES = ((10.6, 1.5), (23.9, 1.8))  # (x, length) in m
 EXTINGUISHERS = (9.1, 20.6, 32.6)  # m along the left wall
 PORTALS = ((14.5, 0.14, 0.38, 0.16), (27.85, 0.11, 0.30, 0.14))  # (x, jamb, drop of the lintel, thickness) in m
 SOFFITS = ((5.35, 0.30, 0.16), (11.5, 0.22, 0.24), (20.3, 0.40, 0.20), (33.9, 0.26, 0.18))  # (x, length, drop) in m
-LAMPS = ((1.4, 1.2), (4.0, 0.6), (6.9, 1.2), (9.4, 1.5), (12.9, 1.2), (16.2, 0.6), (17.9, 1.2), (21.9, 1.5), (24.6, 0.6),
+LAMPS = ((1.4, 1.2), (4.0, 0.6), (6.9, 1.2), (9.4, 1.5), (12.9, 1.2), (16.2, 0.6), (17.9, 1.2), (21.9, 1.5),
+         (24.6, 0.6),
          (26.4, 1.2), (30.2, 1.5), (32.6, 0.6), (35.7, 1.2), (38.6, 1.2))  # (x, length) in m  # fmt: skip
 
 # Clutter of the run day: (kind, x, y, turn in degrees)
@@ -74,7 +75,7 @@ CLUTTER = (
 
 @dataclass(frozen=True)
 class TrueWorld:
-    """The corridor in its two states, as meshes. clutter_boxes: `(n, 2, 2)` [[x, y] low, high] of the clutter, metres."""
+    """The corridor in its two states, as meshes. clutter_boxes: `(n, 2, 2)` [[x, y] low, high], metres."""
 
     survey_day: WorldMesh
     run_day: WorldMesh
@@ -117,7 +118,8 @@ def _cross_wall(x: float, y: float, sense: float) -> Placement:
 
 def _features() -> dict[str, tuple]:
     return {
-        "left doors": LEFT_DOORS, "right doors": RIGHT_DOORS, "left pillars": LEFT_PILLARS, "right pillars": RIGHT_PILLARS,
+        "left doors": LEFT_DOORS, "right doors": RIGHT_DOORS,
+        "left pillars": LEFT_PILLARS, "right pillars": RIGHT_PILLARS,
         "left boards": LEFT_BOARDS, "right boards": RIGHT_BOARDS, "benches": LEFT_BENCHES, "portals": PORTALS,
         "soffits": SOFFITS, "lamps": LAMPS, "extinguishers": tuple((x,) for x in EXTINGUISHERS),
     }  # fmt: skip

@@ -21,7 +21,7 @@ def cartons(b: MeshBuilder, place: Placement, rng: np.random.Generator) -> None:
 
 
 def person(b: MeshBuilder, place: Placement, height: float, rng: np.random.Generator) -> None:
-    """Standing person from ellipsoids and tubes: legs, trunk, arms, neck, head; a bag on one shoulder."""
+    """Standing person from ellipsoids and tubes: legs, trunk, arms, neck, head; a reflecting belt, a bag."""
     b.part = "person"
     s = height / 1.75
     dark, light = (m.DARK_CLOTH, m.LIGHT_CLOTH) if rng.random() < 0.5 else (m.LIGHT_CLOTH, m.DARK_CLOTH)
@@ -39,6 +39,7 @@ def person(b: MeshBuilder, place: Placement, height: float, rng: np.random.Gener
         b.ellipsoid(place, hand, (0.04, 0.05, 0.06), m.SKIN)
     b.ellipsoid(place, (0, 0, 0.95 * s), (0.17, 0.125, 0.14), dark)
     b.ellipsoid(place, (0, 0, 1.22 * s), (0.19, 0.125, 0.29), light, 3)
+    b.cone(place, (0, 0, 1.10 * s), 0.192, 0.195, 0.05, m.RETROREFLECTIVE_TAPE)
     b.tube(place, (0, 0, 1.45 * s), (0, 0.01, 1.56 * s), 0.055, m.SKIN)
     b.ellipsoid(place, (0, 0.015, 1.64 * s), (0.075, 0.095, 0.115), m.SKIN, 3)
     b.box(place, (0.24, -0.12, 0.86 * s), (0.34, 0.16, 1.12 * s), m.RUBBER, bevel=0.02)

@@ -1,7 +1,7 @@
 """Everything under data/corridor from one seed: true world, surveyed map, planar map, two recorded runs, checksums.
 
-Everything is written to a temporary folder beside the target and moved there at the end: a run that is stopped leaves
-the old data as they were.
+Everything is made in the system's temporary folder and put in its place at the end: a run that is stopped leaves the
+old data as they were.
 """
 
 from __future__ import annotations
@@ -14,17 +14,19 @@ from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+import cv2
 import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.planar_map import planar_simplification
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import write_sequence
-from course_lib.geometry import optical_pose, pose_matrix, rotation_angle
-from course_lib.worlds.corridor import TrueWorld, make_corridor
+from course_lib.geometry import optical_pose
+from course_lib.worlds.corridor import LENGTH, TrueWorld, make_corridor
 from course_lib.worlds.laser_survey import STATIONS, ScannerModel, registration_error, survey
 from course_lib.worlds.measurements import frame_counts, hole_share, map_error, noise_on_a_wall
 from course_lib.worlds.mesh_files import write_ply, write_world_ply
+from course_lib.worlds.parameter_tables import parameter_tables
 from course_lib.worlds.ray_casting import WorldCaster
 from course_lib.worlds.recorded_runs import (
     FRAME_RATE,
@@ -32,6 +34,7 @@ from course_lib.worlds.recorded_runs import (
     HandModel,
     WagonModel,
     hand_run,
+    steps_and_turns,
     survey_floor_line,
     wagon_run,
 )
@@ -39,7 +42,16 @@ from course_lib.worlds.surface_fusion import FusionModel, fuse, simplify
 from course_lib.worlds.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 
 # What is made; other files of the folder (its README) stay.
-PRODUCTS = ("true_world.ply", "map.ply", "planar_map.ply", "wagon", "hand", "summary.json", "SHA256SUMS")
+PRODUCTS = (
+    "true_world.ply",
+    "map.ply",
+    "planar_map.ply",
+    "wagon",
+    "hand",
+    "summary.json",
+    "PARAMETERS.md",
+    "SHA256SUMS",
+)
 PLANAR_DISTANCE = 0.05  # m within which a triangle belongs to a plane; chosen
 PLANAR_LEAST_AREA = 1.0  # m^2; chosen: "large planar segments"
 
@@ -67,11 +79,9 @@ def make_corridor_data(
     progress(items, text) wraps the loops, for progress bars.
     """
     out, models = Path(out), models or CorridorModels()
-    world_rng, survey_rng, planar_rng, camera_rng, wagon_rng, hand_rng, measure_rng = np.random.default_rng(seed).spawn(
-        7
-    )
-    out.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=out.parent, prefix=f".{out.name}-") as temporary:
+    generators = np.random.default_rng(seed).spawn(7)
+    world_rng, survey_rng, planar_rng, camera_rng, wagon_rng, hand_rng, measure_rng = generators
+    with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         world = make_corridor(world_rng)
         write_world_ply(folder / "true_world.ply", world.run_day, "corridor, true world of the run day; CC BY 4.0")
@@ -79,7 +89,6 @@ def make_corridor_data(
         camera = TimeOfFlightCamera(DepthCamera.sr4000(), models.camera, camera_rng)
         wagon = wagon_run(models.wagon, world.clutter_boxes, wagon_rng)
         hand = hand_run(models.hand, world.clutter_boxes, hand_rng)
-        measured["map"]["hole_share"] = _holes(folder, world, wagon[0])
         caster = WorldCaster.of(world.run_day)
         for name, (states, times), rng in (("wagon", wagon, wagon_rng), ("hand", hand, hand_rng)):
             measured[name] = _record(folder / name, caster, camera, states, times, models, rng, progress)
@@ -88,6 +97,7 @@ def make_corridor_data(
         }
         summary = {"seed": seed, "models": asdict(models), "measured": _rounded(measured)}
         (folder / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+        (folder / "PARAMETERS.md").write_text(parameter_tables(models))
         (folder / "SHA256SUMS").write_text(checksums(folder))
         _move(folder, out)
     return summary
@@ -126,16 +136,11 @@ def _make_map(
     return {
         "triangles": len(faces),
         "planar_triangles": len(planar.faces),
+        "hole_share": hole_share(vertices, faces, caster, LENGTH, measure_rng),
         "registration": registration_error(scans, measure_rng),
         "distance_to_surveyed_world": map_error(vertices, faces, world.survey_day, measure_rng),
         "planar_distance_to_surveyed_world": map_error(planar.vertices, planar.faces, world.survey_day, measure_rng),
     }
-
-
-def _holes(folder: Path, world: TrueWorld, states: np.ndarray) -> float:
-    scene_map = SceneMap.load(folder / "map.ply")
-    surveyed = WorldCaster.of(world.survey_day)
-    return hole_share(scene_map.vertices, scene_map.faces, surveyed, DepthCamera.sr4000(), states[::10])
 
 
 def _record(
@@ -157,10 +162,9 @@ def _record(
     path = survey_floor_line(states, models.floor_survey, rng)
     frames = list(range(len(states)))
     write_sequence(folder, camera.camera.matrix, frames, depths, optical_pose(states), times, "z", path)
+    _shrink(folder / "depth")
     total = {key: sum(c[key] for c in counts) for key in counts[0]}
-    steps = np.linalg.norm(np.diff(states[:, :3], axis=0), axis=1)
-    rotations = pose_matrix(states)[:, :3, :3]
-    turns = rotation_angle(np.swapaxes(rotations[:-1], 1, 2) @ rotations[1:])
+    steps, turns = steps_and_turns(states)
     return {
         "frames": len(states),
         "frames_per_second": FRAME_RATE,
@@ -177,14 +181,25 @@ def _record(
     }
 
 
+def _shrink(folder: Path) -> None:
+    """Writes the depth images again as smaller PNGs: in a noisy image nothing repeats, so Huffman coding alone wins."""
+    options = [cv2.IMWRITE_PNG_COMPRESSION, 9, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY]
+    for path in sorted(folder.glob("*.png")):
+        image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+        path.write_bytes(cv2.imencode(".png", image, options)[1].tobytes())
+
+
 def _move(folder: Path, out: Path) -> None:
-    """Puts the finished products in their place, the old ones out of it."""
-    out.mkdir(exist_ok=True)
-    for name in PRODUCTS:
-        old = out / name
-        if old.is_dir():
-            shutil.rmtree(old)
-        shutil.move(folder / name, old)
+    """Puts the finished products in their place: copied beside it first, then renamed, old ones out and new ones in."""
+    out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=out.parent, prefix=f".{out.name}-") as beside:
+        new, old = Path(beside) / "new", Path(beside) / "old"
+        shutil.copytree(folder, new)
+        old.mkdir()
+        for name in PRODUCTS:
+            if (out / name).exists():
+                (out / name).rename(old / name)
+            (new / name).rename(out / name)
 
 
 def _rounded(value: object) -> object:

@@ -51,7 +51,7 @@ def recess(b: MeshBuilder, place: Placement, low: float, high: float, bottom: fl
 def door(
     b: MeshBuilder, place: Placement, name: str, width: float, depth: float, angle_deg: float, hinge_at_end: bool
 ) -> None:
-    """Door in a recess around the local origin: cheeks, frame, leaf with handle, turned into the room by `angle_deg`."""
+    """Door in a recess around the local origin: cheeks, frame, leaf turned into the room by `angle_deg`."""
     low, high, top = -width / 2 - 0.06, width / 2 + 0.06, 2.06
     recess(b, place, low, high, 0.0, top, depth)
     b.part = f"{name} frame"
@@ -172,6 +172,8 @@ def portal(b: MeshBuilder, place: Placement, half_width: float, jamb: float, dro
     for side in (-1.0, 1.0):
         low, high = sorted((side * (half_width - jamb), side * (half_width + 0.05)))
         b.box(place, (0, low, 0), (thick, high, CEILING_HEIGHT), m.METAL_FRAME, bevel=0.012)
+        tape = (low + high) / 2 - side * 0.02
+        b.box(place, (-0.001, tape - 0.022, 0.35), (0.0, tape + 0.022, 1.15), m.RETROREFLECTIVE_TAPE)
     b.box(
         place,
         (0, -half_width, CEILING_HEIGHT - drop),

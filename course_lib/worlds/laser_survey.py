@@ -7,6 +7,7 @@ poses: where it really stood, and where registration believes it stood. Only the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -14,8 +15,8 @@ from scipy.spatial import cKDTree
 from course_lib.geometry import pose_matrix
 from course_lib.worlds.ray_casting import WorldCaster
 
-# Where the scanner stands on the survey day: x, y in metres. Chosen: about every 5 m, one in the side corridor's mouth.
-STATIONS = ((1.9, -0.3), (6.9, 0.2), (11.6, -0.4), (17.6, 0.5), (22.6, -0.2), (26.9, 0.3), (30.8, 0.4), (36.2, -0.2))
+# Where the scanner stands on the survey day: x, y in metres. Chosen: every 4 to 7 m, one in the side corridor's mouth.
+STATIONS = ((2.2, -0.3), (8.3, 0.3), (13.3, -0.4), (17.7, 0.5), (23.3, -0.3), (29.4, 0.4), (36.3, -0.2))
 
 _DENSE_RANGE = 3.5  # m: within it a scan's points lie about a centimetre apart, so spacing does not hide the offset
 
@@ -38,9 +39,7 @@ class ScannerModel:
     least_range: float = 0.6  # m; data sheet
     greatest_range: float = 30.0  # m; chosen: the corridor is no longer
     grazing_deg: float = 82.0  # degrees of incidence beyond which nothing comes back; chosen
-    least_signal: float = (
-        0.02  # reflectivity * cos(incidence) * (10 m / range)^2 below which nothing comes back; chosen
-    )
+    least_signal: float = 0.02  # no unit: below this reflectivity * cos(incidence) * (10 m / range)^2 no return; chosen
     registration_position: float = 0.006  # m, one sigma per axis and station; chosen for the paper's 10 mm
     registration_tilt_deg: float = 0.01  # degrees, one sigma about the horizontal axes (levelled instrument); chosen
     registration_heading_deg: float = 0.03  # degrees, one sigma about the vertical; chosen
@@ -153,7 +152,7 @@ def registration_error(scans: list[Scan], rng: np.random.Generator, n_points: in
     result = {}
     for key, registered in (("mean_point_distance_m", True), ("mean_point_distance_true_poses_m", False)):
         means = []
-        for first, second in zip(scans, scans[1:], strict=False):
+        for first, second in pairwise(scans):
             target = second.points(registered)
             near = target[np.linalg.norm(target - second.true_pose[:3, 3], axis=1) < _DENSE_RANGE]
             source = first.points(registered)

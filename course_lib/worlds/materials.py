@@ -1,8 +1,8 @@
 """What surfaces are made of: reflectivity for the camera's and the scanner's light, and a colour for pictures.
 
-The SR4000 illuminates at 850 nm. The reflectivities are diffuse (Lambertian) and without unit, 0 to 1. All are chosen:
-they follow the usual ranges for indoor materials in the near infrared (white paint and paper bright, rubber dark;
-leaves and most cloth are brighter there than they look).
+The SR4000 illuminates at 850 nm. The reflectivities are diffuse (Lambertian) and without unit, 0 to 1 but for
+retroreflective tape. All are chosen: they follow the usual ranges for indoor materials in the near infrared (white
+paint and paper bright, rubber dark; leaves and most cloth are brighter there than they look).
 """
 
 from __future__ import annotations
@@ -46,4 +46,6 @@ SKIN = Material(0.58, (224, 178, 150))
 LEAF = Material(0.50, (64, 128, 62))
 TERRACOTTA = Material(0.45, (176, 98, 66))
 BIN_PLASTIC = Material(0.35, (70, 92, 128))
+# Retroreflective sheeting sends light back where it came from: many times a white wall's; saturates when near.
+RETROREFLECTIVE_TAPE = Material(25.0, (240, 232, 120))
 CABINET = Material(0.60, (150, 152, 150))

@@ -5,18 +5,20 @@ Everything is built in local coordinates and set into the world by a `Placement`
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 import trimesh
+from scipy.spatial import ConvexHull
 
 from course_lib.worlds.materials import Material
 
 _BOX_FACES = np.array(
-    [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6]]
-    + [[1, 3, 5], [3, 7, 5]]
-)
+    [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6],
+     [1, 3, 5], [3, 7, 5]]
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -89,18 +91,14 @@ class MeshBuilder:
     def box(self, place: Placement, low: tuple, high: tuple, material: Material, bevel: float = 0.0) -> None:
         """Box between two local corners; `bevel` metres are cut off every edge."""
         low, high = np.minimum(low, high).astype(float), np.maximum(low, high).astype(float)
-        corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
         if bevel <= 0 or (high - low).min() <= 2.1 * bevel:
+            corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
             self.add(place(low + corners * (high - low)), _BOX_FACES, material)
             return
-        inner = corners * (high - low) + np.where(corners > 0, -bevel, bevel)
-        outward = np.where(corners > 0, bevel, -bevel)
-        points = np.concatenate([inner + outward * np.eye(3)[axis] for axis in range(3)])
-        hull = trimesh.convex.convex_hull(points)
-        self.add(place(low + hull.vertices), hull.faces, material)
+        self.add(place(low + _bevelled_corners(high - low, bevel)), _bevelled_faces(), material)
 
     def panel(self, place: Placement, corner: tuple, u: tuple, v: tuple, material: Material, step: float = 0.5) -> None:
-        """Large rectangle from a local corner along u and v, in cells of about `step` metres, bowed like a real wall."""
+        """Large rectangle from a local corner along u and v, in cells of about `step` metres, bowed like a wall."""
         corner, u, v = (np.asarray(a, dtype=float) for a in (corner, u, v))
         n_u, n_v = (max(1, int(np.ceil(np.linalg.norm(a) / step))) for a in (u, v))
         i, j = np.meshgrid(np.arange(n_u + 1), np.arange(n_v + 1), indexing="ij")
@@ -156,3 +154,22 @@ class MeshBuilder:
             parts=np.repeat([names.index(piece[3]) for piece in self._pieces], counts),
             part_names=names,
         )
+
+
+def _bevelled_corners(size: np.ndarray, bevel: float) -> np.ndarray:
+    """Corners `(24, 3)` of a box from the origin with bevelled edges: each of its 8 corners becomes three."""
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
+    inner = corners * size + np.where(corners > 0, -bevel, bevel)
+    outward = np.where(corners > 0, bevel, -bevel)
+    return np.concatenate([inner + outward * np.eye(3)[axis] for axis in range(3)])
+
+
+@functools.cache
+def _bevelled_faces() -> np.ndarray:
+    """Triangles `(44, 3)` of `_bevelled_corners`, outward: the hull of one such box serves boxes of all sizes."""
+    points = _bevelled_corners(np.ones(3), 0.2)
+    faces = ConvexHull(points).simplices
+    corners = points[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = np.einsum("ij,ij->i", normals, corners.mean(axis=1) - 0.5) < 0
+    return np.where(inward[:, None], faces[:, ::-1], faces)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,8 @@ import numpy as np
 from course_lib.worlds.mesh_building import WorldMesh
 
 # A display is never needed, and the variable must be set before vtk is imported for the first time.
-os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+if sys.platform.startswith("linux"):
+    os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW") or "vtkEGLRenderWindow"
 
 _FACE = np.dtype([("count", "u1"), ("index", "<i4", 3)])
 

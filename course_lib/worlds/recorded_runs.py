@@ -10,50 +10,52 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
+from course_lib.geometry import pose_matrix, rotation_angle
+
 FRAME_RATE = 10.0  # frames per second; chosen, within the SR4000's rates
 
 
 @dataclass(frozen=True)
 class WagonModel:
-    """How the wagon is pushed. All chosen; the wagon's size is that of a laboratory trolley."""
+    """How the wagon is pushed. The wagon's size is that of a laboratory trolley."""
 
-    frames: int = 312
-    start: float = 2.4  # m along x
-    mean_step: float = 0.094  # m between frames
-    step_spread: float = 0.025  # share of the mean step by which the pushing speed varies, slowly
-    height: float = 1.0  # m, camera above the floor
-    wander: float = 0.28  # m, greatest sideways wish of the path
-    knot_spacing: float = 3.1  # m between the path's knots
-    clearance: float = 0.42  # m from the path to clutter: half the wagon and a hand's breadth
-    heading_wobble_deg: float = 1.0  # degrees, one sigma about the path's direction, smooth over about a second
-    height_jitter: float = 0.001  # m, one sigma, cut at two sigma: wheels on linoleum
-    tilt_jitter_deg: float = 0.1  # degrees, one sigma, cut at two sigma, roll and pitch
+    frames: int = 304  # number of frames; chosen
+    start: float = 2.4  # m along x; chosen
+    mean_step: float = 0.0965  # m between frames; chosen
+    step_spread: float = 0.015  # share of the mean step by which the pushing speed varies, slowly; chosen
+    height: float = 1.0  # m, camera above the floor; chosen
+    wander: float = 0.28  # m, greatest sideways wish of the path; chosen
+    knot_spacing: float = 3.1  # m between the path's knots; chosen
+    clearance: float = 0.42  # m from the path to clutter: half the wagon and a hand's breadth; chosen
+    heading_wobble_deg: float = 1.0  # degrees, one sigma about the path's direction, smooth over about a second; chosen
+    height_jitter: float = 0.001  # m, one sigma, cut at two sigma: wheels on linoleum; chosen
+    tilt_jitter_deg: float = 0.1  # degrees, one sigma, cut at two sigma, roll and pitch; chosen
 
 
 @dataclass(frozen=True)
 class HandModel:
-    """How the camera is carried by hand. All chosen."""
+    """How the camera is carried by hand."""
 
-    frames: int = 150
-    start: float = 13.0  # m along x, before the first portal
-    mean_step: float = 0.068  # m between frames
-    heights: tuple[float, float] = (1.2, 1.6)  # m
-    tilt_deg: float = 18.0  # degrees, greatest roll and pitch
-    look_deg: float = 38.0  # degrees, greatest turn of the view from the way forward
-    knot_seconds: float = 2.2  # s between knots of the angles
-    wander: float = 0.30  # m, greatest sideways wish
-    tremor_deg: float = 0.15  # degrees, one sigma, frame to frame
-    greatest_step: float = 0.1  # m
-    greatest_turn_deg: float = 5.0  # degrees between frames
+    frames: int = 150  # number of frames; chosen
+    start: float = 13.0  # m along x, before the first portal; chosen
+    mean_step: float = 0.068  # m between frames; chosen
+    heights: tuple[float, float] = (1.2, 1.6)  # m; chosen
+    tilt_deg: float = 18.0  # degrees, greatest roll and pitch; chosen
+    look_deg: float = 30.0  # degrees, greatest turn of the view from the way forward; chosen
+    knot_seconds: float = 2.2  # s between knots of the angles; chosen
+    wander: float = 0.30  # m, greatest sideways wish; chosen
+    tremor_deg: float = 0.15  # degrees, one sigma, frame to frame; chosen
+    greatest_step: float = 0.1  # m between frames, a run with a longer one is drawn again; chosen
+    greatest_turn_deg: float = 5.0  # degrees between frames, likewise; chosen
 
 
 @dataclass(frozen=True)
 class FloorSurveyModel:
-    """How the drawn line under the wagon is surveyed. All chosen."""
+    """How the drawn line under the wagon is surveyed."""
 
-    spacing: float = 0.01  # m between points along the line
-    noise: float = 0.002  # m, one sigma per axis
-    registration: float = 0.003  # m, one sigma per axis, one offset for the whole line
+    spacing: float = 0.01  # m between points along the line; chosen
+    noise: float = 0.002  # m, one sigma per axis; chosen
+    registration: float = 0.003  # m, one sigma per axis, one offset for the whole line; chosen
 
 
 def wagon_run(model: WagonModel, clutter_boxes: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -75,7 +77,31 @@ def wagon_run(model: WagonModel, clutter_boxes: np.ndarray, rng: np.random.Gener
 
 
 def hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """States `(T, 6)` and times `(T,)` of the camera carried by hand, all six degrees of freedom moving."""
+    """States `(T, 6)` and times `(T,)` of the camera carried by hand, all six degrees of freedom moving.
+
+    Runs are drawn until one keeps the greatest step and turn; `ValueError` after 100 that do not.
+    """
+    for _ in range(100):
+        states, times = _draw_hand_run(model, clutter_boxes, rng)
+        step, turn = steps_and_turns(states)
+        if step.max() <= model.greatest_step and np.rad2deg(turn.max()) <= model.greatest_turn_deg:
+            return states, times
+    raise ValueError(
+        f"100 runs had a step over {model.greatest_step} m or a turn over {model.greatest_turn_deg} degrees: take a "
+        "shorter mean_step or longer knot_seconds"
+    )
+
+
+def steps_and_turns(states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distance in metres and angle in radians from each of the states `(T, 6)` to the next, `(T - 1,)` each."""
+    rotations = pose_matrix(states)[:, :3, :3]
+    turns = rotation_angle(np.swapaxes(rotations[:-1], 1, 2) @ rotations[1:])
+    return np.linalg.norm(np.diff(states[:, :3], axis=0), axis=1), turns
+
+
+def _draw_hand_run(
+    model: HandModel, clutter_boxes: np.ndarray, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
     times = np.arange(model.frames) / FRAME_RATE
     length = model.mean_step * model.frames + 2.0
     path = _clear_path(model.start, length, model.wander, 2.3, 0.40, clutter_boxes, rng)

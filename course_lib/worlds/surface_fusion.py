@@ -15,17 +15,19 @@ from course_lib.worlds.laser_survey import Scan
 
 _BLOCK = 8  # voxels along the edge of a block; only blocks near measured points are worked on
 
+_NO_SURFACE = "the scans hold no surface: check the stations' poses and the scanner's greatest range"
+
 
 @dataclass(frozen=True)
 class FusionModel:
-    """How the surface is fused. All chosen."""
+    """How the surface is fused."""
 
-    voxel: float = 0.025  # m
-    truncation: float = 0.075  # m: signed distances are cut here, three voxels
-    greatest_range: float = 9.0  # m: farther points of a station are too sparse for the voxel
-    slab: float = 2.0  # m along x
-    least_component: int = 150  # triangles: smaller loose pieces (mixed pixels) are removed
-    triangles: int = 130_000  # after decimation
+    voxel: float = 0.025  # m; chosen
+    truncation: float = 0.075  # m: signed distances are cut here, three voxels; chosen
+    greatest_range: float = 9.0  # m: farther points of a station are too sparse for the voxel; chosen
+    slab: float = 2.0  # m along x; chosen
+    least_component: int = 150  # triangles: smaller loose pieces (mixed pixels) are removed; chosen
+    triangles: int = 120_000  # after decimation; chosen
 
 
 def fuse(scans: list[Scan], model: FusionModel, progress=lambda slabs: slabs) -> tuple[np.ndarray, np.ndarray]:
@@ -34,6 +36,8 @@ def fuse(scans: list[Scan], model: FusionModel, progress=lambda slabs: slabs) ->
     progress wraps the slabs, for a progress bar.
     """
     clouds = [_near_points(scan, model.greatest_range) for scan in scans]
+    if not sum(map(len, clouds)):
+        raise ValueError(_NO_SURFACE)
     block = _BLOCK * model.voxel
     occupied = np.unique(np.concatenate([np.floor(c / block).astype(np.int32) for c in clouds]), axis=0)
     around = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -56,7 +60,7 @@ def fuse(scans: list[Scan], model: FusionModel, progress=lambda slabs: slabs) ->
             faces.append(slab_faces + n_vertices)
             n_vertices += len(slab_vertices)
     if not vertices:
-        raise ValueError("the scans hold no surface: check the stations' poses and the scanner's greatest range")
+        raise ValueError(_NO_SURFACE)
     return _weld(np.concatenate(vertices) * model.voxel, np.concatenate(faces))
 
 

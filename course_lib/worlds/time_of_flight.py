@@ -31,24 +31,24 @@ SPEED_OF_LIGHT = 299_792_458.0  # m/s, exact
 class TimeOfFlightModel:
     """Parameters of the camera. Amplitudes are relative to a white target (reflectivity 1) met squarely at 2 m.
 
-    Sources: (D) MESA Imaging, SR4000 data sheet, 10 m model: 15 MHz, 850 nm, calibrated from 0.8 m, repeatability
-    about 6 mm at 2 m on a bright target, absolute accuracy +-15 mm. (C) chosen. (K) Kavli et al., "Modelling and
-    compensating measurement errors caused by scattering in time-of-flight cameras", 2008, for the model's form.
-    The 10 m model is taken because a corridor is longer than the 5 m model's range, 30 MHz, in almost every pixel.
+    Sources. Data sheet: MESA Imaging, SR4000 data sheet, 10 m model (15 MHz, 850 nm, calibrated from 0.8 m on,
+    repeatability about 6 mm at 2 m on a bright target, absolute accuracy +-15 mm). Kavli: Kavli, Kirkhus, Thielemann,
+    Jagielski, "Modelling and compensating measurement errors caused by scattering in time-of-flight cameras", 2008.
+    The 10 m model is taken because a corridor is longer than the 5 m model's range (30 MHz) in most pixels.
     """
 
-    frequency: float = 15e6  # Hz (D); c / 2f = 9.993 m
-    sub_rays: int = 3  # rays per pixel along each axis (C)
-    shot_noise: float = 0.0036  # phasor noise at amplitude 1, one sigma; 0.0036 rad are 5.7 mm (D)
-    dark_noise: float = 0.00022  # phasor noise without signal, one sigma (C): ambient light, read-out
-    least_amplitude: float = 0.010  # below: no return (C; about 0.07 m of noise there)
-    greatest_amplitude: float = 6.25  # above: saturated, no return (C: a white wall nearer than 0.8 m (D))
-    offset: float = 0.003  # m, constant systematic error (C, within (D))
-    wiggling: float = 0.006  # m, amplitude of the cyclic systematic error (C, within (D))
-    wiggling_order: int = 4  # cycles of that error over c / 2f (C: the fourth harmonic of a square wave)
-    fixed_pattern: float = 0.003  # m, one sigma from pixel to pixel, the same in all frames (C)
-    scattered_share: float = 0.001  # share of all light that is scattered inside the camera (C; (K))
-    scatter_width: float = 40.0  # pixels, sigma of the scattered light (C; (K))
+    frequency: float = 15e6  # Hz, modulation, c / 2f = 9.993 m; data sheet
+    sub_rays: int = 3  # rays per pixel along each axis; chosen
+    shot_noise: float = 0.0036  # no unit, phasor noise at amplitude 1, one sigma: 5.7 mm at 2 m; after the data sheet
+    dark_noise: float = 0.00022  # no unit, phasor noise without signal, one sigma (ambient light, read-out); chosen
+    least_amplitude: float = 0.010  # no unit, below it no return (about 0.07 m of noise there); chosen
+    greatest_amplitude: float = 6.25  # no unit, above it saturated: white nearer than 0.8 m; after the data sheet
+    offset: float = 0.003  # m, constant systematic error; chosen within the data sheet's accuracy
+    wiggling: float = 0.006  # m, amplitude of the cyclic error; chosen within the data sheet's accuracy
+    wiggling_order: int = 4  # cycles of that error over c / 2f (fourth harmonic of a square wave); chosen
+    fixed_pattern: float = 0.003  # m, one sigma from pixel to pixel, the same in all frames; chosen
+    scattered_share: float = 0.001  # share of all light that is scattered inside the camera; chosen, form after Kavli
+    scatter_width: float = 40.0  # pixels, sigma of the scattered light; chosen, form after Kavli
 
     @property
     def unambiguous_range(self) -> float:
