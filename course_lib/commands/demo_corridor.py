@@ -106,7 +106,6 @@ def write(out: Path, summary: dict, scene_map: SceneMap, sequence: DepthSequence
 
     from course_lib.datasets import write_results, write_tum
     from course_lib.lessons.corridor_figures import figure_5, figure_6, floor_plan
-    from course_lib.lessons.figures import png_bytes
     from course_lib.lessons.overview_figure import overview_figure
 
     ours = runs["proposed"]
@@ -138,7 +137,7 @@ def write(out: Path, summary: dict, scene_map: SceneMap, sequence: DepthSequence
         "overview.png": overview_figure(scene_map, sequence, ours),
     }
     for name, figure in figures.items():
-        (out / name).write_bytes(png_bytes(figure))
+        figure.savefig(out / name, dpi=130)
 
 
 def table_1(summary: dict) -> str:
@@ -161,9 +160,9 @@ def table_1(summary: dict) -> str:
         )
     lines += [
         "",
-        "sigma is the root mean square about zero. Fallon-style rows use a planar simplification of the map. At full size",
-        "their sum over 25,344 pixels collapses onto few particles, at 20 x 15 it hardly tells particles apart (last",
-        "column: median effective sample size). Their published system also had visual odometry; here no row has any.",
+        "sigma is the root mean square about zero. Fallon-style rows use a planar simplification of the map. At full",
+        "size their sum over 25,344 pixels collapses onto few particles, at 20 x 15 it hardly tells them apart (last column:",
+        "median effective sample size). Their published system also had visual odometry; here no row has any.",
         f"{summary['ms_per_frame']:.0f} ms a frame (paper: 125 ms, on a graphics card)",
     ]
     return "\n".join(lines)

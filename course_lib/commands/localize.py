@@ -114,7 +114,6 @@ def _write(folder: Path, summary: dict, result: object, sequence: object) -> Non
     from course_lib.datasets import write_results, write_tum
     from course_lib.depth_mcl.evaluation import pose_errors
     from course_lib.lessons.corridor_figures import figure_6
-    from course_lib.lessons.figures import png_bytes
 
     true = sequence.camera_to_world[: len(result.frames)]
     position, rotation = pose_errors(result.camera_to_world, true)
@@ -126,4 +125,4 @@ def _write(folder: Path, summary: dict, result: object, sequence: object) -> Non
     times = np.asarray(result.frames, float) if sequence.times is None else sequence.times[: len(result.frames)]
     write_tum(folder / "trajectory.txt", times, result.camera_to_world)
     figure = figure_6(np.asarray(result.frames), {"position error": position}, "Position error of every frame")
-    (folder / "errors.png").write_bytes(png_bytes(figure))
+    figure.savefig(folder / "errors.png", dpi=130)
