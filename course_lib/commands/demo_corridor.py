@@ -161,8 +161,8 @@ def table_1(summary: dict) -> str:
     lines += [
         "",
         "sigma is the root mean square about zero. Fallon-style rows use a planar simplification of the map. At full",
-        "size their sum over 25,344 pixels collapses onto few particles, at 20 x 15 it hardly tells them apart (last column:",
-        "median effective sample size). Their published system also had visual odometry; here no row has any.",
+        "size their sum over 25,344 pixels collapses onto few particles, at 20 x 15 it hardly tells them apart (last",
+        "column: median effective sample size). Their published system also had visual odometry; here no row has any.",
         f"{summary['ms_per_frame']:.0f} ms a frame (paper: 125 ms, on a graphics card)",
     ]
     return "\n".join(lines)

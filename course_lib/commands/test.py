@@ -70,7 +70,10 @@ def looks_like_a_path(word: str) -> bool:
 def nbval_options() -> list[str]:
     """Strict comparison of stored outputs, with this environment's kernel; one file says what may differ."""
     sanitize = ROOT / "tests" / "nbval_sanitize.cfg"
-    return ["--nbval", "--nbval-current-env", *(["--nbval-sanitize-with", str(sanitize)] if sanitize.exists() else [])]
+    # No cell may take as long as a whole lesson may (60 s); nbval's own limit is 33 minutes.
+    return ["--nbval", "--nbval-current-env", "--nbval-cell-timeout=60"] + (
+        ["--nbval-sanitize-with", str(sanitize)] if sanitize.exists() else []
+    )
 
 
 def part_environment(name: str, home: Path, environment: Mapping[str, str] = os.environ) -> dict[str, str]:
