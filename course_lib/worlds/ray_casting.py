@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 
 from course_lib.worlds.mesh_building import WorldMesh
+
+try:
+    from embreex.mesh_construction import TriangleMesh
+    from embreex.rtcore_scene import EmbreeScene
+except ImportError:  # no wheel for this processor
+    EmbreeScene = TriangleMesh = None
 
 # Rays per call, so that the results of one call stay below about 100 MB.
 _BATCH = 1_000_000
@@ -25,9 +29,17 @@ class Hits:
 
 
 class WorldCaster:
-    """Casts rays at triangles. vertices `(V, 3)` metres, faces `(F, 3)`; reflectivity `(F,)` or one number."""
+    """Casts rays at triangles. vertices `(V, 3)` metres, faces `(F, 3)`; reflectivity `(F,)` or one number.
+
+    Raises `ImportError` where embreex is missing: a survey is 30 million rays, too many for anything slower.
+    """
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray, reflectivity: np.ndarray | float = 1.0) -> None:
+        if EmbreeScene is None:
+            raise ImportError(
+                "the simulated world needs embreex, which has wheels for x86-64 and for macOS: make the data there "
+                "(the shipped data and the lessons do not need it)"
+            )
         triangles = np.ascontiguousarray(vertices[faces], dtype=np.float32)
         self._scene = EmbreeScene(robust=True)
         self._mesh = TriangleMesh(self._scene, triangles)
