@@ -76,9 +76,13 @@ def make_corridor_data(
 ) -> dict:
     """Makes the data in folder `out` and returns what `summary.json` holds. One seed gives one set of bytes.
 
-    progress(items, text) wraps the loops, for progress bars.
+    progress(items, text) wraps the loops, for progress bars. Raises `ValueError` where `out` cannot be a folder.
     """
-    out, models = Path(out), models or CorridorModels()
+    out, models = Path(out).resolve(), models or CorridorModels()
+    # Told now, not after minutes of work.
+    existing = next(path for path in (out, *out.parents) if path.exists())
+    if not existing.is_dir():
+        raise ValueError(f"cannot make the folder {out}: {existing} is a file; give a folder, or a new name")
     generators = np.random.default_rng(seed).spawn(7)
     world_rng, survey_rng, planar_rng, camera_rng, wagon_rng, hand_rng, measure_rng = generators
     with tempfile.TemporaryDirectory() as temporary:

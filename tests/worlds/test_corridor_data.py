@@ -1,11 +1,13 @@
 """Making the data, at a reduced size: same seed, same bytes; a run that is stopped leaves the old data alone."""
 
+import argparse
 import dataclasses
 import json
 
 import numpy as np
 import pytest
 
+from course_lib.commands import make_data
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.worlds.corridor_data import PRODUCTS, CorridorModels, checksums, make_corridor_data
@@ -39,6 +41,18 @@ def test_one_seed_gives_the_same_bytes_and_other_files_stay(small, tmp_path):
     assert checksums(tmp_path) == checksums(folder)
     assert (tmp_path / "README.md").read_text() == "written by hand"
     assert not (tmp_path / "wagon" / "old.txt").exists()
+
+
+def test_a_file_in_the_way_is_told_at_once(tmp_path):
+    (tmp_path / "taken").write_text("a file")
+    for out in (tmp_path / "taken", tmp_path / "taken" / "below", tmp_path / "nowhere" / ".." / "taken"):
+        with pytest.raises(ValueError, match="taken is a file"):
+            make_corridor_data(out, 1, progress=lambda items, text: pytest.fail("work had begun"))
+
+
+def test_a_negative_seed_is_refused():
+    with pytest.raises(ValueError, match="--seed must be 0 or more; got -3"):
+        make_data.run(argparse.Namespace(seed=-3, out=None))
 
 
 def test_all_products_are_there_and_readable(small):
