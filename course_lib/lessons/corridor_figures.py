@@ -18,7 +18,8 @@ def figure_5(path: np.ndarray, estimates: dict[str, np.ndarray], walls: np.ndarr
     figure, axes = new_figure(size=(8.0, 3.4))
     if walls is not None:
         axes.plot(walls[:, 0], walls[:, 1], ".", color="#B8B8B8", markersize=0.6, label="map, cut at camera height")
-    axes.plot(path[:, 0], path[:, 1], color="black", linewidth=1.4, label="ground truth: line on the floor")
+    # On top of the markers, or 300 of them would hide it.
+    axes.plot(path[:, 0], path[:, 1], color="black", linewidth=1.1, zorder=4, label="ground truth: line on the floor")
     for index, (name, positions) in enumerate(estimates.items()):
         style = line_style(index) | {"linestyle": "none", "markersize": 3.2}
         axes.plot(positions[:, 0], positions[:, 1], label=name, **style)
