@@ -200,7 +200,7 @@ def pose_panel() -> Panel:
         )
         for name in truth
     ]
-    controls.append(Switch("hills_shown", "show the hills: l / m when only this number is wrong"))
+    controls.append(Switch("hills_shown", "show the hills"))
     return Panel("00 find the pose", controls, draw, actions={"Show the true pose": lambda values: dict(goal)})
 
 

@@ -201,7 +201,7 @@ def along_panel() -> Panel:
         style = figures.line_style(index) | {"markersize": 3}
         lines += error.semilogy(frames, np.ones(len(frames)), **style, label=name)
     error.axhline(3 * PAPER_SIGMA, color="black", linewidth=0.9, linestyle=(0, (6, 3)), label="0.30 m")
-    error.set(title="Error of every frame", xlabel="frame [-]", ylabel="error [m]", ylim=(1e-3, 100))
+    error.set(title="Error (below 1 cm drawn as 1 cm)", xlabel="frame [-]", ylabel="error [m]", ylim=(0.005, 100))
     for index, name in enumerate(("raw score l / m", "weight")):
         style = figures.line_style(index + 2) | {"markersize": 3}
         lines += signal.plot(frames, np.zeros(len(frames)), **style, label=name)
@@ -233,7 +233,7 @@ def along_panel() -> Panel:
         Slider("n_particles", "number of particles N", 5, 400, 200, 5),
         Choice("beta", "beta", ("0.0001", "0.001", "0.01", "0.1", "1"), "0.01"),
         Slider("start_error", "start wrong by [m]", -2.0, 2.0, 0.0, 0.1),
-        Slider("seed", "seed of the random numbers", 0, 9, 1, 1),
+        Slider("seed", "seed", 0, 9, 1, 1),
     ]
     return Panel("08 predict the table", controls, draw)
 

@@ -77,6 +77,22 @@ class Switch:
 Control = Slider | Choice | Switch
 
 
+def _pair(slider: widgets.FloatSlider, number: widgets.BoundedFloatText, control: Slider) -> None:
+    """Slider and number box move together. A browser's slider says 0.15000000000000002: the box holds 0.15."""
+    digits = max(_decimals(control.step), _decimals(control.least))
+
+    def to_number(change: dict) -> None:
+        number.value = round(change["new"], digits)
+
+    slider.observe(to_number, names="value")
+    widgets.dlink((number, "value"), (slider, "value"))
+
+
+def _decimals(value: float) -> int:
+    """Decimals that a number is written with: 2 for 0.05, 0 for 15."""
+    return len(f"{value:.10f}".rstrip("0").partition(".")[2])
+
+
 class Panel:
     """Controls and the picture that they redraw.
 
@@ -155,10 +171,10 @@ class Panel:
             widget = row = widgets.Checkbox(value=control.default, indent=False, description=control.label)
         else:
             ends = {"min": control.least, "max": control.greatest, "step": control.step, "value": control.default}
-            widget = widgets.FloatSlider(**ends, **label, layout=wide, readout=False, continuous_update=self.continuous)
-            number = widgets.BoundedFloatText(**ends, layout=widgets.Layout(width="7em"), tooltip=control.label)
-            widgets.link((widget, "value"), (number, "value"))
-            row = widgets.HBox([widget, number])
+            slider = widgets.FloatSlider(**ends, **label, layout=wide, readout=False, continuous_update=self.continuous)
+            widget = widgets.BoundedFloatText(**ends, layout=widgets.Layout(width="7em"), tooltip=control.label)
+            _pair(slider, widget, control)
+            row = widgets.HBox([slider, widget])
         widget.observe(lambda change: None if self._held else self.redraw(), names="value")
         self._inputs[control.name] = widget
         return row

@@ -43,6 +43,18 @@ def test_a_slider_and_its_number_box_move_together():
     assert panel.values()["x"] == 0.5
 
 
+def test_what_a_browser_adds_to_a_number_is_dropped_and_draws_once():
+    calls = []
+    panel = Panel("test", [Slider("x", "x", 0.01, 1, 0.2, 0.05)], lambda **v: calls.append(v["x"]) or _any())
+    calls.clear()
+    widget_of(panel, ipywidgets.FloatSlider).value = 0.15000000000000002
+    assert calls == [0.15]
+    assert widget_of(panel, ipywidgets.BoundedFloatText).value == 0.15
+    widget_of(panel, ipywidgets.BoundedFloatText).value = 0.61
+    assert calls == [0.15, 0.61]
+    assert widget_of(panel, ipywidgets.FloatSlider).value == 0.61
+
+
 def test_a_moved_slider_redraws_picture_and_numbers():
     panel = make()
     slider = widget_of(panel, ipywidgets.FloatSlider)
