@@ -103,6 +103,10 @@ EXERCISES = [
                 "Yours grows as the images drift apart: it counts disagreement. Take it from 1.",
             ),
             Mistake(
+                lambda difference, alpha: np.sum(alpha / (alpha + difference)),
+                "That is already the whole sum of equation (8). Here every pixel keeps its own term.",
+            ),
+            Mistake(
                 _without_brackets,
                 "Mind the brackets: alpha + d stands below the fraction line as a whole.",
             ),

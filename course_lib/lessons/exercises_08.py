@@ -129,6 +129,14 @@ EXERCISES = [
                 "You look at y alone. The distance on the floor has two parts, x and y.",
             ),
             Mistake(
+                lambda estimated, path: _pairwise(estimated[:, :2], path[:, :2]).argmin(axis=1),
+                "argmin tells which point is nearest, its number; the task asks how far it is, in metres.",
+            ),
+            Mistake(
+                lambda estimated, path: np.sqrt((_pairwise(estimated[:, :2], path[:, :2]) ** 2).sum(axis=1)),
+                "You sum over the whole path. np.linalg.norm needs axis=1 to give one distance for each point.",
+            ),
+            Mistake(
                 _nearest_along_x,
                 "You take the point with the nearest x. Where the path bends, another point may be nearer.",
             ),
@@ -142,6 +150,14 @@ EXERCISES = [
             Mistake(
                 lambda errors: (np.median(errors), np.std(errors), np.mean(errors <= 0.30)),
                 "np.std measures the scatter about the mean: a constant error of 5 m would get 0. Take it about zero.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.std(errors, ddof=1), np.mean(errors <= 0.30)),
+                "That is a standard deviation about the mean. Here sigma is about zero: nothing is subtracted.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.linalg.norm(errors), np.mean(errors <= 0.30)),
+                "Your sigma grows with the number of frames: divide the sum of the squares by T before the root.",
             ),
             Mistake(
                 lambda errors: (np.mean(errors), np.sqrt(np.mean(errors**2)), np.mean(errors <= 0.30)),

@@ -27,7 +27,7 @@ from course_lib.lessons.paths import data_path
 FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
 DEPTH_LIMITS = (0.0, 10.0)  # metres: the range of the camera
 _HALF_WIDTHS = {"x": 1.5, "y": 0.6, "yaw": 15.0}  # metres, metres, degrees about the true pose
-_STEPS = {"x": 0.05, "y": 0.05, "yaw": 0.5}
+_STEPS = {"x": 0.05, "y": 0.01, "yaw": 0.1}
 _UNITS = {"x": "m", "y": "m", "yaw": "degrees"}
 _WRONG_START = -1.2  # metres along x, where the panel begins
 

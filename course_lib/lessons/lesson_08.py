@@ -29,8 +29,9 @@ from course_lib.lessons.stored_runs import StoredRun, over_seeds, stored_runs, t
 __all__ = ["over_seeds", "stored_runs", "table_1"]  # for the notebook: read and print the stored seeds
 
 STRETCH = range(60, 84)  # frames that are localized live: a good two metres of the run (chosen)
-# Where the panel's table is read off, metres from the true x: finely near it, where the hill is steep.
-OFFSETS = np.unique(np.round(np.concatenate([np.arange(-2.6, 2.7, 0.3), np.arange(-0.4, 0.41, 0.05)]), 2))
+# Where the panel's table is read off, metres from the true x: finely near it, where the hill is steep, and far back,
+# where a filter that is lost falls behind.
+OFFSETS = np.unique(np.round(np.r_[-5.4:-2.5:0.4, -2.6:2.7:0.3, -0.4:0.41:0.05], 2))
 _TABLE_SIZE = (44, 36)  # pixels of the panel's images: a sixteenth, so that its table is made in seconds
 
 
