@@ -216,8 +216,8 @@ def along_panel() -> Panel:
         run = localize_along(table, int(n_particles), sigma_x, float(beta), start_error, int(seed))
         estimate.set_data(frames, run.x)
         shown = (
-            np.maximum(run.timed.errors, 0.002),
-            np.maximum(run.nearest.errors, 0.002),
+            np.maximum(run.timed.errors, 0.01),
+            np.maximum(run.nearest.errors, 0.01),
             run.scores,
             run.best_weights,
         )
