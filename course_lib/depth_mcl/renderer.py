@@ -15,7 +15,7 @@ import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.geometry import as_states, optical_pose
+from course_lib.geometry import as_states, is_rotation, optical_pose
 
 # Pixels of one off-screen window: 200 tiles of the SR4000, about 80 MB with colour and depth.
 MAX_BATCH_PIXELS = 200 * 176 * 144
@@ -47,12 +47,12 @@ class DepthRenderer:
         *,
         max_batch_pixels: int = MAX_BATCH_PIXELS,
     ) -> None:
-        if max_batch_pixels < 1:
-            raise ValueError(f"max_batch_pixels must be at least 1; got {max_batch_pixels}")
+        if int(max_batch_pixels) != max_batch_pixels or max_batch_pixels < 1:
+            raise ValueError(f"max_batch_pixels must be a whole number, at least 1; got {max_batch_pixels!r}")
         self.scene_map = scene_map
         self.camera = camera
         self.backend = backend
-        batch_size = max(1, max_batch_pixels // (camera.width * camera.height))
+        batch_size = max(1, int(max_batch_pixels) // (camera.width * camera.height))
         if backend == "vtk":
             from course_lib.depth_mcl.vtk_backend import VtkBackend
 
@@ -84,6 +84,8 @@ class DepthRenderer:
         poses = np.array(camera_to_world, dtype=np.float64)
         if poses.ndim != 3 or poses.shape[1:] != (4, 4):
             raise ValueError(f"camera_to_world must have shape (N, 4, 4); got {poses.shape}")
+        if not (np.isfinite(poses).all() and is_rotation(poses[:, :3, :3]).all()):
+            raise ValueError("camera_to_world must hold rigid transforms: finite, with a rotation in the upper left")
         poses[:, :3, 3] -= self.scene_map.origin
         images = np.empty((len(poses), *self.camera.shape), dtype=np.float32)
         for start in range(0, len(poses), self.batch_size):

@@ -30,9 +30,12 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 # The least that OpenGL 4.1 promises for a side of a framebuffer is 16,384 pixels; half of it is promised everywhere.
 MAX_WINDOW_SIDE = 8192
 
+# Each tile costs VTK some 40 kB, however small its image, and is kept for the next frame.
+MAX_TILES = 1000
+
 CURE = (
     "On Debian or Ubuntu: apt-get install libegl1 libgl1-mesa-dri libgl1 (`python3 course.py check` tells what is "
-    'missing). Without OpenGL, DepthRenderer(..., backend="ray") gives the same images by ray casting, more slowly'
+    'missing). Without OpenGL, ray casting gives the same images: DepthRenderer(..., backend="ray"), or --backend ray'
 )
 
 
@@ -46,6 +49,7 @@ class VtkBackend:
                 f"({MAX_WINDOW_SIDE} on a side): use camera.resized(...)"
             )
         self.camera = camera
+        batch_size = min(batch_size, MAX_TILES)
         self._columns = max(1, min(MAX_WINDOW_SIDE // camera.width, int(np.ceil(np.sqrt(batch_size)))))
         self._n_tiles = min(batch_size, self._columns * (MAX_WINDOW_SIDE // camera.height))
         self._window: vtkRenderWindow | None = None
@@ -73,11 +77,7 @@ class VtkBackend:
             self._prepare_tiles(len(poses[batch]))
             for tile, pose in zip(self._tiles, poses[batch], strict=False):
                 _place(tile.GetActiveCamera(), pose)
-                tile.DrawOn()
-            self._window.Render()
-            self._read_tiles(out[batch])
-            for tile in self._tiles:
-                tile.DrawOff()
+            self._draw_and_read(self._tiles[: len(poses[batch])], out[batch])
 
     def render_points(self, points: np.ndarray) -> np.ndarray:
         """Depth image `(H, W)` of points `(M, 3)` in the optical frame, through the same z-buffer; NaN where none."""
@@ -90,11 +90,8 @@ class VtkBackend:
         vertices.ImportLegacyFormat(numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
         self._points_data.SetVerts(vertices)
         self._points_data.Modified()
-        self._points_tile.DrawOn()
-        self._window.Render()
         image = np.empty(self.camera.shape, dtype=np.float32)
-        self._read_tiles(image[None])
-        self._points_tile.DrawOff()
+        self._draw_and_read([self._points_tile], image[None])
         image[np.isinf(image)] = np.nan
         return image
 
@@ -183,6 +180,18 @@ class VtkBackend:
             self._map_data.SetPolys(cells)
             self._map_data.Modified()
             self._drawn_chunks = visible
+
+    def _draw_and_read(self, tiles: list[vtkRenderer], out: np.ndarray) -> None:
+        """Draws just these tiles and fills `out` `(n, H, W)` from them."""
+        try:
+            for tile in tiles:
+                tile.DrawOn()
+            self._window.Render()
+            self._read_tiles(out)
+        finally:
+            # Also after Ctrl-C: the map's first tile and the points' tile cover the same pixels.
+            for tile in tiles:
+                tile.DrawOff()
 
     def _read_tiles(self, out: np.ndarray) -> None:
         """Fills `out` `(n, H, W)` from the first n tiles: the window's z-buffer read once, cut up and linearized."""

@@ -169,15 +169,49 @@ def test_the_same_states_give_the_same_bytes(backend, rng):
         assert first.render(states).tobytes() == second.render(states).tobytes()
 
 
-def test_leaving_out_what_no_view_can_see_changes_no_pixel(rng):
-    """Chunks are left out per batch: alone, together, and in another batch every view shows the same."""
+def test_leaving_out_what_no_view_can_see_changes_no_pixel(rng, monkeypatch):
     scene, states = random_triangles(3000, rng, spread=20.0), random_states(16, rng, spread=9.0)
     with DepthRenderer(scene, SMALL, "vtk") as renderer:
-        together = renderer.render(states)
-        alone = np.concatenate([renderer.render(state) for state in states])
-    hit = np.isfinite(together) & np.isfinite(alone)
-    assert np.mean(np.isfinite(together) == np.isfinite(alone)) > 0.9995
-    assert np.mean(np.abs(together[hit] - alone[hit]) < 1e-4 * together[hit] ** 2) > 0.9995
+        culled = [renderer.render(state) for state in states]
+        monkeypatch.setattr(MeshChunks, "visible", lambda self, camera, poses: np.ones(len(self.centers), dtype=bool))
+        everything = [renderer.render(state) for state in states]
+    assert np.array_equal(np.concatenate(culled), np.concatenate(everything))
+
+
+def test_a_stopped_render_leaves_no_tile_in_the_way_of_the_measurement(monkeypatch):
+    """Ctrl-C between drawing and reading, as in a stopped notebook cell: tile 0 and the points share their pixels."""
+    points = SMALL.points(np.ones(SMALL.shape))
+    with DepthRenderer(room(), SMALL, "vtk") as renderer:
+        read = type(renderer._backend)._read_tiles
+
+        def stop(self, out):
+            monkeypatch.setattr(type(renderer._backend), "_read_tiles", read)
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr(type(renderer._backend), "_read_tiles", stop)
+        with pytest.raises(KeyboardInterrupt):
+            renderer.render(np.zeros(6))
+        assert np.abs(renderer.render_points(points) - 1.0).max() < HALF_MILLIMETRE
+
+
+def test_ray_casting_without_embree_agrees_with_embree(monkeypatch, rng):
+    scene, states = random_triangles(40, rng), random_states(3, rng)
+    camera = SMALL.resized(16, 12)
+    with DepthRenderer(scene, camera, "ray") as renderer:
+        with_embree = renderer.render(states)
+    monkeypatch.setattr("course_lib.depth_mcl.ray_backend.EmbreeScene", None)
+    with DepthRenderer(scene, camera, "ray") as renderer:
+        without = renderer.render(states)
+        assert "trimesh" in renderer.describe()
+    hit = np.isfinite(with_embree) & np.isfinite(without)
+    assert np.mean(np.isfinite(with_embree) == np.isfinite(without)) > 0.99
+    assert np.mean(np.abs(with_embree[hit] - without[hit]) < HALF_MILLIMETRE) > 0.99
+
+
+@pytest.mark.parametrize("pose", [np.zeros((4, 4)), np.full((4, 4), np.nan), np.diag([1.0, 1.0, -1.0, 1.0])])
+def test_a_pose_that_is_no_pose_is_refused(pose, backend):
+    with DepthRenderer(room(), SMALL, backend) as renderer, pytest.raises(ValueError, match="rigid"):
+        renderer.render_poses(pose[None])
 
 
 def test_a_chunk_that_a_view_can_see_is_never_left_out(rng):
@@ -241,7 +275,9 @@ def test_two_thousand_renders_keep_memory_flat(rng):
         before = process.memory_info().rss
         for _ in range(100):
             renderer.render(states + 0.01 * rng.standard_normal(6))
-        assert process.memory_info().rss - before < 30e6
+            renderer.render_points(rng.uniform([-1, -1, 1], [1, 1, 3], (3000, 3)))
+        # Keeping every one of these 2,000 images would take 25 MB.
+        assert process.memory_info().rss - before < 8e6
 
 
 def test_a_closed_renderer_says_so(backend):
