@@ -71,6 +71,8 @@ def state_from_matrix(matrices: np.ndarray) -> np.ndarray:
     rotation = matrices[..., :3, :3]
     if not is_rotation(rotation).all():
         raise ValueError("the upper left 3 x 3 of every matrix must be a rotation (orthonormal, determinant +1)")
+    if not np.allclose(matrices[..., 3, :], [0, 0, 0, 1]):
+        raise ValueError("the last row of every matrix must be 0 0 0 1")
     states = np.empty((*matrices.shape[:-2], 6))
     cos_pitch = np.hypot(rotation[..., 0, 0], rotation[..., 1, 0])
     locked = cos_pitch < _GIMBAL_LOCK_COSINE

@@ -74,6 +74,8 @@ def test_bad_states_are_named(states, said):
 def test_a_matrix_that_is_no_rotation_is_refused():
     with pytest.raises(ValueError, match="rotation"):
         state_from_matrix(np.diag([1.0, 1.0, -1.0, 1.0]))
+    with pytest.raises(ValueError, match="last row"):
+        state_from_matrix(np.diag([1.0, 1.0, 1.0, 7.0]))
 
 
 @given(st.floats(-1e4, 1e4))

@@ -19,7 +19,7 @@ def valid_pixels(measured: np.ndarray) -> np.ndarray:
 
 
 def paired_pixels(measured: np.ndarray, simulated: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Measured values `(m,)` and the simulated ones `(N, H, W)`, checked, with the mask of pixels to compare `(H, W)`.
+    """The mask of pixels that were measured, `(H, W)`, and the simulated images `(N, H, W)`, both checked.
 
     Raises `DepthImageError` for images of other sizes, or simulated values that are NaN (a miss is `inf`).
     """
@@ -28,6 +28,8 @@ def paired_pixels(measured: np.ndarray, simulated: np.ndarray) -> tuple[np.ndarr
         raise DepthImageError(
             f"measured must have shape (H, W) and simulated (N, H, W); got {measured.shape} and {simulated.shape}"
         )
+    if simulated.size and np.isnan(simulated.min()):
+        raise DepthImageError("simulated images must not hold NaN: a pixel where nothing is hit is inf")
     return valid_pixels(measured), simulated
 
 
@@ -88,7 +90,8 @@ def weights(l_normalized: np.ndarray, beta: float = BETA) -> np.ndarray:
         raise ValueError(f"beta must be a positive number; got {beta!r}")
     if values.ndim != 1 or len(values) == 0 or not ((values >= 0) & (values <= 1)).all():
         raise ValueError("l_normalized must be a non-empty array (N,) of numbers from 0 to 1 (normalize_likelihood)")
-    # Relative to the best particle: exp() of all of them could vanish, were the best not at 1.
-    exponent = -(((values - 1) / beta) ** 2)
-    w = np.exp(exponent - exponent.max())
+    # Relative to the best particle: exp() of all of them could vanish, were the best not at 1. (a^2 - b^2) / beta^2.
+    below, best = 1 - values, 1 - values.max()
+    with np.errstate(over="ignore"):
+        w = np.exp(-(below - best) / beta * ((below + best) / beta))
     return w / w.sum()

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
+
+from course_lib.geometry import is_rotation
 
 # Below this area (square metres) a triangle has no inside that a pixel centre could hit.
 _DEGENERATE_AREA = 1e-16
@@ -25,7 +28,8 @@ class SceneMap:
     """
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
-        vertices = np.asarray(vertices, dtype=np.float64)
+        # A copy: the map is frozen below, and the caller's array must neither freeze with it nor change it.
+        vertices = np.array(vertices, dtype=np.float64)
         faces = np.asarray(faces)
         if vertices.ndim != 2 or vertices.shape[-1] != 3 or len(vertices) == 0:
             raise SceneMapError(f"the map needs vertices of shape (V, 3), V at least 3; got {vertices.shape}")
@@ -59,8 +63,8 @@ class SceneMap:
     def load(cls, path: str | Path) -> SceneMap:
         """Map from any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
 
-        Raises `FileNotFoundError` where there is no file, `SceneMapError` where it cannot be read or holds no
-        triangles.
+        Raises `FileNotFoundError` where there is no file, `SceneMapError` where it cannot be read, holds no triangles,
+        or fewer than its own header announces (PLY, OFF; an OBJ file has no header, so a truncated one goes unnoticed).
         """
         import trimesh
 
@@ -78,15 +82,20 @@ class SceneMap:
                 f"{path} cannot be read as a mesh ({type(error).__name__}: {error}): is it complete, and PLY, OBJ, STL "
                 "or GLB?"
             ) from error
+        if len(vertices) == 0:
+            raise SceneMapError(f"{path} holds neither vertices nor triangles: is the file complete?")
         if faces is None or len(faces) == 0:
             raise SceneMapError(f"{path} holds no triangles ({len(vertices)} vertices): mesh it first")
+        announced = _announced_faces(path)
+        if announced is not None and len(faces) < announced:
+            raise SceneMapError(f"{path} announces {announced} faces and holds {len(faces)}: the file is not complete")
         return cls(vertices, faces)
 
     def transformed(self, matrix: np.ndarray) -> SceneMap:
         """The map moved by a rigid transform `(4, 4)`."""
         matrix = np.asarray(matrix, dtype=np.float64)
-        if matrix.shape != (4, 4):
-            raise ValueError(f"matrix must have shape (4, 4); got {matrix.shape}")
+        if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or not is_rotation(matrix[:3, :3]):
+            raise ValueError("matrix must be a rigid transform (4, 4): finite, with a rotation in the upper left")
         return SceneMap(self.vertices @ matrix[:3, :3].T + matrix[:3, 3], self.faces)
 
     def contains(self, positions: np.ndarray, margin: float = 0.0) -> np.ndarray:
@@ -101,3 +110,16 @@ class SceneMap:
     def __repr__(self) -> str:
         size = self.bounds[1] - self.bounds[0]
         return f"SceneMap({len(self.faces)} triangles, {size[0]:.1f} x {size[1]:.1f} x {size[2]:.1f} m)"
+
+
+def _announced_faces(path: Path) -> int | None:
+    """Number of faces that the header of a PLY or OFF file announces; None where there is no such header."""
+    with path.open("rb") as file:
+        header = file.read(1 << 16)
+    if header.startswith(b"ply"):
+        match = re.search(rb"^element face (\d+)", header.split(b"end_header")[0], re.M)
+        return int(match.group(1)) if match else None
+    if header.startswith(b"OFF"):
+        numbers = re.findall(rb"\d+", re.sub(rb"#.*", b"", header[3:]))
+        return int(numbers[1]) if len(numbers) > 1 else None
+    return None

@@ -17,7 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.geometry import is_rotation
+from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.geometry import is_rotation, rotation_mean
 
 UP_AXES = {
     "x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1),
@@ -96,13 +97,10 @@ def read_sequence(folder: str | Path) -> DepthSequence:
     if intrinsics.shape != (3, 3):
         raise SequenceError(f"{folder / 'intrinsics.txt'} must hold a 3 x 3 matrix; got {intrinsics.shape}")
     image_shape = read_depth_png(images[frames[0]]).shape
-    height, width = image_shape
-    if not (-0.5 <= intrinsics[0, 2] <= width - 0.5 and -0.5 <= intrinsics[1, 2] <= height - 0.5):
-        raise SequenceError(
-            f"intrinsics.txt puts the principal point at ({intrinsics[0, 2]:g}, {intrinsics[1, 2]:g}), outside the "
-            f"images of {width} x {height} pixels: it is for another image size; scale fx, cx by the width and fy, cy "
-            "by the height"
-        )
+    try:
+        DepthCamera.from_matrix(intrinsics, width=image_shape[1], height=image_shape[0])
+    except ValueError as error:
+        raise SequenceError(f"{folder / 'intrinsics.txt'}: {error}") from error
     times = None
     if (folder / "groundtruth.txt").is_file():
         times, timed_poses = read_tum(folder / "groundtruth.txt")
@@ -142,8 +140,12 @@ def write_sequence(
         raise ValueError(f"{len(times)} times for {len(frames)} frames: must agree")
     if up is not None and up not in UP_AXES:
         raise ValueError(f"up must be one of {', '.join(UP_AXES)} or None; got {up!r}")
-    if (folder / "poses.txt").exists():
-        raise ValueError(f"{folder} already holds a recording: give a new folder, or delete that one first")
+    if list(frames) != sorted(set(frames)):
+        raise ValueError("frame numbers must ascend, each once")
+    if len({np.shape(depth) for depth in depths}) > 1:
+        raise ValueError(f"images must have one size; got {sorted({np.shape(depth) for depth in depths})}")
+    if (folder / "poses.txt").exists() or any((folder / "depth").glob("*.png")):
+        raise ValueError(f"{folder} already holds a recording, or part of one: give a new folder, or delete it first")
     (folder / "depth").mkdir(parents=True, exist_ok=True)
     for frame, depth in zip(frames, depths, strict=True):
         write_depth_png(folder / "depth" / f"{frame:06d}.png", depth)
@@ -245,6 +247,11 @@ def _depth_files(folder: Path) -> dict[int, Path]:
         digits = re.search(r"\d+", path.name)
         if digits is None:
             raise SequenceError(f"{path.name} in {folder / 'depth'} has no frame number in its name")
+        if int(digits.group()) in files:
+            raise SequenceError(
+                f"{files[int(digits.group())].name} and {path.name} in {folder / 'depth'} would both be frame "
+                f"{int(digits.group())}: the frame number must be the first number in the name"
+            )
         files[int(digits.group())] = path
     if not files:
         raise SequenceError(f"{folder / 'depth'} holds no PNG images")
@@ -262,6 +269,8 @@ def _read_poses(path: Path) -> tuple[list[int], np.ndarray]:
     if not good.all():
         frame = int(rows[np.argmin(good), 0])
         raise SequenceError(f"{path}: the matrix of frame {frame} is not rigid (a rotation, and 0 0 0 1 below)")
+    # Files hold few digits: the nearest rotation makes good what rounding took.
+    poses[:, :3, :3] = [rotation_mean(rotation[None]) for rotation in poses[:, :3, :3]]
     return rows[:, 0].astype(int).tolist(), poses
 
 

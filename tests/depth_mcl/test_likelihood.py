@@ -1,5 +1,7 @@
 """Laws of likelihood and weights, eqs (8) to (11), and of Fallon's scoring."""
 
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -117,6 +119,33 @@ def test_the_weight_is_the_papers_formula():
 def test_the_order_of_particles_does_not_matter(rng):
     values, order = rng.random(50), rng.permutation(50)
     assert weights(normalize_likelihood(values))[order] == pytest.approx(weights(normalize_likelihood(values[order])))
+
+
+def test_a_simulated_nan_is_named_by_every_rule():
+    measured, simulated = np.full((1, 2), 2.0), np.array([[[2.0, np.nan]]])
+    for rule in (likelihood, depth_log_likelihood, disparity_log_likelihood):
+        with pytest.raises(DepthImageError, match="inf"):
+            rule(measured, simulated)
+
+
+def test_a_tiny_beta_leaves_the_best_particle_all_the_weight():
+    assert weights(np.array([0.0, 0.5, 1.0]), 1e-200) == pytest.approx([0, 0, 1])
+    assert weights(np.array([0.0, 0.5]), 1e-200) == pytest.approx([0, 1])
+
+
+def test_fallons_score_is_a_mean_over_the_pixels_that_it_compares():
+    scores = [
+        fallon_weighting("disparity")(np.array([z]), np.array([[[2.0] * len(z)]])).scores[0]
+        for z in ([2.0], [2.0, np.nan], [2.0, 0.0, 0.3])
+    ]
+    assert scores == pytest.approx([scores[0]] * 3)
+
+
+def test_weighting_rules_can_be_sent_to_another_process():
+    z, simulated = np.full((2, 2), 2.0), np.full((3, 2, 2), 2.1)
+    for rule in (paper_weighting(0.2, 0.05), fallon_weighting("depth"), fallon_weighting("disparity")):
+        again = pickle.loads(pickle.dumps(rule))
+        assert np.array_equal(again(z, simulated).weights, rule(z, simulated).weights)
 
 
 @pytest.mark.parametrize("beta", [0, -1, np.nan])

@@ -158,6 +158,15 @@ def test_filterpy_draws_the_same_indices_from_the_same_random_numbers(scheme, th
     assert np.array_equal(theirs(w), resample(w, np.random.default_rng(9), scheme))
 
 
+def test_filterpys_multinomial_resampling_draws_the_same_particles(monkeypatch, rng):
+    w = rng.random(200)
+    w /= w.sum()
+    numbers = np.random.default_rng(9)
+    monkeypatch.setattr(monte_carlo.resampling, "random", lambda *n: numbers.random(*n))
+    theirs = np.sort(monte_carlo.multinomial_resample(w))
+    assert np.array_equal(theirs, resample(w, np.random.default_rng(9), "multinomial"))
+
+
 def test_filterpys_residual_resampling_starves_light_particles_and_ours_does_not(rng, monkeypatch):
     """The reason why it is no oracle here: it forms w - floor(N w) where N w - floor(N w) is meant."""
     w = np.array([0.55] + [0.45 / 9] * 9)

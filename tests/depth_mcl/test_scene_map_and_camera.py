@@ -48,6 +48,20 @@ def test_a_truncated_file_is_named(tmp_path):
         SceneMap.load(path)
 
 
+@pytest.mark.parametrize("share", [0.8, 0.95, 0.999])
+@pytest.mark.parametrize("suffix", ["ply", "off"])
+def test_a_truncated_text_file_is_named(suffix, share, tmp_path):
+    """trimesh reads what is there; the header tells what should be."""
+    path = tmp_path / f"map.{suffix}"
+    ball = trimesh.creation.icosphere()
+    text = ball.export(file_type="ply", encoding="ascii") if suffix == "ply" else ball.export(file_type="off").encode()
+    path.write_bytes(text)
+    assert len(SceneMap.load(path)) == len(ball.faces)
+    path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
+    with pytest.raises(SceneMapError, match=rf"map\.{suffix}"):
+        SceneMap.load(path)
+
+
 def test_a_file_that_is_no_mesh_is_named(tmp_path):
     path = tmp_path / "map.ply"
     path.write_text("hello")
@@ -68,8 +82,18 @@ def test_a_missing_file_is_named(tmp_path):
 
 
 def test_a_map_cannot_be_changed_behind_the_renderer():
+    given = np.array(TRIANGLE)
+    scene = SceneMap(given, np.array([[0, 1, 2]]))
     with pytest.raises(ValueError, match="read-only"):
-        room().vertices[0] = 0
+        scene.vertices[0] = 0
+    given[0] = 7.0
+    assert (scene.vertices[0] == 0).all()
+
+
+def test_a_map_is_only_moved_rigidly():
+    assert np.allclose(room(2.0).transformed(np.eye(4)).vertices, room(2.0).vertices)
+    with pytest.raises(ValueError, match="rigid"):
+        room().transformed(np.diag([2.0, 2, 2, 1]))
 
 
 def test_contains_has_a_margin():
@@ -134,8 +158,9 @@ def test_a_camera_that_cannot_be_is_named(change):
 def test_intrinsics_for_another_image_size_are_named():
     matrix = np.array([[585.0, 0, 319.5], [0, 585, 239.5], [0, 0, 1]])
     assert DepthCamera.from_matrix(matrix, 640, 480).cx == 319.5
-    with pytest.raises(ValueError, match="another image size"):
-        DepthCamera.from_matrix(matrix, 160, 120)
+    for width, height in ((160, 120), (320, 240), (1280, 960), (2560, 1920)):
+        with pytest.raises(ValueError, match="another image size"):
+            DepthCamera.from_matrix(matrix, width, height)
 
 
 @pytest.mark.parametrize("matrix", [np.eye(4), np.full((3, 3), np.nan), [[500, 3, 80], [0, 500, 60], [0, 0, 1]]])

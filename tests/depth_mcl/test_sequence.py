@@ -14,7 +14,7 @@ from course_lib.depth_mcl.sequence import (
     write_sequence,
     write_tum,
 )
-from course_lib.geometry import optical_pose
+from course_lib.geometry import optical_pose, state_from_optical_pose
 
 from .shapes import SMALL, random_states
 
@@ -61,6 +61,11 @@ def test_nothing_is_written_where_lengths_differ_or_a_recording_stands(folder, t
     with pytest.raises(ValueError, match="agree"):
         write_sequence(tmp_path / "new", SMALL.matrix, [1, 2], [np.ones(SMALL.shape)], np.eye(4)[None])
     assert not (tmp_path / "new").exists()
+    for frames, sizes, said in (([2, 1], [(4, 4), (4, 4)], "ascend"), ([1, 2], [(4, 4), (4, 5)], "one size")):
+        with pytest.raises(ValueError, match=said):
+            write_sequence(tmp_path / "new", SMALL.matrix, frames, [np.ones(s) for s in sizes], [np.eye(4)] * 2)
+        assert not (tmp_path / "new").exists()
+    (folder / "poses.txt").unlink()  # what an interrupted write leaves
     with pytest.raises(ValueError, match="already"):
         write_sequence(folder, SMALL.matrix, [1], [np.ones(SMALL.shape)], np.eye(4)[None])
 
@@ -112,6 +117,21 @@ def test_a_missing_file_is_named(folder, name):
     (folder / name).unlink()
     with pytest.raises(FileNotFoundError, match=name):
         read_sequence(folder)
+
+
+def test_two_images_of_one_frame_number_are_named(folder):
+    for path in sorted((folder / "depth").glob("*.png")):
+        path.rename(path.with_name("cam0_" + path.name))
+    with pytest.raises(SequenceError, match="first number in the name"):
+        read_sequence(folder)
+
+
+def test_poses_written_with_few_digits_are_rotations_again(folder):
+    rows = np.loadtxt(folder / "poses.txt")
+    np.savetxt(folder / "poses.txt", rows, fmt=["%d"] + ["%.4f"] * 16)
+    (folder / "groundtruth.txt").unlink()
+    states = state_from_optical_pose(read_sequence(folder).camera_to_world)
+    assert np.allclose(optical_pose(states), rows[:, 1:].reshape(-1, 4, 4), atol=2e-4)
 
 
 def test_a_missing_folder_is_named(tmp_path):
