@@ -76,7 +76,7 @@ def run_sequence(
     noise: str = "euler",
     weighting: WeightingRule | None = None,
     coarse: bool = False,
-    up: str = "z",
+    up: str | None = None,
     frames: int | None = None,
     backend: str = "vtk",
     far: float = FAR,
@@ -84,11 +84,11 @@ def run_sequence(
 ) -> Run:
     """Localizes a recording, starting at its first pose, and gives one estimate a frame.
 
-    up: the axis of map and recording that points up; the filter works in a world turned to z up. coarse: compare
-    20 x 15 pixels instead of all. frames: only so many from the start. progress: wraps the frame indices (tqdm).
-    Other arguments as in `MonteCarloLocalizer` and `DepthRenderer`.
+    up: the axis of map and recording that points up (None: what the recording says, else z); the filter works in a
+    world turned to z up. coarse: compare 20 x 15 pixels instead of all. frames: only so many from the start.
+    progress: wraps the frame indices (tqdm). Other arguments as in `MonteCarloLocalizer` and `DepthRenderer`.
     """
-    to_z_up = rotation_to_z_up(up)
+    to_z_up = rotation_to_z_up(up or sequence.up or "z")
     camera = used = sequence_camera(sequence, far=far)
     if coarse:
         used = camera.resized(COARSE_WIDTH, COARSE_HEIGHT)

@@ -10,10 +10,12 @@ independent of its neighbours: differences between particles grow in proportion,
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from scipy.stats import norm
 
-from course_lib.depth_mcl.likelihood import paired_pixels
+from course_lib.depth_mcl.likelihood import paired_pixels, valid_pixels
 from course_lib.depth_mcl.localizer import Weighting, WeightingRule
 
 COARSE_WIDTH, COARSE_HEIGHT = 20, 15  # pixels, the size the constants below were made for
@@ -59,6 +61,12 @@ def normalized_disparity(z: np.ndarray) -> np.ndarray:
         return np.clip(f / (f - n) - f * n / ((f - n) * np.asarray(z, dtype=np.float64)), 0.0, 1.0)
 
 
+def disparity_pixels(measured: np.ndarray) -> np.ndarray:
+    """Which pixels of a measured image the disparity form compares: measured, and within [n, f]."""
+    z = np.nan_to_num(np.asarray(measured, dtype=np.float64))
+    return valid_pixels(measured) & (z >= DISPARITY_NEAR) & (z <= DISPARITY_FAR)
+
+
 def disparity_log_likelihood(measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
     """Log-likelihood `(N,)` from differences of normalized disparity.
 
@@ -68,10 +76,9 @@ def disparity_log_likelihood(measured: np.ndarray, simulated: np.ndarray) -> np.
     rho = 0.999. Measured depths outside [n, f] = [0.7, 20] m are masked. Shapes as in `depth_log_likelihood`.
     Source: Point Cloud Library, module simulation, scoring in disparity with a truncated normal.
     """
-    valid, simulated = paired_pixels(measured, simulated)
-    z = np.nan_to_num(np.asarray(measured, dtype=np.float64))
-    valid = valid & (z >= DISPARITY_NEAR) & (z <= DISPARITY_FAR)
-    measured_disparity = normalized_disparity(z[valid])
+    _, simulated = paired_pixels(measured, simulated)
+    valid = disparity_pixels(measured)
+    measured_disparity = normalized_disparity(np.asarray(measured)[valid])
     result = np.empty(len(simulated))
     s = DISPARITY_SIGMA
     for i, image in enumerate(simulated):
@@ -89,14 +96,21 @@ def weights_from_log_likelihood(log_likelihood: np.ndarray) -> np.ndarray:
     return w / w.sum()
 
 
+# Form -> (log-likelihood of every particle, which pixels it compares).
+_FORMS = {
+    "depth": (depth_log_likelihood, valid_pixels),
+    "disparity": (disparity_log_likelihood, disparity_pixels),
+}
+
+
 def fallon_weighting(form: str = "depth") -> WeightingRule:
     """Weighting rule for `MonteCarloLocalizer`: "depth" or "disparity". The score is the log-likelihood a pixel."""
-    forms = {"depth": depth_log_likelihood, "disparity": disparity_log_likelihood}
-    if form not in forms:
+    if form not in _FORMS:
         raise ValueError(f"form must be 'depth' or 'disparity'; got {form!r}")
+    return partial(_weigh, form)
 
-    def weigh(measured: np.ndarray, simulated: np.ndarray) -> Weighting:
-        values = forms[form](measured, simulated)
-        return Weighting(weights_from_log_likelihood(values), values / max(1, np.isfinite(measured).sum()))
 
-    return weigh
+def _weigh(form: str, measured: np.ndarray, simulated: np.ndarray) -> Weighting:
+    log_likelihood, compared_pixels = _FORMS[form]
+    values = log_likelihood(measured, simulated)
+    return Weighting(weights_from_log_likelihood(values), values / max(1, compared_pixels(measured).sum()))

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -69,11 +70,12 @@ def paper_weighting(alpha: float = ALPHA, beta: float = BETA) -> WeightingRule:
     The score is l_(i) divided by the number of pixels compared: 1 for perfect agreement, whatever the camera saw.
     """
 
-    def weigh(measured: np.ndarray, simulated: np.ndarray) -> Weighting:
-        l = likelihood(measured, simulated, alpha)  # noqa: E741 - the paper's letter
-        return Weighting(weights(normalize_likelihood(l), beta), l / max(1, valid_pixels(measured).sum()))
+    return partial(_weigh, alpha, beta)
 
-    return weigh
+
+def _weigh(alpha: float, beta: float, measured: np.ndarray, simulated: np.ndarray) -> Weighting:
+    l = likelihood(measured, simulated, alpha)  # noqa: E741 - the paper's letter
+    return Weighting(weights(normalize_likelihood(l), beta), l / max(1, valid_pixels(measured).sum()))
 
 
 class Estimate(NamedTuple):
@@ -82,7 +84,7 @@ class Estimate(NamedTuple):
     state: np.ndarray
     """`(6,)` the weighted mean of the particles."""
     covariance: np.ndarray
-    """`(6, 6)` of the weighted particles about it, metres and radians."""
+    """`(6, 6)` of the weighted particles about it, metres and radians; with tangent noise about the body's own axes."""
     score: float
     """Raw score of the best particle; unlike its weight it falls when the filter is lost."""
     ess: float
@@ -98,9 +100,9 @@ class Estimate(NamedTuple):
 class MonteCarloLocalizer:
     """Particle filter that compares a depth camera's image with renders of the map.
 
-    renderer: draws the map for the camera. sigma: `(6,)` system noise a frame, metres and radians; 0 keeps a component
-    at its initial value (the paper's experiment estimates x, y and yaw). noise: "euler" adds it to the angles as
-    eq. (5) does; "tangent" turns about the body's own axes, for all six degrees of freedom. weighting: how particles
+    renderer: draws the map for the camera. sigma: `(6,)` system noise a frame, metres and radians. noise: "euler" adds
+    it to the angles as eq. (5) does, and 0 keeps a component at its initial value (the paper's experiment estimates x,
+    y and yaw); "tangent" turns about the body's own axes, for all six degrees of freedom. weighting: how particles
     are weighed; None for the paper's rule with alpha (metres) and beta. seed: of the one generator that all draws come
     from.
     Raises `ValueError` for zero particles, a bad sigma, alpha, beta, noise or resampling scheme.
@@ -134,7 +136,9 @@ class MonteCarloLocalizer:
         self.noise = noise
         self.resampling = resampling
         self.weighting = weighting or paper_weighting(alpha, beta)
-        self.rng = np.random.default_rng(seed)
+        if int(seed) != seed or seed < 0:
+            raise ValueError(f"seed must be a whole number, 0 or more; got {seed!r}")
+        self.rng = np.random.default_rng(int(seed))
         self.particles: np.ndarray | None = None
 
     def initialize(self, state0: np.ndarray) -> None:

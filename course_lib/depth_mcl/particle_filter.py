@@ -67,7 +67,8 @@ def propagate_tangent(particles: np.ndarray, sigma: np.ndarray, rng: np.random.G
 
     t' = t + v,  R' = R Exp(w),  (v, w) ~ N(0, sigma^2): v along the world's axes, w about the body's own axes.
     The paper's eq. (5) adds noise to roll, pitch and yaw, which near pitch = +-90 degrees (gimbal lock) turns a camera
-    by other amounts, about other axes, than sigma says. Same arguments and errors as `propagate`.
+    by other amounts, about other axes, than sigma says. Arguments and errors as in `propagate`; sigma's last three are
+    about the body's axes x, y, z, so a single 0 there keeps no single angle fixed.
     """
     particles, sigma = as_states(particles, "particles"), checked_sigma(sigma)
     noise = sigma * rng.standard_normal(particles.shape)

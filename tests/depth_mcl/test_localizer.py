@@ -119,7 +119,8 @@ def test_the_score_falls_when_the_filter_is_lost_though_the_best_weight_does_not
     home_estimate, lost_estimate = at_home.step(depth), lost.step(depth)
     assert home_estimate.score > 0.8
     assert lost_estimate.score < 0.5
-    assert lost_estimate.weights.max() >= home_estimate.weights.max() / 40
+    # Among its own particles the lost filter's best still outweighs the others by far.
+    assert lost_estimate.ess < 20
 
 
 @pytest.mark.parametrize(
@@ -134,6 +135,7 @@ def test_the_score_falls_when_the_filter_is_lost_though_the_best_weight_does_not
         ({"beta": -1.0}, "beta"),
         ({"noise": "quaternion"}, "noise"),
         ({"resampling": "lottery"}, "scheme"),
+        ({"seed": -1}, "seed"),
     ],
 )
 def test_bad_settings_are_named_before_the_first_frame(renderer, arguments, said):
