@@ -2,6 +2,7 @@
 
 A command module has `add_arguments(parser)` and `run(arguments) -> int` (the exit code), and its first docstring line
 is the description that `--help` shows. It is imported only when it is called: the list of commands never waits for VTK.
+A module with `join_words(words)` may mend what argparse would misread (`--up -y`).
 A module that sets `PASSES_ARGUMENTS_ON = True` gets what its parser does not know as `arguments.passed_on`, a list.
 """
 
@@ -84,6 +85,7 @@ def parse(name: str, module, words: list[str]) -> argparse.Namespace:
     description = (module.__doc__ or "").strip().split("\n")[0]
     parser = argparse.ArgumentParser(prog=f"course.py {name}", description=description, allow_abbrev=False)
     module.add_arguments(parser)
+    words = module.join_words(words) if hasattr(module, "join_words") else words
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     if not getattr(module, "PASSES_ARGUMENTS_ON", False):
         return parser.parse_args(words)

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
+    from matplotlib.figure import Figure
+
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import DepthSequence
 
@@ -35,12 +37,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs all rows of the table; 0 when every one reached the last frame."""
+    from course_lib.commands.arguments import require_output_folder, require_seed
     from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.experiment import METHODS, path_errors, run_method
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.lessons.paths import data_path
 
+    require_seed(arguments.seed)
+    require_output_folder(arguments.out)
     folder = arguments.data or data_path("corridor")
     sequence = read_sequence(folder / "wagon")
     scene_map, planar_map = SceneMap.load(folder / "map.ply"), SceneMap.load(folder / "planar_map.ply")
@@ -59,12 +64,13 @@ def run(arguments: argparse.Namespace) -> int:
         )
         errors[key] = path_errors(runs[key], sequence)
     summary = summarize(arguments.seed, arguments.particles, runs, errors)
-    write(arguments.out, summary, scene_map, sequence, runs, errors)
+    figures = draw(scene_map, sequence, runs, errors, arguments.backend)
+    written = write(arguments.out, summary, sequence, runs, errors, figures)
     if arguments.json:
         print(json.dumps(summary))
     else:
         print(table_1(summary))
-        print(f"\nWritten to {arguments.out}: " + ", ".join(sorted(path.name for path in arguments.out.iterdir())))
+        print(f"\nWritten to {arguments.out}: " + ", ".join(written))
     return 0
 
 
@@ -100,13 +106,33 @@ def summarize(seed: int, n_particles: int, runs: dict, errors: dict) -> dict:
     }
 
 
-def write(out: Path, summary: dict, scene_map: SceneMap, sequence: DepthSequence, runs: dict, errors: dict) -> None:
-    """Writes numbers (JSON, CSV a row a frame), trajectory (TUM), figures 5 and 6, and the overview."""
+def draw(scene_map: SceneMap, sequence: DepthSequence, runs: dict, errors: dict, backend: str) -> dict[str, Figure]:
+    """Figures 5 and 6 and the overview, by file name."""
+    import numpy as np
+
+    from course_lib.lessons.corridor_figures import figure_5, figure_6, floor_plan
+    from course_lib.lessons.overview_figure import overview_figure
+
+    ours = runs["proposed"]
+    shown = {"ours": "proposed", "Fallon-style, 20 x 15": "fallon"}
+    walls = floor_plan(scene_map.vertices, height=sequence.camera_to_world[0, 2, 3])
+    positions = {name: runs[key].states[:, :2] for name, key in shown.items()}
+    lines = {f"{name}, nearest path": errors[key][0].errors for name, key in shown.items()}
+    lines["ours, timed"] = errors["proposed"][1].errors
+    return {
+        "figure_5.png": figure_5(sequence.path_on_floor, positions, walls),
+        "figure_6.png": figure_6(np.asarray(ours.frames), lines),
+        "overview.png": overview_figure(scene_map, sequence, ours, backend),
+    }
+
+
+def write(
+    out: Path, summary: dict, sequence: DepthSequence, runs: dict, errors: dict, figures: dict[str, Figure]
+) -> list[str]:
+    """Writes numbers (JSON, CSV a row a frame), trajectory (TUM) and figures; the names of the files."""
     import numpy as np
 
     from course_lib.datasets import write_results, write_tum
-    from course_lib.lessons.corridor_figures import figure_5, figure_6, floor_plan
-    from course_lib.lessons.overview_figure import overview_figure
 
     ours = runs["proposed"]
     rows = [
@@ -126,18 +152,9 @@ def write(out: Path, summary: dict, scene_map: SceneMap, sequence: DepthSequence
     write_results(out / "corridor.json", summary, rows)
     times = np.asarray(ours.frames, float) if sequence.times is None else sequence.times[: len(ours.frames)]
     write_tum(out / "trajectory.txt", times, ours.camera_to_world)
-    shown = {"ours": "proposed", "Fallon-style, 20 x 15": "fallon"}
-    walls = floor_plan(scene_map.vertices, height=sequence.camera_to_world[0, 2, 3])
-    positions = {name: runs[key].states[:, :2] for name, key in shown.items()}
-    lines = {f"{name}, nearest path": errors[key][0].errors for name, key in shown.items()}
-    lines["ours, timed"] = errors["proposed"][1].errors
-    figures = {
-        "figure_5.png": figure_5(sequence.path_on_floor, positions, walls),
-        "figure_6.png": figure_6(np.asarray(ours.frames), lines),
-        "overview.png": overview_figure(scene_map, sequence, ours),
-    }
     for name, figure in figures.items():
         figure.savefig(out / name, dpi=130)
+    return [*figures, "corridor.json", "corridor.csv", "trajectory.txt (TUM)"]
 
 
 def table_1(summary: dict) -> str:

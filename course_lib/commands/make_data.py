@@ -9,6 +9,8 @@ import argparse
 import json
 from pathlib import Path
 
+from course_lib.commands.arguments import require_seed
+
 SEED = 4  # the shipped data's
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "corridor"
 
@@ -21,8 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Makes the data and prints the measured numbers; returns the exit code."""
-    if arguments.seed < 0:
-        raise ValueError(f"--seed must be 0 or more; got {arguments.seed}")
+    require_seed(arguments.seed)
     from tqdm import tqdm
 
     from course_lib.worlds.corridor_data import make_corridor_data

@@ -21,6 +21,21 @@ PASSES_ARGUMENTS_ON = True
 # pytest's exit code when it found no test: an empty run proves nothing, so it counts as a failure.
 NO_TESTS = 5
 
+# pytest's options whose value is the next word, which may have the look of a path: `-k data`.
+OPTIONS_WITH_VALUE = (
+    "-k",
+    "-m",
+    "-p",
+    "-c",
+    "-o",
+    "-W",
+    "--deselect",
+    "--ignore",
+    "--rootdir",
+    "--durations",
+    "--junitxml",
+)
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     only = parser.add_mutually_exclusive_group()
@@ -46,8 +61,12 @@ def choose_parts(
     passed_on: list[str], no_notebooks: bool = False, only_notebooks: bool = False
 ) -> dict[str, list[str]]:
     """pytest's arguments for each part that runs: "tests" and "notebooks"; paths in `passed_on` decide which."""
-    paths = [word for word in passed_on if looks_like_a_path(word)]
-    options = [word for word in passed_on if word not in paths]
+    is_path = [
+        looks_like_a_path(word) and (index == 0 or passed_on[index - 1] not in OPTIONS_WITH_VALUE)
+        for index, word in enumerate(passed_on)
+    ]
+    paths = [word for word, chosen in zip(passed_on, is_path, strict=True) if chosen]
+    options = [word for word, chosen in zip(passed_on, is_path, strict=True) if not chosen]
     is_notebook = {
         word: word.split("::")[0].endswith(".ipynb") or (ROOT / word) == ROOT / "notebooks" for word in paths
     }
@@ -62,7 +81,7 @@ def choose_parts(
 
 
 def looks_like_a_path(word: str) -> bool:
-    """Whether an argument names tests to run, and is not an option or an option's value."""
+    """Whether an argument has the look of tests to run."""
     path = word.split("::")[0]
     return not word.startswith("-") and (path.endswith((".py", ".ipynb")) or (ROOT / path).exists())
 

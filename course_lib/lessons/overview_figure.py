@@ -15,14 +15,14 @@ from course_lib.lessons.figures import colour_bar, depth_image, new_figure
 BESIDE = np.array([-0.5, 0.0, 0.0, 0.0, 0.0, np.deg2rad(4.0)])  # from the estimate: half a metre back, four degrees
 
 
-def overview_figure(scene_map: SceneMap, sequence: DepthSequence, run: Run) -> Figure:
+def overview_figure(scene_map: SceneMap, sequence: DepthSequence, run: Run, backend: str = "vtk") -> Figure:
     """The middle frame of a run in x, y, yaw: the measured image, the map from the estimate, the map from beside it.
 
     Agreement is eq. (8) divided by the number of measured pixels, 0 to 1.
     """
     index = len(run.frames) // 2
     camera = sequence_camera(sequence)
-    with DepthRenderer(scene_map, camera) as renderer:
+    with DepthRenderer(scene_map, camera, backend) as renderer:
         measured = renderer.render_points(camera.points(sequence.depth(index)))
         simulated = renderer.render(np.stack([run.states[index], run.states[index] + BESIDE]))
     agreement = likelihood(measured, simulated) / max(1, valid_pixels(measured).sum())

@@ -2,6 +2,9 @@
 
 import csv
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -59,3 +62,32 @@ def test_the_filter_keeps_to_the_path(demo):
 def test_a_folder_without_the_data_is_named(tmp_path, capsys):
     assert main(["demo", "corridor", "--data", str(tmp_path)]) == 2
     assert "no sequence" in capsys.readouterr().err
+
+
+def test_another_process_with_the_same_seed_writes_the_same_bytes(tmp_path):
+    words = ["demo", "corridor", "--seed", "6", "--frames", "3", "--particles", "15", "--out"]
+    for name in ("a", "b"):
+        code = f"from course_lib.cli import main; raise SystemExit(main({[*words, str(tmp_path / name)]!r}))"
+        subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+    for name in ("corridor.csv", "trajectory.txt"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_without_opengl_ray_casting_runs_it_to_the_last_figure(tmp_path):
+    words = [
+        "demo",
+        "corridor",
+        "--frames",
+        "2",
+        "--particles",
+        "8",
+        "--backend",
+        "ray",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    environment = os.environ | {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "DISPLAY": ""}
+    code = f"from course_lib.cli import main; raise SystemExit(main({words!r}))"
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "overview.png").exists()

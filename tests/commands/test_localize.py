@@ -83,7 +83,7 @@ def test_a_turned_world_gives_the_same_errors(corridor_folder, tmp_path, capsys,
     depths = [run.depth(i) for i in range(3)]
     write_sequence(tmp_path / "run", run.intrinsics, run.frames[:3], depths, turn @ run.camera_to_world[:3])
     words = arguments(tmp_path, "run", dof="xyyaw", particles=80, json=True)
-    assert main([*words, f"--up={up}"]) == 0
+    assert main([*words, "--up", up]) == 0
     turned = json.loads(capsys.readouterr().out)
     assert main(arguments(corridor_folder, dof="xyyaw", particles=80, frames=3, json=True)) == 0
     upright = json.loads(capsys.readouterr().out)
@@ -98,6 +98,7 @@ def test_a_turned_world_gives_the_same_errors(corridor_folder, tmp_path, capsys,
         ({"particles": "0"}, "particles"),
         ({"frames": "0"}, "frames"),
         ({"sigma-position": "-1"}, "sigma"),
+        ({"seed": "-1"}, "--seed"),
     ],
 )
 def test_bad_input_is_one_sentence_and_writes_nothing(corridor_folder, tmp_path, capsys, options, said):
@@ -109,3 +110,16 @@ def test_bad_input_is_one_sentence_and_writes_nothing(corridor_folder, tmp_path,
     assert said in error
     assert "Traceback" not in error
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("command", ["localize", "demo corridor"])
+@pytest.mark.parametrize("bad", ["a_file", "a_file/below", "/proc/nowhere"])
+def test_an_output_folder_that_cannot_be_is_told_before_any_work(corridor_folder, tmp_path, capsys, command, bad):
+    (tmp_path / "a_file").write_text("mine")
+    out = bad if bad.startswith("/") else str(tmp_path / bad)
+    words = arguments(corridor_folder, dof="xyyaw") if command == "localize" else command.split()
+    assert main([*words, "--out", out]) == 2
+    captured = capsys.readouterr()
+    assert "--out" in captured.err
+    assert "frame/s" not in captured.err  # no progress bar: nothing ran
+    assert (tmp_path / "a_file").read_text() == "mine"

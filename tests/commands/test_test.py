@@ -115,3 +115,10 @@ def test_no_display_and_none_of_the_users_settings_reach_the_tests(tmp_path):
         assert environment["PATH"] == user["PATH"]
         if sys.platform.startswith("linux"):
             assert environment["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkEGLRenderWindow"
+
+
+@pytest.mark.parametrize("option", ["-k", "--deselect", "-p"])
+def test_an_options_value_is_no_path_though_it_may_look_like_one(option):
+    parts = test_command.choose_parts([option, "data", "-x"])
+    assert list(parts) == ["tests", "notebooks"]
+    assert parts["tests"] == [option, "data", "-x", "tests"]

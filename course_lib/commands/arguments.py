@@ -1,0 +1,26 @@
+"""What several commands ask of their arguments, told before any work is done."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+
+def require_seed(seed: int) -> None:
+    """Raises `ValueError` for a negative seed."""
+    if seed < 0:
+        raise ValueError(f"--seed must be 0 or more; got {seed}")
+
+
+def require_output_folder(folder: Path) -> None:
+    """Raises `ValueError` unless `folder` is a folder that can be written, or one can be made there."""
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"--out {folder} is a file: give a folder")
+    nearest = folder.absolute()
+    while not nearest.exists():
+        nearest = nearest.parent
+    try:
+        # Tried, not asked: a root user is told yes where even root may not write.
+        tempfile.TemporaryDirectory(dir=nearest).cleanup()
+    except OSError as error:
+        raise ValueError(f"--out {folder}: {nearest} cannot be written to; give a folder of your own") from error
