@@ -18,6 +18,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 
 ROOT = os.path.dirname(os.path.abspath(__file__))
 VENV = os.path.join(ROOT, ".venv")
@@ -25,6 +26,7 @@ PYTHON = os.path.join(VENV, "Scripts", "python.exe") if os.name == "nt" else os.
 READY = os.path.join(VENV, "course-ready.json")
 INCOMPLETE = os.path.join(VENV, "course-incomplete")
 OPENGL_READY = os.path.join(VENV, "course-opengl-ready")
+OPENGL_FAILED = os.path.join(VENV, "course-opengl-failed")
 OPENGL_PACKAGES = ["libegl1", "libgl1-mesa-dri", "libgl1"]
 
 USAGE = """\
@@ -93,7 +95,8 @@ def main(arguments):
                 print(USAGE, end="")
                 return 0
             set_up()
-        see_to_opengl()
+        if not {"-h", "--help"} & set(arguments):
+            see_to_opengl()
         return hand_over(arguments)
     except SetupError as error:
         say(f"error: {error}")
@@ -299,15 +302,28 @@ def see_to_opengl():
         if os.geteuid() != 0:
             say("OpenGL is missing, and installing it needs an administrator: sudo " + install_line)
             return
+        if tried_today(OPENGL_FAILED):
+            say("OpenGL is missing, and installing it failed earlier today. Run: " + install_line)
+            return
         say("OpenGL is missing: installing " + " ".join(OPENGL_PACKAGES))
         os.environ.setdefault("DEBIAN_FRONTEND", "noninteractive")
         run(["apt-get", "update"], None)
         code, lines = run([*install_line.split(), "-o", "DPkg::Lock::Timeout=120"], None)
         if code or not opengl_works():
             say(f"OpenGL could not be installed ({last_lines(lines)}). Run: {install_line}")
+            remember(OPENGL_FAILED)
             return
-    with contextlib.suppress(OSError), open(OPENGL_READY, "w", encoding="utf-8"):
+    remember(OPENGL_READY)
+
+
+def remember(path):
+    with contextlib.suppress(OSError), open(path, "w", encoding="utf-8"):
         pass
+
+
+def tried_today(path):
+    # apt-get without a network takes its time to fail: not with every call.
+    return os.path.exists(path) and time.time() - os.path.getmtime(path) < 24 * 3600
 
 
 def opengl_works():
