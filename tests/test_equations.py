@@ -1,4 +1,4 @@
-"""Every equation of paper 1 is cited by exactly one function, and every function cites what it computes."""
+"""Every equation of paper 1 is cited by exactly one function and taught by at least one lesson."""
 
 import ast
 import re
@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parents[1] / "course_lib"
+NOTEBOOKS = Path(__file__).parents[1] / "notebooks"
 WHERE = {
     1: "pose_matrix",
     2: "pose_matrix",
@@ -43,3 +44,10 @@ def test_every_equation_is_cited_by_exactly_one_function(number, function):
 
 def test_no_other_equation_is_cited():
     assert sorted(citations()) == sorted(WHERE)
+
+
+@pytest.mark.parametrize("number", WHERE)
+def test_every_equation_is_taught_by_at_least_one_lesson(number):
+    """A lesson that teaches an equation shows it with its number (LESSONS: the equation with its number)."""
+    lessons = [path for path in sorted(NOTEBOOKS.glob("[0-9][0-9]_*.ipynb")) if f"tag{{{number}}}" in path.read_text()]
+    assert lessons, f"no lesson shows equation ({number}) with \\tag{{{number}}}"

@@ -60,6 +60,14 @@ def test_the_kitchen_is_localized_in_six_degrees_through_gimbal_lock(kitchen_fol
     assert summary["median_rotation_deg"] < 8
 
 
+def test_the_kitchen_is_run_to_its_end(kitchen_folder, capsys):
+    """With few particles, for time: whether it holds to the camera is the README's table, whether it ends is this."""
+    assert main(arguments(kitchen_folder, ".", dof="6", particles=20, json=True)) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["frames"], summary["renders_per_frame"]) == (167, 20)
+    assert summary["p90_position_m"] < 1.5
+
+
 def test_x_y_yaw_in_a_world_whose_up_is_unknown_is_refused(kitchen_folder, capsys):
     assert main(arguments(kitchen_folder, ".", dof="xyyaw", frames=2)) == 2
     error = capsys.readouterr().err
