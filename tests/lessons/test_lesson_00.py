@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from course_lib.depth_mcl.likelihood import likelihood
 from course_lib.lessons.lesson_00 import moment, moved, pose_panel, wall_reads
 
 
@@ -40,3 +41,16 @@ def test_the_panel_starts_wrong_and_its_button_finds_the_truth():
     after = panel.draw(**found).summary
     share = [float(text.split("l / m = ")[1].split(" ")[0]) for text in (before, after)]
     assert share[1] > share[0] + 0.1
+
+
+def test_the_floor_alone_does_not_tell_x():
+    now = moment()
+    row, column = np.indices(now.measured.shape)
+    floor = np.where((row >= 115) & (np.abs(column - 90) < 40), now.measured, np.nan)
+    x = np.linspace(-1.5, 1.5, 25)
+    views = now.renderer.render(moved(now.state, "x", x))
+    whole, alone = likelihood(now.measured, views), likelihood(floor, views)
+    assert alone.min() > 0.9 * alone.max()
+    assert whole.min() < 0.6 * whole.max()
+    assert abs(x[alone.argmax()]) > 0.5
+    assert abs(x[whole.argmax()]) < 0.2
