@@ -270,6 +270,8 @@ def start_hanging_installation(copy, silent_index):
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        # A run started in the background has SIGINT ignored, and would hand that on.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     server.settimeout(60)
     connection, _ = server.accept()  # pip asks: it runs
