@@ -16,7 +16,11 @@ def depth_difference(measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
 
 def _two_images(rng: np.random.Generator) -> tuple:
     measured = rng.uniform(1.0, 9.0, size=(rng.integers(2, 5), rng.integers(2, 5)))
-    return measured, measured + rng.normal(0, 0.5, size=measured.shape)
+    simulated = measured + rng.normal(0, 0.5, size=measured.shape)
+    if rng.random() < 0.5:
+        # A wall seen through an open door: nothing in the task caps a difference.
+        simulated.flat[rng.integers(simulated.size)] += rng.uniform(12.0, 20.0)
+    return measured, simulated
 
 
 # 00.2: what one pixel adds to the likelihood
@@ -29,7 +33,8 @@ def pixel_term(difference: np.ndarray, alpha: float) -> np.ndarray:
 
 def _differences(rng: np.random.Generator) -> tuple:
     difference = rng.exponential(0.3, size=(rng.integers(2, 5), rng.integers(2, 5)))
-    difference.flat[rng.integers(difference.size)] = np.inf
+    hole, agreed = rng.choice(difference.size, size=2, replace=False)
+    difference.flat[hole], difference.flat[agreed] = np.inf, 0.0
     return difference, rng.uniform(0.05, 0.5)
 
 
@@ -109,6 +114,18 @@ EXERCISES = [
             Mistake(
                 _without_brackets,
                 "Mind the brackets: alpha + d stands below the fraction line as a whole.",
+            ),
+            Mistake(
+                lambda difference, alpha: alpha / alpha + difference,
+                "Yours is more than 1. Division comes before addition: put brackets around what stands below the line.",
+            ),
+            Mistake(
+                lambda difference, alpha: 0.1 / (0.1 + difference),
+                "Right for the example alone: your alpha is always 0.1. Take the one that is given.",
+            ),
+            Mistake(
+                lambda difference, alpha: alpha / (alpha + difference) / difference.size,
+                "You divide by the number of pixels. Here each pixel keeps its whole term: 1 at difference 0.",
             ),
             Mistake(
                 lambda difference, alpha: np.exp(-difference / alpha),

@@ -17,8 +17,9 @@ def linearize(b: np.ndarray, near: float, far: float) -> np.ndarray:
 
 def _buffers(rng: np.random.Generator) -> tuple:
     near, far = rng.uniform(0.05, 1.0), rng.uniform(5.0, 40.0)
-    b = rng.uniform(0.0, 0.99, size=(rng.integers(2, 5), rng.integers(2, 5)))
-    b.flat[rng.integers(b.size)] = 1.0
+    b = rng.uniform(0.0, 0.99, size=(rng.integers(3, 6), rng.integers(3, 6)))
+    # The near plane, never drawn, and two far surfaces that a careless comparison takes for never drawn.
+    b.flat[rng.choice(b.size, size=4, replace=False)] = 0.0, 1.0, 0.995, 0.999999
     return b, near, far
 
 
@@ -38,6 +39,26 @@ def _without_planes_product(b: np.ndarray, near: float, far: float) -> np.ndarra
     return np.where(b < 1, 1 / (far - b * (far - near)), np.inf)
 
 
+def _plus_for_minus(b: np.ndarray, near: float, far: float) -> np.ndarray:
+    return np.where(b < 1, near * far / (far + b * (far - near)), np.inf)
+
+
+def _without_brackets(b: np.ndarray, near: float, far: float) -> np.ndarray:
+    return np.where(b < 1, near * far / (far - b * far - near), np.inf)
+
+
+def _near_forgotten(b: np.ndarray, near: float, far: float) -> np.ndarray:
+    return np.where(b < 1, far / (far - b * (far - near)), np.inf)
+
+
+def _in_millimetres(b: np.ndarray, near: float, far: float) -> np.ndarray:
+    return 1000 * linearize(b, near, far)
+
+
+def _close_to_one(b: np.ndarray, near: float, far: float) -> np.ndarray:
+    return np.where(np.isclose(b, 1), np.inf, linearize(b, near, far))
+
+
 # 03.2: depth between two corners, as the screen sees it
 
 
@@ -47,7 +68,12 @@ def depth_on_edge(z_start: float, z_end: float, s: np.ndarray) -> np.ndarray:
 
 
 def _edges(rng: np.random.Generator) -> tuple:
-    return rng.uniform(0.5, 3.0), rng.uniform(4.0, 20.0), rng.uniform(0.05, 0.95, size=rng.integers(3, 9))
+    z_start, z_end = rng.permutation([rng.uniform(0.5, 3.0), rng.uniform(4.0, 20.0)])
+    return z_start, z_end, np.concatenate([[0.0, 1.0], rng.uniform(0.05, 0.95, size=rng.integers(3, 9))])
+
+
+def _ends_sorted(z_start: float, z_end: float, s: np.ndarray) -> np.ndarray:
+    return depth_on_edge(min(z_start, z_end), max(z_start, z_end), s)
 
 
 # 03.3: what one pixel keeps of several surfaces
@@ -61,7 +87,7 @@ def nearest_surface(layers: np.ndarray, near: float, far: float) -> np.ndarray:
 
 def _layers(rng: np.random.Generator) -> tuple:
     near, far = rng.uniform(0.5, 1.0), rng.uniform(8.0, 12.0)
-    layers = rng.uniform(0.1, 15.0, size=(4, 5, 6))
+    layers = rng.uniform(0.1, 15.0, size=(rng.integers(2, 6), rng.integers(4, 8), rng.integers(4, 8)))
     layers[rng.random(layers.shape) < 0.35] = np.inf
     return layers, near, far
 
@@ -87,6 +113,18 @@ def _minimum_before_planes(layers: np.ndarray, near: float, far: float) -> np.nd
 
 def _pulled_to_planes(layers: np.ndarray, near: float, far: float) -> np.ndarray:
     return np.clip(layers, near, far).min(axis=0)
+
+
+def _first_layer(layers: np.ndarray, near: float, far: float) -> np.ndarray:
+    return nearest_surface(layers[:1], near, far)
+
+
+def _near_alone(layers: np.ndarray, near: float, far: float) -> np.ndarray:
+    return nearest_surface(layers, near, np.inf)
+
+
+def _far_alone(layers: np.ndarray, near: float, far: float) -> np.ndarray:
+    return nearest_surface(layers, 0.0, far)
 
 
 def _far_for_nothing(layers: np.ndarray, near: float, far: float) -> np.ndarray:
@@ -121,6 +159,23 @@ EXERCISES = [
                 _without_planes_product,
                 "Check the units: your result is 1 / metres. What stands above the fraction line, in square metres?",
             ),
+            Mistake(
+                _plus_for_minus,
+                "Your depth shrinks as b grows; it must grow. Look at the sign below the fraction line.",
+            ),
+            Mistake(
+                _without_brackets,
+                "Mind the brackets: b multiplies the whole of far - near.",
+            ),
+            Mistake(
+                _near_forgotten,
+                "At b = 0 your depth is always 1; it must be near. What is missing above the fraction line?",
+            ),
+            Mistake(_in_millimetres, "Yours is 1000 times too large: millimetres? The task asks for metres."),
+            Mistake(
+                _close_to_one,
+                "A b just below 1 is a far surface, and yours makes it inf. Only b = 1 itself was never drawn.",
+            ),
         ),
     ),
     Exercise(
@@ -143,6 +198,14 @@ EXERCISES = [
             Mistake(
                 lambda z_start, z_end, s: z_start ** (1 - s) * z_end**s,
                 "You mix the logarithms of Z. It is 1/Z that changes evenly on the screen.",
+            ),
+            Mistake(
+                _ends_sorted,
+                "You walk from the nearer end. s counts from z_start, even where that is the farther one.",
+            ),
+            Mistake(
+                lambda z_start, z_end, s: 1 / (1 / z_start + s / z_end),
+                "At s = 1 only z_end may be left: by how much must the share of z_start shrink?",
             ),
         ),
     ),
@@ -168,6 +231,9 @@ EXERCISES = [
                 lambda layers, near, far: layers.min(axis=0),
                 "You have not used near and far: what lies outside them is not seen.",
             ),
+            Mistake(_first_layer, "Yours looks at the first layer alone: compare all K of them, pixel by pixel."),
+            Mistake(_near_alone, "You have used near but not far: what lies behind the far plane is not seen either."),
+            Mistake(_far_alone, "You have used far but not near: what lies before the near plane is not seen either."),
             Mistake(
                 _far_for_nothing, "Where nothing is seen yours reads far, as if a wall stood there: it must be inf."
             ),

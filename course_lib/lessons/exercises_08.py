@@ -34,6 +34,17 @@ def _nearest_along_x(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
     return np.linalg.norm(estimated[:, :2] - path[nearest, :2], axis=1)
 
 
+def _to_segments(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
+    start, along = path[:-1, :2], np.diff(path[:, :2], axis=0)
+    share = ((estimated[:, None, :2] - start) * along).sum(axis=2) / (along**2).sum(axis=1)
+    nearest = start + np.clip(share, 0, 1)[:, :, None] * along
+    return np.linalg.norm(estimated[:, None, :2] - nearest, axis=2).min(axis=1)
+
+
+def _along_the_axes(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
+    return np.abs(estimated[:, None, :2] - path[None, :, :2]).sum(axis=2).min(axis=1)
+
+
 # 08.2: the three numbers of a row of table 1
 
 
@@ -43,7 +54,10 @@ def table_row(errors: np.ndarray) -> tuple[float, float, float]:
 
 
 def _errors(rng: np.random.Generator) -> tuple:
-    return (np.abs(rng.normal(0.1, 0.2, size=rng.integers(12, 30))) + 0.05,)
+    errors = np.abs(rng.normal(0.1, 0.2, size=rng.integers(12, 30))) + 0.05
+    # Exactly at the gate: "at most" lets it in.
+    errors[rng.integers(errors.size)] = 0.30
+    return (errors,)
 
 
 def _own_three_sigma(errors: np.ndarray) -> tuple[float, float, float]:
@@ -65,14 +79,21 @@ def lost_since(scores: np.ndarray, limit: float, patience: int) -> int:
 
 
 def _scores(rng: np.random.Generator) -> tuple:
-    """Scores with two short dips and, mostly, one long one; the dips alone add up to more than the patience."""
-    patience = int(rng.integers(3, 6))
-    scores = rng.uniform(0.5, 0.7, size=60)
-    for start in (6, 16):
-        scores[start : start + patience - 1] = rng.uniform(0.3, 0.44)
-    if rng.random() < 0.75:
-        scores[30 : 30 + patience + int(rng.integers(1, 9))] = rng.uniform(0.2, 0.44)
-    return scores, 0.45, patience
+    """Scores with two short dips and, mostly, one long one; the dips alone add up to the patience or more.
+
+    The long dip is at the start, in the middle, complete with the last frame, cut off one frame before it is complete,
+    or left out. The first short dip ends with a score equal to the limit, which is not below it.
+    """
+    patience, n = int(rng.integers(2, 6)), int(rng.integers(40, 61))
+    limit = rng.uniform(0.3, 0.6)
+    scores = limit + rng.uniform(0.01, 0.2, size=n)
+    low = limit - rng.uniform(0.01, 0.2, size=n)
+    long_start = rng.choice([0, 30, n - patience, n - patience + 1, n], p=[0.2, 0.2, 0.3, 0.2, 0.1])
+    long_length = patience + int(rng.integers(0, 3))
+    for start, length in ((8, patience - 1), (18, patience - 1), (long_start, long_length)):
+        scores[start : start + length] = low[start : start + length]
+    scores[8 + patience - 1] = limit
+    return scores, limit, patience
 
 
 def _first_dip(scores: np.ndarray, limit: float, patience: int) -> int:
@@ -92,6 +113,33 @@ def _start_of_dip(scores: np.ndarray, limit: float, patience: int) -> int:
 
 def _one_late(scores: np.ndarray, limit: float, patience: int) -> int:
     return lost_since(scores, limit, patience + 1)
+
+
+def _from_one(scores: np.ndarray, limit: float, patience: int) -> int:
+    frame = lost_since(scores, limit, patience)
+    return frame + 1 if frame >= 0 else -1
+
+
+def _equal_is_low(scores: np.ndarray, limit: float, patience: int) -> int:
+    return lost_since(scores, np.nextafter(limit, np.inf), patience)
+
+
+def _last_left_out(scores: np.ndarray, limit: float, patience: int) -> int:
+    return lost_since(scores[:-1], limit, patience)
+
+
+def _over_the_end(scores: np.ndarray, limit: float, patience: int) -> int:
+    low = (bool((scores[i : i + patience] < limit).all()) for i in range(len(scores)))
+    return next((i + patience - 1 for i, is_low in enumerate(low) if is_low), -1)
+
+
+def _averaged(scores: np.ndarray, limit: float, patience: int) -> int:
+    means = [scores[i : i + patience].mean() for i in range(len(scores) - patience + 1)]
+    return next((i + patience - 1 for i, mean in enumerate(means) if mean < limit), -1)
+
+
+def _gives_up(scores: np.ndarray, limit: float, patience: int) -> int:
+    return patience - 1 if (scores[:patience] < limit).all() else -1
 
 
 def _zero_for_never(scores: np.ndarray, limit: float, patience: int) -> int:
@@ -137,6 +185,14 @@ EXERCISES = [
                 "You sum over the whole path. np.linalg.norm needs axis=1 to give one distance for each point.",
             ),
             Mistake(
+                _to_segments,
+                "You measure to the lines between the points of the path. Here only the points themselves count.",
+            ),
+            Mistake(
+                _along_the_axes,
+                "You add the ways along x and y. The straight way is the root of the sum of their squares.",
+            ),
+            Mistake(
                 _nearest_along_x,
                 "You take the point with the nearest x. Where the path bends, another point may be nearer.",
             ),
@@ -179,6 +235,18 @@ EXERCISES = [
                 lambda errors: (np.median(errors), np.sqrt(np.mean(errors**2)), np.sum(errors <= 0.30)),
                 "Your last number counts frames. A share is that count divided by the number of frames.",
             ),
+            Mistake(
+                lambda errors: (np.median(errors), np.sqrt(np.mean(errors**2)), np.mean(errors < 0.30)),
+                "An error of exactly 0.30 m is *at most* 0.30 m: it counts.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.sqrt(np.mean(errors**2)), np.mean(errors > 0.30)),
+                "Your last number is the share of the errors beyond 0.30 m; the task asks for the others.",
+            ),
+            Mistake(
+                lambda errors: tuple(np.round(table_row(errors), 3)),
+                "You round to three digits, as the example is printed. Give the numbers as they come out.",
+            ),
         ),
         tolerance=1e-9,
     ),
@@ -197,6 +265,22 @@ EXERCISES = [
                 "You name the frame where the row begins. Nobody can know that yet: name the one where it is complete.",
             ),
             Mistake(_one_late, "You wait one frame too long: the row is complete with its patience-th low score."),
+            Mistake(_from_one, "Your frame is one too high: do you count frames from 1? The first is frame 0."),
+            Mistake(_equal_is_low, "A score equal to the limit is not below it."),
+            Mistake(_last_left_out, "You never look at the last score: the row may be complete with just that one."),
+            Mistake(
+                _over_the_end,
+                "Near the end fewer than `patience` scores are left, and yours takes them for a whole row.",
+            ),
+            Mistake(
+                _averaged,
+                "You take the mean of a row: one very low score then hides a good one. Each of them must be low.",
+            ),
+            Mistake(
+                lambda scores, limit, patience: -1,
+                "Yours says -1 whatever the scores are. Does the -1 stand inside the loop? It belongs after it.",
+            ),
+            Mistake(_gives_up, "Yours gives up at the first good score. That only starts the count again: go on."),
             Mistake(_zero_for_never, "Where the filter is never lost yours says frame 0. The task asks for -1."),
         ),
     ),

@@ -76,7 +76,26 @@ def test_values_slightly_off_are_wrong():
 def test_right_on_some_inputs_only_is_wrong():
     verdict = judge(DOUBLE, lambda x: 2 * x if x.sum() > 0 else x + 1)
     assert verdict.status == "wrong"
-    assert "of 12 inputs" in verdict.message
+    assert "Right on some inputs and wrong on others (" in verdict.message
+    assert "which case have you left out?" in verdict.message
+
+
+def test_right_on_some_inputs_asks_for_unused_arguments_where_there_are_several():
+    product = Exercise("99.3", lambda a, b: a * b, lambda rng: (rng.normal(), rng.integers(1, 3)), mistakes=())
+    product_says = judge(product, lambda a, b: 2 * a).message
+    assert "Right on some inputs and wrong on others (" in product_says
+    assert "have you used every argument?" in product_says
+
+
+def test_wrong_on_every_input_asks_for_a_small_case():
+    assert "Work one small case by hand" in says(lambda x: 2.5 * x)
+
+
+def test_an_infinity_is_blamed_on_a_division_only_where_none_is_right():
+    hole = Exercise("99.4", lambda x: np.where(x < 0, np.inf, x), lambda rng: (rng.normal(size=9),), DOUBLE.mistakes)
+    assert "division by zero" in says(lambda x: x * np.inf)
+    assert "inf where a finite number is expected" in says(lambda x: np.where(x < 0.5, np.inf, x), hole)
+    assert "a finite number where inf is expected" in says(lambda x: np.abs(x), hole)
 
 
 def test_each_mistake_gets_its_hint():
@@ -123,9 +142,13 @@ def test_changing_the_input_is_noticed():
 def test_several_values_are_compared_one_by_one():
     assert judge(PAIR, lambda x: (x.min(), x.max())).status == "right"
     assert judge(PAIR, lambda x: [x.min(), x.max()]).status == "right"
+    assert judge(PAIR, lambda x: np.array([x.min(), x.max()])).status == "right"
     assert judge(PAIR, lambda x: (x.max(), x.min())).status == "wrong"
-    assert "Return 2 values" in says(lambda x: x.min(), PAIR)
-    assert "Return 2 values" in says(lambda x: (x.min(), x.max(), 0), PAIR)
+    assert "in another order" in says(lambda x: (x.max(), x.min()), PAIR)
+    assert "Return 2 values, separated by commas; yours returns a float64." in says(lambda x: x.min(), PAIR)
+    assert "returns a tuple of 3." in says(lambda x: (x.min(), x.max(), 0), PAIR)
+    assert "returns a ndarray of 1." in says(lambda x: np.array([x.min()]), PAIR)
+    assert "returns a ndarray." in says(lambda x: np.array(x.min()), PAIR)
 
 
 def test_check_prints_one_line_and_shows_neither_inputs_nor_reference(capsys):
