@@ -183,7 +183,7 @@ def row(run: AlongRun) -> str:
 
     n, t = run.nearest, run.timed
     return (
-        f"nearest path: median {metres(n.median)}, sigma {metres(n.sigma)}, <= 0.30 m: {n.within_3sigma:.0%};  "
+        f"nearest path: median {metres(n.median)}, rms (sigma) {metres(n.sigma)}, <= 0.30 m: {n.within_3sigma:.0%};  "
         f"timed: median {metres(t.median)}, largest {metres(t.errors.max())}"
     )
 
