@@ -49,9 +49,8 @@ class VtkBackend:
                 f"({MAX_WINDOW_SIDE} on a side): use camera.resized(...)"
             )
         self.camera = camera
-        batch_size = min(batch_size, MAX_TILES)
         self._columns = max(1, min(MAX_WINDOW_SIDE // camera.width, int(np.ceil(np.sqrt(batch_size)))))
-        self._n_tiles = min(batch_size, self._columns * (MAX_WINDOW_SIDE // camera.height))
+        self._n_tiles = min(batch_size, MAX_TILES, self._columns * (MAX_WINDOW_SIDE // camera.height))
         self._window: vtkRenderWindow | None = None
         self._window_rows = 0
         self._tiles: list[vtkRenderer] = []
