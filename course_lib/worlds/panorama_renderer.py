@@ -39,17 +39,18 @@ class PanoramaRenderer:
 
     room: what to draw; at most 255 objects.
     width: of the panoramas, pixels, an even number; their height is half of it.
+    number_scale: the pictures of object numbers are so many times as large, so that boxes are exact to a part of a pixel.
     Raises `ValueError` for an odd or too large width, or too many objects.
     """
 
-    def __init__(self, room: Room, width: int = 1280) -> None:
+    def __init__(self, room: Room, width: int = 1280, number_scale: int = 2) -> None:
         if width % 2 or not 16 <= width <= 4096:
             raise ValueError(f"a panorama {width} pixels wide: expected an even width from 16 to 4096.")
         if len(room.objects) >= BACKGROUND:
             raise ValueError(f"{len(room.objects)} objects: one panorama can tell apart at most {BACKGROUND - 1}.")
         self.room, self.width, self.height = room, width, width // 2
         self._picture = _Scene(OVERSAMPLING * width, interpolate=True)
-        self._numbers = _Scene(OVERSAMPLING * width, interpolate=False)
+        self._numbers = _Scene(number_scale * width, interpolate=False)
         for lamp in room.lamps:
             self._picture.add_lamp(lamp.position, lamp.colour, lamp.strength)
         numbered = [(mesh, BACKGROUND) for mesh in room.shell]
@@ -69,9 +70,9 @@ class PanoramaRenderer:
         return cv2.resize(image, (self.width, self.height), interpolation=cv2.INTER_AREA)[..., ::-1].copy()
 
     def render_objects(self, state: np.ndarray) -> np.ndarray:
-        """Which object each pixel shows, at twice the panorama's size.
+        """Which object each pixel shows, `number_scale` times the panorama's size.
 
-        Returns `(2 height, 2 width)` uint8: the index into `room.objects`, or `BACKGROUND`.
+        Returns uint8 `(number_scale height, number_scale width)`: the index into `room.objects`, or `BACKGROUND`.
         """
         return self._numbers.draw(state)[..., 0].copy()
 
@@ -108,7 +109,7 @@ class _Scene:
         panoramic.SetProjectionTypeToEquirectangular()
         panoramic.SetAngle(360.0)
         # A cube face covers a quarter of the panorama's width; its middle is the coarsest part, 4 / pi times as fine.
-        panoramic.SetCubeResolution(int(np.ceil(width / np.pi)) if interpolate else width // 2)
+        panoramic.SetCubeResolution(int(np.ceil(width / np.pi)))
         panoramic.SetInterpolate(interpolate)
         panoramic.SetDelegatePass(vtkRenderStepsPass())
         self._renderer.SetPass(panoramic)

@@ -45,8 +45,8 @@ class RoomObject:
 class Room:
     """A furnished room, floor at z = 0.
 
-    walls: `(k, 2)` corners of the floor in order, metres. height: of the ceiling, metres. objects: what the semantic map
-    lists. shell: floor, walls, ceiling, windows, doors, pictures, lamps: what it does not list. lamps: the light;
+    walls: `(k, 2)` corners of the floor in order, metres. height: of the ceiling, metres. objects: what the semantic
+    map lists. shell: floor, walls, ceiling, windows, doors, pictures, lamps: what it does not list. lamps: the light;
     ambient: `(3,)` RGB, the light that comes from everywhere.
     """
 
