@@ -38,6 +38,7 @@ usage: python3 course.py COMMAND [options]
   demo corridor         run paper 1's corridor experiment and print its table
   localize              localize a recorded depth-camera sequence in a mesh map
   make-data corridor    make data/corridor again: the world, its map and the recorded runs
+  make-data training-rooms  photograph generated rooms: a detector's training and test pictures
   refresh               run the lessons again and store their outputs
 
 Options of one command: python3 course.py COMMAND --help

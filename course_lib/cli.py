@@ -22,6 +22,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
+    "make-data training-rooms": (
+        "make_training_rooms",
+        "photograph generated rooms: a detector's training and test pictures",
+    ),
     "refresh": ("refresh", "run the lessons again and store their outputs"),
 }
 

@@ -6,13 +6,13 @@ import sys
 from collections.abc import Callable, Iterable
 
 
-def progress_bar(description: str) -> Callable[[Iterable], Iterable]:
+def progress_bar(description: str, unit: str = "frame") -> Callable[[Iterable], Iterable]:
     """A wrapper that draws a bar while its iterable is consumed."""
     from tqdm import tqdm
 
     def wrap(iterable: Iterable) -> Iterable:
         # Without a terminal one line every ten seconds still tells a log that the run is alive.
         interval = 0.1 if sys.stderr.isatty() else 10.0
-        return tqdm(iterable, desc=description, unit="frame", mininterval=interval, file=sys.stderr)
+        return tqdm(iterable, desc=description, unit=unit, mininterval=interval, file=sys.stderr)
 
     return wrap

@@ -16,8 +16,8 @@ class ObjectBox:
     """Where one object is on a panorama.
 
     number: index into `room.objects`. visible_box: around the pixels that show it. unoccluded_box: around the pixels
-    that would show it if nothing stood before it. visible_fraction: the first pixels' number over the second's. Boxes are
-    (u_min, v_min, u_max, v_max) in edge coordinates, 0 <= u_min < width; u_max passes the width at the seam.
+    that would show it if nothing stood before it. visible_fraction: the first pixels' number over the second's. Boxes
+    are (u_min, v_min, u_max, v_max) in edge coordinates, 0 <= u_min < width; u_max passes the width at the seam.
     """
 
     number: int

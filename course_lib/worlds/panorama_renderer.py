@@ -39,7 +39,7 @@ class PanoramaRenderer:
 
     room: what to draw; at most 255 objects.
     width: of the panoramas, pixels, an even number; their height is half of it.
-    number_scale: the pictures of object numbers are so many times as large, so that boxes are exact to a part of a pixel.
+    number_scale: the pictures of object numbers are so many times as large: boxes exact to a part of a pixel.
     Raises `ValueError` for an odd or too large width, or too many objects.
     """
 

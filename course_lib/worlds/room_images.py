@@ -23,7 +23,7 @@ BOXES_FILE = "boxes.json"
 WIDTH = 1280  # pixels
 CAMERA_HEIGHTS = (0.9, 1.6)  # m above the floor, lowest and highest; chosen around the paper's 1.02 to 1.44
 
-Progress = Callable[[Iterable, str], Iterable]
+Progress = Callable[[Iterable], Iterable]
 
 
 def make_room_images(
@@ -31,7 +31,7 @@ def make_room_images(
     first_seed: int,
     n_rooms: int,
     images_per_room: int = 4,
-    progress: Progress = lambda items, text: items,
+    progress: Progress = lambda items: items,
 ) -> list[dict]:
     """Photograph rooms `first_seed` to `first_seed + n_rooms - 1`; go on where an earlier run in the folder stopped.
 
@@ -48,7 +48,7 @@ def make_room_images(
     folder.mkdir(parents=True, exist_ok=True)
     images = read_image_list(folder) if (folder / BOXES_FILE).exists() else []
     done = {image["room_seed"] for image in images}
-    for seed in progress(range(first_seed, first_seed + n_rooms), "rooms"):
+    for seed in progress(range(first_seed, first_seed + n_rooms)):
         if seed in done:
             continue
         images += _photograph_room(folder, seed, images_per_room)
