@@ -1,0 +1,214 @@
+"""A Darknet cfg as a PyTorch module: the same file describes the network that is trained and the one that OpenCV runs.
+
+Layers as Darknet and OpenCV compute them: batch normalization with epsilon 1e-6 (PyTorch's own 1e-5 moves the outputs
+by 2e-3), leaky ReLU with slope 0.1, max pooling padded to keep the size, upsampling by the nearest neighbour.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import nn
+
+from course_lib.spherical_stereo.darknet import DarknetError, Section, layer_channels
+
+# Darknet divides by sqrt(variance + 1e-6), and so does OpenCV for Darknet files.
+BATCH_NORM_EPSILON = 1e-6
+# Share of the old running statistics that a training step keeps; the runs here are short, a few thousand steps.
+BATCH_NORM_MOMENTUM = 0.03
+LEAKY_SLOPE = 0.1
+# Chance of an object that an untrained box starts with: most boxes are background, and a loss that starts by learning
+# just that wastes its first hundred steps.
+PRIOR_OBJECTNESS = 0.01
+# exp() of a wider range than this is no furniture, only overflow at the start of a training.
+LARGEST_LOG_SCALE = 4.0
+
+
+@dataclass(frozen=True)
+class YoloHead:
+    """What one `[yolo]` section says about its boxes."""
+
+    anchors: torch.Tensor
+    """(a, 2) width and height of its anchors, pixels of the network input."""
+    classes: int
+    scale_xy: float
+    """Stretch of the sigmoid that places a box centre in its cell: 2 lets it reach half a cell over either border."""
+    iou_threshold: float
+    """An anchor is used for an object when their shapes, laid on each other, have at least this IoU."""
+    ignore_threshold: float
+    """A box that overlaps an object by more than this IoU is not background, though another anchor is responsible."""
+
+
+class DarknetNetwork(nn.Module):
+    """The layers of a cfg in order; `forward` gives the raw map of every `[yolo]` section.
+
+    Raises `DarknetError` for a section or an option that the training cannot build.
+    """
+
+    def __init__(self, sections: list[Section]):
+        super().__init__()
+        self.sections = sections
+        self.heads: list[YoloHead] = []
+        layers: list[nn.Module] = []
+        for section, (incoming, _) in zip(sections[1:], layer_channels(sections), strict=True):
+            layers.append(_build(section, incoming))
+            if section.kind == "yolo":
+                self.heads.append(yolo_head(section))
+        if not self.heads:
+            raise DarknetError("the cfg has no [yolo] section, so there is nothing to train")
+        self.layers = nn.ModuleList(layers)
+        self._needed = _needed_later(sections)
+        self._start_from_prior()
+
+    def forward(self, images: torch.Tensor) -> list[torch.Tensor]:
+        """Raw maps (b, anchors, 5 + classes, rows, columns), one per `[yolo]`, of images (b, 3, h, w), RGB in [0, 1].
+
+        Height and width may be any multiples of the largest stride.
+        """
+        kept: dict[int, torch.Tensor] = {}
+        outputs = []
+        value = images
+        for index, (section, layer) in enumerate(zip(self.sections[1:], self.layers, strict=True)):
+            if section.kind == "route":
+                sources = [kept[source] for source in _sources(section, index)]
+                value = layer(sources[0] if len(sources) == 1 else torch.cat(sources, dim=1))
+            elif section.kind == "yolo":
+                b, channels, rows, columns = value.shape
+                n_anchors = len(self.heads[len(outputs)].anchors)
+                outputs.append(value.view(b, n_anchors, channels // n_anchors, rows, columns))
+            else:
+                value = layer(value)
+            if index in self._needed:
+                kept[index] = value
+        return outputs
+
+    def _start_from_prior(self) -> None:
+        for index, section in enumerate(self.sections[1:]):
+            if section.kind == "yolo":
+                convolution = self.layers[index - 1][0]
+                head = yolo_head(section)
+                bias = convolution.bias.data.view(len(head.anchors), 5 + head.classes)
+                nn.init.normal_(convolution.weight, std=0.01)
+                bias.zero_()
+                bias[:, 4] = float(torch.logit(torch.tensor(PRIOR_OBJECTNESS)))
+                bias[:, 5:] = float(torch.logit(torch.tensor(1.0 / head.classes)))
+
+
+class ChannelGroup(nn.Module):
+    """One of `groups` equal parts of the channels: what a `[route]` with groups passes on."""
+
+    def __init__(self, groups: int, group: int):
+        super().__init__()
+        self.groups, self.group = groups, group
+
+    def forward(self, value: torch.Tensor) -> torch.Tensor:
+        """Part (b, c / groups, h, w) of (b, c, h, w)."""
+        return value.chunk(self.groups, dim=1)[self.group]
+
+
+def yolo_head(section: Section) -> YoloHead:
+    """The anchors and thresholds of a `[yolo]` section; raises `DarknetError` for anchors that do not fit its mask."""
+    numbers = section.integers("anchors")
+    mask = section.integers("mask")
+    if len(numbers) % 2 or not all(0 <= index < len(numbers) // 2 for index in mask):
+        raise DarknetError(
+            f"[yolo] at line {section.line}: mask={mask} does not choose from {len(numbers) / 2:g} anchors (pairs)"
+        )
+    anchors = torch.tensor(numbers, dtype=torch.float32).view(-1, 2)[mask]
+    return YoloHead(
+        anchors=anchors,
+        classes=section.integer("classes"),
+        scale_xy=float(section.options.get("scale_x_y", 1.0)),
+        iou_threshold=float(section.options.get("iou_thresh", 0.213)),
+        ignore_threshold=float(section.options.get("ignore_thresh", 0.7)),
+    )
+
+
+def decode_boxes(raw: torch.Tensor, head: YoloHead, stride: float) -> torch.Tensor:
+    """Boxes (b, a, rows, columns, 4) as u, v of the centre, width, height, in pixels, of a raw map.
+
+    u = stride (column + s sigma(t_u) - (s - 1) / 2), v likewise; width = anchor exp(t_w), height likewise, where s is
+    scale_x_y. `raw` is (b, a, 5 + classes, rows, columns). Source: paper 2, section 2.2 (its detector is YOLOv4).
+    """
+    rows, columns = raw.shape[-2:]
+    t = raw[:, :, :4].float()
+    shift = (head.scale_xy - 1.0) / 2.0
+    column = torch.arange(columns, device=raw.device)
+    row = torch.arange(rows, device=raw.device)[:, None]
+    anchors = head.anchors.to(raw.device).view(1, -1, 2, 1, 1)
+    u = stride * (column + head.scale_xy * torch.sigmoid(t[:, :, 0]) - shift)
+    v = stride * (row + head.scale_xy * torch.sigmoid(t[:, :, 1]) - shift)
+    size = anchors * torch.exp(t[:, :, 2:4].clamp(max=LARGEST_LOG_SCALE))
+    return torch.stack([u, v, size[:, :, 0], size[:, :, 1]], dim=-1)
+
+
+def decode(outputs: list[torch.Tensor], heads: list[YoloHead], input_width: int) -> torch.Tensor:
+    """All boxes (b, n, 5 + classes): centre u, v, width, height [pixels], objectness, score of each class.
+
+    A class score is objectness times the chance of the class, as OpenCV gives it. `input_width` is the width of the
+    images that the maps were made from, in pixels: it tells each map's stride. n runs over maps, rows, columns, anchors.
+    """
+    parts = []
+    for raw, head in zip(outputs, heads, strict=True):
+        boxes = decode_boxes(raw, head, input_width / raw.shape[-1])
+        chance = torch.sigmoid(raw[:, :, 4:].float()).permute(0, 1, 3, 4, 2)
+        objectness = chance[..., :1]
+        table = torch.cat([boxes, objectness, objectness * chance[..., 1:]], dim=-1)
+        parts.append(table.permute(0, 2, 3, 1, 4).reshape(raw.shape[0], -1, table.shape[-1]))
+    return torch.cat(parts, dim=1)
+
+
+def _build(section: Section, incoming: int) -> nn.Module:
+    if section.kind == "convolutional":
+        return _convolution(section, incoming)
+    if section.kind == "maxpool":
+        size, stride = section.integer("size", section.integer("stride", 1)), section.integer("stride", 1)
+        if stride == 1 and size % 2 == 0:
+            raise DarknetError(f"[maxpool] at line {section.line}: size={size} with stride=1 needs an odd size")
+        return nn.MaxPool2d(size, stride, padding=(size - 1) // 2)
+    if section.kind == "upsample":
+        return nn.Upsample(scale_factor=section.integer("stride", 2), mode="nearest")
+    if section.kind == "route":
+        groups = section.integer("groups", 1)
+        return nn.Identity() if groups == 1 else ChannelGroup(groups, section.integer("group_id", 0))
+    if section.kind == "yolo":
+        return nn.Identity()
+    raise DarknetError(
+        f"the training cannot build [{section.kind}] (line {section.line}); it knows convolutional, maxpool, upsample, "
+        "route and yolo"
+    )
+
+
+def _convolution(section: Section, incoming: int) -> nn.Sequential:
+    normalized = bool(section.integer("batch_normalize", 0))
+    size, filters = section.integer("size", 1), section.integer("filters")
+    padding = size // 2 if section.integer("pad", 0) else section.integer("padding", 0)
+    parts: list[nn.Module] = [
+        nn.Conv2d(incoming, filters, size, section.integer("stride", 1), padding, bias=not normalized)
+    ]
+    nn.init.kaiming_normal_(parts[0].weight, a=LEAKY_SLOPE)
+    if normalized:
+        parts.append(nn.BatchNorm2d(filters, eps=BATCH_NORM_EPSILON, momentum=BATCH_NORM_MOMENTUM))
+    activation = section.options.get("activation", "linear")
+    if activation == "leaky":
+        parts.append(nn.LeakyReLU(LEAKY_SLOPE, inplace=True))
+    elif activation != "linear":
+        raise DarknetError(
+            f"[convolutional] at line {section.line}: activation={activation} is not known; use leaky or linear"
+        )
+    return nn.Sequential(*parts)
+
+
+def _sources(section: Section, index: int) -> list[int]:
+    return [source if source >= 0 else index + source for source in section.integers("layers")]
+
+
+def _needed_later(sections: list[Section]) -> set[int]:
+    """Indices of the layers that some `[route]` reads: only these are kept in memory."""
+    return {
+        source
+        for index, section in enumerate(sections[1:])
+        if section.kind == "route"
+        for source in _sources(section, index)
+    }
