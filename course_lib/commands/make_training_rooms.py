@@ -17,7 +17,7 @@ FIRST_TEST_ROOM, N_TEST_ROOMS = 200, 20
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds this command's options to its parser."""
-    parser.add_argument("--output", type=Path, required=True, metavar="FOLDER", help="where the pictures go")
+    parser.add_argument("--output", type=Path, required=True, metavar="FOLDER", help="where they go")
     parser.add_argument(
         "--first-room", type=int, default=FIRST_TRAINING_ROOM, metavar="N", help="seed of the first room"
     )

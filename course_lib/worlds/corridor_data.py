@@ -6,9 +6,7 @@ old data as they were.
 
 from __future__ import annotations
 
-import hashlib
 import json
-import shutil
 import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, field
@@ -23,6 +21,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose
 from course_lib.worlds.corridor import LENGTH, TrueWorld, make_corridor
+from course_lib.worlds.data_folder import checksums, move_products, require_folder
 from course_lib.worlds.laser_survey import STATIONS, ScannerModel, registration_error, survey
 from course_lib.worlds.measurements import frame_counts, hole_share, map_error, noise_on_a_wall
 from course_lib.worlds.mesh_files import write_ply, write_world_ply
@@ -78,11 +77,7 @@ def make_corridor_data(
 
     progress(items, text) wraps the loops, for progress bars. Raises `ValueError` where `out` cannot be a folder.
     """
-    out, models = Path(out).resolve(), models or CorridorModels()
-    # Told now, not after minutes of work.
-    existing = next(path for path in (out, *out.parents) if path.exists())
-    if not existing.is_dir():
-        raise ValueError(f"cannot make the folder {out}: {existing} is a file; give a folder, or a new name")
+    out, models = require_folder(out), models or CorridorModels()
     generators = np.random.default_rng(seed).spawn(7)
     world_rng, survey_rng, planar_rng, camera_rng, wagon_rng, hand_rng, measure_rng = generators
     with tempfile.TemporaryDirectory() as temporary:
@@ -101,21 +96,10 @@ def make_corridor_data(
         }
         summary = {"seed": seed, "models": asdict(models), "measured": _rounded(measured)}
         (folder / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
-        (folder / "PARAMETERS.md").write_text(parameter_tables(models))
-        (folder / "SHA256SUMS").write_text(checksums(folder))
-        _move(folder, out)
+        (folder / "PARAMETERS.md").write_text(parameter_tables(models, "corridor"))
+        (folder / "SHA256SUMS").write_text(checksums(folder, PRODUCTS))
+        move_products(folder, out, PRODUCTS)
     return summary
-
-
-def checksums(folder: Path) -> str:
-    """SHA-256 of every product in a folder, one line a file as `sha256sum` writes them; SHA256SUMS itself left out."""
-    files = sorted(
-        path
-        for path in folder.rglob("*")
-        if path.is_file() and path.relative_to(folder).parts[0] in PRODUCTS and path.name != "SHA256SUMS"
-    )
-    lines = [f"{hashlib.sha256(p.read_bytes()).hexdigest()}  {p.relative_to(folder).as_posix()}\n" for p in files]
-    return "".join(lines)
 
 
 def _make_map(
@@ -191,19 +175,6 @@ def _shrink(folder: Path) -> None:
     for path in sorted(folder.glob("*.png")):
         image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
         path.write_bytes(cv2.imencode(".png", image, options)[1].tobytes())
-
-
-def _move(folder: Path, out: Path) -> None:
-    """Puts the finished products in their place: copied beside it first, then renamed, old ones out and new ones in."""
-    out.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=out.parent, prefix=f".{out.name}-") as beside:
-        new, old = Path(beside) / "new", Path(beside) / "old"
-        shutil.copytree(folder, new)
-        old.mkdir()
-        for name in PRODUCTS:
-            if (out / name).exists():
-                (out / name).rename(old / name)
-            (new / name).rename(out / name)
 
 
 def _rounded(value: object) -> object:

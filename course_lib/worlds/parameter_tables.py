@@ -11,13 +11,13 @@ import inspect
 import re
 
 
-def parameter_tables(models: object) -> str:
-    """A table for every dataclass among the fields of `models`, as one Markdown text.
+def parameter_tables(models: object, world: str) -> str:
+    """A table for every dataclass among the fields of `models`, as one Markdown text; world: "corridor" or "room".
 
     Raises `ValueError` for a parameter without a comment.
     """
     parts = [
-        "# Parameters of the simulated corridor\n\nWritten by `make-data corridor` from the models' source text.\n"
+        f"# Parameters of the simulated {world}\n\nWritten by `make-data {world}` from the models' source text.\n"
     ]
     for field in dataclasses.fields(models):
         model = getattr(models, field.name)

@@ -13,7 +13,8 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import optical_pose, rotation_angle, state_from_optical_pose
 from course_lib.worlds.corridor import CLUTTER, make_corridor
-from course_lib.worlds.corridor_data import PRODUCTS, CorridorModels, checksums, parameter_tables
+from course_lib.worlds.corridor_data import PRODUCTS, CorridorModels, parameter_tables
+from course_lib.worlds.data_folder import checksums
 from course_lib.worlds.mesh_files import read_world_ply
 from course_lib.worlds.ray_casting import WorldCaster
 
@@ -41,7 +42,7 @@ def true_caster():
 
 
 def test_every_file_is_as_its_checksum_says():
-    assert (FOLDER / "SHA256SUMS").read_text() == checksums(FOLDER)
+    assert (FOLDER / "SHA256SUMS").read_text() == checksums(FOLDER, PRODUCTS)
 
 
 def test_nothing_is_missing_and_nothing_lies_about():
@@ -168,7 +169,7 @@ def test_the_images_have_the_no_return_rate_that_the_summary_tells(run, summary)
 def test_parameters_and_seed_are_those_of_the_code(summary):
     assert summary["seed"] == 4
     assert summary["models"] == json.loads(json.dumps(dataclasses.asdict(CorridorModels())))
-    assert (FOLDER / "PARAMETERS.md").read_text() == parameter_tables(CorridorModels())
+    assert (FOLDER / "PARAMETERS.md").read_text() == parameter_tables(CorridorModels(), "corridor")
 
 
 def test_the_true_world_is_the_one_that_the_seed_makes():

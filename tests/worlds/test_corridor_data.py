@@ -10,7 +10,8 @@ import pytest
 from course_lib.commands import make_data
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.worlds.corridor_data import PRODUCTS, CorridorModels, checksums, make_corridor_data
+from course_lib.worlds.corridor_data import PRODUCTS, CorridorModels, make_corridor_data
+from course_lib.worlds.data_folder import checksums
 from course_lib.worlds.laser_survey import ScannerModel
 from course_lib.worlds.parameter_tables import field_comments, parameter_tables
 from course_lib.worlds.recorded_runs import HandModel, WagonModel
@@ -38,7 +39,7 @@ def test_one_seed_gives_the_same_bytes_and_other_files_stay(small, tmp_path):
     (tmp_path / "README.md").write_text("written by hand")
     make_corridor_data(tmp_path, 11, SMALL)
     assert (tmp_path / "SHA256SUMS").read_bytes() == (folder / "SHA256SUMS").read_bytes()
-    assert checksums(tmp_path) == checksums(folder)
+    assert checksums(tmp_path, PRODUCTS) == checksums(folder, PRODUCTS)
     assert (tmp_path / "README.md").read_text() == "written by hand"
     assert not (tmp_path / "wagon" / "old.txt").exists()
 
@@ -66,7 +67,7 @@ def test_all_products_are_there_and_readable(small):
 
 def test_a_run_that_is_stopped_leaves_the_old_data_alone(small):
     folder, _ = small
-    before = checksums(folder)
+    before = checksums(folder, PRODUCTS)
 
     def stop(items, text):
         if "recording" in text:
@@ -75,7 +76,7 @@ def test_a_run_that_is_stopped_leaves_the_old_data_alone(small):
 
     with pytest.raises(KeyboardInterrupt):
         make_corridor_data(folder, 12, SMALL, progress=stop)
-    assert checksums(folder) == before
+    assert checksums(folder, PRODUCTS) == before
     assert [path.name for path in folder.parent.iterdir()] == [folder.name]
 
 
@@ -90,7 +91,7 @@ def test_every_parameter_has_a_source_or_is_called_chosen(name):
 
 
 def test_the_parameter_tables_show_the_values_used():
-    text = parameter_tables(dataclasses.replace(CorridorModels(), wagon=WagonModel(frames=123)))
+    text = parameter_tables(dataclasses.replace(CorridorModels(), wagon=WagonModel(frames=123)), "corridor")
     assert "| `frames` | 123 |" in text
     assert "| `frequency` | 15000000.0 | Hz" in text
 

@@ -1,0 +1,42 @@
+"""Folders of generated data: checked before the work, filled at its end, all at once, with checksums."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+
+def require_folder(out: str | Path) -> Path:
+    """`out` as an absolute path. Raises `ValueError` where it cannot be a folder: now, not after minutes of work."""
+    out = Path(out).resolve()
+    existing = next(path for path in (out, *out.parents) if path.exists())
+    if not existing.is_dir():
+        raise ValueError(f"cannot make the folder {out}: {existing} is a file; give a folder, or a new name")
+    return out
+
+
+def checksums(folder: Path, products: Sequence[str]) -> str:
+    """SHA-256 of every product in a folder, one line a file as `sha256sum` writes them; SHA256SUMS itself left out."""
+    files = sorted(
+        path
+        for path in folder.rglob("*")
+        if path.is_file() and path.relative_to(folder).parts[0] in products and path.name != "SHA256SUMS"
+    )
+    lines = [f"{hashlib.sha256(p.read_bytes()).hexdigest()}  {p.relative_to(folder).as_posix()}\n" for p in files]
+    return "".join(lines)
+
+
+def move_products(folder: Path, out: Path, products: Sequence[str]) -> None:
+    """Puts the finished products in their place: copied beside it first, then renamed, old ones out and new ones in."""
+    out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=out.parent, prefix=f".{out.name}-") as beside:
+        new, old = Path(beside) / "new", Path(beside) / "old"
+        shutil.copytree(folder, new)
+        old.mkdir()
+        for name in products:
+            if (out / name).exists():
+                (out / name).rename(old / name)
+            (new / name).rename(out / name)
