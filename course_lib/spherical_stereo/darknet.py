@@ -271,3 +271,9 @@ def check_names(sections: list[Section], names: list[str]) -> None:
         raise DarknetError(
             f"the cfg has {classes} classes, the names file {len(names)}: give the names of that network"
         )
+
+
+def render_cfg(sections: list[Section]) -> str:
+    """The text of a cfg with these sections; comments are lost."""
+    blocks = ["\n".join([f"[{s.kind}]", *(f"{key}={value}" for key, value in s.options.items())]) for s in sections]
+    return "\n\n".join(blocks) + "\n"

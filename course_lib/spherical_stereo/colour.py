@@ -1,0 +1,95 @@
+"""Hue and saturation of an object in a panorama (paper 2, 2.2): means over part of its box.
+
+The part is the central half of the box in each direction: near its edges a box shows what stands behind the object.
+Hue is an angle, so its mean is taken on the circle: red at 350 and at 10 degrees has mean hue 0, not 180. A pale pixel
+says little about hue, so each pixel weighs as much as its saturation.
+"""
+
+import cv2
+import numpy as np
+
+GREY_SATURATION_PERCENT = 10.0
+"""Mean saturation below which a thing counts as grey: a white balance that is off by as much gives white this tint."""
+
+MIXED_HUES_RESULTANT = 0.2
+"""Length of the mean hue vector (1: all hues equal, 0: all directions alike) below which there is no mean hue."""
+
+DARKEST_VALUE = 1 / 16
+"""Brightness (0 to 1) below which a pixel has no say in hue: one grey level of noise may turn it by 60 degrees."""
+
+Box = tuple[float, float, float, float]
+
+
+class ColourError(ValueError):
+    """Colours asked of no pixels, or of something that is no image."""
+
+
+def central_half(box: Box) -> Box:
+    """The box with the same centre and half the width and half the height.
+
+    Box (u_min, v_min, u_max, v_max), edge coordinates; its u_max may pass the width, and so may the result's.
+    Source: paper 2, section 2.2 ("a part of the region in the box").
+    """
+    u_min, v_min, u_max, v_max = box
+    quarter_width, quarter_height = (u_max - u_min) / 4, (v_max - v_min) / 4
+    return (u_min + quarter_width, v_min + quarter_height, u_max - quarter_width, v_max - quarter_height)
+
+
+def mean_hue_saturation(
+    image_bgr: np.ndarray, box: Box | None = None, mask: np.ndarray | None = None
+) -> tuple[float, float]:
+    """Mean hue (degrees in [0, 360), NaN when grey) and mean saturation (percent) of part of an image.
+
+        hue = direction of sum_i s_i (cos h_i, sin h_i)         saturation = mean of s_i
+
+    over the pixels i of the central half of `box`, of `mask` (bool, (H, W)), of both together, or of the whole image.
+    The box may cross the seam. Hue is NaN when the mean saturation is below GREY_SATURATION_PERCENT or when hues point
+    in all directions (MIXED_HUES_RESULTANT). The paper takes plain means of H; on the circle that has no meaning.
+
+    image_bgr: (H, W, 3) uint8. Raises `ColourError`: no such image, a mask of another shape, or no pixel left.
+    Source: paper 2, section 2.2.
+    """
+    image_bgr = np.asarray(image_bgr)
+    if image_bgr.ndim != 3 or image_bgr.shape[2] != 3 or image_bgr.dtype != np.uint8:
+        raise ColourError(f"image must be (H, W, 3) uint8 BGR; got shape {image_bgr.shape}, {image_bgr.dtype}")
+    if mask is not None and np.shape(mask) != image_bgr.shape[:2]:
+        raise ColourError(f"mask must have the image's shape {image_bgr.shape[:2]}; got {np.shape(mask)}")
+    selected = None if mask is None else np.asarray(mask, dtype=bool)
+    if box is not None:
+        image_bgr, selected = _crop(image_bgr, selected, central_half(box))
+    pixels = (image_bgr.reshape(-1, 3) if selected is None else image_bgr[selected]).reshape(-1, 1, 3)
+    if len(pixels) == 0:
+        raise ColourError(f"no pixel is left of the image for box {box} and the mask: give a box or mask inside it")
+    # 8-bit HSV would round hue to 2 degrees; float input gives H in degrees and S from 0 to 1.
+    hsv = cv2.cvtColor(pixels.astype(np.float32) / 255, cv2.COLOR_BGR2HSV).reshape(-1, 3).astype(np.float64)
+    return _mean_hue(hsv), float(100 * hsv[:, 1].mean())
+
+
+def _mean_hue(hsv: np.ndarray) -> float:
+    """Mean hue in degrees of pixels (n, 3) of H in degrees, S and V from 0 to 1; NaN when there is none."""
+    weight = np.where(hsv[:, 2] >= DARKEST_VALUE, hsv[:, 1], 0.0)
+    if weight.sum() == 0 or 100 * hsv[:, 1].mean() < GREY_SATURATION_PERCENT:
+        return float("nan")
+    angle = np.radians(hsv[:, 0])
+    x, y = weight @ np.cos(angle), weight @ np.sin(angle)
+    if np.hypot(x, y) < MIXED_HUES_RESULTANT * weight.sum():
+        return float("nan")
+    hue = float(np.degrees(np.arctan2(y, x)) % 360)
+    return 0.0 if hue >= 360 else hue  # the remainder of a tiny negative number rounds up to 360
+
+
+def _crop(image: np.ndarray, mask: np.ndarray | None, box: Box) -> tuple[np.ndarray, np.ndarray | None]:
+    """The pixels whose centres lie in the box, at least one a direction, columns taken around the seam."""
+    height, width = image.shape[:2]
+    if not np.isfinite(box).all() or box[2] <= box[0] or box[3] <= box[1]:
+        raise ColourError(f"box must be finite with u_min < u_max and v_min < v_max; got {box} (its central half)")
+    columns = _centres_between(box[0], min(box[2], box[0] + width)) % width
+    rows = _centres_between(max(box[1], 0), min(box[3], height))
+    rows = rows[(rows >= 0) & (rows < height)]
+    return image[np.ix_(rows, columns)], None if mask is None else mask[np.ix_(rows, columns)]
+
+
+def _centres_between(start: float, stop: float) -> np.ndarray:
+    """Indices i with start <= i + 1/2 < stop, or the pixel in the middle when there is none."""
+    indices = np.arange(np.ceil(start - 0.5), np.ceil(stop - 0.5)).astype(int)
+    return indices if len(indices) else np.array([int(np.floor((start + stop) / 2))])
