@@ -1,0 +1,225 @@
+"""The pose from matched points: Umeyama's least-squares fit in the plane with scale one (paper 2, section 2.6).
+
+source: points in the body frame; target: the same points in the world. The fit's rotation and translation are then
+the pose of the body in the world.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.geometry import wrap_angle
+
+LEAST_SPREAD = 1e-3
+"""Metres, root mean square about the centroid: points nearer together than this give no heading."""
+LEAST_WIDTH = 0.2
+"""Width over length of a point set from which on it counts as no line, so that a mirror image would show."""
+MIRROR_ADVANTAGE = 3.0
+"""A set counts as mirrored when the fit with a reflection leaves a residual smaller by this factor: noise on points
+near a line can favour the reflection a little, seldom this much."""
+GAUSS_NEWTON_STEPS = 10
+
+
+class Pose2D(NamedTuple):
+    """Pose of the body in the world: s = [x, y, theta]. Source: paper 2, section 2.6."""
+
+    x: float
+    """Metres."""
+    y: float
+    """Metres."""
+    theta: float
+    """Radians, [-pi, pi), from world x to body x, counterclockwise."""
+
+    def apply(self, points: np.ndarray) -> np.ndarray:
+        """World coordinates `(..., 2)` of points `(..., 2)` in the body frame: R(theta) p + [x, y]."""
+        return np.asarray(points, dtype=np.float64) @ rotation_2d(self.theta).T + np.array([self.x, self.y])
+
+
+class RigidFitError(ValueError):
+    """Points through which no rigid transform can be put."""
+
+
+class TooFewPairs(RigidFitError):
+    """Fewer than two pairs: one point says where, not which way."""
+
+
+class CoincidentPoints(RigidFitError):
+    """All points of one side are the same: no heading."""
+
+
+class MirroredPoints(RigidFitError):
+    """One side is the mirror image of the other, which no rotation makes: the pairs are wrong."""
+
+
+class UndeterminedRotation(RigidFitError):
+    """Every heading fits equally badly: the pairs are wrong."""
+
+
+class NotFinite(RigidFitError):
+    """NaN or infinity among the points, weights or covariances."""
+
+
+def rotation_2d(theta: float) -> np.ndarray:
+    """R(theta) = [[cos, -sin], [sin, cos]], `(2, 2)`, theta in radians."""
+    cosine, sine = np.cos(theta), np.sin(theta)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+def fit_rigid_2d(
+    source: np.ndarray,
+    target: np.ndarray,
+    weights: np.ndarray | None = None,
+    covariances: np.ndarray | None = None,
+) -> Pose2D:
+    """Pose that takes the source points nearest to the target points, in the least-squares sense.
+
+    min over R, t of sum_i w_i |R s_i + t - m_i|^2:
+    U D V^T = svd(sum_i w_i (m_i - m_G)(s_i - s_G)^T),  R = U diag(1, det U det V) V^T,  t = m_G - R s_G
+
+    source: `(n, 2)` body frame, target: `(n, 2)` world, metres. weights: `(n,)`, not negative; a pair of weight 0 is
+    left out. covariances: `(n, 2, 2)` of the source points in the body frame; then sum_i r_i^T (R C_i R^T)^-1 r_i is
+    made smallest by Gauss-Newton steps from the closed form. The paper uses neither: all pairs count the same.
+    Raises `TooFewPairs`, `CoincidentPoints`, `MirroredPoints` (three or more pairs that are no line, and the fit with
+    a reflection clearly better), `UndeterminedRotation`, `NotFinite` (all `RigidFitError`), and `RigidFitError` for
+    shapes that do not fit. Source: paper 2, section 2.6.
+    """
+    source, target, w, covariances = _checked(source, target, weights, covariances)
+    start_weights = w if covariances is None else w / np.trace(covariances, axis1=1, axis2=2)
+    pose = _closed_form(source, target, start_weights)
+    return pose if covariances is None else _gauss_newton(pose, source, target, w, covariances)
+
+
+def _closed_form(source: np.ndarray, target: np.ndarray, w: np.ndarray) -> Pose2D:
+    w = w / w.sum()
+    source_mean, target_mean = w @ source, w @ target
+    a, b = source - source_mean, target - target_mean
+    spread_a, spread_b = w @ (a**2).sum(axis=1), w @ (b**2).sum(axis=1)
+    for name, spread in (("source", spread_a), ("target", spread_b)):
+        if np.sqrt(spread) < LEAST_SPREAD:
+            raise CoincidentPoints(
+                f"the {len(w)} {name} points lie within {np.sqrt(spread):.2g} m of their centroid: no heading"
+            )
+    u, d, vt = np.linalg.svd((w[:, None] * b).T @ a)
+    sign = np.linalg.det(u) * np.linalg.det(vt)
+    # What the singular values leave over: the mean squared residual with a rotation, and with a reflection.
+    squared = np.maximum(0.0, spread_a + spread_b - 2 * np.array([d[0] + sign * d[1], d[0] - sign * d[1]]))
+    _refuse_mirrored(a, b, w, np.sqrt(squared))
+    if d[0] + sign * d[1] < 1e-9 * np.sqrt(spread_a * spread_b):
+        raise UndeterminedRotation(f"every heading fits these {len(w)} pairs equally badly: the pairs must be wrong")
+    rotation = u @ np.diag([1.0, sign]) @ vt
+    x, y = target_mean - rotation @ source_mean
+    return Pose2D(float(x), float(y), wrap_angle(np.arctan2(rotation[1, 0], rotation[0, 0])))
+
+
+def _refuse_mirrored(a: np.ndarray, b: np.ndarray, w: np.ndarray, residuals: np.ndarray) -> None:
+    rotated, reflected = residuals
+    if len(w) < 3 or rotated <= MIRROR_ADVANTAGE * reflected or rotated < LEAST_SPREAD:
+        return
+    for points in (a, b):
+        length, width = np.linalg.svd(np.sqrt(w)[:, None] * points, compute_uv=False)
+        if width < LEAST_WIDTH * length:
+            return
+    raise MirroredPoints(
+        f"the target points are a mirror image of the source points: with a reflection the residual is "
+        f"{reflected:.3f} m, with a rotation {rotated:.3f} m; the pairs, or an axis, must be wrong"
+    )
+
+
+def _gauss_newton(
+    pose: Pose2D, source: np.ndarray, target: np.ndarray, w: np.ndarray, covariances: np.ndarray
+) -> Pose2D:
+    for _ in range(GAUSS_NEWTON_STEPS):
+        residuals, jacobians, information = _linearized(pose, source, target, w, covariances)
+        normal = np.einsum("nki,nkl,nlj->ij", jacobians, information, jacobians)
+        gradient = np.einsum("nki,nkl,nl->i", jacobians, information, residuals)
+        step = -np.linalg.solve(normal, gradient)
+        pose = Pose2D(float(pose.x + step[0]), float(pose.y + step[1]), wrap_angle(pose.theta + step[2]))
+        if np.abs(step).max() < 1e-12:
+            break
+    return pose
+
+
+def _linearized(
+    pose: Pose2D, source: np.ndarray, target: np.ndarray, w: np.ndarray, covariances: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Residuals `(n, 2)`, their derivatives by [x, y, theta] `(n, 2, 3)`, and their weight matrices `(n, 2, 2)`."""
+    rotation = rotation_2d(pose.theta)
+    residuals = pose.apply(source) - target
+    jacobians = np.zeros((len(source), 2, 3))
+    jacobians[:, :, :2] = np.eye(2)
+    jacobians[:, :, 2] = source @ (rotation @ np.array([[0.0, -1.0], [1.0, 0.0]])).T
+    information = np.tile(np.eye(2), (len(source), 1, 1))
+    if covariances is not None:
+        information = rotation @ np.linalg.inv(covariances) @ rotation.T
+    return residuals, jacobians, w[:, None, None] * information
+
+
+def fit_covariance(
+    pose: Pose2D,
+    source: np.ndarray,
+    target: np.ndarray,
+    weights: np.ndarray | None = None,
+    covariances: np.ndarray | None = None,
+    noise: np.ndarray | None = None,
+) -> np.ndarray:
+    """Covariance `(3, 3)` of the fitted [x, y, theta]: metres and radians, squared.
+
+    C = A^-1 (sum J^T W N W J) A^-1,  A = sum J^T W J:  J the residuals' derivative, W what the fit weighed with
+
+    pose, source, target, weights, covariances: as given to, and returned by, `fit_rigid_2d`. noise: `(n, 2, 2)`
+    covariances N of the source points in the body frame. Without it they are the covariances the fit used; without
+    those either, one variance for all, taken from the residuals: sum w |r|^2 / (2 n - 3) (two pairs leave one number
+    to judge by: then it is little more than a guess). Raises `RigidFitError` as `fit_rigid_2d` does.
+    Source: paper 2, section 2.6 gives none.
+    """
+    if noise is None:
+        noise = covariances
+    source, target, w, covariances = _checked(source, target, weights, covariances)
+    residuals, jacobians, information = _linearized(pose, source, target, w, covariances)
+    inverse = np.linalg.inv(np.einsum("nki,nkl,nlj->ij", jacobians, information, jacobians))
+    if noise is None:
+        return inverse * (w @ (residuals**2).sum(axis=1)) / (2 * len(source) - 3)
+    rotation = rotation_2d(pose.theta)
+    kept = slice(None) if weights is None else np.asarray(weights, dtype=np.float64) > 0
+    in_world = rotation @ _checked_covariances(noise, kept, len(source)) @ rotation.T
+    middle = np.einsum("nki,nkl,nlm,nmo,noj->ij", jacobians, information, in_world, information, jacobians)
+    return inverse @ middle @ inverse
+
+
+def _checked(
+    source: np.ndarray, target: np.ndarray, weights: np.ndarray | None, covariances: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
+    source, target = (np.asarray(points, dtype=np.float64).reshape(-1, 2) if np.size(points) == 0 else
+                      np.asarray(points, dtype=np.float64) for points in (source, target))  # fmt: skip
+    if source.ndim != 2 or source.shape[1] != 2 or source.shape != target.shape:
+        raise RigidFitError(f"source and target must both have shape (n, 2); got {source.shape} and {target.shape}")
+    w = np.ones(len(source)) if weights is None else np.asarray(weights, dtype=np.float64)
+    if w.shape != (len(source),):
+        raise RigidFitError(f"weights must have shape ({len(source)},), one a pair; got {w.shape}")
+    for name, array in (("source", source), ("target", target), ("weights", w)):
+        if not np.isfinite(array).all():
+            raise NotFinite(
+                f"{name} must be finite; got NaN or infinity in entry {np.argwhere(~np.isfinite(array))[0][0]}"
+            )
+    if (w < 0).any():
+        raise RigidFitError(f"weights must not be negative; got {w.min():g}")
+    kept = w > 0
+    if kept.sum() < 2:
+        raise TooFewPairs(f"a pose needs at least two pairs of points; got {kept.sum()}")
+    if covariances is not None:
+        covariances = _checked_covariances(covariances, kept, int(kept.sum()))
+    return source[kept], target[kept], w[kept], covariances
+
+
+def _checked_covariances(covariances: np.ndarray, kept: np.ndarray | slice, n: int) -> np.ndarray:
+    array = np.asarray(covariances, dtype=np.float64)
+    array = array[kept] if array.ndim == 3 and (isinstance(kept, slice) or len(array) == len(kept)) else array
+    if array.shape != (n, 2, 2):
+        raise RigidFitError(f"covariances must be one (2, 2) matrix a pair; got shape {np.shape(covariances)}")
+    if not np.isfinite(array).all():
+        raise NotFinite("covariances must be finite; got NaN or infinity")
+    if not np.allclose(array, np.swapaxes(array, 1, 2)) or (np.linalg.eigvalsh(array) <= 0).any():
+        raise RigidFitError("every covariance must be symmetric with positive eigenvalues (square metres)")
+    return array
