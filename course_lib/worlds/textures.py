@@ -1,0 +1,228 @@
+"""Seeded pictures of materials, RGB uint8, that repeat without a seam and have a size in metres.
+
+All of them carry contrast at 1 to 10 cm: seen from a few metres in a panorama, finer detail is gone and plain colour
+gives AKAZE nothing to hold on to. Patterns change the brightness first, so that a surface keeps its hue and saturation.
+"""
+
+from __future__ import annotations
+
+import colorsys
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import scipy.fft
+
+Colour = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A material: one tile of it and what the tile measures.
+
+    image: `(h, w, 3)` uint8, RGB. size: metres that the tile covers, (across, up). emission: as in TexturedMesh.
+    """
+
+    image: np.ndarray
+    size: tuple[float, float]
+    emission: float = 0.0
+
+    def turned(self) -> Surface:
+        """The same material with its grain turned by 90 degrees."""
+        return Surface(np.ascontiguousarray(np.rot90(self.image)), self.size[::-1], self.emission)
+
+
+def colour(hue: float, saturation: float, value: float) -> Colour:
+    """RGB 0 to 1 of a hue in degrees, a saturation and a value in percent (HSV)."""
+    return colorsys.hsv_to_rgb((hue % 360.0) / 360.0, saturation / 100.0, value / 100.0)
+
+
+def random_colour(
+    rng: np.random.Generator,
+    saturation: tuple[float, float] = (25.0, 90.0),
+    value: tuple[float, float] = (40.0, 95.0),
+) -> Colour:
+    """A colour from anywhere on the hue circle; saturation and value in percent, drawn from the two ranges."""
+    return colour(rng.uniform(0.0, 360.0), rng.uniform(*saturation), rng.uniform(*value))
+
+
+def band_noise(
+    rng: np.random.Generator, pixels: int, wavelength: float, stretch: tuple[float, float] = (1.0, 1.0)
+) -> np.ndarray:
+    """Noise of one scale that repeats at the edges: `(pixels, pixels)` float32, mean 0, standard deviation 1.
+
+    wavelength: pixels from one blob to the next. stretch: how many times longer the blobs are (across, up).
+    """
+    spectrum = scipy.fft.rfft2(rng.standard_normal((pixels, pixels), dtype=np.float32))
+    across = np.fft.rfftfreq(pixels).astype(np.float32)[None, :] * stretch[0]
+    up = np.fft.fftfreq(pixels).astype(np.float32)[:, None] * stretch[1]
+    frequency = np.sqrt(across**2 + up**2) * wavelength
+    frequency[0, 0] = 1e-6
+    noise = scipy.fft.irfft2(spectrum * np.exp(-(np.log(frequency) ** 2) / 0.5), s=(pixels, pixels))
+    return ((noise - noise.mean()) / (noise.std() + 1e-12)).astype(np.float32)
+
+
+def shaded(rgb: Colour | np.ndarray, brightness: np.ndarray) -> np.ndarray:
+    """A colour times a brightness `(h, w)`, as uint8; above full scale the whole pixel is scaled, so the hue stays."""
+    image = np.asarray(rgb, np.float32) * np.maximum(brightness, 0.05)[..., None]
+    image /= np.maximum(image.max(axis=2, keepdims=True), 1.0)
+    return np.round(image * 255.0).astype(np.uint8)
+
+
+def _coordinates(pixels: int) -> tuple[np.ndarray, np.ndarray]:
+    """(across, up), both 0 to 1, of the pixel centres."""
+    line = (np.arange(pixels, dtype=np.float32) + 0.5) / pixels
+    return line[None, :], line[:, None]
+
+
+def _dots(rng: np.random.Generator, pixels: int, count: int, radius: tuple[float, float]) -> np.ndarray:
+    """Filled discs, wrapped at the edges: `(pixels, pixels)` float32, 0 outside, strength 0.4 to 1 inside."""
+    mask = np.zeros((pixels, pixels), np.float32)
+    for _ in range(count):
+        column, row = rng.integers(0, pixels, 2)
+        size, strength = max(1, round(rng.uniform(*radius))), float(rng.uniform(0.4, 1.0))
+        for shift in ((0, 0), (pixels, 0), (-pixels, 0), (0, pixels), (0, -pixels)):
+            cv2.circle(mask, (int(column + shift[0]), int(row + shift[1])), size, strength, -1, cv2.LINE_AA)
+    return mask
+
+
+CLOTH_PATTERNS = ("plain", "stripes", "checks", "dots", "herringbone", "blotches")
+
+
+def cloth(
+    rng: np.random.Generator,
+    rgb: Colour,
+    pattern: str = "plain",
+    second: Colour | None = None,
+    size: float = 0.8,
+    pixels: int = 256,
+) -> Surface:
+    """Woven cloth: threads, worn patches and a pattern; second: the pattern's colour (None: the same hue, darker)."""
+    across, up = _coordinates(pixels)
+    threads = np.sin(2 * np.pi * 64 * across) * np.sin(2 * np.pi * 64 * up)
+    brightness = 1.0 + 0.06 * threads
+    brightness = brightness + 0.13 * band_noise(rng, pixels, 0.07 / size * pixels)
+    brightness += 0.11 * band_noise(rng, pixels, 0.025 / size * pixels)
+    repeats = int(rng.integers(4, 11))
+    if pattern == "stripes":
+        mask = np.broadcast_to((np.sin(2 * np.pi * repeats * across) > rng.uniform(-0.3, 0.6)), (pixels, pixels))
+    elif pattern == "checks":
+        mask = (np.sin(2 * np.pi * repeats * across) > 0) ^ (np.sin(2 * np.pi * repeats * up) > 0)
+    elif pattern == "dots":
+        mask = _dots(rng, pixels, 60, (0.012 / size * pixels, 0.03 / size * pixels)) > 0
+    elif pattern == "herringbone":
+        mask = np.sin(2 * np.pi * (2 * repeats * across + repeats * np.abs(2 * ((up * 4) % 1) - 1))) > 0
+    elif pattern == "blotches":
+        mask = band_noise(rng, pixels, 0.09 / size * pixels) > 0.6
+    else:
+        mask = _dots(rng, pixels, 40, (0.004 / size * pixels, 0.012 / size * pixels)) > 0.5
+    weight = mask.astype(np.float32)[..., None]
+    other = np.asarray(second if second is not None else np.asarray(rgb) * 0.62, np.float32)
+    tint = np.asarray(rgb, np.float32) * (1 - weight) + other * weight
+    return Surface(shaded(tint, brightness), (size, size))
+
+
+def leather(rng: np.random.Generator, rgb: Colour, size: float = 0.8, pixels: int = 256) -> Surface:
+    """Leather: creases, grain and patches of wear."""
+    creases = np.abs(band_noise(rng, pixels, 0.06 / size * pixels))
+    brightness = 0.85 + 0.22 * np.minimum(creases, 1.2) + 0.1 * band_noise(rng, pixels, 0.02 / size * pixels)
+    brightness += 0.1 * band_noise(rng, pixels, 0.2 / size * pixels)
+    return Surface(shaded(rgb, brightness), (size, size))
+
+
+def wood(rng: np.random.Generator, rgb: Colour, size: float = 0.8, pixels: int = 256, boards: int = 0) -> Surface:
+    """Wood with its grain across the tile: rings, streaks, knots and, if asked, the joints of boards."""
+    across, up = _coordinates(pixels)
+    warp = band_noise(rng, pixels, 0.25 / size * pixels, (3.0, 1.0))
+    rings = np.sin(2 * np.pi * (rng.integers(6, 13) * up) + 1.6 * warp)
+    brightness = 0.95 + 0.13 * rings + 0.1 * band_noise(rng, pixels, 0.02 / size * pixels, (8.0, 1.0))
+    brightness += 0.08 * band_noise(rng, pixels, 0.04 / size * pixels, (2.0, 1.0))
+    knots = _dots(rng, pixels, int(rng.integers(3, 9)), (0.006 / size * pixels, 0.018 / size * pixels))
+    brightness *= 1.0 - 0.5 * cv2.GaussianBlur(knots, (0, 0), 1.0)
+    if boards:
+        board = np.floor(up * boards).astype(int)
+        brightness *= 1.0 + rng.uniform(-0.18, 0.18, boards).astype(np.float32)[board]
+        joints = (up * boards) % 1.0 < 0.05
+        ends = (((across + rng.uniform(0, 1, boards).astype(np.float32)[board]) * 1.0) % 1.0) < 0.008
+        brightness *= np.where(joints | ends, 0.55, 1.0)
+    return Surface(shaded(rgb, brightness), (size, size))
+
+
+def metal(rng: np.random.Generator, rgb: Colour, size: float = 0.6, pixels: int = 256) -> Surface:
+    """Brushed or painted metal: fine streaks, faint clouds and some stains."""
+    brightness = 0.95 + 0.06 * band_noise(rng, pixels, 0.012 / size * pixels, (12.0, 1.0))
+    brightness += 0.05 * band_noise(rng, pixels, 0.12 / size * pixels)
+    brightness += 0.05 * band_noise(rng, pixels, 0.04 / size * pixels)
+    brightness *= 1.0 - 0.25 * _dots(rng, pixels, 25, (0.003 / size * pixels, 0.009 / size * pixels))
+    return Surface(shaded(rgb, brightness), (size, size))
+
+
+def ceramic(rng: np.random.Generator, rgb: Colour, size: float = 0.5, pixels: int = 256) -> Surface:
+    """Glazed clay: runs of glaze, speckles and a few bands."""
+    _, up = _coordinates(pixels)
+    brightness = 0.95 + 0.14 * band_noise(rng, pixels, 0.06 / size * pixels, (0.6, 1.4))
+    brightness *= 1.0 - 0.5 * _dots(rng, pixels, 90, (0.003 / size * pixels, 0.009 / size * pixels))
+    if rng.random() < 0.5:
+        brightness *= np.where((up * rng.integers(2, 6)) % 1.0 < 0.2, 0.65, 1.0)
+    return Surface(shaded(rgb, brightness), (size, size))
+
+
+def plaster(rng: np.random.Generator, rgb: Colour, size: float = 2.0, pixels: int = 512) -> Surface:
+    """A painted wall: trowel marks, clouds and small chips, all faint."""
+    brightness = 0.97 + 0.035 * band_noise(rng, pixels, 0.3 / size * pixels)
+    brightness += 0.03 * band_noise(rng, pixels, 0.06 / size * pixels)
+    brightness *= 1.0 - 0.2 * _dots(rng, pixels, 60, (0.006 / size * pixels, 0.014 / size * pixels))
+    return Surface(shaded(rgb, brightness), (size, size))
+
+
+def wallpaper(rng: np.random.Generator, rgb: Colour, size: float = 1.2, pixels: int = 512) -> Surface:
+    """Wallpaper: a printed figure that repeats in staggered rows, or stripes, a little stronger than its ground."""
+    across, up = _coordinates(pixels)
+    brightness = 0.97 + 0.04 * band_noise(rng, pixels, 0.1 / size * pixels)
+    repeats = int(rng.integers(4, 9))
+    kind = rng.integers(3)
+    if kind == 0:
+        mask = np.broadcast_to(np.sin(2 * np.pi * repeats * across) > rng.uniform(0.0, 0.8), (pixels, pixels))
+    else:
+        row = np.floor(up * repeats)
+        x = (across * repeats + 0.5 * (row % 2)) % 1.0 - 0.5
+        y = (up * repeats) % 1.0 - 0.5
+        angle, radius = np.arctan2(y, x), np.hypot(x, y)
+        petals = int(rng.integers(3, 7))
+        mask = radius < 0.3 * (0.6 + 0.4 * np.cos(petals * angle))
+        if kind == 2:
+            mask = mask ^ (np.abs(x) + np.abs(y) > 0.46)
+    brightness = brightness * (1.0 - rng.uniform(0.1, 0.3) * mask)
+    return Surface(shaded(rgb, brightness), (size, size))
+
+
+def carpet(rng: np.random.Generator, rgb: Colour, size: float = 1.5, pixels: int = 512) -> Surface:
+    """Carpet: tufts and flecks."""
+    brightness = 0.9 + 0.12 * band_noise(rng, pixels, 0.02 / size * pixels)
+    brightness += 0.1 * band_noise(rng, pixels, 0.08 / size * pixels)
+    return Surface(shaded(rgb, brightness), (size, size))
+
+
+def tiles(rng: np.random.Generator, rgb: Colour, size: float = 1.6, pixels: int = 512, count: int = 4) -> Surface:
+    """Floor tiles with joints; every tile has its own shade and stains."""
+    across, up = _coordinates(pixels)
+    shades = rng.uniform(0.82, 1.08, (count, count)).astype(np.float32)
+    brightness = shades[np.floor(up * count).astype(int), np.floor(across * count).astype(int)]
+    brightness = brightness + 0.07 * band_noise(rng, pixels, 0.1 / size * pixels)
+    brightness += 0.05 * band_noise(rng, pixels, 0.03 / size * pixels)
+    joints = ((across * count) % 1.0 < 0.03) | ((up * count) % 1.0 < 0.03)
+    return Surface(shaded(rgb, brightness * np.where(joints, 0.6, 1.0)), (size, size))
+
+
+def leaves(rng: np.random.Generator, rgb: Colour, size: float = 0.25, pixels: int = 128) -> Surface:
+    """A leaf's skin: veins that leave the middle (across = 0.5), patches, lighter and darker."""
+    across, up = _coordinates(pixels)
+    veins = np.abs(np.sin(np.pi * (8 * up + 6 * np.abs(across - 0.5)))) < 0.15
+    brightness = 0.9 + 0.22 * band_noise(rng, pixels, pixels / 5.0)
+    brightness *= np.where(veins | (np.abs(across - 0.5) < 0.03), 1.25, 1.0)
+    return Surface(shaded(rgb, brightness), (size, size))
+
+
+def glow(rgb: Colour, emission: float = 1.0) -> Surface:
+    """A plain bright surface, for lamps."""
+    return Surface(shaded(rgb, np.ones((8, 8), np.float32)), (1.0, 1.0), emission)
