@@ -43,23 +43,25 @@ class YoloHead:
 class DarknetNetwork(nn.Module):
     """The layers of a cfg in order; `forward` gives the raw map of every `[yolo]` section.
 
+    `generator` draws the first weights (a generator seeded with 0 when it is left out), so one seed gives one network.
     Raises `DarknetError` for a section or an option that the training cannot build.
     """
 
-    def __init__(self, sections: list[Section]):
+    def __init__(self, sections: list[Section], generator: torch.Generator | None = None):
         super().__init__()
+        generator = generator or torch.Generator().manual_seed(0)
         self.sections = sections
         self.heads: list[YoloHead] = []
         layers: list[nn.Module] = []
         for section, (incoming, _) in zip(sections[1:], layer_channels(sections), strict=True):
-            layers.append(_build(section, incoming))
+            layers.append(_build(section, incoming, generator))
             if section.kind == "yolo":
                 self.heads.append(yolo_head(section))
         if not self.heads:
             raise DarknetError("the cfg has no [yolo] section, so there is nothing to train")
         self.layers = nn.ModuleList(layers)
         self._needed = _needed_later(sections)
-        self._start_from_prior()
+        self._start_from_prior(generator)
 
     def forward(self, images: torch.Tensor) -> list[torch.Tensor]:
         """Raw maps (b, anchors, 5 + classes, rows, columns), one per `[yolo]`, of images (b, 3, h, w), RGB in [0, 1].
@@ -83,13 +85,13 @@ class DarknetNetwork(nn.Module):
                 kept[index] = value
         return outputs
 
-    def _start_from_prior(self) -> None:
+    def _start_from_prior(self, generator: torch.Generator) -> None:
         for index, section in enumerate(self.sections[1:]):
             if section.kind == "yolo":
                 convolution = self.layers[index - 1][0]
                 head = yolo_head(section)
                 bias = convolution.bias.data.view(len(head.anchors), 5 + head.classes)
-                nn.init.normal_(convolution.weight, std=0.01)
+                nn.init.normal_(convolution.weight, std=0.01, generator=generator)
                 bias.zero_()
                 bias[:, 4] = float(torch.logit(torch.tensor(PRIOR_OBJECTNESS)))
                 bias[:, 5:] = float(torch.logit(torch.tensor(1.0 / head.classes)))
@@ -159,9 +161,9 @@ def decode(outputs: list[torch.Tensor], heads: list[YoloHead], input_width: int)
     return torch.cat(parts, dim=1)
 
 
-def _build(section: Section, incoming: int) -> nn.Module:
+def _build(section: Section, incoming: int, generator: torch.Generator) -> nn.Module:
     if section.kind == "convolutional":
-        return _convolution(section, incoming)
+        return _convolution(section, incoming, generator)
     if section.kind == "maxpool":
         size, stride = section.integer("size", section.integer("stride", 1)), section.integer("stride", 1)
         if stride == 1 and size % 2 == 0:
@@ -180,14 +182,14 @@ def _build(section: Section, incoming: int) -> nn.Module:
     )
 
 
-def _convolution(section: Section, incoming: int) -> nn.Sequential:
+def _convolution(section: Section, incoming: int, generator: torch.Generator) -> nn.Sequential:
     normalized = bool(section.integer("batch_normalize", 0))
     size, filters = section.integer("size", 1), section.integer("filters")
     padding = size // 2 if section.integer("pad", 0) else section.integer("padding", 0)
     parts: list[nn.Module] = [
         nn.Conv2d(incoming, filters, size, section.integer("stride", 1), padding, bias=not normalized)
     ]
-    nn.init.kaiming_normal_(parts[0].weight, a=LEAKY_SLOPE)
+    nn.init.kaiming_normal_(parts[0].weight, a=LEAKY_SLOPE, generator=generator)
     if normalized:
         parts.append(nn.BatchNorm2d(filters, eps=BATCH_NORM_EPSILON, momentum=BATCH_NORM_MOMENTUM))
     activation = section.options.get("activation", "linear")

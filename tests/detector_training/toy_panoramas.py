@@ -1,0 +1,55 @@
+"""Toy panoramas: a rectangle of its own colour and pattern for every class, on a plain background with clutter."""
+
+import json
+
+import cv2
+import numpy as np
+
+# Blue, green, red of each class, and the size (width, height) of its boxes at a width of 1280.
+CLASSES = {
+    "sofa": ((40, 40, 160), (220, 90)),
+    "chair": ((40, 160, 40), (60, 100)),
+    "table": ((40, 100, 140), (150, 80)),
+    "television": ((30, 30, 30), (90, 55)),
+    "potted plant": ((60, 200, 60), (55, 120)),
+    "refrigerator": ((230, 230, 230), (80, 200)),
+    "cabinet": ((90, 120, 200), (110, 110)),
+}
+
+
+def write_toy_folder(folder, n_images, seed=0, width=1280, objects=6):
+    """A folder with boxes.json and `n_images` JPEG panoramas; objects may cross the seam."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rng = np.random.default_rng(seed)
+    entries = []
+    for number in range(n_images):
+        image, boxes = toy_panorama(rng, width, objects)
+        name = f"{number:06d}.jpg"
+        cv2.imwrite(str(folder / name), image, [cv2.IMWRITE_JPEG_QUALITY, 92])
+        entries.append({"file": name, "room_seed": number, "width": width, "height": width // 2, "objects": boxes})
+    (folder / "boxes.json").write_text(json.dumps({"version": 1, "images": entries}))
+    return folder
+
+
+def toy_panorama(rng, width, objects):
+    height, scale = width // 2, width / 1280
+    image = np.full((height, width, 3), rng.integers(110, 200, 3), np.uint8)
+    image[int(0.6 * height) :] = rng.integers(60, 140, 3)
+    entries = []
+    # One object to each slot of the circle, so that none hides another.
+    starts = (np.arange(objects) + rng.uniform(0, 0.15, objects)) * width / objects + rng.uniform(0, width)
+    for index, start in enumerate(starts):
+        label = list(CLASSES)[rng.integers(len(CLASSES))]
+        colour, size = CLASSES[label]
+        factor = rng.uniform(0.6, 1.05) * scale * min(1.0, 6 / objects)
+        w, h = int(size[0] * factor), int(size[1] * factor)
+        u, v = int(start) % width, int(rng.uniform(0.42, 0.6) * height)
+        patch = np.full((h, w, 3), colour, np.int16) + rng.integers(-15, 16, (1, 1, 3))
+        patch[:: max(2, h // 6)] += 40
+        columns = (u + np.arange(w)) % width
+        image[v : v + h, columns] = np.clip(patch, 0, 255).astype(np.uint8)
+        box = [float(u), float(v), float(u + w), float(v + h)]
+        entries.append(
+            {"object": index, "label": label, "visible_box": box, "unoccluded_box": box, "visible_fraction": 1.0}
+        )
+    return image, entries
