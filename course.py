@@ -39,6 +39,7 @@ usage: python3 course.py COMMAND [options]
   localize              localize a recorded depth-camera sequence in a mesh map
   make-data corridor    make data/corridor again: the world, its map and the recorded runs
   make-data training-rooms  photograph generated rooms: a detector's training and test pictures
+  train-detector        train the room detector (needs PyTorch, which the course does not install)
   refresh               run the lessons again and store their outputs
 
 Options of one command: python3 course.py COMMAND --help

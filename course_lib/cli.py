@@ -26,6 +26,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "make_training_rooms",
         "photograph generated rooms: a detector's training and test pictures",
     ),
+    "train-detector": ("train_detector", "train the room detector (needs PyTorch, which the course does not install)"),
     "refresh": ("refresh", "run the lessons again and store their outputs"),
 }
 

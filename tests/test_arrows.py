@@ -14,6 +14,7 @@ ALLOWED = {
     "worlds": {"geometry", "depth_mcl", "datasets"},
     "lessons": {"geometry", "depth_mcl", "spherical_stereo", "datasets"},
     "spherical_stereo": {"geometry"},
+    "detector_training": {"geometry", "spherical_stereo", "worlds"},
 }
 
 

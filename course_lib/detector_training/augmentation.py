@@ -20,7 +20,7 @@ LEAST_SHARE_INSIDE = 0.4
 
 @dataclass(frozen=True)
 class AugmentationRanges:
-    """How much a sample may differ from its panorama (chosen: lighting and cameras differ, furniture stands upright)."""
+    """How much a sample may differ from its panorama (chosen: light and cameras differ, furniture stands upright)."""
 
     scale: tuple[float, float] = (0.85, 1.15)
     """Size of the picture in the window, 1 = as the detector sees it."""
@@ -80,7 +80,7 @@ def panorama_window(
     roll: int = 0,
     mirror: bool = False,
     scale: float = 1.0,
-    top=0.0,
+    top: float = 0.0,
 ) -> Sample:
     """The window (width, height) of a panorama rolled by `roll` columns, mirrored, and scaled.
 
@@ -88,7 +88,7 @@ def panorama_window(
     out it is what the detector sees. Boxes that cross the window's border are cut there; those cut to less than
     `LEAST_SHARE_INSIDE` of their width become ignored.
     """
-    height, width = panorama.image.shape[:2]
+    width = panorama.image.shape[1]
     image, boxes = panorama.image, panorama.boxes.astype(np.float64)
     if mirror:
         image = image[:, ::-1]

@@ -1,7 +1,7 @@
 """Darknet `.weights` files of a `DarknetNetwork`: written after the training, read to go on from one.
 
-The file: major, minor, revision (int32) = 0, 2, 5; images seen (int64); then for each convolution, in order, as float32:
-with batch normalization beta, gamma, running mean, running variance, without it the bias; then the kernel.
+The file: major, minor, revision (int32) = 0, 2, 5; images seen (int64); then for each convolution, in order, as
+float32: with batch normalization beta, gamma, running mean, running variance, without it the bias; then the kernel.
 """
 
 from __future__ import annotations

@@ -83,7 +83,7 @@ def read_boxes(folder: str | Path) -> list[dict]:
     """The entries of a folder's boxes.json. Raises `TrainingDataError`: missing, no JSON, or another version."""
     path = Path(folder) / "boxes.json"
     if not path.is_file():
-        raise TrainingDataError(f"{path} is missing: give a folder made by `course.py make-data rooms`")
+        raise TrainingDataError(f"{path} is missing: give a folder made by `course.py make-data training-rooms`")
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except ValueError as error:

@@ -149,7 +149,8 @@ def decode(outputs: list[torch.Tensor], heads: list[YoloHead], input_width: int)
     """All boxes (b, n, 5 + classes): centre u, v, width, height [pixels], objectness, score of each class.
 
     A class score is objectness times the chance of the class, as OpenCV gives it. `input_width` is the width of the
-    images that the maps were made from, in pixels: it tells each map's stride. n runs over maps, rows, columns, anchors.
+    images that the maps were made from, in pixels: it tells each map's stride. n runs over maps, rows, columns,
+    anchors.
     """
     parts = []
     for raw, head in zip(outputs, heads, strict=True):

@@ -1,4 +1,4 @@
-"""How well a detector finds the objects of panoramas: precision and recall at an overlap, and the choice of a threshold.
+"""How well a detector finds the objects of panoramas: precision and recall at an overlap, the choice of a threshold.
 
 A detection is right when its class is the object's and their boxes overlap enough; each object is found once. Objects
 that are too much hidden or too small are ignored: who finds them neither gains nor loses.
@@ -144,7 +144,7 @@ def best_threshold(curve: PrecisionRecall) -> float:
 
 
 def average_precision(curve: PrecisionRecall) -> float:
-    """Area under the curve of precision over recall, precision made monotone from the right (as PASCAL VOC since 2010)."""
+    """Area under precision over recall, precision made monotone from the right (as PASCAL VOC since 2010)."""
     if not len(curve.recall):
         return 0.0
     envelope = np.maximum.accumulate(curve.precision[::-1])[::-1]
