@@ -37,6 +37,7 @@ usage: python3 course.py COMMAND [options]
   check                 look at the environment: packages, OpenGL, one rendered depth image
   demo corridor         run paper 1's corridor experiment and print its table
   localize              localize a recorded depth-camera sequence in a mesh map
+  stereo                match a pair of panoramas and list the distances of boxed objects
   make-data corridor    make data/corridor again: the world, its map and the recorded runs
   make-data training-rooms  photograph generated rooms: a detector's training and test pictures
   train-detector        train the room detector (needs PyTorch, which the course does not install)

@@ -21,6 +21,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "check": ("check", "look at the environment: packages, OpenGL, one rendered depth image"),
     "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
+    "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
     "make-data training-rooms": (
         "make_training_rooms",

@@ -98,9 +98,7 @@ def disparity_distance(match, width: int, height: int, baseline: float) -> Dispa
     deviation = _NORMAL_OVER_MAD * float(np.median(np.abs(slope - middle)))
     # d rho = rho^2 / baseline d slope, as in the covariance of the triangulation.
     spread = baseline / middle**2 * deviation
-    return DisparityDistance(
-        OK, baseline / middle, spread, _MEDIAN_OVER_MEAN * spread / np.sqrt(len(slope)), len(slope)
-    )
+    return DisparityDistance(OK, baseline / middle, spread, _MEDIAN_OVER_MEAN * spread / len(slope) ** 0.5, len(slope))
 
 
 def _slopes(keypoints_upper, keypoints_lower, width, height) -> np.ndarray:

@@ -1,0 +1,165 @@
+"""Match two real panoramas of a vertical rig, draw the vertical disparity, and list a distance for every boxed object.
+
+Two distances an object: from the centres of its two boxes, and from the vertical disparities of the features in them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+
+import numpy as np
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options of `stereo`."""
+    parser.add_argument("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
+    parser.add_argument("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
+    parser.add_argument("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
+    parser.add_argument("--boxes", type=Path, metavar="JSON", help="boxes of the objects in both images (README)")
+    parser.add_argument(
+        "--sigma-pixels", type=float, default=1.0, metavar="PX", help="standard deviation of a box centre (default: 1)"
+    )
+    parser.add_argument("--out", "--output", type=Path, metavar="FOLDER", help="write figures and results here")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Matches, measures, prints; 0 when the two images could be matched."""
+    from course_lib.commands.arguments import require_output_folder
+    from course_lib.spherical_stereo.boxes_file import read_boxes
+    from course_lib.spherical_stereo.feature_matching import match_detected_features
+    from course_lib.spherical_stereo.features import detect_features
+    from course_lib.spherical_stereo.object_distances import measure_objects
+    from course_lib.spherical_stereo.sphere import StereoRig, check_panorama_pair, read_panorama
+    from course_lib.spherical_stereo.stereo_matching import match_detections
+
+    rig = StereoRig(arguments.baseline)
+    if not (np.isfinite(arguments.sigma_pixels) and arguments.sigma_pixels > 0):
+        raise ValueError(f"--sigma-pixels must be a positive number of pixels; got {arguments.sigma_pixels}")
+    if arguments.out:
+        require_output_folder(arguments.out)
+    boxes = read_boxes(arguments.boxes) if arguments.boxes else None
+    upper_image, lower_image = read_panorama(arguments.upper), read_panorama(arguments.lower)
+    width, height = check_panorama_pair(upper_image, lower_image)
+    upper_detections, lower_detections = boxes.detections(upper_image, lower_image) if boxes else ([], [])
+    started = time.perf_counter()
+    upper, lower = detect_features(upper_image), detect_features(lower_image)
+    features = match_detected_features(upper, lower, rig)
+    matching = match_detections(upper, upper_detections, lower, lower_detections, rig)
+    seconds = time.perf_counter() - started
+    objects = measure_objects(
+        matching.matches, upper_detections, lower_detections, (width, height), rig, arguments.sigma_pixels
+    )
+    summary = {
+        "upper": str(arguments.upper),
+        "lower": str(arguments.lower),
+        "baseline_m": rig.baseline,
+        "matches": len(features),
+        "epipolar_percent": 100 * features.epipolar_share,
+        "epipolar_tolerance_deg": float(np.degrees(features.tolerance)),
+        "median_disparity_px": _median(features.vertical_disparity[features.epipolar]) * height / np.pi,
+        "median_azimuth_difference_px": _median(np.abs(features.azimuth_difference)) * width / (2 * np.pi),
+        "sigma_pixels": arguments.sigma_pixels,
+        "seconds": seconds,
+        "objects": [_row(measured, boxes) for measured in objects],
+        "unmatched": [_unmatched_row(item, boxes) for item in matching.unmatched],
+    }
+    if arguments.out:
+        _write(
+            arguments.out, summary, (upper_image, lower_image), features, (upper_detections, lower_detections), objects
+        )
+    # NaN is no JSON: what has no value is null.
+    print(json.dumps(_nan_to_none(summary)) if arguments.json else _table(summary, boxes is not None))
+    if arguments.out and not arguments.json:
+        drawn = "disparity.png" + (", distances.png, room.png" if objects else "")
+        print(f"\nWritten to {arguments.out}: stereo.json, {drawn}")
+    return 0
+
+
+def _median(values: np.ndarray) -> float:
+    return float(np.median(values)) if len(values) else float("nan")
+
+
+def _row(measured, boxes) -> dict:
+    """One object as plain values."""
+    upper, lower = boxes.upper[measured.upper], boxes.lower[measured.lower]
+    names = [name for name in (upper.name, lower.name) if name]
+    return {
+        "name": " / ".join(dict.fromkeys(names)) or None,
+        "label": measured.label,
+        "upper": measured.upper,
+        "lower": measured.lower,
+        "matches": measured.n_matches,
+        "azimuth_deg": measured.azimuth_deg,
+        "box_centre": vars(measured.box_centre),
+        "disparity": vars(measured.disparity),
+    }
+
+
+def _unmatched_row(item, boxes) -> dict:
+    box = (boxes.upper if item.side == "upper" else boxes.lower)[item.index]
+    return {"name": box.name, "label": box.label, "side": item.side, "index": item.index, "reason": item.reason}
+
+
+def _nan_to_none(value):
+    if isinstance(value, dict):
+        return {key: _nan_to_none(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_nan_to_none(item) for item in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def _table(s: dict, has_boxes: bool) -> str:
+    lines = [
+        f"{s['matches']} features matched over the two images; {s['epipolar_percent']:.1f} % of them obey the epipolar "
+        f"constraint within {s['epipolar_tolerance_deg']:.2f} degrees",
+        f"median vertical disparity {s['median_disparity_px']:.1f} px, median azimuth difference "
+        f"{s['median_azimuth_difference_px']:.2f} px; features and matching took {s['seconds']:.2f} s",
+    ]
+    if not has_boxes:
+        return "\n".join([*lines, "", "No distances: give the objects' boxes with --boxes."])
+    lines += ["", f"{len(s['objects'])} objects seen in both images; metres, with one standard deviation"]
+    lines += [f"{'':<28} {'':>8} {'from box centres':^25} {'from disparities':^25}"]
+    lines += [f"{'object':<28} {'matches':>8} {'horizontal':>14} {'d':>10} {'horizontal':>14} {'d':>10}"]
+    for row in s["objects"]:
+        cells = [_cell(row["box_centre"]), _cell(row["disparity"])]
+        lines.append(f"{(row['name'] or row['label'])[:28]:<28} {row['matches']:>8} {cells[0]} {cells[1]}")
+    for row in s["unmatched"]:
+        lines.append(f"{(row['name'] or row['label'])[:28]:<28} {'':>8} {row['side']} image only: {row['reason']}")
+    return "\n".join(lines)
+
+
+def _cell(measured: dict) -> str:
+    if measured["outcome"] != "ok":
+        return f"{measured['outcome']:>25}"
+    horizontal = f"{measured['horizontal_range_m']:.2f} ± {measured['horizontal_sigma_m']:.2f}"
+    return f"{horizontal:>14} {measured['distance_m']:>10.2f}"
+
+
+def _write(folder: Path, summary: dict, images, features, detections, objects) -> None:
+    from course_lib.datasets import write_results
+    from course_lib.lessons.stereo_figures import disparity_figure, distances_figure, room_figure
+
+    rows = [
+        {
+            "name": row["name"],
+            "label": row["label"],
+            "matches": row["matches"],
+            "azimuth_deg": round(row["azimuth_deg"], 3),
+            **{
+                f"{way}_{name}": value if isinstance(value, str) else round(value, 4)
+                for way in ("box_centre", "disparity")
+                for name, value in row[way].items()
+            },
+        }
+        for row in summary["objects"]
+    ]
+    write_results(folder / "stereo.json", _nan_to_none(summary), rows)
+    disparity_figure(images[0], features).savefig(folder / "disparity.png", dpi=130)
+    if objects:
+        names = [row["name"] or row["label"] for row in summary["objects"]]
+        distances_figure(images, detections, objects).savefig(folder / "distances.png", dpi=130)
+        room_figure(objects, names).savefig(folder / "room.png", dpi=130)

@@ -1,0 +1,108 @@
+"""Small panoramas for tests: textured walls and boards ray-cast in NumPy, seen by two cameras on one vertical axis.
+
+Everything is a vertical plane, so a pixel's colour is exact and nothing depends on a graphics library. The world frame
+is the upper camera's: origin at its centre, x forward, y left, z up.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from course_lib.spherical_stereo.sphere import direction_to_pixel, pixel_to_direction
+
+WIDTH, HEIGHT = 512, 256
+BASELINE = 0.3
+
+
+@dataclass(frozen=True)
+class Board:
+    """A textured upright rectangle that faces the rig's axis: where it is and what is on it."""
+
+    label: str
+    azimuth: float  # of its middle, radians
+    range: float  # of its middle from the axis, metres, horizontal
+    width: float  # metres
+    bottom: float  # z of its lower edge, metres
+    top: float
+    texture: np.ndarray
+
+    def corners(self):
+        across = np.array([-np.sin(self.azimuth), np.cos(self.azimuth), 0.0]) * self.width / 2
+        middle = self.range * np.array([np.cos(self.azimuth), np.sin(self.azimuth), 0.0])
+        return [middle + s * across + [0, 0, z] for s in (-1, 1) for z in (self.bottom, self.top)]
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A detection as `match_objects` needs it."""
+
+    label: str
+    box: tuple[float, float, float, float]
+
+
+def blotches(rng, size=24, contrast=70):
+    """A random texture without repetition, BGR float."""
+    noise = rng.normal(size=(size, size, 3)).astype(np.float32)
+    return np.clip(128 + contrast * cv2.resize(noise, (16 * size, 16 * size), interpolation=cv2.INTER_CUBIC), 0, 255)
+
+
+def plain(value=120):
+    return np.full((8, 8, 3), value, np.float32)
+
+
+def tiled(texture, times):
+    """A texture repeated from left to right and from top to bottom."""
+    return np.tile(cv2.resize(texture, None, fx=1 / times, fy=1 / times, interpolation=cv2.INTER_AREA), (times, times, 1))
+
+
+def room_walls(texture, half=4.0, bottom=-1.5, top=1.5):
+    """Four walls around the rig."""
+    return [Board("wall", k * np.pi / 2, half, 2 * half, bottom, top, texture) for k in range(4)]
+
+
+def panorama(boards, camera_z=0.0, width=WIDTH, supersampling=2):
+    """What a camera on the axis at height `camera_z` sees, uint8 BGR; grey where there is nothing."""
+    w, h = width * supersampling, width // 2 * supersampling
+    u, v = np.meshgrid(np.arange(w) + 0.5, np.arange(h) + 0.5)
+    direction = pixel_to_direction(np.stack([u, v], axis=-1), w, h)
+    image = np.full((h, w, 3), 110, np.float32)
+    nearest = np.full((h, w), np.inf)
+    for board in boards:
+        facing = direction[..., 0] * np.cos(board.azimuth) + direction[..., 1] * np.sin(board.azimuth)
+        t = board.range / np.where(facing > 1e-6, facing, np.nan)
+        across = t * (direction[..., 1] * np.cos(board.azimuth) - direction[..., 0] * np.sin(board.azimuth))
+        z = camera_z + t * direction[..., 2]
+        s, r = 0.5 - across / board.width, (board.top - z) / (board.top - board.bottom)
+        hit = (s >= 0) & (s < 1) & (r >= 0) & (r < 1) & (t < nearest)
+        rows, columns = np.array(board.texture.shape[:2]) - 1
+        grid = [np.where(hit, a, 0).astype(np.float32) for a in (s * columns, r * rows)]
+        image[hit] = cv2.remap(board.texture, *grid, cv2.INTER_LINEAR)[hit]
+        nearest[hit] = t[hit]
+    return cv2.resize(image, (width, width // 2), interpolation=cv2.INTER_AREA).astype(np.uint8)
+
+
+def box_of(board, camera_z=0.0, width=WIDTH):
+    """The box around a board, edge coordinates; u_max passes the width at the seam."""
+    edges = [np.asarray(c) - [0, 0, camera_z] for c in board.corners()]
+    # A wide board bulges: its middle is nearer than its corners.
+    middle = board.range * np.array([np.cos(board.azimuth), np.sin(board.azimuth), 0])
+    edges += [middle + [0, 0, z - camera_z] for z in (board.bottom, board.top)]
+    u, v = direction_to_pixel(np.array(edges), width, width // 2).T
+    centre = direction_to_pixel(middle, width, width // 2)[0]
+    offset = (u - centre + width / 2) % width - width / 2
+    u_min = (centre + offset.min()) % width
+    return (float(u_min), float(v.min()), float(u_min + offset.max() - offset.min()), float(v.max()))
+
+
+def detections(boards, camera_z=0.0, width=WIDTH):
+    return [Seen(b.label, box_of(b, camera_z, width)) for b in boards if b.label != "wall"]
+
+
+def rolled(seen, k, width=WIDTH):
+    """Detections after `np.roll(image, k, axis=1)`."""
+    moved = []
+    for d in seen:
+        u_min = (d.box[0] + k) % width
+        moved.append(Seen(d.label, (u_min, d.box[1], u_min + d.box[2] - d.box[0], d.box[3])))
+    return moved
