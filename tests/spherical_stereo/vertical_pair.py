@@ -53,7 +53,9 @@ def plain(value=120):
 
 def tiled(texture, times):
     """A texture repeated from left to right and from top to bottom."""
-    return np.tile(cv2.resize(texture, None, fx=1 / times, fy=1 / times, interpolation=cv2.INTER_AREA), (times, times, 1))
+    return np.tile(
+        cv2.resize(texture, None, fx=1 / times, fy=1 / times, interpolation=cv2.INTER_AREA), (times, times, 1)
+    )
 
 
 def room_walls(texture, half=4.0, bottom=-1.5, top=1.5):
@@ -87,7 +89,7 @@ def box_of(board, camera_z=0.0, width=WIDTH):
     edges = [np.asarray(c) - [0, 0, camera_z] for c in board.corners()]
     # A wide board bulges: its middle is nearer than its corners.
     middle = board.range * np.array([np.cos(board.azimuth), np.sin(board.azimuth), 0])
-    edges += [middle + [0, 0, z - camera_z] for z in (board.bottom, board.top)]
+    edges += [np.add(middle, [0, 0, z - camera_z]) for z in (board.bottom, board.top)]
     u, v = direction_to_pixel(np.array(edges), width, width // 2).T
     centre = direction_to_pixel(middle, width, width // 2)[0]
     offset = (u - centre + width / 2) % width - width / 2
