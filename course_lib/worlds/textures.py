@@ -86,6 +86,7 @@ def _dots(rng: np.random.Generator, pixels: int, count: int, radius: tuple[float
     return mask
 
 
+# The patterns that generated rooms draw from; "tartan" and "lattice" are left to the room of the experiment.
 CLOTH_PATTERNS = ("plain", "stripes", "checks", "dots", "herringbone", "blotches")
 
 
@@ -112,6 +113,12 @@ def cloth(
         mask = _dots(rng, pixels, 60, (0.012 / size * pixels, 0.03 / size * pixels)) > 0
     elif pattern == "herringbone":
         mask = np.sin(2 * np.pi * (2 * repeats * across + repeats * np.abs(2 * ((up * 4) % 1) - 1))) > 0
+    elif pattern == "tartan":
+        bands = [(np.sin(2 * np.pi * (repeats * line + 0.4 * np.sin(2 * np.pi * line))) > 0.5) for line in (across, up)]
+        mask = 0.5 * bands[0] + 0.5 * bands[1]
+    elif pattern == "lattice":
+        slant = [np.abs(((repeats * (across + sign * up)) % 1.0) - 0.5) < 0.09 for sign in (1, -1)]
+        mask = slant[0] | slant[1]
     elif pattern == "blotches":
         mask = band_noise(rng, pixels, 0.09 / size * pixels) > 0.6
     else:
@@ -150,9 +157,9 @@ def wood(rng: np.random.Generator, rgb: Colour, size: float = 0.8, pixels: int =
 
 def metal(rng: np.random.Generator, rgb: Colour, size: float = 0.6, pixels: int = 256) -> Surface:
     """Brushed or painted metal: fine streaks, faint clouds and some stains."""
-    brightness = 0.95 + 0.06 * band_noise(rng, pixels, 0.012 / size * pixels, (12.0, 1.0))
-    brightness += 0.05 * band_noise(rng, pixels, 0.12 / size * pixels)
-    brightness += 0.05 * band_noise(rng, pixels, 0.04 / size * pixels)
+    brightness = 0.95 + 0.05 * band_noise(rng, pixels, 0.012 / size * pixels, (12.0, 1.0))
+    brightness += 0.04 * band_noise(rng, pixels, 0.12 / size * pixels)
+    brightness += 0.03 * band_noise(rng, pixels, 0.04 / size * pixels)
     brightness *= 1.0 - 0.25 * _dots(rng, pixels, 25, (0.003 / size * pixels, 0.009 / size * pixels))
     return Surface(shaded(rgb, brightness), (size, size))
 

@@ -54,7 +54,8 @@ def _leaf(
     path = start + np.stack([reach * np.cos(direction), reach * np.sin(direction), up], 1)
     side = np.array([-np.sin(direction), np.cos(direction), 0.0])
     widths = width / 2 * np.maximum(np.sin(np.pi * (0.12 + 0.86 * s)) ** 0.8, 0.06)
-    return swept(path, side, widths, np.full(6, 0.003), skin, n=4)
+    # One tile spans the leaf's width, so that the midrib runs along its middle.
+    return swept(path, side, widths, np.full(6, 0.003), Surface(skin.image, (width, length)), n=4)
 
 
 def _foliage(shape: Plant, skins: list[Surface], bark: Surface, rng: np.random.Generator) -> list:
@@ -75,10 +76,11 @@ def _foliage(shape: Plant, skins: list[Surface], bark: Surface, rng: np.random.G
         share = (index + 0.5) / shape.n_leaves
         skin = skins[index % len(skins)]
         if shape.foliage == "spiky":
-            elevation = np.arccos(np.clip(0.75 * share, 0, 1)) * rng.uniform(0.85, 1.05)
+            lean = min(0.8, 0.9 * shape.spread / rise)
+            elevation = np.arccos(lean * share) * rng.uniform(0.92, 1.05)
             length = rise * rng.uniform(0.75, 1.0)
             start = 0.3 * shape.pot_radius * np.array([np.cos(direction), np.sin(direction), 0]) + (0, 0, base - 0.01)
-            parts += _leaf(start, direction, elevation, rng.uniform(0.0, 0.5), length, shape.leaf_width, skin)
+            parts += _leaf(start, direction, elevation, rng.uniform(0.0, 0.4), length, shape.leaf_width, skin)
         elif shape.foliage == "palm":
             start = np.array([0, 0, base + stem])
             length = np.hypot(shape.spread, rise - stem) * rng.uniform(0.85, 1.05)
