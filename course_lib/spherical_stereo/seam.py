@@ -74,8 +74,10 @@ def join_cut_pairs(
             shared = min(boxes[left, 3], boxes[right, 3]) - max(boxes[left, 1], boxes[right, 1])
             if shared > 0.5 * min(boxes[left, 3] - boxes[left, 1], boxes[right, 3] - boxes[right, 1]):
                 low, high = min(boxes[left, 1], boxes[right, 1]), max(boxes[left, 3], boxes[right, 3])
-                start = boxes[right, 0]
-                boxes[right] = (start, low, min(boxes[left, 2] + width, start + width), high)
+                start, end = boxes[right, 0], min(boxes[left, 2] + width, boxes[right, 0] + width)
+                # Whole now, so it counts: of its places a turn apart, the one with its centre in the valid range.
+                turn = width if (start + end) / 2 >= valid_range(width)[1] else 0
+                boxes[right] = (start - turn, low, end - turn, high)
                 scores[right] = max(scores[left], scores[right])
                 gone[left] = True
                 break
