@@ -1,8 +1,8 @@
 """A real network with weights set by hand: it finds rectangles of one size, red ones ("couch") and green ones ("tv").
 
-One convolution averages blocks of 4 x 4 pixels, the next looks at a window around every cell of 8 x 8. Its objectness is
-a matched filter (colour inside the rectangle's outline minus colour around it), its offsets are first moments, so boxes
-are right to a fraction of a pixel while neighbouring cells all answer: suppression and seam have real work to do.
+One convolution averages blocks of 4 x 4 pixels, the next looks at a window around every cell of 8 x 8. Its objectness
+is a matched filter (colour inside the rectangle's outline minus colour around it), its offsets are first moments, so
+boxes are right to a fraction of a pixel while neighbouring cells all answer: suppression and seam have real work to do.
 """
 
 import struct

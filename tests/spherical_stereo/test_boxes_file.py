@@ -13,7 +13,7 @@ GOOD = {
     "width": 256,
     "height": 128,
     "upper": [
-        {"label": "chair", "box": [10, 20, 50, 60], "name": "left chair"},
+        {"label": "chair", "box": [30, 20, 70, 60], "name": "left chair"},
         {"label": "tv", "box": [240, 30, 280, 50], "name": "screen"},
         {"label": "chair", "box": [100, 20, 140, 60]},
     ],
@@ -31,7 +31,7 @@ def write(path, content):
 
 def images():
     upper = np.full((128, 256, 3), 128, dtype=np.uint8)
-    upper[20:60, 10:50] = (0, 0, 200)
+    upper[20:60, 30:70] = (0, 0, 200)
     lower = np.full((128, 256, 3), 128, dtype=np.uint8)
     lower[20:40, 241:] = lower[20:40, :25] = (0, 200, 0)
     return upper, lower

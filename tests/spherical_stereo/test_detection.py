@@ -155,14 +155,14 @@ def test_a_yolov4_with_the_80_classes_of_coco_runs_at_the_shape_of_a_panorama(tm
     weights = rng.normal(0, 0.02, expected_weight_floats(read_cfg(cfg))).astype("<f4")
     (tmp_path / "some.weights").write_bytes(struct.pack("<3iq", 0, 2, 5, 0) + abs(weights).tobytes())
     (tmp_path / "coco.names").write_text("\n".join(["diningtable", *(f"thing {i}" for i in range(79))]))
-    detector = YoloDetector.load(tmp_path, input_size=(640, 256), score_threshold=0.0)
+    detector = YoloDetector.load(tmp_path, input_size=(320, 128), score_threshold=0.0)
     boxes, scores, classes = detector.detect_in_plane(panorama(rng))
     assert len(boxes) == len(scores) == len(classes) > 0
     assert (boxes >= 0).all()
     assert (boxes <= [256, 128, 256, 128]).all()
     assert "table" in detector.labels
     with pytest.raises(DarknetError, match="multiples of the network's stride"):
-        YoloDetector.load(tmp_path, input_size=(650, 256))
+        YoloDetector.load(tmp_path, input_size=(330, 128))
 
 
 def test_thresholds_outside_nought_to_one_are_refused(files):
