@@ -13,109 +13,34 @@ Source: paper 2, section 2.2 (its detector is YOLOv4).
 """
 
 import struct
-from dataclasses import dataclass
 from pathlib import Path
 
-INPUT_KINDS = ("net", "network")
-DETECTION_KINDS = ("yolo", "region")
-_SAME_CHANNELS = ("maxpool", "avgpool", "upsample", "dropout", "softmax", "shortcut", "sam", *DETECTION_KINDS)
-LAYER_KINDS = ("convolutional", "route", "reorg", "scale_channels", *_SAME_CHANNELS)
+from course_lib.spherical_stereo.darknet_cfg import (
+    DETECTION_KINDS,
+    DarknetError,
+    Section,
+    parse_cfg,
+    read_cfg,
+    read_text,
+    render_cfg,
+)
 
-
-class DarknetError(ValueError):
-    """A Darknet file that is missing, malformed, or does not fit the others."""
-
-
-@dataclass(frozen=True)
-class Section:
-    """One `[kind]` block of a cfg."""
-
-    kind: str
-    """What stands between the brackets: "net", "convolutional", "route", ..."""
-    options: dict[str, str]
-    """`key=value` lines, as text; a key that comes twice keeps its last value, as in OpenCV."""
-    line: int
-    """Line of the bracket, from 1; for messages."""
-
-    def integer(self, key: str, default: int | None = None) -> int:
-        """The option as a whole number. Raises DarknetError: missing with no default, or no whole number."""
-        text = self.options.get(key)
-        if text is None:
-            if default is None:
-                raise DarknetError(f"[{self.kind}] at line {self.line} has no {key}: add {key}=...")
-            return default
-        try:
-            return int(text)
-        except ValueError:
-            raise DarknetError(f"[{self.kind}] at line {self.line}: {key}={text} is not a whole number") from None
-
-    def integers(self, key: str) -> list[int]:
-        """The option as a list of whole numbers separated by commas. Raises DarknetError."""
-        text = self.options.get(key, "")
-        try:
-            numbers = [int(part) for part in text.split(",") if part.strip()]
-        except ValueError:
-            numbers = []
-        if not numbers:
-            raise DarknetError(f"[{self.kind}] at line {self.line}: {key}={text} is not a list of whole numbers")
-        return numbers
-
-
-def read_text(path: str | Path, what: str) -> str:
-    """The text of a file. Raises DarknetError: missing, a folder, or not text; `what` names it in the message."""
-    path = Path(path)
-    if not path.is_file():
-        raise DarknetError(f"{what} {path} is missing: give the path of an existing file")
-    try:
-        return path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise DarknetError(f"{what} {path} is not a text file: was another file given in its place?") from None
-
-
-def read_cfg(path: str | Path) -> list[Section]:
-    """Read a Darknet cfg: the `[net]` section first, then one section per layer, in order.
-
-    Raises DarknetError: the file is missing or not text, a line is neither `[kind]`, `key=value` nor a comment, a
-    section is unknown or empty, or the file does not start with `[net]`. Messages give the line number.
-    """
-    return parse_cfg(read_text(path, "cfg file"), str(path))
-
-
-def parse_cfg(text: str, name: str = "cfg") -> list[Section]:
-    """The sections of a cfg given as text; `name` is used in messages. Raises DarknetError as `read_cfg` does."""
-    sections: list[Section] = []
-    for number, raw in enumerate(text.splitlines(), start=1):
-        line = raw.split("#", 1)[0].split(";", 1)[0].strip()
-        if not line:
-            continue
-        if line.startswith("[") and line.endswith("]"):
-            sections.append(Section(line[1:-1].strip().lower(), {}, number))
-            continue
-        key, equals, value = (part.strip() for part in line.partition("="))
-        if not (key and equals and value):
-            raise DarknetError(f"{name}, line {number}: '{line}' is neither [section] nor key=value")
-        if not sections:
-            raise DarknetError(f"{name}, line {number}: '{line}' comes before any [section]; a cfg starts with [net]")
-        sections[-1].options[key] = value
-    _check_sections(sections, name)
-    return sections
-
-
-def _check_sections(sections: list[Section], name: str) -> None:
-    if not sections:
-        raise DarknetError(f"{name} has no [section]: a Darknet cfg starts with [net]")
-    if sections[0].kind not in INPUT_KINDS:
-        raise DarknetError(f"{name}, line {sections[0].line}: starts with [{sections[0].kind}], expected [net]")
-    for section in sections[1:]:
-        if section.kind not in LAYER_KINDS:
-            known = ", ".join(sorted(LAYER_KINDS))
-            raise DarknetError(f"{name}, line {section.line}: unknown section [{section.kind}], known are {known}")
-    for section in sections:
-        # These three work without options, as they stand in published cfgs; any other empty block is a slip.
-        if not section.options and section.kind not in ("avgpool", "softmax", "maxpool"):
-            raise DarknetError(f"{name}, line {section.line}: section [{section.kind}] is empty")
-    if len(sections) == 1:
-        raise DarknetError(f"{name} has a [net] section and no layer")
+__all__ = [
+    "DETECTION_KINDS",
+    "DarknetError",
+    "Section",
+    "check_names",
+    "check_weights",
+    "class_count",
+    "expected_weight_floats",
+    "header_bytes",
+    "input_size",
+    "layer_channels",
+    "parse_cfg",
+    "read_cfg",
+    "read_names",
+    "render_cfg",
+]
 
 
 def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
@@ -271,9 +196,3 @@ def check_names(sections: list[Section], names: list[str]) -> None:
         raise DarknetError(
             f"the cfg has {classes} classes, the names file {len(names)}: give the names of that network"
         )
-
-
-def render_cfg(sections: list[Section]) -> str:
-    """The text of a cfg with these sections; comments are lost."""
-    blocks = ["\n".join([f"[{s.kind}]", *(f"{key}={value}" for key, value in s.options.items())]) for s in sections]
-    return "\n\n".join(blocks) + "\n"

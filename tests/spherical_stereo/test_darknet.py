@@ -7,6 +7,7 @@ import pytest
 
 from course_lib.spherical_stereo.darknet import (
     DarknetError,
+    check_names,
     check_weights,
     class_count,
     expected_weight_floats,
@@ -186,6 +187,12 @@ def test_detection_layers_must_agree_with_their_input():
         class_count(parse_cfg(SMALL.replace("classes=2", "classes=3")))
     with pytest.raises(DarknetError, match=r"no \[yolo\] or \[region\]"):
         class_count(parse_cfg(SMALL.split("[yolo]")[0]))
+
+
+def test_names_are_as_many_as_the_classes():
+    check_names(parse_cfg(SMALL), ["sofa", "chair"])
+    with pytest.raises(DarknetError, match="2 classes, the names file 3"):
+        check_names(parse_cfg(SMALL), ["sofa", "chair", "table"])
 
 
 def test_names_end_at_the_last_name_and_have_no_gaps(tmp_path):
