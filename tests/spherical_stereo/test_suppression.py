@@ -8,7 +8,7 @@ BOX = np.array([100.0, 50, 200, 150])
 
 
 def shifted(*offsets):
-    return np.array([BOX + [offset, 0, offset, 0] for offset in offsets])
+    return np.array([BOX + np.array([offset, 0, offset, 0]) for offset in offsets])
 
 
 def test_the_best_of_overlapping_boxes_stays():
