@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.spherical_stereo.evaluation import MEASUREMENT_PLACES
+from course_lib.spherical_stereo.paper_tables import MEASUREMENT_PLACES
 from course_lib.worlds.data_folder import checksums, move_products, require_folder
 from course_lib.worlds.experiment_room import make_experiment_room
 from course_lib.worlds.object_boxes import object_boxes
@@ -66,16 +66,16 @@ def make_room_data(
         shots = [
             (experiment, upper_height, place, turn)
             for experiment, upper_height in ((1, models.heights.upper_1), (2, models.heights.upper_2))
-            for place in range(len(MEASUREMENT_PLACES) // 2)
+            for place in MEASUREMENT_PLACES
             for turn in range(2)
         ]
         lists: dict[int, list[dict]] = {1: [], 2: []}
         with PanoramaRenderer(room, models.width) as renderer:
             for experiment, upper_height, place, turn in progress(shots):
                 (folder / f"experiment_{experiment}").mkdir(exist_ok=True)
-                name = f"{place + 1:02d}_{'ab'[turn]}"
-                x, y, heading = MEASUREMENT_PLACES[2 * place + turn]
-                rig = stand_up(x, y, heading, upper_height, models.heights.baseline, models.rig, rng)
+                name = f"{place.place:02d}_{'ab'[turn]}"
+                heading = np.deg2rad(place.headings_deg[turn])
+                rig = stand_up(place.x, place.y, heading, upper_height, models.heights.baseline, models.rig, rng)
                 entry = _photograph_pair(renderer, rig, folder / f"experiment_{experiment}", name, models.camera, rng)
                 lists[experiment].append(entry)
         for experiment, entries in lists.items():
