@@ -1,6 +1,6 @@
 """Train the room detector on folders of panoramas with boxes, and choose its threshold on validation rooms.
 
-It needs PyTorch, which the course does not install: nothing else uses it. The folders come from make-data training-rooms.
+It needs PyTorch, which the course does not install: nothing else uses it. Folders come from make-data training-rooms.
 """
 
 from __future__ import annotations
@@ -22,8 +22,10 @@ class PyTorchMissing(ValueError):
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `train-detector`."""
     folder = {"required": True, "type": Path, "metavar": "FOLDER"}
-    parser.add_argument("--images", **folder, help="panoramas to train on, with boxes.json")
-    parser.add_argument("--validation", **folder, help="panoramas of other rooms, which choose the threshold")
+    parser.add_argument("--images", **folder, nargs="+", help="panoramas to train on, with boxes.json")
+    parser.add_argument(
+        "--validation", **folder, nargs="+", help="panoramas of other rooms, which choose the threshold"
+    )
     parser.add_argument("--output", **folder, help="checkpoints, weights and results go here")
     parser.add_argument("--minutes", type=float, metavar="M", help="training time (default: 60, unless --epochs)")
     parser.add_argument("--epochs", type=int, metavar="N", help="stop after N epochs, if the time has not run out")
@@ -31,9 +33,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint in the output folder")
     parser.add_argument("--weights", type=Path, metavar="FILE", help="start from these Darknet weights")
-    parser.add_argument("--learning-rate", type=float, default=2e-3, metavar="R", help="the largest (default: 0.002)")
+    parser.add_argument(
+        "--learning-rate", type=float, default=1.5e-3, metavar="R", help="the largest (default: 0.0015)"
+    )
     parser.add_argument("--cfg", type=Path, default=DATA / "room_yolo.cfg", metavar="FILE", help="the network")
     parser.add_argument("--names", type=Path, default=DATA / "room_yolo.names", metavar="FILE", help="its classes")
+    parser.add_argument(
+        "--processes", type=int, default=1, metavar="N", help="with one thread each (default: 1, with all threads)"
+    )
     parser.add_argument("--threads", type=int, metavar="N", help="processor threads (default: PyTorch's choice)")
 
 
@@ -63,6 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
         batch_size=arguments.batch,
         learning_rate=arguments.learning_rate,
         seed=arguments.seed,
+        processes=arguments.processes,
     )
     result = train(
         arguments.cfg,
@@ -89,7 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _require_positive(arguments: argparse.Namespace) -> None:
-    for name in ("minutes", "epochs", "batch", "learning_rate", "threads"):
+    for name in ("minutes", "epochs", "batch", "learning_rate", "threads", "processes"):
         value = getattr(arguments, name)
         if value is not None and not value > 0:
             raise ValueError(f"--{name.replace('_', '-')} must be above 0; got {value}")

@@ -61,15 +61,15 @@ def augmented_sample(
 ) -> Sample:
     """A random sample of a panorama in a window (width, height) of pixels; the same generator state, the same sample.
 
-    A window lower than the panorama is cut from a random height, so that what stands at the horizon is always inside.
+    A window lower than the panorama is cut from it at a random height.
     """
     ranges = ranges or AugmentationRanges()
     height, width = panorama.image.shape[:2]
     scale = float(np.exp(rng.uniform(*np.log(ranges.scale))))
     shift = rng.uniform(-1.0, 1.0) * ranges.vertical_shift * height
-    # Spare rows beyond the window: the horizon stays in its middle third.
+    # Rows that the window leaves out: rather of the ceiling than of the floor, on which the furniture stands.
     spare = max(0.0, height - window[1])
-    top = scale * height / 2 - height / 2 + spare / 2 + shift + rng.uniform(-0.35, 0.35) * spare
+    top = scale * height / 2 - height / 2 + spare / 2 + shift + rng.uniform(-0.3, 0.5) * spare
     sample = panorama_window(panorama, window, int(rng.integers(width)), bool(rng.integers(2)), scale, top)
     return Sample(recoloured(sample.image, rng, ranges), sample.labels, sample.boxes, sample.ignored)
 

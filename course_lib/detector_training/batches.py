@@ -16,7 +16,7 @@ import torch
 
 from course_lib.detector_training.assignment import Targets, make_targets
 from course_lib.detector_training.augmentation import AugmentationRanges, augmented_sample
-from course_lib.detector_training.images import PanoramaFolder
+from course_lib.detector_training.images import PanoramaFolders
 
 QUEUE_LENGTH = 4  # batches in waiting: enough to bridge a slow one, little memory
 
@@ -36,7 +36,7 @@ def epoch_order(n_panoramas: int, seed: int, epoch: int) -> np.ndarray:
 
 
 def make_batch(
-    panoramas: PanoramaFolder,
+    panoramas: PanoramaFolders,
     indices: np.ndarray,
     generators: list[np.random.Generator],
     window: tuple[int, int],
@@ -55,16 +55,17 @@ def images_to_tensor(images: list[np.ndarray]) -> torch.Tensor:
 
 
 def epoch_batches(
-    panoramas: PanoramaFolder,
+    panoramas: PanoramaFolders,
     batch_size: int,
     window: tuple[int, int],
     seed: int,
     epoch: int,
+    n_batches: int | None = None,
     ranges: AugmentationRanges | None = None,
 ) -> Iterator[Batch]:
-    """The batches of one epoch; a last, smaller batch is left out unless it is the only one."""
+    """The batches of one epoch, or its first `n_batches`; a last, smaller one is left out unless it is the only one."""
     order = epoch_order(len(panoramas), seed, epoch)
-    n_batches = max(1, len(order) // batch_size)
+    n_batches = n_batches or max(1, len(order) // batch_size)
 
     def batch(number: int) -> Batch:
         places = np.arange(number * batch_size, min((number + 1) * batch_size, len(order)))

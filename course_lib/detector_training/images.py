@@ -43,19 +43,27 @@ class LabelledPanorama:
     """(n,) boolean: too much hidden or too small to count."""
 
 
-class PanoramaFolder:
-    """The panoramas of a folder in memory; `refresh` reads those that were added since."""
+class PanoramaFolders:
+    """The panoramas of folders in memory; `refresh` reads those that were added since."""
 
-    def __init__(self, folder: str | Path, names: list[str], width: int = STORED_WIDTH):
-        """Reads the folder. Raises `TrainingDataError` when it has no usable boxes.json or no image."""
-        self.folder = Path(folder)
+    def __init__(
+        self, folders: list[Path], names: list[str], width: int = STORED_WIDTH, part: tuple[int, int] = (0, 1)
+    ):
+        """Reads the folders, scaled to `width` columns.
+
+        part: (k, n) reads every n-th image only, from the k-th on: each of n processes then holds its share.
+        Raises `TrainingDataError` when one has no usable boxes.json, or there is no image.
+        """
+        self.folders = [Path(folder) for folder in folders]
         self.names = list(names)
         self.width = width
+        self.part = part
         self.panoramas: list[LabelledPanorama] = []
-        self._seen: set[str] = set()
+        self._seen: set[Path] = set()
         self.refresh()
         if not self.panoramas:
-            raise TrainingDataError(f"{self.folder}: boxes.json names no image that is there; make the images first")
+            listed = ", ".join(str(folder) for folder in self.folders)
+            raise TrainingDataError(f"{listed}: boxes.json names no image that is there; make the images first")
 
     def __len__(self) -> int:
         return len(self.panoramas)
@@ -64,19 +72,19 @@ class PanoramaFolder:
         return self.panoramas[index]
 
     def refresh(self) -> int:
-        """Reads the images that boxes.json has gained since the last call; returns how many."""
-        added = 0
-        for entry in read_boxes(self.folder):
-            path = self.folder / entry["file"]
-            if entry["file"] in self._seen or not path.exists():
-                continue
-            image = cv2.imread(str(path), cv2.IMREAD_COLOR)
-            if image is None:
-                continue  # still being written: the next call finds it
-            self._seen.add(entry["file"])
-            self.panoramas.append(labelled_panorama(entry, image, self.names, self.width))
-            added += 1
-        return added
+        """Reads the images that the folders' boxes.json have gained since the last call; returns how many."""
+        before = len(self.panoramas)
+        for folder in self.folders:
+            for entry in read_boxes(folder)[self.part[0] :: self.part[1]]:
+                path = folder / entry["file"]
+                if path in self._seen or not path.exists():
+                    continue
+                image = cv2.imread(str(path), cv2.IMREAD_COLOR)
+                if image is None:
+                    continue  # still being written: the next call finds it
+                self._seen.add(path)
+                self.panoramas.append(labelled_panorama(entry, image, self.names, self.width))
+        return len(self.panoramas) - before
 
 
 def read_boxes(folder: str | Path) -> list[dict]:

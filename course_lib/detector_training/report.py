@@ -12,7 +12,7 @@ import numpy as np
 import torch
 from tqdm import tqdm
 
-from course_lib.detector_training.images import LabelledPanorama, PanoramaFolder
+from course_lib.detector_training.images import LabelledPanorama, PanoramaFolders
 from course_lib.detector_training.train import TrainingPlan, TrainingResult
 from course_lib.detector_training.validation import LEAST_SCORE, Validation, validate
 from course_lib.spherical_stereo.darknet import read_names
@@ -23,10 +23,10 @@ from course_lib.spherical_stereo.detection_scores import Boxes
 PANORAMA_WIDTH = 1280
 
 
-def measure_detector(cfg: Path, weights: Path, names_file: Path, images: Path) -> Validation:
+def measure_detector(cfg: Path, weights: Path, names_file: Path, images: list[Path]) -> Validation:
     """Precision and recall of the detector over all validation images, at the threshold with the best F1 there.
 
-    Raises what `PanoramaFolder`, `YoloDetector` and `validate` raise.
+    Raises what `PanoramaFolders`, `YoloDetector` and `validate` raise.
     """
     names = read_names(names_file)
     detector = YoloDetector(cfg, weights, names_file, score_threshold=LEAST_SCORE)
@@ -36,7 +36,7 @@ def measure_detector(cfg: Path, weights: Path, names_file: Path, images: Path) -
         boxes = np.array([item.box for item in found], dtype=np.float64).reshape(-1, 4)
         return Boxes([item.label for item in found], boxes, np.array([item.score for item in found]))
 
-    folder = PanoramaFolder(images, names, PANORAMA_WIDTH)
+    folder = PanoramaFolders(images, names, PANORAMA_WIDTH)
     panoramas = (folder[index] for index in range(len(folder)))
     return validate(detect, tqdm(panoramas, total=len(folder), desc="validation", unit="image", disable=None), names)
 

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import tempfile
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
 import torch
 
 from course_lib.detector_training.augmentation import AugmentationRanges
 from course_lib.detector_training.batches import Batch, epoch_batches
 from course_lib.detector_training.checkpoints import Position, load_checkpoint, save_checkpoint
 from course_lib.detector_training.export import read_weights, write_weights
-from course_lib.detector_training.images import PanoramaFolder, TrainingDataError
+from course_lib.detector_training.images import PanoramaFolders, TrainingDataError
 from course_lib.detector_training.loss import Loss, yolo_loss
 from course_lib.detector_training.network import DarknetNetwork
 from course_lib.detector_training.schedule import AveragedNetwork, learning_rate
 from course_lib.detector_training.validation import Validation, every_nth, network_detector, validate
+from course_lib.detector_training.workers import (
+    Alone,
+    Together,
+    average_gradients,
+    average_statistics,
+    start_others,
+)
 from course_lib.spherical_stereo.darknet import check_names, read_cfg, read_names
 from course_lib.spherical_stereo.detection_scores import DetectionScoreError
 
@@ -34,12 +43,15 @@ class TrainingPlan:
     minutes: float | None = 60.0
     """... or after so much training time, whichever comes first; the learning rate falls towards that end."""
     batch_size: int = 8
+    """Images a step, of all processes together."""
+    processes: int = 1
+    """Processes with one thread each; 1 is one process with as many threads as PyTorch has been given."""
     window: tuple[int, int] = (1024, 416)
     """Width and height of a training sample, pixels, multiples of 32. One panorama is 1024 x 512 there: floor and
     ceiling are mostly cut off, which saves a fifth of the time and shifts the horizon."""
     panorama_width: int = 1024
     """Width to which panoramas are scaled in memory; 1024 makes 1280 with the appended quarter, the cfg's input."""
-    learning_rate: float = 2e-3
+    learning_rate: float = 1.5e-3
     warm_up_steps: int = 200
     weight_decay: float = 0.02
     seed: int = 0
@@ -65,8 +77,8 @@ class TrainingResult:
 def train(
     cfg: Path,
     names_file: Path,
-    images: Path,
-    validation_images: Path,
+    images: list[Path],
+    validation_images: list[Path],
     output: Path,
     plan: TrainingPlan | None = None,
     resume: bool = False,
@@ -75,19 +87,82 @@ def train(
     log: Callable[[str], None] = print,
     progress: Callable[[Iterable, int], Iterable] = lambda batches, count: batches,
 ) -> TrainingResult:
-    """Trains the network of `cfg` on a folder of panoramas and writes `OUTPUT/<cfg name>.weights`.
+    """Trains the network of `cfg` on folders of panoramas and writes `OUTPUT/<cfg name>.weights`.
 
-    New images in the folder are taken up at the start of each epoch. Checkpoints are written between epochs; `resume`
+    New images in the folders are taken up at the start of each epoch. Checkpoints are written between epochs; `resume`
     goes on from the one in `output`, `initial_weights` starts from a `.weights` file. `progress(batches, count)` may
     draw a bar. Raises `DarknetError`, `TrainingDataError`, `CheckpointError`.
     """
     plan = plan or TrainingPlan()
-    sections, names = read_cfg(cfg), read_names(names_file)
-    check_names(sections, names)
-    check_window(plan.window)
-    training = PanoramaFolder(images, names, plan.panorama_width)
-    validating = PanoramaFolder(validation_images, names, plan.panorama_width)
+    check_names(read_cfg(cfg), read_names(names_file))
+    check_plan(plan)
     output.mkdir(parents=True, exist_ok=True)
+    given = (cfg, names_file, images, validation_images, output, plan, resume, initial_weights, ranges)
+    if plan.processes == 1:
+        return _train(Alone(), *given, log, progress)
+    # Read here first: what is wrong with a folder is said once, not by every process.
+    PanoramaFolders(images, read_names(names_file), plan.panorama_width, (0, 10**9))
+    with tempfile.TemporaryDirectory() as folder:
+        meeting_file = Path(folder) / "meeting"
+        others = start_others(plan.processes, meeting_file, _train_beside, given)
+        try:
+            _one_thread()
+            return _train(Together(0, plan.processes, meeting_file), *given, log, progress)
+        finally:
+            for process in others:
+                process.join(timeout=10)
+                process.terminate()
+
+
+def training_step(
+    network: DarknetNetwork,
+    optimiser: torch.optim.Optimizer,
+    batch: Batch,
+    bfloat16: bool = False,
+    workers: Alone | Together | None = None,
+) -> Loss:
+    """One step of the optimiser on a batch, the gradients averaged with the other processes'; the loss before it."""
+    images = batch.images.contiguous(memory_format=torch.channels_last)
+    with torch.autocast("cpu", torch.bfloat16, enabled=bfloat16):
+        outputs = network(images)
+    loss = yolo_loss(outputs, network.heads, batch.targets, images.shape[-1])
+    optimiser.zero_grad(set_to_none=True)
+    loss.total.backward()
+    average_gradients(network, workers or Alone())
+    torch.nn.utils.clip_grad_norm_(network.parameters(), LONGEST_GRADIENT)
+    optimiser.step()
+    return loss
+
+
+def check_plan(plan: TrainingPlan) -> None:
+    """Raises `TrainingDataError` for a window that is not multiples of 32 (the largest stride) or too small a batch."""
+    if len(plan.window) != 2 or any(size < 32 or size % 32 for size in plan.window):
+        raise TrainingDataError(f"the window must be two multiples of 32 pixels (width, height); got {plan.window}")
+    if plan.processes < 1 or plan.batch_size < 2 * plan.processes:
+        raise TrainingDataError(
+            f"batches of {plan.batch_size} for {plan.processes} processes: batch normalization needs at least two "
+            "images in each process"
+        )
+
+
+def _train_beside(rank: int, count: int, meeting_file: Path, *given) -> None:
+    """What every process but the first does: the same steps on its own part of the images, and no output."""
+    _one_thread()
+    _train(Together(rank, count, meeting_file), *given, lambda text: None, lambda batches, count: batches)
+
+
+def _one_thread() -> None:
+    torch.set_num_threads(1)
+    cv2.setNumThreads(1)
+
+
+def _train(
+    workers, cfg, names_file, images, validation_images, output, plan, resume, initial_weights, ranges, log, progress
+) -> TrainingResult:
+    sections, names = read_cfg(cfg), read_names(names_file)
+    training = PanoramaFolders(images, names, plan.panorama_width, (workers.rank, workers.count))
+    first = workers.rank == 0
+    validating = PanoramaFolders(validation_images, names, plan.panorama_width) if first else None
     network = DarknetNetwork(sections, torch.Generator().manual_seed(plan.seed))
     if initial_weights is not None:
         read_weights(network, initial_weights)
@@ -98,72 +173,65 @@ def train(
     if resume:
         position = load_checkpoint(output, network, average, optimiser, plan.seed)
         log(f"going on after epoch {position.epoch}, {position.seconds / 60:.1f} minutes")
-    log(f"{len(training)} training and {len(validating)} validation images, {torch.get_num_threads()} threads")
+    clock = _Clock(position.seconds)
     path = output / (Path(cfg).stem + ".weights")
     last_validation, validated_at, saved_at, rate = None, position.seconds, position.seconds, 0.0
     while not _finished(plan, position):
         _take_up_new_images(training, log)
-        rate, mean = _run_epoch(network, average, optimiser, training, position, plan, ranges, progress)
-        line = f"epoch {position.epoch}: {len(training)} images, {position.seconds / 60:.1f} min, {rate:.1f} images/s, "
-        log(line + mean)
+        rate, mean = _run_epoch(workers, clock, network, average, optimiser, training, position, plan, ranges, progress)
+        average_statistics(average.network, workers)
+        log(f"epoch {position.epoch}: {position.images_seen} images seen, {position.seconds / 60:.1f} min, {mean}")
         over = _finished(plan, position)
-        if over or position.seconds - saved_at > 60 * plan.minutes_between_checkpoints:
+        if first and (over or position.seconds - saved_at > 60 * plan.minutes_between_checkpoints):
             save_checkpoint(output, network, average, optimiser, position)
             write_weights(average.network, path, position.images_seen)
             saved_at = position.seconds
-        if over or position.seconds - validated_at > 60 * plan.minutes_between_validations:
+        if first and (over or position.seconds - validated_at > 60 * plan.minutes_between_validations):
             _take_up_new_images(validating, log)
             last_validation = _validation(average.network, validating, names, plan, log)
             validated_at = position.seconds
-    write_weights(average.network, path, position.images_seen)
     return TrainingResult(path, position, last_validation, rate)
 
 
-def training_step(
-    network: DarknetNetwork, optimiser: torch.optim.Optimizer, batch: Batch, bfloat16: bool = False
-) -> Loss:
-    """One step of the optimiser on a batch; returns the loss before the step."""
-    images = batch.images.contiguous(memory_format=torch.channels_last)
-    with torch.autocast("cpu", torch.bfloat16, enabled=bfloat16):
-        outputs = network(images)
-    loss = yolo_loss(outputs, network.heads, batch.targets, images.shape[-1])
-    optimiser.zero_grad(set_to_none=True)
-    loss.total.backward()
-    torch.nn.utils.clip_grad_norm_(network.parameters(), LONGEST_GRADIENT)
-    optimiser.step()
-    return loss
+class _Clock:
+    """Seconds of training, going on from those of earlier sessions."""
+
+    def __init__(self, seconds: float):
+        self.start = time.monotonic() - seconds
+
+    def seconds(self) -> float:
+        return time.monotonic() - self.start
 
 
-def check_window(window: tuple[int, int]) -> None:
-    """Raises `TrainingDataError` unless width and height are positive multiples of 32, the network's largest stride."""
-    if len(window) != 2 or any(size < 32 or size % 32 for size in window):
-        raise TrainingDataError(f"the window must be two multiples of 32 pixels (width, height); got {window}")
-
-
-def _run_epoch(network, average, optimiser, training, position, plan, ranges, progress) -> tuple[float, str]:
-    """One epoch, or what is left of the time; returns images per second and the mean losses as text."""
-    batches = epoch_batches(training, plan.batch_size, plan.window, plan.seed, position.epoch, ranges)
-    count = max(1, len(training) // plan.batch_size)
-    sums, n_images, n_steps, started = [0.0, 0.0, 0.0, 0.0], 0, 0, position.seconds
-    clock = time.monotonic()
-    for batch in progress(batches, count):
-        share = _progress(plan, position, count)
-        for group in optimiser.param_groups:
-            group["lr"] = learning_rate(plan.learning_rate, position.step, plan.warm_up_steps, share)
-        loss = training_step(network, optimiser, batch, plan.bfloat16)
-        average.update(network)
-        sums = [a + b for a, b in zip(sums, (loss.total.item(), loss.box, loss.objectness, loss.classes), strict=True)]
-        n_images += len(batch.images)
-        n_steps += 1
-        position.step += 1
-        position.images_seen += len(batch.images)
-        position.seconds = started + time.monotonic() - clock
+def _run_epoch(
+    workers, clock, network, average, optimiser, training, position, plan, ranges, progress
+) -> tuple[float, str]:
+    """One epoch, or what is left of the time; returns images per second, and a line with it and the mean losses."""
+    size = plan.batch_size // workers.count
+    n_steps = workers.least(max(1, len(training) // size))
+    # Each process draws its own samples, as if it trained with a seed of its own.
+    seed = plan.seed if workers.rank == 0 else plan.seed + 1_000_003 * workers.rank
+    batches = epoch_batches(training, size, plan.window, seed, position.epoch, n_steps, ranges)
+    losses, started = [], clock.seconds()
+    for batch in progress(batches, n_steps):
+        position.seconds = workers.agree(clock.seconds())
         if plan.minutes is not None and position.seconds >= 60 * plan.minutes:
             break
+        share = _progress(plan, position, n_steps)
+        for group in optimiser.param_groups:
+            group["lr"] = learning_rate(plan.learning_rate, position.step, plan.warm_up_steps, share)
+        loss = training_step(network, optimiser, batch, plan.bfloat16, workers)
+        average.update(network)
+        losses.append((loss.total.item(), loss.box, loss.objectness, loss.classes))
+        position.step += 1
+        position.images_seen += len(batch.images) * workers.count
     position.epoch += 1
-    total, box, objectness, classes = (value / n_steps for value in sums)
-    text = f"loss {total:.3f} (box {box:.3f}, objectness {objectness:.3f}, class {classes:.3f})"
-    return n_images / max(1e-9, position.seconds - started), text
+    if not losses:
+        return 0.0, "out of time"
+    total, box, objectness, classes = (sum(column) / len(losses) for column in zip(*losses, strict=True))
+    rate = len(losses) * size * workers.count / max(1e-9, clock.seconds() - started)
+    text = f"{len(training)} images here, {rate:.1f} images/s, "
+    return rate, text + f"loss {total:.3f} (box {box:.3f}, objectness {objectness:.3f}, class {classes:.3f})"
 
 
 def _finished(plan: TrainingPlan, position: Position) -> bool:
@@ -186,7 +254,7 @@ def _optimiser(network: DarknetNetwork, plan: TrainingPlan) -> torch.optim.Optim
     return torch.optim.AdamW(groups, lr=plan.learning_rate)
 
 
-def _take_up_new_images(folder: PanoramaFolder, log: Callable[[str], None]) -> None:
+def _take_up_new_images(folder: PanoramaFolders, log: Callable[[str], None]) -> None:
     try:
         folder.refresh()
     except TrainingDataError as error:

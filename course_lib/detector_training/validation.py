@@ -10,7 +10,7 @@ import torch
 
 from course_lib.detector_training.augmentation import panorama_window
 from course_lib.detector_training.batches import images_to_tensor
-from course_lib.detector_training.images import LabelledPanorama, PanoramaFolder
+from course_lib.detector_training.images import LabelledPanorama, PanoramaFolders
 from course_lib.detector_training.network import DarknetNetwork, decode
 from course_lib.spherical_stereo.detection_scores import (
     Boxes,
@@ -117,7 +117,7 @@ def boxes_from_table(table: np.ndarray, names: list[str], width: int) -> Boxes:
     return Boxes([names[index] for index in classes], boxes, scores)
 
 
-def every_nth(panoramas: PanoramaFolder, count: int) -> list[LabelledPanorama]:
+def every_nth(panoramas: PanoramaFolders, count: int) -> list[LabelledPanorama]:
     """At most `count` panoramas, evenly spread over the folder: the same ones every time the folder is the same."""
     indices = np.unique(np.linspace(0, len(panoramas) - 1, min(count, len(panoramas))).round().astype(int))
     return [panoramas[int(index)] for index in indices]
