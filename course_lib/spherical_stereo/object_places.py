@@ -20,6 +20,9 @@ from course_lib.spherical_stereo.vertical_disparity import disparity_distance
 DISTANCES = ("box_centre", "disparity")
 BOX_CENTRE_SIGMA = 0.0075
 """Radians, standard deviation of a box centre's azimuth and elevation (chosen: 1.5 pixels at a width of 1280)."""
+CENTROID_SIGMA = 0.1
+"""Metres, standard deviation in each direction of the object's centroid about the point that its box's centre shows: a
+box is of the visible side (chosen). Without it, objects close by would seem certain to a centimetre."""
 SURFACE_SIGMA = 0.15
 """Metres, how far an object's centroid is from the surface that its features lie on, as a standard deviation (chosen:
 about a quarter of a sofa's depth). It is added to what the disparities say, which know nothing of the inside."""
@@ -74,7 +77,7 @@ def _from_box_centres(outcome: str, from_upper: np.ndarray, from_lower: np.ndarr
         return _nowhere(outcome)
     position = triangulate(from_upper, from_lower, baseline) * from_upper
     covariance = triangulation_covariance(from_upper, from_lower, baseline, BOX_CENTRE_SIGMA, BOX_CENTRE_SIGMA)
-    return Place(OK, position, covariance[:2, :2])
+    return Place(OK, position, covariance[:2, :2] + CENTROID_SIGMA**2 * np.eye(2))
 
 
 def _from_features(match, from_upper: np.ndarray, baseline: float, width: int, height: int) -> Place:
@@ -87,7 +90,7 @@ def _from_features(match, from_upper: np.ndarray, baseline: float, width: int, h
     along = np.array([np.cos(azimuth), np.sin(azimuth)])
     across = np.array([-along[1], along[0]])
     variance_along = measured.sigma**2 + SURFACE_SIGMA**2
-    variance_across = (measured.horizontal_range * BOX_CENTRE_SIGMA) ** 2
+    variance_across = (measured.horizontal_range * BOX_CENTRE_SIGMA) ** 2 + CENTROID_SIGMA**2
     covariance = variance_along * np.outer(along, along) + variance_across * np.outer(across, across)
     return Place(OK, measured.position(from_upper), covariance)
 

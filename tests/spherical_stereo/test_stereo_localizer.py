@@ -15,6 +15,7 @@ from course_lib.spherical_stereo.boxes import BoxError
 from course_lib.spherical_stereo.detected_object import Detection
 from course_lib.spherical_stereo.feature_matching import SwappedImagesError
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
+from course_lib.spherical_stereo.object_places import CENTROID_SIGMA
 from course_lib.spherical_stereo.rigid_fit import Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map import Landmark, SemanticMap
 from course_lib.spherical_stereo.sphere import (
@@ -188,7 +189,12 @@ def test_far_objects_are_less_certain_and_less_certain_along_than_across():
     ranges = [math.hypot(one.x, one.y) for one in found.observations]
     spreads = [np.sqrt(np.linalg.eigvalsh(one.covariance)) for one in found.observations]
     assert np.argsort(ranges).tolist() == np.argsort([spread[1] for spread in spreads]).tolist()
-    assert all(spread[1] > 3 * spread[0] for spread in spreads)
+    assert all(spread[1] > spread[0] for spread in spreads)
+
+
+def test_no_object_is_more_certain_than_its_centroid_can_be_told_from_a_box():
+    near = localize(*views(Pose2D(0.9, 0.9, 0.0)))
+    assert min(np.sqrt(np.linalg.eigvalsh(one.covariance)).min() for one in near.observations) >= CENTROID_SIGMA
 
 
 def test_a_weighted_fit_trusts_near_objects_more():
