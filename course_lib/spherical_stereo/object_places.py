@@ -65,19 +65,19 @@ def place_objects(
             for match, direction in zip(matches, from_upper, strict=True)
         ]
     from_lower = pixel_to_direction(box_centre([lower_detections[j].box for _, j in pairs]), width, height)
+    return _from_box_centres(from_upper, from_lower, rig.baseline)
+
+
+def _from_box_centres(from_upper: np.ndarray, from_lower: np.ndarray, baseline: float) -> list[Place]:
+    """Places of directions `(n, 3)`, all that have one at once."""
     outcomes = triangulation_outcome(from_upper, from_lower)
-    return [
-        _from_box_centres(str(outcome), *directions, rig.baseline)
-        for outcome, *directions in zip(outcomes, from_upper, from_lower, strict=True)
-    ]
-
-
-def _from_box_centres(outcome: str, from_upper: np.ndarray, from_lower: np.ndarray, baseline: float) -> Place:
-    if outcome != OK:
-        return _nowhere(outcome)
-    position = triangulate(from_upper, from_lower, baseline) * from_upper
-    covariance = triangulation_covariance(from_upper, from_lower, baseline, BOX_CENTRE_SIGMA, BOX_CENTRE_SIGMA)
-    return Place(OK, position, covariance[:2, :2] + CENTROID_SIGMA**2 * np.eye(2))
+    positions, covariances = np.full((len(outcomes), 3), np.nan), np.full((len(outcomes), 2, 2), np.nan)
+    ok = outcomes == OK
+    directions = from_upper[ok], from_lower[ok]
+    positions[ok] = triangulate(*directions, baseline)[:, None] * directions[0]
+    noise = triangulation_covariance(*directions, baseline, BOX_CENTRE_SIGMA, BOX_CENTRE_SIGMA)
+    covariances[ok] = noise[:, :2, :2] + CENTROID_SIGMA**2 * np.eye(2)
+    return [Place(str(outcome), *place) for outcome, *place in zip(outcomes, positions, covariances, strict=True)]
 
 
 def _from_features(match, from_upper: np.ndarray, baseline: float, width: int, height: int) -> Place:
