@@ -49,11 +49,14 @@ def distances_figure(images: Sequence[np.ndarray], detections: Sequence[Sequence
 
     images, detections: (upper, lower). objects: `MeasuredObject` of each match.
     """
-    figure, rows = new_figure(2, 1, size=(11, 11))
+    boxes = np.array([d.box for found in detections for d in found])
+    margin = 0.04 * images[0].shape[0]
+    figure, rows = new_figure(2, 1, size=(13, 7))
     for axes, image, found, side in zip(rows, images, detections, ("upper", "lower"), strict=True):
         panorama_axes(axes, image, f"{side} camera: number, horizontal range from disparities (from box centres)")
+        axes.set_ylim(boxes[:, 3].max() + margin, boxes[:, 1].min() - margin)
         for number, measured in enumerate(objects, start=1):
-            text = f"{number}: {_metres(measured.disparity)} ({_metres(measured.box_centre)})"
+            text = f"{number}\n{_metres(measured.disparity)}\n({_metres(measured.box_centre)})"
             _draw_box(axes, found[getattr(measured, side)].box, text, image.shape[1])
     return figure
 
@@ -72,11 +75,12 @@ def _draw_box(axes: Axes, box, text: str, width: int) -> None:
             )
         )
     axes.text(
-        u_min,
-        v_min - 2,
+        u_min + 1,
+        v_min + 1,
         text,
-        fontsize=5.5,
+        fontsize=6,
         color="white",
+        verticalalignment="top",
         clip_on=True,
         bbox={"facecolor": "black", "alpha": 0.6, "pad": 0.6, "linewidth": 0},
     )

@@ -92,12 +92,14 @@ def _near_in_azimuth(azimuth_u, elevation_u, azimuth_l, tolerance) -> tuple[np.n
     """Index pairs whose azimuths differ by at most what `tolerance` is at the upper feature's elevation."""
     if len(azimuth_u) == 0 or len(azimuth_l) == 0:
         return np.zeros(0, int), np.zeros(0, int)
-    window = np.arcsin(np.clip(np.sin(tolerance) / np.cos(elevation_u), 0.0, 1.0))
+    sine = np.sin(tolerance) / np.cos(elevation_u)
+    # Within the tolerance of a pole every azimuth is near; the whole circle is half-open, so that nothing comes twice.
+    window = np.where(sine < 1, np.arcsin(np.minimum(sine, 1.0)), np.pi)
     order = np.argsort(azimuth_l, kind="stable")
     # One more turn on either side, so that a window across the seam is one stretch of the list.
     circle = np.concatenate([azimuth_l[order] + turn for turn in (-2 * np.pi, 0.0, 2 * np.pi)])
     first = np.searchsorted(circle, azimuth_u - window, side="left")
-    count = np.searchsorted(circle, azimuth_u + window, side="right") - first
+    count = np.searchsorted(circle, azimuth_u + window, side="left") - first
     rows = np.repeat(np.arange(len(azimuth_u)), count)
     within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     return rows, order[(np.repeat(first, count) + within) % len(order)]

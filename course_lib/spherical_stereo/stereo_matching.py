@@ -126,14 +126,15 @@ def match_detections(
     lower_boxes = checked_boxes([d.box for d in lower_detections], lower.width, "boxes of the lower image")
     pairs = epipolar_pairs(upper, lower, tolerance)
     check_not_swapped(best_pairs(pairs, RATIO).disparity)
-    pairs = pairs.where(allowed_by_rig(pairs, rig.baseline))
     in_upper = [inside_box(upper.keypoints, box, upper.width)[pairs.upper] for box in upper_boxes]
     in_lower = [inside_box(lower.keypoints, box, lower.width)[pairs.lower] for box in lower_boxes]
     matched: dict[tuple[int, int], EpipolarPairs] = {}
     counts = np.zeros((len(upper_boxes), len(lower_boxes)), dtype=int)
     for i, j in np.ndindex(counts.shape):
         if upper_detections[i].label == lower_detections[j].label:
-            matched[i, j] = best_pairs(pairs.where(in_upper[i] & in_lower[j]), RATIO)
+            best = best_pairs(pairs.where(in_upper[i] & in_lower[j]), RATIO)
+            # After the contest: a feature whose best partner is an impossible one is not given its second best.
+            matched[i, j] = best.where(allowed_by_rig(best, rig.baseline))
             counts[i, j] = len(matched[i, j])
     chosen, tied_upper, tied_lower = pair_by_most_matches(counts)
     matches = [

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from course_lib.spherical_stereo.sphere import (
@@ -28,6 +28,7 @@ from course_lib.spherical_stereo.sphere import (
 )
 
 WIDTH, HEIGHT = 1280, 640
+QUICK = settings(max_examples=60, deadline=None)
 azimuths = st.floats(-np.pi, np.nextafter(np.pi, 0))
 elevations = st.floats(-1.57, 1.57)
 
@@ -48,6 +49,7 @@ def test_pixels_look_where_the_conventions_say(uv, direction):
     np.testing.assert_allclose(pixel_to_direction(np.array(uv), WIDTH, HEIGHT), direction, atol=1e-15)
 
 
+@QUICK
 @given(u=st.floats(0, WIDTH, exclude_max=True), v=st.floats(0.01, HEIGHT - 0.01))
 def test_a_pixel_comes_back_from_its_direction(u, v):
     back = direction_to_pixel(pixel_to_direction(np.array([u, v]), WIDTH, HEIGHT), WIDTH, HEIGHT)
@@ -57,6 +59,7 @@ def test_a_pixel_comes_back_from_its_direction(u, v):
     assert back[1] == pytest.approx(v, abs=1e-9)
 
 
+@QUICK
 @given(azimuth=azimuths, elevation=elevations)
 def test_angles_come_back_from_their_direction(azimuth, elevation):
     direction = direction_from_angles(azimuth, elevation)
@@ -66,6 +69,7 @@ def test_angles_come_back_from_their_direction(azimuth, elevation):
     assert back_elevation == pytest.approx(elevation, abs=1e-9)
 
 
+@QUICK
 @given(k=st.integers(-3 * WIDTH, 3 * WIDTH), u=st.floats(0, WIDTH), v=st.floats(1, HEIGHT - 1))
 def test_rolling_the_image_right_turns_what_it_shows_to_the_right(k, u, v):
     """np.roll(image, +k) moves a point k columns right: its azimuth falls by 2 pi k / W, the heading rises."""
@@ -82,6 +86,7 @@ def test_directions_broadcast_over_leading_axes(rng):
     assert direction_from_angles(np.zeros((4, 1)), np.zeros(5)).shape == (4, 5, 3)
 
 
+@QUICK
 @given(a=azimuths, b=azimuths)
 def test_an_azimuth_difference_is_the_short_way_round(a, b):
     difference = azimuth_difference(a, b)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from course_lib.spherical_stereo.epipolar import epipolar_residual
@@ -28,6 +28,7 @@ from course_lib.spherical_stereo.triangulation import (
 )
 
 BASELINE = 0.3
+QUICK = settings(max_examples=60, deadline=None)
 points = st.tuples(st.floats(0.4, 20), st.floats(-np.pi, np.pi), st.floats(-3, 2)).map(
     lambda p: np.array([p[0] * np.cos(p[1]), p[0] * np.sin(p[1]), p[2]])
 )
@@ -45,6 +46,7 @@ def midpoint_of_rays(upper, lower, baseline):
     return 0.5 * (s * upper + t * lower + [0, 0, -baseline])
 
 
+@QUICK
 @given(point=points, baseline=st.floats(0.05, 1.0))
 def test_a_point_comes_back_from_the_two_directions_that_see_it(point, baseline):
     upper, lower = seen(point, baseline)
@@ -53,6 +55,7 @@ def test_a_point_comes_back_from_the_two_directions_that_see_it(point, baseline)
     np.testing.assert_allclose(object_position(upper, lower, baseline), point, rtol=1e-8, atol=1e-8)
 
 
+@QUICK
 @given(point=points)
 def test_where_the_rays_meet_the_distance_is_that_of_their_least_squares_point(point):
     upper, lower = seen(point)
@@ -69,6 +72,7 @@ def test_skew_rays_give_the_distance_of_their_elevations(rng):
         assert triangulate(upper, turned, BASELINE) == pytest.approx(triangulate(upper, lower, BASELINE), rel=1e-12)
 
 
+@QUICK
 @given(point=points, turn=st.floats(-7, 7))
 def test_a_turn_about_the_vertical_leaves_the_distance(point, turn):
     turned = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]) @ point
@@ -126,6 +130,7 @@ def test_outcomes_of_many_directions_come_as_an_array():
         triangulate(upper, lower, BASELINE)
 
 
+@QUICK
 @given(upper=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)), lower=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)))
 def test_a_distance_is_never_a_huge_number(upper, lower):
     """Whatever the directions, the outcome is named or the distance is below baseline / tolerance."""
@@ -134,6 +139,7 @@ def test_a_distance_is_never_a_huge_number(upper, lower):
         assert 0 < triangulate(upper, lower, BASELINE) < 1.01 * BASELINE / PARALLEL_TOLERANCE
 
 
+@QUICK
 @given(point=points, gap=st.floats(-np.pi, np.pi))
 def test_the_azimuth_gap_is_measured_on_the_sphere(point, gap):
     """A direction turned by `gap` is asin(cos e sin |gap|) from the other's half-circle: less, the steeper it looks."""
@@ -149,11 +155,11 @@ def test_the_covariance_is_that_of_noise_drawn_by_hand(rng):
     sigma_azimuth, sigma_elevation = 2 * np.pi / 1280, 0.3 * np.pi / 640
     for point in ([2.5, 1.0, -0.8], [-1.5, 0.3, -1.2], [0.2, -3.5, 0.4]):
         (azimuth, e_u), (_, e_l) = (azimuth_elevation(d) for d in seen(np.array(point)))
-        noise = rng.normal(size=(3, 200_000)) * np.array([[sigma_azimuth], [sigma_elevation], [sigma_elevation]])
+        noise = rng.normal(size=(3, 60_000)) * np.array([[sigma_azimuth], [sigma_elevation], [sigma_elevation]])
         upper = direction_from_angles(azimuth + noise[0], e_u + noise[1])
         drawn = object_position(upper, direction_from_angles(azimuth, e_l + noise[2]), BASELINE)
         predicted = triangulation_covariance(*seen(np.array(point)), BASELINE, sigma_azimuth, sigma_elevation)
-        np.testing.assert_allclose(np.cov(drawn.T), predicted, atol=0.04 * np.abs(predicted).max())
+        np.testing.assert_allclose(np.cov(drawn.T), predicted, atol=0.05 * np.abs(predicted).max())
 
 
 def test_the_deviation_along_the_ray_grows_with_distance_squared_over_baseline():
