@@ -1,9 +1,82 @@
 """Toy panoramas: a rectangle of its own colour and pattern for every class, on a plain background with clutter."""
 
 import json
+from pathlib import Path
 
 import cv2
 import numpy as np
+
+ROOM_CFG = Path(__file__).parents[2] / "data" / "detector" / "room_yolo.cfg"
+ROOM_NAMES = ROOM_CFG.with_suffix(".names")
+
+# A network with every kind of section that the training knows, for panoramas 256 columns wide.
+TINY_CFG = """
+[net]
+width=320
+height=128
+channels=3
+[convolutional]
+batch_normalize=1
+filters=12
+size=3
+stride=2
+pad=1
+activation=leaky
+[convolutional]
+batch_normalize=1
+filters=24
+size=3
+stride=2
+pad=1
+activation=leaky
+[convolutional]
+batch_normalize=1
+filters=32
+size=3
+stride=2
+pad=1
+activation=leaky
+[route]
+layers=-1
+groups=2
+group_id=1
+[convolutional]
+batch_normalize=1
+filters=32
+size=3
+stride=2
+pad=1
+activation=leaky
+[maxpool]
+size=5
+stride=1
+[route]
+layers=-1,-2
+[upsample]
+stride=2
+[route]
+layers=-1,2
+[convolutional]
+batch_normalize=1
+filters=48
+size=3
+stride=1
+pad=1
+activation=leaky
+[convolutional]
+filters=36
+size=1
+stride=1
+pad=1
+activation=linear
+[yolo]
+mask=0,1,2
+anchors=12,18, 24,16, 20,32
+classes=7
+num=3
+scale_x_y=2.0
+thresh=0.0001
+"""
 
 # Blue, green, red of each class, and the size (width, height) of its boxes at a width of 1280.
 CLASSES = {
