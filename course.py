@@ -32,16 +32,18 @@ OPENGL_PACKAGES = ["libegl1", "libgl1-mesa-dri", "libgl1"]
 USAGE = """\
 usage: python3 course.py COMMAND [options]
 
-  lab                   open the lessons in JupyterLab (on this computer only)
-  test                  run every test, the notebooks included; arguments go on to pytest
-  check                 look at the environment: packages, OpenGL, one rendered depth image
-  demo corridor         run paper 1's corridor experiment and print its table
-  localize              localize a recorded depth-camera sequence in a mesh map
-  stereo                match a pair of panoramas and list the distances of boxed objects
-  make-data corridor    make data/corridor again: the world, its map and the recorded runs
+  lab                       open the lessons in JupyterLab (on this computer only)
+  test                      run every test, the notebooks included; arguments go on to pytest
+  check                     look at the environment: packages, OpenGL, one rendered depth image
+  demo corridor             run paper 1's corridor experiment and print its table
+  demo room                 run paper 2's room experiment and print its tables
+  localize                  localize a recorded depth-camera sequence in a mesh map
+  stereo                    match a pair of panoramas and list the distances of boxed objects
+  make-data corridor        make data/corridor again: the world, its map and the recorded runs
+  make-data room            make data/room again: stereo panoramas, exact boxes, the semantic map
   make-data training-rooms  photograph generated rooms: a detector's training and test pictures
-  train-detector        train the room detector (needs PyTorch, which the course does not install)
-  refresh               run the lessons again and store their outputs
+  train-detector            train the room detector (needs PyTorch, which the course does not install)
+  refresh                   run the lessons again and store their outputs
 
 Options of one command: python3 course.py COMMAND --help
 The first call sets up .venv: a download of about 400 MB, 1.6 GB on disk, one or a few minutes.

@@ -20,9 +20,11 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "test": ("test", "run every test, the notebooks included; arguments go on to pytest"),
     "check": ("check", "look at the environment: packages, OpenGL, one rendered depth image"),
     "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
+    "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
     "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
+    "make-data room": ("make_room", "make data/room again: stereo panoramas, exact boxes, the semantic map"),
     "make-data training-rooms": (
         "make_training_rooms",
         "photograph generated rooms: a detector's training and test pictures",
@@ -38,7 +40,7 @@ EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
 
 def usage() -> str:
     """The list of commands."""
-    lines = [f"  {name:<20}  {line}" for name, (_, line) in COMMANDS.items()]
+    lines = [f"  {name:<24}  {line}" for name, (_, line) in COMMANDS.items()]
     return "usage: python3 course.py COMMAND [options]\n\n" + "\n".join(lines) + "\n"
 
 
