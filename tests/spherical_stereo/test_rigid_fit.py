@@ -246,3 +246,13 @@ def test_numbers_that_are_none_are_named(bad):
 def test_arguments_that_do_not_fit_are_named(changes, says):
     with pytest.raises(RigidFitError, match=says):
         fit_rigid_2d(**{"source": TRIANGLE, "target": TRIANGLE, **changes})
+
+
+def test_a_pair_of_weight_zero_does_not_count_in_the_covariance_either():
+    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
+    noise = np.array([0.01 * np.eye(2), np.diag([0.04, 0.01]), 0.02 * np.eye(2)])
+    pose = fit_rigid_2d(TRIANGLE, target)
+    alone = fit_covariance(pose, TRIANGLE, target, noise=noise)
+    more = [np.vstack([points, [9.0, 9.0]]) for points in (TRIANGLE, target)]
+    with_zero = fit_covariance(pose, *more, weights=[1, 1, 1, 0], noise=np.vstack([noise, [np.eye(2)]]))
+    assert with_zero == pytest.approx(alone, abs=1e-12)
