@@ -11,8 +11,9 @@ PACKAGE = Path(__file__).parents[1] / "course_lib"
 ALLOWED = {
     "geometry": set(),
     "depth_mcl": {"geometry"},
-    "worlds": {"geometry", "depth_mcl", "datasets"},
-    "lessons": {"geometry", "depth_mcl", "spherical_stereo", "datasets"},
+    "worlds": {"geometry", "depth_mcl", "spherical_stereo", "datasets"},
+    # Lessons show what sensors do, and worlds simulates them; no method imports worlds, and worlds no lesson.
+    "lessons": {"geometry", "depth_mcl", "spherical_stereo", "datasets", "worlds"},
     "spherical_stereo": {"geometry"},
     "detector_training": {"geometry", "spherical_stereo", "worlds"},
 }
