@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `demo room`."""
     parser.add_argument(
         "--seed", type=int, default=SEED, metavar="N", help=f"of the photographs (default: {SEED}, the shipped ones)"
+    )
+    parser.add_argument(
+        "--poses", type=int, metavar="N", help="only the first N poses of each experiment (default: all)"
     )
     parser.add_argument("--data", type=Path, metavar="FOLDER", help="photographs made by make-data room")
     parser.add_argument("--detector", type=Path, metavar="FOLDER", help="a .cfg, .weights and .names of your own")
@@ -50,6 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     require_seed(arguments.seed)
     require_output_folder(arguments.out)
+    if arguments.poses is not None and arguments.poses < 1:
+        raise ValueError(f"--poses must be at least 1; got {arguments.poses}")
     if arguments.data is None and arguments.seed != SEED:
         with tempfile.TemporaryDirectory() as folder:
             _photograph(Path(folder), arguments.seed)
@@ -77,6 +83,7 @@ def _run_on(folder: Path, arguments: argparse.Namespace) -> int:
     results: dict[str, dict[str, list]] = {}
     for number in (1, 2):
         recording = read_stereo_recording(folder / f"experiment_{number}")
+        recording = replace(recording, pairs=recording.pairs[: arguments.poses])
         localizer = SemanticLocalizer(
             recording.rig,
             semantic_map,

@@ -18,10 +18,7 @@ class PanoramaCameraModel:
 
     exposure_stops: float = 0.25  # standard deviation of the exposure, powers of two; chosen
     white_balance: float = 0.04  # standard deviation of each channel's gain, a share of one; chosen
-    blur: tuple[float, float] = (
-        0.3,
-        0.8,
-    )  # pixels at 1280, standard deviation of the lens's and stitching's blur; chosen
+    blur: tuple[float, float] = (0.3, 0.8)  # pixels at 1280, standard deviation of lens and stitching; chosen
     shot_noise: float = 0.35  # variance per brightness level, grey levels; chosen
     read_noise: float = 1.5  # standard deviation, grey levels; chosen
     jpeg_quality: tuple[int, int] = (86, 93)  # 0 to 100, OpenCV's scale; chosen

@@ -47,6 +47,7 @@ class RoomModels:
     camera: PanoramaCameraModel = field(default_factory=PanoramaCameraModel)
     survey: RoomSurveyModel = field(default_factory=RoomSurveyModel)
     width: int = 1280  # pixels
+    places: tuple[int, ...] = tuple(place.place for place in MEASUREMENT_PLACES)  # of the paper's table 1
 
 
 def make_room_data(
@@ -67,6 +68,7 @@ def make_room_data(
             (experiment, upper_height, place, turn)
             for experiment, upper_height in ((1, models.heights.upper_1), (2, models.heights.upper_2))
             for place in MEASUREMENT_PLACES
+            if place.place in models.places
             for turn in range(2)
         ]
         lists: dict[int, list[dict]] = {1: [], 2: []}

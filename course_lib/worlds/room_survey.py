@@ -28,6 +28,7 @@ class RoomSurveyModel:
     camera_height: float = 1.5  # m above the floor; chosen
     lamp_colour: tuple[float, float, float] = (1.0, 0.94, 0.84)  # RGB, warmer than the room's own lamps; chosen
     lamp_gain: float = 1.15  # strength of the lamps against the room's own; chosen
+    width: int = 1280  # pixels of the survey's panoramas; chosen
     fewest_pixels: int = 150  # an object seen by fewer pixels is not judged from that place; chosen
 
 
@@ -58,7 +59,7 @@ def survey_room(room: Room, model: RoomSurveyModel, rng: np.random.Generator) ->
 
 def _photographed_colours(room: Room, model: RoomSurveyModel, rng: np.random.Generator) -> list[list]:
     colours: list[list] = [[] for _ in room.objects]
-    with PanoramaRenderer(room, 1280, number_scale=1) as renderer:
+    with PanoramaRenderer(room, model.width, number_scale=1) as renderer:
         for x, y in free_places(room, model.places, rng):
             state = np.array([x, y, model.camera_height, 0.0, 0.0, rng.uniform(-np.pi, np.pi)])
             image = photograph(renderer.render(state), PanoramaCameraModel(), rng)
