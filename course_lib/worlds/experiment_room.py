@@ -46,20 +46,20 @@ PLACES = np.array(
 
 # Where each piece stands: name, x, y (metres, map frame), the direction its front faces (degrees).
 LAYOUT = (
-    ("sofa south", 3.00, -0.13, 90.0),
-    ("sofa east", 5.22, 2.90, 180.0),
+    ("sofa south", 3.25, -0.13, 90.0),
+    ("sofa east", 5.12, 2.65, 180.0),
     ("sofa west", -0.02, 4.60, 0.0),
-    ("red chair", 1.72, 0.92, 60.0),
-    ("green chair", 1.02, 5.12, -90.0),
-    ("blue chair", 4.18, 2.32, 150.0),
-    ("wooden table", 1.35, 2.15, 0.0),
-    ("blue table", 3.75, 3.45, 30.0),
-    ("television", 2.55, 5.24, -90.0),
-    ("green plant", -0.02, -0.12, 45.0),
-    ("purple plant", 5.20, 1.30, 180.0),
+    ("red chair", 2.02, 0.66, 30.0),
+    ("green chair", 0.80, 5.14, -90.0),
+    ("blue chair", 3.62, 2.10, 90.0),
+    ("wooden table", 1.12, 2.10, 0.0),
+    ("blue table", 3.82, 3.62, 15.0),
+    ("television", 2.42, 5.24, -90.0),
+    ("green plant", 0.05, -0.08, 45.0),
+    ("purple plant", 5.20, 1.18, 180.0),
     ("refrigerator", 5.31, 5.13, 180.0),
     ("red cabinet", -0.21, 2.15, 0.0),
-    ("teal cabinet", 4.62, -0.31, 90.0),
+    ("teal cabinet", 4.78, -0.31, 90.0),
 )
 
 
@@ -147,7 +147,7 @@ def _shell(rng: np.random.Generator) -> tuple[TexturedMesh, ...]:
     paper = textures.wallpaper(rng, colour(48, 12, 90), 1.3)
     plain = textures.plaster(rng, colour(40, 10, 88))
     floor = wood(rng, colour(30, 40, 62), 1.8, 512, boards=12)
-    ceiling = textures.plaster(rng, colour(45, 4, 95), 2.0, 256)
+    ceiling = textures.plaster(rng, colour(45, 4, 80), 2.0, 256)
     meshes = room_shell.bare_room(LOW, HIGH, HEIGHT, [paper, plain, paper, plain], floor, ceiling, trim)
     view = [prints.window_view(rng, 1.6, 1.1) for _ in range(2)]
     meshes += room_shell.window(east, 2.6, 1.6, 1.1, 1.0, view[0], trim)
@@ -185,8 +185,8 @@ def make_experiment_room() -> Room:
         objects=tuple(pieces[name].at(x, y, np.radians(heading)) for name, x, y, heading in LAYOUT),
         shell=_shell(surroundings),
         lamps=(
-            Lamp((1.6, 2.5, 2.3), warm, 1.5),
-            Lamp((3.7, 2.5, 2.3), warm, 1.5),
+            Lamp((1.6, 2.5, 1.95), warm, 1.3),
+            Lamp((3.7, 2.5, 1.95), warm, 1.3),
             Lamp((5.1, 2.9, 1.6), day, 0.9),
             Lamp((3.0, 0.0, 1.6), day, 0.8),
         ),

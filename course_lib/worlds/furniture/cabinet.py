@@ -70,10 +70,11 @@ def build_cabinet(
     """The cabinet's parts: boards, the bays of its front, legs or plinth. fronts: the doors take them in turn."""
     d, w, h, t = shape.depth, shape.width, shape.height, shape.board
     low = shape.legs if shape.legs else 0.06
+    upright = body.turned()
     parts = box((d, w + 0.01, t), (0, 0, h - t / 2), body)
     parts += box((d - 0.02, w, t), (-0.01, 0, low + t / 2), body)
     for y in np.linspace(-w / 2 + t / 2, w / 2 - t / 2, shape.columns + 1):
-        parts += box((d - 0.02, t, h - low - t), (-0.01, y, (h + low - t) / 2), body.turned())
+        parts += box((d - 0.02, t, h - low - t), (-0.01, y, (h + low - t) / 2), upright)
     parts += box((0.02, w - 0.01, h - low), (-d / 2 + 0.012, 0, (h + low) / 2), body)
     if shape.legs:
         for x in (-d / 2 + 0.05, d / 2 - 0.07):
