@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
     parser.add_argument("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
     parser.add_argument("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
-    parser.add_argument("--boxes", type=Path, metavar="JSON", help="boxes of the objects in both images (README)")
+    parser.add_argument("--boxes", type=Path, metavar="JSON", help="boxes in both images (format: boxes_file.py)")
     parser.add_argument(
         "--sigma-pixels", type=float, default=1.0, metavar="PX", help="standard deviation of a box centre (default: 1)"
     )
