@@ -107,7 +107,10 @@ def train(
         others = start_others(plan.processes, meeting_file, _train_beside, given)
         try:
             _one_thread()
-            return _train(Together(0, plan.processes, meeting_file), *given, log, progress)
+            workers = Together(0, plan.processes, meeting_file)
+            result = _train(workers, *given, log, progress)
+            workers.close()
+            return result
         finally:
             for process in others:
                 process.join(timeout=10)
@@ -148,7 +151,9 @@ def check_plan(plan: TrainingPlan) -> None:
 def _train_beside(rank: int, count: int, meeting_file: Path, *given) -> None:
     """What every process but the first does: the same steps on its own part of the images, and no output."""
     _one_thread()
-    _train(Together(rank, count, meeting_file), *given, lambda text: None, lambda batches, count: batches)
+    workers = Together(rank, count, meeting_file)
+    _train(workers, *given, lambda text: None, lambda batches, count: batches)
+    workers.close()
 
 
 def _one_thread() -> None:

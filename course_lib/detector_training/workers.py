@@ -7,12 +7,16 @@ too this is much faster than one process with many threads, whose threads wait f
 from __future__ import annotations
 
 from collections.abc import Callable
+from datetime import timedelta
 from pathlib import Path
 
 import torch
 import torch.distributed
 import torch.multiprocessing
 from torch import nn
+
+# Loading some thousand images on a busy machine takes minutes; a process that is silent for longer is dead.
+LONGEST_SILENCE = timedelta(minutes=10)
 
 
 class Alone:
@@ -39,7 +43,9 @@ class Together:
     def __init__(self, rank: int, count: int, meeting_file: Path):
         """Waits for the others. `meeting_file` is a file, not there yet, by which they find each other."""
         self.rank, self.count = rank, count
-        torch.distributed.init_process_group("gloo", init_method=meeting_file.as_uri(), rank=rank, world_size=count)
+        torch.distributed.init_process_group(
+            "gloo", init_method=meeting_file.as_uri(), rank=rank, world_size=count, timeout=LONGEST_SILENCE
+        )
 
     def mean(self, values: torch.Tensor) -> torch.Tensor:
         """The mean of `values` (n,) over the processes."""
@@ -51,6 +57,10 @@ class Together:
         values = torch.tensor([value], dtype=torch.float64)
         torch.distributed.broadcast(values, src=0)
         return float(values[0])
+
+    def close(self) -> None:
+        """Parts from the others."""
+        torch.distributed.destroy_process_group()
 
     def least(self, value: int) -> int:
         """The smallest value of any process."""
