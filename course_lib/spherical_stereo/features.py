@@ -17,8 +17,9 @@ import numpy as np
 
 from course_lib.spherical_stereo.sphere import PanoramaError, azimuth_elevation_of_pixel, check_panorama
 
-# Smallest determinant of the Hessian that counts as a feature. OpenCV's default of 1e-3 leaves plain furniture with a
-# handful; a fifth of it gives twice as many, and as large a share of them obeys the epipolar constraint.
+# Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
+# 1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none, for half as much time again; on a real pair as
+# large a share of the weaker features obeys the epipolar constraint.
 AKAZE_THRESHOLD = 2e-4
 # Octaves of scale. A fourth adds nothing on panoramas about 1,000 pixels wide.
 AKAZE_OCTAVES = 3
