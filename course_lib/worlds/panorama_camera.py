@@ -19,9 +19,9 @@ class PanoramaCameraModel:
     exposure_stops: float = 0.25  # standard deviation of the exposure, powers of two; chosen
     white_balance: float = 0.04  # standard deviation of each channel's gain, a share of one; chosen
     blur: tuple[float, float] = (0.3, 0.8)  # pixels at 1280, standard deviation of lens and stitching; chosen
-    shot_noise: float = 0.35  # variance per brightness level, grey levels; chosen
-    read_noise: float = 1.5  # standard deviation, grey levels; chosen
-    jpeg_quality: tuple[int, int] = (86, 93)  # 0 to 100, OpenCV's scale; chosen
+    shot_noise: float = 0.15  # variance per brightness level, grey levels; chosen
+    read_noise: float = 1.2  # standard deviation, grey levels; chosen
+    jpeg_quality: tuple[int, int] = (78, 86)  # 0 to 100, OpenCV's scale; chosen
 
 
 def photograph(light: np.ndarray, model: PanoramaCameraModel, rng: np.random.Generator) -> np.ndarray:
