@@ -48,7 +48,7 @@ from course_lib.spherical_stereo.sphere import (
     pixel_to_direction,
     read_panorama,
 )
-from course_lib.spherical_stereo.stereo_matching import ObjectMatch, match_objects, stereo_matching
+from course_lib.spherical_stereo.stereo_matching import ObjectMatch, match_objects
 from course_lib.spherical_stereo.triangulation import (
     TriangulationError,
     triangulate,
@@ -96,7 +96,6 @@ __all__ = [
     "penalty_table",
     "pixel_to_direction",
     "read_panorama",
-    "stereo_matching",
     "triangulate",
     "triangulation_covariance",
     "triangulation_outcome",
