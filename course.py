@@ -43,6 +43,7 @@ usage: python3 course.py COMMAND [options]
   make-data room            make data/room again: stereo panoramas, exact boxes, the semantic map
   make-data training-rooms  photograph generated rooms: a detector's training and test pictures
   train-detector            train the room detector (needs PyTorch, which the course does not install)
+  score-detector            measure a detector's precision and recall on known rooms
   refresh                   run the lessons again and store their outputs
 
 Options of one command: python3 course.py COMMAND --help

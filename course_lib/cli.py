@@ -30,6 +30,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "photograph generated rooms: a detector's training and test pictures",
     ),
     "train-detector": ("train_detector", "train the room detector (needs PyTorch, which the course does not install)"),
+    "score-detector": ("score_detector", "measure a detector's precision and recall on known rooms"),
     "refresh": ("refresh", "run the lessons again and store their outputs"),
 }
 

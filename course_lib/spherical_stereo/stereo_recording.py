@@ -108,19 +108,17 @@ def _pair(folder: Path, entry: dict) -> StereoPair:
         np.array([rig["x"], rig["y"], rig["heading"]], float),
         folder / entry["upper"]["file"],
         folder / entry["lower"]["file"],
-        _objects(entry["upper"]["objects"]),
-        _objects(entry["lower"]["objects"]),
+        tuple(map(true_object, entry["upper"]["objects"])),
+        tuple(map(true_object, entry["lower"]["objects"])),
     )
 
 
-def _objects(entries: list[dict]) -> tuple[TrueObject, ...]:
-    return tuple(
-        TrueObject(
-            int(entry["object"]),
-            str(entry["label"]),
-            tuple(float(value) for value in entry["visible_box"]),
-            tuple(float(value) for value in entry["unoccluded_box"]),
-            float(entry["visible_fraction"]),
-        )
-        for entry in entries
+def true_object(entry: dict) -> TrueObject:
+    """One object from its entry in poses.json or boxes.json."""
+    return TrueObject(
+        int(entry["object"]),
+        str(entry["label"]),
+        tuple(float(value) for value in entry["visible_box"]),
+        tuple(float(value) for value in entry["unoccluded_box"]),
+        float(entry["visible_fraction"]),
     )

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 
+from course_lib.spherical_stereo.sphere import read_panorama
+from course_lib.spherical_stereo.stereo_recording import TrueObject, true_object
 from course_lib.worlds.object_boxes import object_boxes
 from course_lib.worlds.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.worlds.panorama_renderer import PanoramaRenderer
@@ -68,6 +70,12 @@ def read_image_list(folder: str | Path) -> list[dict]:
     if content.get("version") != VERSION:
         raise ValueError(f"{path} has version {content.get('version')!r}; this program reads version {VERSION}.")
     return content["images"]
+
+
+def labelled_images(folder: str | Path) -> Iterator[tuple[np.ndarray, list[TrueObject]]]:
+    """Every image `(H, W, 3)` BGR of a folder with everything that can be seen on it."""
+    for image in read_image_list(folder):
+        yield read_panorama(Path(folder) / image["file"]), [true_object(entry) for entry in image["objects"]]
 
 
 def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:

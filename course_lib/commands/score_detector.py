@@ -1,0 +1,74 @@
+"""Precision and recall of a detector on the experiment's room and on rooms that it was never trained on.
+
+Without --images the unseen rooms are photographed first, which takes a minute or two.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+from pathlib import Path
+
+from course_lib.commands.make_training_rooms import FIRST_TEST_ROOM, N_TEST_ROOMS
+
+IMAGES_PER_ROOM = 3
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options of `score-detector`."""
+    parser.add_argument(
+        "--detector", type=Path, metavar="FOLDER", help="a .cfg, .weights, .names (default: the course's)"
+    )
+    parser.add_argument("--images", type=Path, metavar="FOLDER", help="panoramas with boxes.json, of unseen rooms")
+    parser.add_argument("--rooms", type=int, default=N_TEST_ROOMS, metavar="N", help=f"default: {N_TEST_ROOMS}")
+    parser.add_argument("--data", type=Path, metavar="FOLDER", help="the experiment's room (default: data/room)")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Scores the detector; returns the exit code."""
+    from itertools import chain
+
+    from course_lib.commands.progress import progress_bar
+    from course_lib.lessons.paths import data_path
+    from course_lib.lessons.shipped_detector import load_detector
+    from course_lib.spherical_stereo.detector_evaluation import labelled_panoramas, score_detector
+    from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
+    from course_lib.worlds.room_images import labelled_images, make_room_images
+
+    if arguments.rooms < 1:
+        raise ValueError(f"--rooms must be at least 1; got {arguments.rooms}")
+    detector = load_detector(arguments.detector)
+    folder = arguments.data or data_path("room")
+    recordings = [read_stereo_recording(folder / f"experiment_{number}") for number in (1, 2)]
+    scores = {
+        "experiment_room": score_detector(
+            detector,
+            progress_bar("the experiment's room", "image")(chain.from_iterable(map(labelled_panoramas, recordings))),
+        )
+    }
+    with tempfile.TemporaryDirectory() as temporary:
+        images = arguments.images
+        if images is None:
+            images = Path(temporary)
+            make_room_images(
+                images, FIRST_TEST_ROOM, arguments.rooms, IMAGES_PER_ROOM, progress_bar("photographs", "room")
+            )
+        scores["unseen_rooms"] = score_detector(
+            detector, progress_bar("unseen rooms", "image")(labelled_images(images))
+        )
+    results = {
+        name: {**score._asdict(), "precision": score.precision, "recall": score.recall}
+        for name, score in scores.items()
+    }
+    results["score_threshold"] = detector.score_threshold
+    if arguments.json:
+        print(json.dumps(results))
+    else:
+        for name, score in scores.items():
+            print(
+                f"{name.replace('_', ' ')}: precision {score.precision:.3f}, recall {score.recall:.3f} "
+                f"({score.images} images, {score.objects} objects, score at least {detector.score_threshold:.3f})"
+            )
+    return 0
