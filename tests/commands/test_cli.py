@@ -73,7 +73,7 @@ def test_unknown_arguments_are_refused_unless_the_command_passes_them_on(command
 
 @pytest.mark.parametrize(
     ("words", "said"),
-    [(["demo"], "demo corridor"), (["make-data", "room"], "make-data corridor"), (["lba"], "lab, test")],
+    [(["demo"], "demo corridor"), (["make-data", "house"], "make-data corridor"), (["lba"], "lab, test")],
 )
 def test_an_unknown_command_is_told_the_known_ones(words, said, capsys):
     assert cli.main(words) == 2
