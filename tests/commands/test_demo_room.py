@@ -1,0 +1,75 @@
+"""`demo room`: tables 1 to 5, figures and JSON, on a few poses of the shipped room."""
+
+import csv
+import json
+
+import pytest
+
+from course_lib.cli import main
+
+ERRORS = {f"{statistic}_{what}" for statistic in ("mean", "std") for what in ("dx_m", "dy_m", "dtheta_deg")}
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory):
+    """The demo on the first two poses of each experiment: its folder."""
+    folder = tmp_path_factory.mktemp("demo")
+    assert main(["demo", "room", "--poses", "2", "--out", str(folder)]) == 0
+    return folder
+
+
+def test_json_holds_rates_and_errors_by_experiment_and_method(demo):
+    summary = json.loads((demo / "room.json").read_text())
+    for experiment in ("experiment_1", "experiment_2"):
+        for method in ("greedy", "greedy_exact_boxes"):
+            row = summary[experiment][method]
+            assert row["correct_percent"] + row["incorrect_percent"] + row["unable_percent"] == pytest.approx(100)
+            for kind in ("all", "correct", "incorrect"):
+                assert row[kind].keys() >= ERRORS
+    assert summary["poses"] == 2
+    assert summary["stereo_matching"]["seen_in_both"] > 20
+    assert 0 < summary["median_relative_range_error_percent"]["exact_boxes"] < 15
+
+
+def test_a_row_a_pose_and_every_figure_are_written(demo):
+    rows = list(csv.DictReader((demo / "room.csv").open()))
+    assert [row["source"] for row in rows] == ["images", "images", "exact_boxes", "exact_boxes"] * 2
+    assert {row["outcome"] for row in rows} <= {"correct", "incorrect", "unable"}
+    for name in ("experiment_1.png", "experiment_2.png", "detections.png", "matched_pairs.png"):
+        assert (demo / name).read_bytes().startswith(b"\x89PNG")
+    assert not list(demo.glob("*.partial"))
+
+
+def test_one_json_object_is_printed_and_nothing_else(tmp_path, capsys):
+    assert main(["demo", "room", "--poses", "1", "--out", str(tmp_path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["experiment_1"]["greedy"]["n"] == 1
+
+
+def test_the_tables_hold_the_papers_numbers_beside_ours(tmp_path, capsys):
+    assert main(["demo", "room", "--poses", "1", "--out", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    for number in range(1, 6):
+        assert f"Table {number}" in text
+    for part in (
+        "paper: correct                       0.23     0.44         11.94",
+        "ours, exact boxes",
+        "images, greedy",
+    ):
+        assert part in text
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--poses", "0"], "--poses must be at least 1"),
+        (["--seed", "-1"], "--seed must be 0 or more"),
+        (["--association", "psychic"], "association must be one of"),
+        (["--data", "nowhere"], "nowhere"),
+        (["--detector", "nowhere"], "nowhere"),
+    ],
+)
+def test_bad_arguments_are_named_in_one_line(words, message, tmp_path, capsys):
+    assert main(["demo", "room", *words, "--out", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert "Traceback" not in error

@@ -1,0 +1,108 @@
+"""The shipped room: complete, unchanged, as large as promised, and an honest experiment."""
+
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.association import hue_difference
+from course_lib.spherical_stereo.experiment import counts_as_object
+from course_lib.spherical_stereo.paper_tables import CAMERA_HEIGHTS, MEASUREMENT_PLACES
+from course_lib.spherical_stereo.semantic_map import SemanticMap
+from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
+from course_lib.worlds.data_folder import checksums
+from course_lib.worlds.experiment_room import make_experiment_room
+from course_lib.worlds.parameter_tables import parameter_tables
+from course_lib.worlds.room_data import PRODUCTS, RoomModels
+
+FOLDER = Path(__file__).resolve().parents[2] / "data" / "room"
+
+
+@pytest.fixture(scope="module")
+def recordings():
+    return {number: read_stereo_recording(FOLDER / f"experiment_{number}") for number in (1, 2)}
+
+
+@pytest.fixture(scope="module")
+def semantic_map():
+    return SemanticMap.load(FOLDER / "semantic_map.json")
+
+
+def test_every_file_is_as_its_checksum_says():
+    assert (FOLDER / "SHA256SUMS").read_text() == checksums(FOLDER, PRODUCTS)
+
+
+def test_nothing_is_missing_and_nothing_lies_about():
+    names = {path.name for path in FOLDER.iterdir()}
+    assert {*PRODUCTS, "README.md"} <= names <= {*PRODUCTS, "README.md", "results"}  # results: the stored experiment
+
+
+def test_sizes_stay_small():
+    sizes = [path.stat().st_size for path in FOLDER.rglob("*") if path.is_file()]
+    assert sum(sizes) < 15e6
+    assert max(sizes) < 10e6
+
+
+def test_the_parameters_are_those_of_the_code():
+    assert (FOLDER / "PARAMETERS.md").read_text() == parameter_tables(RoomModels(), "room")
+
+
+def test_twenty_pairs_stand_at_the_papers_places_at_both_heights(recordings):
+    for number, recording in recordings.items():
+        upper, lower = CAMERA_HEIGHTS[number]
+        assert recording.rig.upper_height == upper
+        assert recording.rig.lower_height == pytest.approx(lower)
+        expected = [(p.x, p.y, h) for p in MEASUREMENT_PLACES for h in p.headings_deg]
+        assert len(recording.pairs) == len(expected) == 20
+        for pair, (x, y, heading) in zip(recording.pairs, expected, strict=True):
+            assert tuple(pair.pose[:2]) == (x, y)
+            assert wrap_angle(pair.pose[2] - np.deg2rad(heading)) == pytest.approx(0, abs=1e-12)
+
+
+def test_images_are_1280_wide(recordings):
+    upper, lower = recordings[1].pairs[0].images()
+    assert upper.shape == lower.shape == (640, 1280, 3)
+
+
+def test_three_sofas_look_alike_and_all_other_pairs_of_a_class_do_not(semantic_map):
+    labels, hues = np.array(semantic_map.labels), semantic_map.hues
+    assert 12 <= len(labels) <= 16
+    assert len(set(labels)) >= 6
+    sofas = np.flatnonzero(labels == "sofa")
+    assert len(sofas) == 3
+    assert max(float(hue_difference(hues[a], hues[b])) for a, b in combinations(sofas, 2)) < 10
+    for label in set(labels) - {"sofa"}:
+        for a, b in combinations(np.flatnonzero(labels == label), 2):
+            assert hue_difference(hues[a], hues[b]) >= 60
+            assert min(semantic_map.saturations[[a, b]]) >= 40
+
+
+def test_the_map_was_surveyed_not_copied(semantic_map):
+    true = np.array([[thing.x, thing.y] for thing in make_experiment_room().objects])
+    errors = np.linalg.norm(semantic_map.positions - true, axis=1)
+    assert 0.002 < np.median(errors) < 0.03
+
+
+def test_walls_and_objects_share_one_frame(semantic_map):
+    low, high = semantic_map.walls.min(axis=0), semantic_map.walls.max(axis=0)
+    assert (semantic_map.positions > low).all()
+    assert (semantic_map.positions < high).all()
+
+
+def test_every_place_sees_most_objects(recordings):
+    for recording in recordings.values():
+        seen = [
+            sum(counts_as_object(thing, recording.width) for thing in objects)
+            for pair in recording.pairs
+            for objects in (pair.upper_objects, pair.lower_objects)
+        ]
+        assert min(seen) >= 9
+        assert np.mean(seen) > 11
+
+
+def test_no_two_photographs_of_a_place_are_rolls_of_one_another(recordings):
+    for first, second in zip(recordings[1].pairs[::2], recordings[1].pairs[1::2], strict=True):
+        means = [pair.images()[0].mean(axis=(0, 1)) for pair in (first, second)]
+        assert np.abs(means[0] - means[1]).max() > 0.2
