@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from course_lib.spherical_stereo.paper_tables import MEASUREMENT_PLACES
 from course_lib.worlds import prints, room_shell, textures
 from course_lib.worlds.furniture.cabinet import Cabinet, build_cabinet
 from course_lib.worlds.furniture.chair import Chair, build_chair
@@ -28,21 +29,7 @@ LOW, HIGH = (-0.45, -0.55), (5.65, 5.5)  # metres, map frame: south-west and nor
 HEIGHT = 2.7  # metres
 SEED = 20231  # of the textures and the leaves; the layout has no randomness
 
-# The camera's places, metres, map frame. Source: paper 2, table 1
-PLACES = np.array(
-    [
-        (1.00, 0.50),
-        (2.50, 1.50),
-        (3.00, 2.50),
-        (2.50, 3.50),
-        (1.50, 4.50),
-        (1.00, 3.50),
-        (3.50, 4.50),
-        (4.50, 4.50),
-        (4.00, 1.50),
-        (4.50, 0.50),
-    ]
-)
+PLACES = np.array([(place.x, place.y) for place in MEASUREMENT_PLACES])  # metres, map frame: where the rig stands
 
 # Where each piece stands: name, x, y (metres, map frame), the direction its front faces (degrees).
 LAYOUT = (
