@@ -1,0 +1,117 @@
+"""The shipped detector: small, whole, as good as its scores say, blind to the seam; and the method on top of it."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course_lib.geometry import wrap_angle
+from course_lib.lessons.shipped_detector import load_detector
+from course_lib.spherical_stereo.boxes import box_iou
+from course_lib.spherical_stereo.darknet import check_weights, read_cfg
+from course_lib.spherical_stereo.detector_evaluation import labelled_panoramas, score_detector
+from course_lib.spherical_stereo.labels import CANONICAL_LABELS
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.semantic_map import SemanticMap
+from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
+from course_lib.worlds.room_images import labelled_images, make_room_images
+
+FOLDER = Path(__file__).resolve().parents[2] / "data" / "detector"
+ROOM = FOLDER.parent / "room"
+TEST_ROOM = 200  # the first of the rooms that neither training nor validation has seen
+
+
+@pytest.fixture(scope="module")
+def detector():
+    return load_detector()
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return read_stereo_recording(ROOM / "experiment_1")
+
+
+@pytest.fixture(scope="module")
+def localizer(detector, recording):
+    return SemanticLocalizer(recording.rig, SemanticMap.load(ROOM / "semantic_map.json"), detector)
+
+
+@pytest.fixture(scope="module")
+def scores():
+    return json.loads((FOLDER / "scores.json").read_text())
+
+
+def test_the_network_is_small_and_whole(detector):
+    weights = FOLDER / "room_yolo.weights"
+    assert weights.stat().st_size < 10e6
+    check_weights(read_cfg(FOLDER / "room_yolo.cfg"), weights)
+    assert sorted(detector.labels) == sorted(CANONICAL_LABELS)
+
+
+def test_its_threshold_is_the_one_that_the_validation_rooms_chose(detector, scores):
+    chosen = json.loads((FOLDER / "training.json").read_text())["score_threshold"]
+    assert detector.score_threshold == chosen == scores["score_threshold"]
+
+
+def test_the_stored_scores_meet_the_aims(scores):
+    assert scores["experiment_room"]["precision"] >= 0.93
+    assert scores["experiment_room"]["recall"] >= 0.85
+    assert scores["unseen_rooms"]["precision"] >= 0.90
+    assert scores["unseen_rooms"]["recall"] >= 0.80
+
+
+def test_the_experiments_room_scores_as_stored(detector, recording, scores):
+    score = score_detector(detector, list(labelled_panoramas(recording))[::2])
+    assert score.precision == pytest.approx(scores["experiment_room"]["precision"], abs=0.04)
+    assert score.recall == pytest.approx(scores["experiment_room"]["recall"], abs=0.04)
+
+
+def test_an_unseen_room_is_recognized(detector, tmp_path):
+    make_room_images(tmp_path, TEST_ROOM, 2, 2)
+    score = score_detector(detector, labelled_images(tmp_path))
+    assert score.objects > 20
+    # Four images are few: far below what twenty rooms give, far above chance.
+    assert score.precision > 0.7
+    assert score.recall > 0.6
+
+
+@pytest.mark.parametrize("shift", range(0, 1280, 128))
+def test_a_sofa_is_found_exactly_once_wherever_the_seam_is(detector, recording, shift):
+    pair = recording.pairs[0]
+    sofa = max(
+        (thing for thing in pair.upper_objects if thing.label == "sofa"),
+        key=lambda thing: thing.visible_box[2] - thing.visible_box[0],
+    )
+    u_min, v_min, u_max, v_max = sofa.visible_box
+    found = detector.detect(np.roll(pair.images()[0], shift, axis=1))
+    boxes = [one.box for one in found if one.label == "sofa"]
+    overlap = box_iou(boxes, [[u_min + shift, v_min, u_max + shift, v_max]], 1280)
+    assert (overlap > 0.5).sum() == 1
+
+
+@pytest.mark.parametrize("shift", [97, 640, 1033])
+def test_turning_the_rig_turns_the_heading_and_nothing_else(localizer, recording, shift):
+    """The images rolled: the pose must follow where the same objects are taken for the same landmarks."""
+    agreed = 0
+    for pair in recording.pairs[4:10:2]:
+        images = pair.images()
+        straight, turned = localizer.localize(*images), localizer.localize(*(np.roll(i, shift, 1) for i in images))
+        if not _agree(straight, turned, 2 * np.pi * shift / 1280):
+            continue
+        agreed += 1
+        assert np.hypot(turned.pose.x - straight.pose.x, turned.pose.y - straight.pose.y) < 0.10
+        change = wrap_angle(turned.pose.theta - straight.pose.theta - 2 * np.pi * shift / 1280)
+        assert abs(np.rad2deg(change)) < 2.0
+    assert agreed >= 1
+
+
+def _agree(straight, turned, angle: float) -> bool:
+    """Whether the same objects, told by their directions, were taken for the same landmarks."""
+    before, after = (
+        {landmark: np.arctan2(found.observations[i].y, found.observations[i].x) for i, landmark in found.used_pairs}
+        for found in (straight, turned)
+    )
+    return before.keys() == after.keys() and all(
+        abs(wrap_angle(before[landmark] - after[landmark] - angle)) < np.deg2rad(3.0) for landmark in before
+    )
