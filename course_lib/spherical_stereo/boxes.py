@@ -63,6 +63,16 @@ def box_iou(boxes_a: np.ndarray, boxes_b: np.ndarray, width: float) -> np.ndarra
 
     IoU = |A and B| / (|A| + |B| - |A and B|)
 
+    Raises `BoxError` for what is no box.
+    """
+    shared = shared_area(boxes_a, boxes_b, width)
+    areas_a, areas_b = (box_area(np.asarray(boxes, np.float64).reshape(-1, 4)) for boxes in (boxes_a, boxes_b))
+    return shared / (areas_a[:, None] + areas_b[None, :] - shared)
+
+
+def shared_area(boxes_a: np.ndarray, boxes_b: np.ndarray, width: float) -> np.ndarray:
+    """Area `(n, m)`, square pixels, that boxes `(n, 4)` and `(m, 4)` share on the circle of columns.
+
     B is laid against A where it is and one turn to either side, so boxes on both sides of the seam meet, and two very
     wide boxes may overlap at both ends. Raises `BoxError` for what is no box.
     """
@@ -73,9 +83,9 @@ def box_iou(boxes_a: np.ndarray, boxes_b: np.ndarray, width: float) -> np.ndarra
         for shift in (-width, 0.0, width)
     )
     down = np.maximum(0.0, np.minimum(a[..., 3], b[..., 3]) - np.maximum(a[..., 1], b[..., 1]))
-    shared = across * down
-    return shared / (_area(a) + _area(b) - shared)
+    return across * down
 
 
-def _area(box: np.ndarray) -> np.ndarray:
+def box_area(box: np.ndarray) -> np.ndarray:
+    """Areas `(...)` of boxes `(..., 4)`, square pixels."""
     return (box[..., 2] - box[..., 0]) * (box[..., 3] - box[..., 1])

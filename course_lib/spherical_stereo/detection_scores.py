@@ -1,7 +1,7 @@
 """How well a detector finds the objects of panoramas: precision and recall at an overlap, the choice of a threshold.
 
 A detection is right when its class is the object's and their boxes overlap enough; each object is found once. Objects
-that are too much hidden or too small are ignored: who finds them neither gains nor loses.
+that are too much hidden or too small are ignored: who finds one, by the same rule, neither gains nor loses.
 Source: paper 2, section 2.2 (the detector); the scores are those of the PASCAL VOC challenge.
 """
 
@@ -12,11 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from course_lib.spherical_stereo.boxes import box_iou, wrapped_box
+from course_lib.spherical_stereo.boxes import box_iou
 
 IOU_THRESHOLD = 0.5
-# Share of a detection's area that must lie in an ignored object, for the detection to be ignored as well.
-IGNORED_SHARE = 0.5
 
 
 class DetectionScoreError(ValueError):
@@ -69,9 +67,10 @@ def match_detections(
     """Pairs the detections of one panorama with its objects, best score first, each object at most once.
 
     A detection takes the free object of its class that it overlaps most, if IoU >= `iou_threshold`. One that finds
-    none is left out of the count when it overlaps an ignored object of any class that much, or has half of its area in
-    one; else it is a false alarm. `width` is the panorama's, in pixels. Raises `DetectionScoreError` for detections
-    without scores or lists of unequal length, `BoxError` for what is no box.
+    none is left out of the count when it overlaps an ignored object of its class that much; else it is a false alarm:
+    another class, or a small box inside a large ignored object, says what is not so. `width` is the panorama's, in
+    pixels. Raises `DetectionScoreError` for detections without scores or lists of unequal length, `BoxError` for what
+    is no box.
     """
     for name, given in (("detections", detections), ("objects", objects), ("ignored", ignored)):
         if len(given.labels) != len(given.boxes):
@@ -83,9 +82,8 @@ def match_detections(
     scores = np.asarray(detections.scores, dtype=np.float64)
     if not np.isfinite(scores).all():
         raise DetectionScoreError("detections: scores must be finite; got NaN or infinity")
-    overlap = _overlaps(detections, objects, width)
-    overlap[np.asarray(detections.labels, object)[:, None] != np.asarray(objects.labels, object)[None, :]] = 0.0
-    excused = _excused(detections, ignored, width, iou_threshold)
+    overlap = _overlaps_in_class(detections, objects, width)
+    excused = (_overlaps_in_class(detections, ignored, width) >= iou_threshold).any(axis=1)
     free = np.ones(len(objects.labels), dtype=bool)
     kept, found = [], []
     for index in np.argsort(-scores, kind="stable"):
@@ -165,22 +163,9 @@ def average_precision(curve: PrecisionRecall) -> float:
     return float(np.sum(np.diff(curve.recall, prepend=0.0) * envelope))
 
 
-def _overlaps(a: Boxes, b: Boxes, width: float) -> np.ndarray:
+def _overlaps_in_class(a: Boxes, b: Boxes, width: float) -> np.ndarray:
+    """IoU (n, m) of the boxes of both, 0 where the classes differ."""
     if not len(a.labels) or not len(b.labels):
         return np.zeros((len(a.labels), len(b.labels)))
-    return box_iou(a.boxes, b.boxes, width)
-
-
-def _excused(detections: Boxes, ignored: Boxes, width: float, iou_threshold: float) -> np.ndarray:
-    """(n,) which detections an ignored object accounts for."""
-    iou = _overlaps(detections, ignored, width)
-    if iou.size == 0:
-        return np.zeros(len(detections.labels), dtype=bool)
-    area_a, area_b = (_area(wrapped_box(item.boxes, width)) for item in (detections, ignored))
-    # IoU = s / (A + B - s), so the shared area is s = IoU (A + B) / (1 + IoU).
-    shared = iou * (area_a[:, None] + area_b[None, :]) / (1.0 + iou)
-    return ((iou >= iou_threshold) | (shared >= IGNORED_SHARE * area_a[:, None])).any(axis=1)
-
-
-def _area(boxes: np.ndarray) -> np.ndarray:
-    return (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
+    same = np.asarray(a.labels, object)[:, None] == np.asarray(b.labels, object)[None, :]
+    return np.where(same, box_iou(a.boxes, b.boxes, width), 0.0)

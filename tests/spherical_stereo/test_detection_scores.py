@@ -72,15 +72,26 @@ def test_finding_an_ignored_object_neither_gains_nor_loses():
     assert matching.n_objects == 0
 
 
-def test_a_detection_inside_a_large_ignored_object_is_ignored_whatever_its_class():
-    detections = found([110, 310, 140, 340], scores=[0.9], label="television")
-    assert len(match_detections(detections, NONE, objects([100, 300, 300, 400]), WIDTH).scores) == 0
+def test_a_small_box_inside_a_large_ignored_object_is_a_false_alarm():
+    detections = found([110, 310, 140, 340], scores=[0.9])
+    assert match_detections(detections, NONE, objects([100, 300, 300, 400]), WIDTH).correct.tolist() == [False]
 
 
-def test_a_detection_mostly_outside_an_ignored_object_still_counts():
-    # 40 % of its area lies inside.
-    detections = found([60, 300, 160, 400], scores=[0.9])
-    assert len(match_detections(detections, NONE, objects([120, 300, 420, 400]), WIDTH).scores) == 1
+def test_a_detection_of_another_class_than_the_ignored_object_is_a_false_alarm():
+    detections = found([100, 300, 150, 400], scores=[0.9], label="television")
+    assert match_detections(detections, NONE, objects([100, 300, 150, 400]), WIDTH).correct.tolist() == [False]
+
+
+def test_an_ignored_object_is_found_at_the_same_overlap_as_any_other():
+    # IoU = 50 / 100 for the first, 49 / 101 for the second.
+    ignored = objects([100, 0, 175, 100])
+    assert len(match_detections(found([125, 0, 200, 100], scores=[1]), NONE, ignored, WIDTH).scores) == 0
+    assert len(match_detections(found([126, 0, 201, 100], scores=[1]), NONE, ignored, WIDTH).scores) == 1
+
+
+def test_an_ignored_object_is_found_across_the_seam():
+    detections = found([1270, 300, 1320, 400], scores=[0.9])
+    assert len(match_detections(detections, NONE, objects([-8, 300, 42, 400]), WIDTH).scores) == 0
 
 
 def test_an_object_is_found_even_where_an_ignored_one_lies():
