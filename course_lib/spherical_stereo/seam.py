@@ -14,7 +14,7 @@ Source: paper 2, section 2.2.
 
 import numpy as np
 
-from course_lib.spherical_stereo.boxes import box_iou, wrapped_box
+from course_lib.spherical_stereo.boxes import box_area, box_iou, shared_area, wrapped_box
 from course_lib.spherical_stereo.suppression import limit_by_class, suppress
 
 MARGIN = 1 / 32
@@ -94,6 +94,10 @@ def select_on_circle(
     extended image cuts, one with its centre inside the range before one in the margin, then the greater score. The
     overlap of a cut box is taken of its own area instead of the union: it may be a part of the other.
 
+    The one that stays keeps its box and takes the greatest score among itself and those that it replaces, with that
+    one's class: they show one object, and the network was that sure of it once. So a faint copy in the range does not
+    hide a clear one in the margin, and the result of a low score threshold holds that of a higher one.
+
     boxes (n, 4), scores (n,), classes (n,) integers. Returns the three, the greatest score first.
     Source: paper 2, section 2.2.
     """
@@ -107,9 +111,18 @@ def select_on_circle(
         np.column_stack([boxes[:, :2], np.minimum(boxes[:, 2], boxes[:, 0] + width), boxes[:, 3]]), width
     )
     iou = box_iou(boxes, boxes, width)
-    area = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
-    shared = iou * (area[:, None] + area[None, :]) / (1 + iou)
-    overlap = np.where(cut[None, :], shared / area[None, :], iou)
-    kept = suppress(limit_by_class(overlap, iou, classes), scores + inside - 2.0 * cut, iou_threshold)
-    kept = kept[np.argsort(-scores[kept], kind="stable")]
-    return boxes[kept], scores[kept], classes[kept]
+    overlap = np.where(cut[None, :], shared_area(boxes, boxes, width) / box_area(boxes)[None, :], iou)
+    overlap = limit_by_class(overlap, iou, classes)
+    kept = suppress(overlap, scores + inside - 2.0 * cut, iou_threshold)
+    best = _best_copies(overlap, kept, scores, iou_threshold)
+    order = np.argsort(-scores[best], kind="stable")
+    return boxes[kept[order]], scores[best[order]], classes[best[order]]
+
+
+def _best_copies(overlap: np.ndarray, kept: np.ndarray, scores: np.ndarray, threshold: float) -> np.ndarray:
+    """(k,) For each kept box the index of the greatest score among itself and those that it suppressed."""
+    replaces = overlap[kept] > threshold
+    replaces[np.arange(len(kept)), kept] = True
+    # `kept` is in the order of suppression: what several overlap went with the first of them.
+    replaces &= np.cumsum(replaces, axis=0) == 1
+    return np.where(replaces, scores, -np.inf).argmax(axis=1) if len(kept) else kept

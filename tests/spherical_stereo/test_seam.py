@@ -98,12 +98,56 @@ def test_objects_of_two_classes_at_one_place_both_stay_unless_their_boxes_coinci
     assert select_on_circle(boxes, scores, classes, WIDTH, IOU)[2].tolist() == [0]
 
 
-def test_a_whole_copy_is_preferred_to_a_cut_one_of_greater_score():
+def test_the_box_of_a_whole_copy_and_the_score_of_a_surer_cut_one_stay():
     start, _ = valid_range(WIDTH)
     whole, cut = [start - 10 - 78 + WIDTH, 100, start - 10 + 78 + WIDTH, 180], [0, 100, start - 10 + 78, 180]
     boxes, scores, _ = select_on_circle(np.array([cut, whole]), np.array([0.9, 0.6]), np.zeros(2, int), WIDTH, IOU)
     assert boxes.tolist() == [whole]
-    assert scores.tolist() == [0.6]
+    assert scores.tolist() == [0.9]
+
+
+def copies_at_the_border(inside_score, margin_score):
+    """An object at the range's end: one copy just inside it, one just before its start, a turn apart."""
+    start, stop = valid_range(WIDTH)
+    boxes = np.array([[stop - 22, 100, stop + 18, 180], [start - 22, 100, start + 18, 180]])
+    return boxes, np.array([inside_score, margin_score])
+
+
+def test_a_faint_copy_in_the_range_does_not_hide_a_clear_one_in_the_margin():
+    boxes, scores = copies_at_the_border(0.06, 0.95)
+    boxes[1] += 1
+    found, found_scores, _ = select_on_circle(boxes, scores, np.zeros(2, int), WIDTH, IOU)
+    assert found.tolist() == [[boxes[0, 0] - WIDTH, 100, boxes[0, 2] - WIDTH, 180]]
+    assert found_scores.tolist() == [0.95]
+
+
+def test_the_class_comes_with_the_score():
+    boxes, scores = copies_at_the_border(0.06, 0.95)
+    _, found_scores, classes = select_on_circle(boxes, scores, np.array([2, 5]), WIDTH, IOU)
+    assert (found_scores.tolist(), classes.tolist()) == ([0.95], [5])
+
+
+def test_a_suppressed_box_gives_its_score_to_the_one_that_replaced_it_only():
+    """Three boxes in a row: the middle one goes with the left, whose rank is greater, and not with the right."""
+    start, stop = valid_range(WIDTH)
+    left, right = [stop - 30, 100, stop + 10, 180], [start - 10, 100, start + 30, 180]
+    middle = [start - 20.5, 100, start + 19.5, 180]  # in the margin, and overlaps both
+    scores = np.array([0.5, 0.4, 0.9])
+    boxes, found_scores, _ = select_on_circle(np.array([left, right, middle]), scores, np.zeros(3, int), WIDTH, IOU)
+    assert boxes[:, 0].tolist() == [start - 30, start - 10]
+    assert found_scores.tolist() == [0.9, 0.4]
+
+
+def test_a_low_threshold_holds_the_result_of_a_higher_one():
+    boxes, scores = copies_at_the_border(0.06, 0.95)
+    elsewhere = [[300.0, 100, 360, 180], [305.0, 100, 362, 180], [200.0, 100, 240, 180]]
+    boxes, scores = np.concatenate([boxes, elsewhere]), np.concatenate([scores, [0.8, 0.3, 0.2]])
+    for threshold in (0.1, 0.25, 0.5, 0.9):
+        found, found_scores, _ = select_on_circle(boxes, scores, np.zeros(5, int), WIDTH, IOU)
+        above = scores >= threshold
+        alone, alone_scores, _ = select_on_circle(boxes[above], scores[above], np.zeros(above.sum(), int), WIDTH, IOU)
+        assert found[found_scores >= threshold].tolist() == alone.tolist()
+        assert found_scores[found_scores >= threshold].tolist() == alone_scores.tolist()
 
 
 def test_halves_of_two_objects_are_not_joined():
