@@ -3,6 +3,8 @@
 A detector trained on COCO says "couch" or "sofa" depending on whose list of names it came with. The map must not care.
 """
 
+import re
+
 CANONICAL_LABELS = ("sofa", "chair", "table", "television", "potted plant", "refrigerator", "cabinet")
 """Labels of the maps, rooms and network of this project."""
 
@@ -26,13 +28,12 @@ ALIASES = {
 def canonical_label(label: str) -> str:
     """The label of the semantic map for a detector's class name.
 
-    Canonical names and their aliases are recognised in any case, with underscores or hyphens for spaces; every other
-    name ("person", "traffic light") comes back unchanged. Raises ValueError for an empty label.
+    Names are recognised in any case, with underscores or hyphens for spaces. A name that is no alias is its own label,
+    written in lower case with single spaces, so that "Traffic_Light" and "traffic light" are one class.
+    Raises ValueError for an empty label.
     Source: paper 2, section 2.2 (the class c of an object).
     """
-    if not isinstance(label, str) or not label.strip():
+    plain = " ".join(re.split(r"[\s_-]+", label.lower())).strip() if isinstance(label, str) else ""
+    if not plain:
         raise ValueError(f"a label is a text that is not empty; got {label!r}")
-    plain = " ".join(label.lower().replace("_", " ").replace("-", " ").split())
-    if plain in CANONICAL_LABELS:
-        return plain
-    return ALIASES.get(plain, label.strip())
+    return ALIASES.get(plain, plain)
