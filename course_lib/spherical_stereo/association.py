@@ -32,7 +32,7 @@ class Observation(NamedTuple):
     """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame."""
 
     label: str
-    """Class, as the map writes it ("sofa", not "couch"; the matchers take both)."""
+    """Class; "couch" and "sofa" are one (`labels`)."""
     x: float
     """Centroid, body frame (x forward), metres."""
     y: float
@@ -131,26 +131,28 @@ def penalty(
 
     penalty = p_obj + p_h dh / 360 + p_s ds / 100 + p_d (|dx_c| - |dx_m|) / |dx_m|
 
-    p_obj counts only where the classes differ. dh: degrees on the circle, at most 180, so its term is at most half of
-    p_h; grey on either side has no hue, and the term is 0. ds: percent. dx_c = x_c - x_G.camera in the body frame,
-    dx_m = x_m - x_G.map in the world, horizontal, metres; the divisor is at least `LEAST_DISTANCE`.
+    p_obj counts only where the classes differ ("couch" and "sofa" do not). dh: degrees on the circle, at most 180, so
+    its term is at most half of p_h; grey on either side has no hue, and the term is 0. ds: percent.
+    dx_c = x_c - x_G.camera in the body frame, dx_m = x_m - x_G.map in the world, horizontal, metres; the divisor is at
+    least `LEAST_DISTANCE`.
     distance_term: "absolute" takes the absolute value of the distance term. "as_printed" does not: the term then falls
     below zero for an object that looks too near the centroid, and the nearer it looks the better it fits.
     observed_centroid, map_centroid: `(2,)`. The fields of observed and landmark may be arrays that broadcast
     (`penalty_table` uses that); then so are the terms. Raises `AssociationError` for weights that are negative or not
-    finite, centroids of a wrong shape, another distance_term, or positions and saturations that are not finite.
+    finite, centroids of a wrong shape, another distance_term, no label, or positions, hues and saturations that no
+    observation may have.
     Source: paper 2, eq. (1).
     """
     _check_options(weights, distance_term)
     observed_centroid, map_centroid = _centroid(observed_centroid, "observed"), _centroid(map_centroid, "map")
-    unlike = np.asarray(observed.label) != np.asarray(landmark.label)
+    for name, side in (("observation", observed), ("landmark", landmark)):
+        _check_values(name, side)
+    unlike = _labels(observed) != _labels(landmark)
     d_hue = hue_difference(observed.hue, landmark.hue)
     d_saturation = np.abs(np.asarray(observed.saturation) - np.asarray(landmark.saturation))
     from_centroid_c = np.hypot(observed.x - observed_centroid[0], observed.y - observed_centroid[1])
     from_centroid_m = np.hypot(landmark.x - map_centroid[0], landmark.y - map_centroid[1])
     d_distance = (from_centroid_c - from_centroid_m) / np.maximum(from_centroid_m, LEAST_DISTANCE)
-    if not (np.isfinite(d_distance).all() and np.isfinite(d_saturation).all()):
-        raise AssociationError("positions and saturations must be finite; got NaN or infinity")
     terms = np.broadcast_arrays(
         np.where(unlike, weights.p_obj, 0.0),
         weights.p_h * np.where(np.isnan(d_hue), 0.0, d_hue) / 360.0,
@@ -176,8 +178,9 @@ def penalty_table(
         return Penalty(*(np.empty((0, len(semantic_map))) for _ in Penalty._fields))
     labels, x, y, hue, saturation = zip(*(tuple(one)[:5] for one in observations), strict=True)
     x, y, hue, saturation = (np.array(values, dtype=np.float64)[:, None] for values in (x, y, hue, saturation))
-    _check_observations(observations, np.hstack([x, y]), hue, saturation)
-    rows = Observation(np.array([canonical_label(label) for label in labels])[:, None], x, y, hue, saturation)
+    for number, one in enumerate(observations):
+        _check_values(f"observation {number}", one)
+    rows = Observation(np.array(labels, dtype=object)[:, None], x, y, hue, saturation)
     centroid = np.array([x.mean(), y.mean()])
     return penalty(rows, _columns(semantic_map), centroid, semantic_map.centroid, weights, distance_term)
 
@@ -274,15 +277,23 @@ def _centroid(centroid: np.ndarray, name: str) -> np.ndarray:
     return array
 
 
-def _check_observations(
-    observations: Sequence[Observation], positions: np.ndarray, hue: np.ndarray, saturation: np.ndarray
-) -> None:
-    bad = {
-        "x and y must be finite metres": ~np.isfinite(positions).all(axis=1),
-        "hue must lie in [0, 360) degrees, or be NaN for grey": ~(np.isnan(hue) | ((hue >= 0) & (hue < 360)))[:, 0],
-        "saturation must lie in [0, 100] percent": ~((saturation >= 0) & (saturation <= 100))[:, 0],
+def _labels(side: Observation | Landmark) -> np.ndarray:
+    """Canonical labels, an array of the shape of `side.label`."""
+    try:
+        return np.vectorize(canonical_label, otypes=[object])(side.label)
+    except ValueError as error:
+        raise AssociationError(str(error)) from None
+
+
+def _check_values(name: str, side: Observation | Landmark) -> None:
+    """Raises `AssociationError` for values that neither an observation nor a landmark may have; numbers or arrays."""
+    hue, saturation = np.asarray(side.hue, dtype=np.float64), np.asarray(side.saturation, dtype=np.float64)
+    right = {
+        "x and y must be finite metres": np.isfinite(side.x).all() and np.isfinite(side.y).all(),
+        "hue must lie in [0, 360) degrees, or be NaN for grey": (np.isnan(hue) | ((hue >= 0) & (hue < 360))).all(),
+        "saturation must lie in [0, 100] percent": ((saturation >= 0) & (saturation <= 100)).all(),
     }
-    for rule, wrong in bad.items():
-        if wrong.any():
-            i = int(np.flatnonzero(wrong)[0])
-            raise AssociationError(f"observation {i}: {rule}; got {tuple(observations[i])[:5]}")
+    for rule, holds in right.items():
+        if not holds:
+            given = tuple(getattr(side, field) for field in Observation._fields[:5])
+            raise AssociationError(f"{name}: {rule}; got {given}")

@@ -51,6 +51,13 @@ def test_like_classes_cost_nothing():
     assert cost(seen(), mapped()).object == 0.0
 
 
+def test_two_names_of_one_class_cost_nothing():
+    assert cost(seen("couch"), mapped("sofa")).object == 0.0
+    several = Observation(np.array([["couch"], ["TV"]]), 3.0, 4.0, 20.0, 50.0)
+    landmarks = Observation(np.array([["sofa", "television"]]), 0.0, 4.0, 20.0, 50.0)
+    assert cost(several, landmarks).object.tolist() == [[0.0, 7.0], [7.0, 0.0]]
+
+
 def test_hues_on_both_sides_of_red_are_near():
     assert hue_difference(350, 10) == pytest.approx(20)
 
@@ -260,6 +267,29 @@ def test_the_greedy_matcher_is_found_by_name():
 def test_an_observation_that_is_none_is_named(observation, says):
     with pytest.raises(AssociationError, match=says):
         associate_greedy([seen(), observation], ROOM)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"label": " "}, "label"),
+        ({"x": math.inf}, "observation: x and y must be finite"),
+        ({"hue": 360.0}, r"observation: hue must lie in \[0, 360\)"),
+        ({"hue": -1.0}, "observation: hue"),
+        ({"hue": math.inf}, "observation: hue"),
+        ({"saturation": 101.0}, r"observation: saturation must lie in \[0, 100\]"),
+        ({"saturation": math.nan}, "observation: saturation"),
+        ({"hue": np.array([10.0, 400.0])}, "observation: hue"),
+    ],
+)
+def test_the_penalty_refuses_what_the_matcher_refuses(change, says):
+    with pytest.raises(AssociationError, match=says):
+        cost(seen()._replace(**change), mapped())
+
+
+def test_the_penalty_refuses_a_landmark_that_is_none():
+    with pytest.raises(AssociationError, match="landmark: hue"):
+        cost(seen(), seen(hue=400.0))
 
 
 def test_options_that_do_not_exist_are_named():
