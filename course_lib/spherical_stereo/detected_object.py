@@ -6,10 +6,11 @@ import math
 from dataclasses import dataclass
 
 from course_lib.spherical_stereo.boxes import wrapped_box
+from course_lib.spherical_stereo.labels import canonical_label
 
 
 class DetectionError(ValueError):
-    """A detection that cannot be: a box, score, hue or saturation outside its range."""
+    """A detection that cannot be: no label, or a box, score, hue or saturation that is no number or out of range."""
 
 
 @dataclass(frozen=True)
@@ -17,7 +18,7 @@ class Detection:
     """One object found in a panorama. Raises DetectionError for values outside their range."""
 
     label: str
-    """Canonical label (`labels`)."""
+    """Class, kept as its canonical label (`labels`): a "couch" becomes a "sofa"."""
     score: float
     """Confidence, 0 to 1."""
     box: tuple[float, float, float, float]
@@ -28,21 +29,31 @@ class Detection:
     """Percent, 0 to 100."""
 
     def __post_init__(self) -> None:
-        box = tuple(float(edge) for edge in self.box)
+        try:
+            label = canonical_label(self.label)
+        except ValueError as error:
+            raise DetectionError(str(error)) from None
+        try:
+            box = tuple(float(edge) for edge in self.box)
+        except (TypeError, ValueError):
+            box = ()
         if len(box) != 4 or not all(map(math.isfinite, box)):
             raise DetectionError(f"box must be four finite numbers (u_min, v_min, u_max, v_max); got {self.box}")
         if box[0] < 0 or box[1] < 0 or box[2] <= box[0] or box[3] <= box[1]:
             raise DetectionError(f"box must have 0 <= u_min < u_max and 0 <= v_min < v_max; got {box}")
-        if not self.label:
-            raise DetectionError("label must not be empty")
+        for name, value in (("label", label), ("box", box)):
+            object.__setattr__(self, name, value)
+        for name in ("score", "hue", "saturation"):
+            try:
+                object.__setattr__(self, name, float(getattr(self, name)))
+            except (TypeError, ValueError):
+                raise DetectionError(f"{name} must be a number; got {getattr(self, name)!r}") from None
         if not 0 <= self.score <= 1:
             raise DetectionError(f"score must be between 0 and 1; got {self.score}")
         if not (math.isnan(self.hue) or 0 <= self.hue < 360):
             raise DetectionError(f"hue must be in degrees, [0, 360), or NaN for grey; got {self.hue}")
         if not 0 <= self.saturation <= 100:
             raise DetectionError(f"saturation must be in percent, 0 to 100; got {self.saturation}")
-        for name, value in (("box", box), *((n, float(getattr(self, n))) for n in ("score", "hue", "saturation"))):
-            object.__setattr__(self, name, value)
 
     @property
     def centre(self) -> tuple[float, float]:

@@ -22,6 +22,7 @@ from course_lib.spherical_stereo.epipolar import (
 )
 from course_lib.spherical_stereo.feature_matching import RATIO, check_not_swapped, check_same_size
 from course_lib.spherical_stereo.features import PanoramaFeatures, detect_features, inside_box
+from course_lib.spherical_stereo.labels import canonical_label
 from course_lib.spherical_stereo.sphere import StereoRig, check_panorama_pair
 
 # Reasons why an object has no partner.
@@ -35,8 +36,9 @@ PARTNER_TAKEN = "partner taken"
 class ObjectMatch:
     """One object seen in both images.
 
-    upper, lower: indices into the two lists of detections. label: its class. keypoints_upper, keypoints_lower: `(k, 2)`
-    edge coordinates (pixels) of the features matched inside the two boxes; row i of one belongs to row i of the other.
+    upper, lower: indices into the two lists of detections. label: its class, canonical.
+    keypoints_upper, keypoints_lower: `(k, 2)` edge coordinates (pixels) of the features matched inside the two boxes;
+    row i of one belongs to row i of the other.
     """
 
     upper: int
@@ -97,7 +99,8 @@ def stereo_matching(
 ) -> StereoMatching:
     """Pairs the objects of two panoramas: same class, most AKAZE matches under the epipolar constraint, one-to-one.
 
-    Images: uint8 BGR `(H, W, 3)`, W = 2 H, one size. Detections: anything with `label` and `box` (edge coordinates).
+    Images: uint8 BGR `(H, W, 3)`, W = 2 H, one size. Detections: anything with `label` and `box` (edge coordinates);
+    "couch" and "sofa" are one class.
     tolerance: radians on the sphere by which a match may miss its epipolar half-circle. The features are found once per
     image, however many boxes there are. No detections, no matches: the result is then empty.
     Raises `check_panorama_pair`'s errors, `BoxError` for a box that is none, and `SwappedImagesError`.
@@ -128,22 +131,22 @@ def match_detections(
     check_not_swapped(best_pairs(pairs, RATIO).disparity)
     in_upper = [inside_box(upper.keypoints, box, upper.width)[pairs.upper] for box in upper_boxes]
     in_lower = [inside_box(lower.keypoints, box, lower.width)[pairs.lower] for box in lower_boxes]
+    upper_labels, lower_labels = (
+        [canonical_label(d.label) for d in detections] for detections in (upper_detections, lower_detections)
+    )
     matched: dict[tuple[int, int], EpipolarPairs] = {}
     counts = np.zeros((len(upper_boxes), len(lower_boxes)), dtype=int)
     for i, j in np.ndindex(counts.shape):
-        if upper_detections[i].label == lower_detections[j].label:
+        if upper_labels[i] == lower_labels[j]:
             best = best_pairs(pairs.where(in_upper[i] & in_lower[j]), RATIO)
             # After the contest: a feature whose best partner is an impossible one is not given its second best.
             matched[i, j] = best.where(allowed_by_rig(best, rig.baseline))
             counts[i, j] = len(matched[i, j])
     chosen, tied_upper, tied_lower = pair_by_most_matches(counts)
     matches = [
-        ObjectMatch(
-            i, j, upper_detections[i].label, upper.keypoints[matched[i, j].upper], lower.keypoints[matched[i, j].lower]
-        )
+        ObjectMatch(i, j, upper_labels[i], upper.keypoints[matched[i, j].upper], lower.keypoints[matched[i, j].lower])
         for i, j in chosen
     ]
-    upper_labels, lower_labels = [d.label for d in upper_detections], [d.label for d in lower_detections]
     rows, columns = {i for i, _ in chosen}, {j for _, j in chosen}
     return StereoMatching(
         matches,

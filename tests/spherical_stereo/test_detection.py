@@ -197,6 +197,11 @@ def test_a_detection_knows_its_centre_its_size_and_its_place_on_the_circle():
     assert Detection("chair", 0.5, (506, 10, 526, 40), 20.0, 55.0).wrapped(256) == detection
 
 
+def test_a_detection_keeps_the_canonical_label():
+    assert Detection("Couch", 0.5, (1, 2, 3, 4), 20.0, 55.0).label == "sofa"
+    assert Detection("Traffic_Light", 0.5, (1, 2, 3, 4), 20.0, 55.0).label == "traffic light"
+
+
 def test_a_grey_detection_says_so():
     grey = Detection("refrigerator", 0.9, (1, 2, 3, 4), float("nan"), 3.0)
     assert grey.is_grey
@@ -210,6 +215,14 @@ def test_a_grey_detection_says_so():
     ("change", "message"),
     [
         ({"label": ""}, "label"),
+        ({"label": "  "}, "label"),
+        ({"label": 3}, "label"),
+        ({"score": "x"}, "score must be a number; got 'x'"),
+        ({"score": None}, "score must be a number"),
+        ({"hue": "red"}, "hue must be a number"),
+        ({"saturation": [1, 2]}, "saturation must be a number"),
+        ({"box": 7}, "four finite"),
+        ({"box": ("a", 2, 3, 4)}, "four finite"),
         ({"score": 1.1}, "score"),
         ({"score": float("nan")}, "score"),
         ({"box": (1, 2, 3)}, "four finite"),

@@ -107,6 +107,14 @@ def test_two_equal_boxes_are_a_tie_and_not_a_guess(features):
     assert matching.unmatched == [Unmatched("upper", 7, TIE), Unmatched("lower", 0, TIE), Unmatched("lower", 8, TIE)]
 
 
+def test_two_names_of_one_class_are_matched(features):
+    *_, upper_detections, _ = scene()
+    renamed = [Seen({"sofa": "Couch", "table": "dining_table"}.get(d.label, d.label), d.box) for d in upper_detections]
+    matching = match_scene(features, upper=renamed)
+    assert partners(matching.matches) == {(i, LAST - i) for i in range(8)}
+    assert {m.label for m in matching.matches} == {"chair", "table", "sofa", "cabinet"}
+
+
 def test_a_box_without_features_has_no_matches_and_says_so(features):
     *_, upper_detections, lower_detections = scene()
     matching = match_scene(features, [*upper_detections, IN_THE_AIR], lower_detections)
