@@ -8,35 +8,57 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from course_lib.commands.arguments import require_output_folder
 from course_lib.commands.progress import progress_bar
 
 FIRST_TRAINING_ROOM, N_TRAINING_ROOMS = 1000, 500  # the shipped network's
+IMAGES_PER_ROOM = 4
 FIRST_VALIDATION_ROOM, N_VALIDATION_ROOMS = 100, 20
 FIRST_TEST_ROOM, N_TEST_ROOMS = 200, 20
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds this command's options to its parser."""
-    parser.add_argument("--output", type=Path, required=True, metavar="FOLDER", help="where they go")
     parser.add_argument(
-        "--first-room", type=int, default=FIRST_TRAINING_ROOM, metavar="N", help="seed of the first room"
+        "--out", type=Path, required=True, metavar="FOLDER", help="where pictures and boxes.json go (no default)"
     )
-    parser.add_argument("--rooms", type=int, default=N_TRAINING_ROOMS, metavar="N", help="how many rooms")
     parser.add_argument(
-        "--images-per-room", type=int, default=4, metavar="N", help="pictures from each room, default 4"
+        "--first-room",
+        type=int,
+        default=FIRST_TRAINING_ROOM,
+        metavar="N",
+        help=f"seed of the first room, the others count up from it (default: {FIRST_TRAINING_ROOM})",
+    )
+    parser.add_argument(
+        "--rooms", type=int, default=N_TRAINING_ROOMS, metavar="N", help=f"how many (default: {N_TRAINING_ROOMS})"
+    )
+    parser.add_argument(
+        "--images-per-room",
+        type=int,
+        default=IMAGES_PER_ROOM,
+        metavar="N",
+        help=f"pictures of each; other numbers are other pictures of the same rooms (default: {IMAGES_PER_ROOM})",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Makes the pictures; returns the exit code."""
+    for option, value, least in (
+        ("--first-room", arguments.first_room, 0),
+        ("--rooms", arguments.rooms, 1),
+        ("--images-per-room", arguments.images_per_room, 1),
+    ):
+        if value < least:
+            raise ValueError(f"{option} must be at least {least}; got {value}")
+    require_output_folder(arguments.out)
     from course_lib.worlds.room_images import make_room_images
 
     images = make_room_images(
-        arguments.output,
+        arguments.out,
         arguments.first_room,
         arguments.rooms,
         arguments.images_per_room,
         progress_bar("rooms", "room"),
     )
-    print(f"{arguments.output}: {len(images)} pictures of {len({image['room_seed'] for image in images})} rooms")
+    print(f"{arguments.out}: {len(images)} pictures of {len({image['room_seed'] for image in images})} rooms")
     return 0

@@ -1,6 +1,6 @@
 """Precision and recall of a detector on the experiment's room and on rooms that it was never trained on.
 
-Without --images the unseen rooms are photographed first, which takes a minute or two.
+Without --images the unseen rooms are photographed first, which takes some minutes.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import json
 import tempfile
 from pathlib import Path
 
+from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.commands.make_training_rooms import FIRST_TEST_ROOM, N_TEST_ROOMS
 
 IMAGES_PER_ROOM = 3
@@ -17,13 +18,22 @@ IMAGES_PER_ROOM = 3
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `score-detector`."""
+    add_detector_arguments(parser)
     parser.add_argument(
-        "--detector", type=Path, metavar="FOLDER", help="a .cfg, .weights, .names (default: the course's)"
+        "--images",
+        type=Path,
+        metavar="FOLDER",
+        help="panoramas with boxes.json, of unseen rooms (default: photograph --rooms of them)",
     )
-    parser.add_argument("--images", type=Path, metavar="FOLDER", help="panoramas with boxes.json, of unseen rooms")
-    parser.add_argument("--rooms", type=int, default=N_TEST_ROOMS, metavar="N", help=f"default: {N_TEST_ROOMS}")
+    parser.add_argument(
+        "--rooms",
+        type=int,
+        default=N_TEST_ROOMS,
+        metavar="N",
+        help=f"how many unseen rooms to photograph (default: {N_TEST_ROOMS})",
+    )
     parser.add_argument("--data", type=Path, metavar="FOLDER", help="the experiment's room (default: data/room)")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of two lines")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -32,14 +42,13 @@ def run(arguments: argparse.Namespace) -> int:
 
     from course_lib.commands.progress import progress_bar
     from course_lib.lessons.paths import data_path
-    from course_lib.lessons.shipped_detector import load_detector
     from course_lib.spherical_stereo.detector_evaluation import labelled_panoramas, score_detector
     from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
     from course_lib.worlds.room_images import labelled_images, make_room_images
 
     if arguments.rooms < 1:
         raise ValueError(f"--rooms must be at least 1; got {arguments.rooms}")
-    detector = load_detector(arguments.detector)
+    detector = chosen_detector(arguments)
     folder = arguments.data or data_path("room")
     recordings = [read_stereo_recording(folder / f"experiment_{number}") for number in (1, 2)]
     scores = {

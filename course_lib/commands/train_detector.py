@@ -22,22 +22,35 @@ class PyTorchMissing(ValueError):
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `train-detector`."""
     folder = {"required": True, "type": Path, "metavar": "FOLDER"}
-    parser.add_argument("--images", **folder, nargs="+", help="panoramas to train on, with boxes.json")
+    parser.add_argument("--images", **folder, nargs="+", help="panoramas to train on, with boxes.json (no default)")
     parser.add_argument(
-        "--validation", **folder, nargs="+", help="panoramas of other rooms, which choose the threshold"
+        "--validation", **folder, nargs="+", help="panoramas of other rooms, which choose the threshold (no default)"
     )
-    parser.add_argument("--output", **folder, help="checkpoints, weights and results go here")
+    parser.add_argument("--out", **folder, help="checkpoints, weights and results go here (no default)")
     parser.add_argument("--minutes", type=float, metavar="M", help="training time (default: 60, unless --epochs)")
     parser.add_argument("--epochs", type=int, metavar="N", help="stop after N epochs, if the time has not run out")
     parser.add_argument("--batch", type=int, default=8, metavar="N", help="images a step (default: 8)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
-    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint in the output folder")
-    parser.add_argument("--weights", type=Path, metavar="FILE", help="start from these Darknet weights")
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on from the checkpoint in --out (default: start anew, or from --weights)",
+    )
+    parser.add_argument(
+        "--weights", type=Path, metavar="FILE", help="start from these Darknet weights (default: random)"
+    )
     parser.add_argument(
         "--learning-rate", type=float, default=1.5e-3, metavar="R", help="the largest (default: 0.0015)"
     )
-    parser.add_argument("--cfg", type=Path, default=DATA / "room_yolo.cfg", metavar="FILE", help="the network")
-    parser.add_argument("--names", type=Path, default=DATA / "room_yolo.names", metavar="FILE", help="its classes")
+    for option, what in (("cfg", "the network"), ("names", "its classes")):
+        name = f"room_yolo.{option}"
+        parser.add_argument(
+            f"--{option}",
+            type=Path,
+            default=DATA / name,
+            metavar="FILE",
+            help=f"{what} (default: data/detector/{name})",
+        )
     parser.add_argument(
         "--processes", type=int, default=1, metavar="N", help="with one thread each (default: 1, with all threads)"
     )
@@ -49,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.commands.arguments import require_output_folder, require_seed
 
     require_seed(arguments.seed)
-    require_output_folder(arguments.output)
+    require_output_folder(arguments.out)
     _require_positive(arguments)
     if importlib.util.find_spec("torch") is None:
         raise PyTorchMissing(
@@ -77,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.names,
         arguments.images,
         arguments.validation,
-        arguments.output,
+        arguments.out,
         plan,
         resume=arguments.resume,
         initial_weights=arguments.weights,
@@ -85,14 +98,14 @@ def run(arguments: argparse.Namespace) -> int:
         progress=_bar,
     )
     for path in (arguments.cfg, arguments.names):
-        if path.resolve().parent != arguments.output.resolve():
-            shutil.copy(path, arguments.output)
-    cfg, names = arguments.output / arguments.cfg.name, arguments.output / arguments.names.name
+        if path.resolve().parent != arguments.out.resolve():
+            shutil.copy(path, arguments.out)
+    cfg, names = arguments.out / arguments.cfg.name, arguments.out / arguments.names.name
     _log("measuring the finished detector (OpenCV) on the validation images")
     validation = measure_detector(cfg, result.weights, names, arguments.validation)
-    path = write_report(arguments.output / "training.json", plan, result, validation)
+    path = write_report(arguments.out / "training.json", plan, result, validation)
     print(json.dumps(json.loads(path.read_text(encoding="utf-8")), indent=1))
-    print(f"Written to {arguments.output}: {result.weights.name}, {cfg.name}, {names.name}, {path.name}")
+    print(f"Written to {arguments.out}: {result.weights.name}, {cfg.name}, {names.name}, {path.name}")
     return 0
 
 

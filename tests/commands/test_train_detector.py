@@ -9,7 +9,7 @@ from course_lib.cli import main
 
 def words(tmp_path, *more):
     here = str(tmp_path)
-    return ["train-detector", "--images", here, "--validation", here, "--output", f"{here}/out", *more]
+    return ["train-detector", "--images", here, "--validation", here, "--out", f"{here}/out", *more]
 
 
 @pytest.mark.skipif(importlib.util.find_spec("torch") is not None, reason="PyTorch is installed here")
