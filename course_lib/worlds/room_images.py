@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
@@ -33,6 +34,10 @@ TRAINING_CAMERA = PanoramaCameraModel(
 Progress = Callable[[Iterable], Iterable]
 
 
+class OtherImagesPerRoom(ValueError):
+    """A folder of images to go on in that has another number of each room."""
+
+
 def make_room_images(
     folder: str | Path,
     first_seed: int,
@@ -42,9 +47,10 @@ def make_room_images(
 ) -> list[dict]:
     """Photograph rooms `first_seed` to `first_seed + n_rooms - 1`; go on where an earlier run in the folder stopped.
 
-    Writes NNNNNN_K.jpg (room, photograph) and boxes.json, which is complete after every room. A room's photographs
-    depend on its seed alone. Returns the list of images as boxes.json holds it.
-    Raises `ValueError` for numbers below one.
+    Writes NNNNNN_K.jpg (room, photograph) and boxes.json, which is complete after every room. A room depends on its
+    seed alone; its photographs depend on images_per_room too, because the places of all of them are drawn first.
+    Returns the list of images as boxes.json holds it.
+    Raises `ValueError` for numbers below one, `OtherImagesPerRoom` for a folder begun with another number of images.
     """
     if n_rooms < 1 or images_per_room < 1 or first_seed < 0:
         raise ValueError(
@@ -54,7 +60,13 @@ def make_room_images(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     images = read_image_list(folder) if (folder / BOXES_FILE).exists() else []
-    done = {image["room_seed"] for image in images}
+    done = Counter(image["room_seed"] for image in images)
+    for seed, count in done.items():
+        if count != images_per_room:
+            raise OtherImagesPerRoom(
+                f"{folder} was begun with {count} images of a room (room {seed}), now {images_per_room} are asked for: "
+                "go on with the same number, or give another folder."
+            )
     for seed in progress(range(first_seed, first_seed + n_rooms)):
         if seed in done:
             continue

@@ -14,7 +14,7 @@ from course_lib.spherical_stereo.stereo_recording import StereoRecordingError, r
 from course_lib.worlds.data_folder import checksums
 from course_lib.worlds.experiment_room import make_experiment_room
 from course_lib.worlds.room_data import PRODUCTS, RoomModels, make_room_data
-from course_lib.worlds.room_images import BOXES_FILE, make_room_images, read_image_list
+from course_lib.worlds.room_images import BOXES_FILE, OtherImagesPerRoom, make_room_images, read_image_list
 from course_lib.worlds.room_survey import RoomSurveyModel
 
 SMALL = RoomModels(width=320, places=(3,), survey=RoomSurveyModel(places=3, width=320, fewest_pixels=10))
@@ -128,6 +128,17 @@ def test_training_pictures_go_on_where_they_stopped(tmp_path):
             assert 0 <= u_min < 1280
             assert u_min < u_max <= u_min + 1280
             assert 0 <= v_min < v_max <= 640
+
+
+def test_a_folder_begun_with_another_number_of_images_is_refused(tmp_path):
+    images = [{"file": f"000005_{k}.jpg", "room_seed": 5, "objects": []} for k in range(3)]
+    begun = json.dumps({"version": 1, "images": images})
+    (tmp_path / BOXES_FILE).write_text(begun)
+    with pytest.raises(OtherImagesPerRoom, match=r"begun with 3 images of a room \(room 5\), now 4"):
+        make_room_images(tmp_path, 5, 2, 4)
+    assert [path.name for path in tmp_path.iterdir()] == [BOXES_FILE]
+    assert (tmp_path / BOXES_FILE).read_text() == begun
+    assert make_room_images(tmp_path, 5, 1, 3) == images, "the same number goes on, and here all is done"
 
 
 def test_an_image_list_of_another_version_is_refused(tmp_path):
