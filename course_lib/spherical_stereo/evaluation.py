@@ -53,6 +53,9 @@ def outcome(localization: Localization, true_pose: Sequence[float], true_landmar
     really shows, and the errors in x and in y are at most 2 m each. incorrect: everything else. Its errors are absolute
     differences.
 
+    Table 2 calls unable only "one set or fewer used". A fit that fails with more pairs (mirrored, coincident,
+    undetermined) is unable here as well: there is no pose, so no error by which to call it incorrect.
+
     true_pose: [x, y, theta], metres and radians. true_landmarks: for every observation the index of its landmark, or
     `NO_OBJECT` (`true_landmarks_of` makes it); a pair with such an observation is wrong.
     Raises `EvaluationError` for a pose that is none or a list of another length. Source: paper 2, table 2.
