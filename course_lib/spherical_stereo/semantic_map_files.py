@@ -136,7 +136,15 @@ def _from_csv(text: str) -> SemanticMap:
     missing = [name for name in _FIELDS if name not in (reader.fieldnames or [])]
     if missing:
         raise SemanticMapError(f"the second line must name the columns {','.join(_FIELDS)}; missing: {missing}")
-    return SemanticMap([_landmark(_csv_row(row), number) for number, row in enumerate(reader)])
+    landmarks = []
+    for number, row in enumerate(reader):
+        if None in row:  # where the reader puts what no column is named for
+            raise SemanticMapError(
+                f"line {reader.line_num + 1} has {len(row[None])} values too many for {len(reader.fieldnames)} columns;"
+                " write numbers with a decimal point, and a label with a comma in quotes"
+            )
+        landmarks.append(_landmark(_csv_row(row), number))
+    return SemanticMap(landmarks)
 
 
 def _csv_row(row: dict) -> dict:

@@ -168,6 +168,8 @@ HEAD = "# semantic map, version 1\nlabel,x,y,hue,saturation\n"
         ("# semantic map, version 1\nlabel,x,y\nsofa,1,2\n", r"missing: \['hue', 'saturation'\]"),
         (HEAD + "sofa,1,2\n", "landmark 0 lacks hue, saturation"),
         (HEAD + "sofa,,2,3,4\n", "landmark 0 lacks x"),
+        (HEAD + "chair,1,2,3,4\nsofa,1,5,2,3,4\n", "line 4 has 1 values too many for 5 columns"),
+        (HEAD + "sofa,1,2,3,4,\n", "line 3 has 1 values too many"),
         (HEAD + "sofa,one,2,3,4\n", "x of this sofa must be a number; got 'one'"),
         (HEAD + "sofa,nan,2,3,4\n", "must be finite"),
         (HEAD + "sofa,1,2,nan,4\n", "hue is NaN"),
