@@ -34,7 +34,7 @@ class EmptyImageError(PanoramaError):
 
 
 class GreyImageError(PanoramaError):
-    """An image without colour: hue and saturation are needed."""
+    """An image without colour, one channel or three equal ones: hue and saturation are needed."""
 
 
 class NotPanoramaError(PanoramaError):
@@ -165,17 +165,11 @@ def azimuth_difference(first: np.ndarray | float, second: np.ndarray | float) ->
     return wrap_angle(np.asarray(first, dtype=np.float64) - np.asarray(second, dtype=np.float64))
 
 
-def angle_between(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Angles in [0, pi] between directions `(..., 3)`: atan2(|a x b|, a . b), exact for small and for large angles."""
-    first, second = np.broadcast_arrays(np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64))
-    return np.arctan2(np.linalg.norm(np.cross(first, second), axis=-1), (first * second).sum(axis=-1))
-
-
 def check_panorama(image: np.ndarray, name: str = "image") -> np.ndarray:
     """`image` itself when it is a panorama: uint8 BGR `(H, W, 3)` with W = 2 H.
 
-    Raises `EmptyImageError` (None, or no pixels), `GreyImageError` (one channel), `NotPanoramaError` (another shape,
-    not 2:1, not 8 bits); the message begins with `name`.
+    Raises `EmptyImageError` (None, or no pixels), `GreyImageError` (one channel, or three equal ones),
+    `NotPanoramaError` (another shape, not 2:1, not 8 bits); the message begins with `name`.
     """
     if image is None or np.size(image) == 0:
         raise EmptyImageError(f"{name} is empty; an equirectangular colour image was expected")
@@ -194,7 +188,14 @@ def check_panorama(image: np.ndarray, name: str = "image") -> np.ndarray:
             f"{name} is {width} x {height} pixels; an equirectangular panorama is twice as wide as high"
             f" ({2 * height} x {height})"
         )
+    # Nearly every colour image shows its colour in a few pixels; only what may be grey is looked at as a whole.
+    if _is_grey(image[::16, ::16]) and _is_grey(image):
+        raise GreyImageError(f"{name} is a grey image (its three channels are equal); a colour image is needed")
     return image
+
+
+def _is_grey(image: np.ndarray) -> bool:
+    return bool((image == image[..., :1]).all())
 
 
 def check_panorama_pair(upper_image: np.ndarray, lower_image: np.ndarray) -> tuple[int, int]:
@@ -215,8 +216,7 @@ def check_panorama_pair(upper_image: np.ndarray, lower_image: np.ndarray) -> tup
 def read_panorama(path: str | os.PathLike) -> np.ndarray:
     """The panorama in an image file, uint8 BGR `(H, W, 3)`; an alpha channel is left out.
 
-    Raises `UnreadableImageError` (no such file, or not an image), `GreyImageError` (one channel in the file, or three
-    equal ones), and `check_panorama`'s errors.
+    Raises `UnreadableImageError` (no such file, or not an image), and `check_panorama`'s errors.
     """
     path = Path(path)
     if not path.is_file():
@@ -227,7 +227,4 @@ def read_panorama(path: str | os.PathLike) -> np.ndarray:
         raise UnreadableImageError(f"{path} cannot be read as an image; PNG or JPEG is expected")
     if image.ndim == 3 and image.shape[2] == 4:
         image = np.ascontiguousarray(image[..., :3])
-    check_panorama(image, str(path))
-    if (image == image[..., :1]).all():
-        raise GreyImageError(f"{path} is a grey image (its three channels are equal); a colour image is needed")
-    return image
+    return check_panorama(image, str(path))

@@ -61,7 +61,7 @@ def test_a_box_a_turn_too_far_is_moved_back(tmp_path):
 
 def test_images_of_another_size_are_refused(tmp_path):
     boxes = read_boxes(write(tmp_path / "boxes.json", GOOD))
-    small = np.zeros((64, 128, 3), dtype=np.uint8)
+    small = images()[0][:64, :128]
     with pytest.raises(BoxesFileError, match="drawn on images of 256 x 128, these are 128 x 64"):
         boxes.detections(small, small)
     with pytest.raises(ImageSizeError):

@@ -116,6 +116,7 @@ def test_opencv_s_own_threshold_of_two_tenths_does_not_decide(files, rng):
         (np.zeros((0, 0, 3), dtype=np.uint8), EmptyImageError),
         (None, EmptyImageError),
         (np.zeros((128, 256), dtype=np.uint8), GreyImageError),
+        (np.full((128, 256, 3), 90, dtype=np.uint8), GreyImageError),
         (np.zeros((128, 255, 3), dtype=np.uint8), NotPanoramaError),
         (np.zeros((128, 256, 3)), NotPanoramaError),
     ],

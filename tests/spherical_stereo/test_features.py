@@ -41,7 +41,7 @@ def test_no_feature_is_found_twice(features):
 
 def test_keypoints_are_in_edge_coordinates():
     """A bright square over columns 100 to 119 and rows 60 to 79 has its centre at (110, 70)."""
-    image = np.full((HEIGHT, WIDTH, 3), 60, np.uint8)
+    image = np.full((HEIGHT, WIDTH, 3), (50, 60, 70), np.uint8)
     image[60:80, 100:120] = 200
     keypoints = detect_features(image).keypoints
     assert len(keypoints) >= 4
@@ -53,7 +53,7 @@ def test_a_lower_threshold_finds_more(image, features):
 
 
 def test_an_image_without_structure_has_no_features():
-    features = detect_features(np.full((HEIGHT, WIDTH, 3), 90, np.uint8))
+    features = detect_features(np.full((HEIGHT, WIDTH, 3), (80, 90, 100), np.uint8))
     assert len(features) == 0
     assert features.descriptors.shape == (0, 61)
 

@@ -402,7 +402,7 @@ class NoObjects:
         return []
 
 
-IMAGE = np.zeros((64, 128, 3), np.uint8)
+IMAGE = np.full((64, 128, 3), (80, 90, 100), np.uint8)
 
 
 def test_images_without_objects_are_unable():
@@ -415,8 +415,10 @@ def test_images_that_are_no_panoramas_are_named():
         localizer.localize(IMAGE[:, :100], IMAGE[:, :100])
     with pytest.raises(GreyImageError):
         localizer.localize(IMAGE[..., 0], IMAGE[..., 0])
+    with pytest.raises(GreyImageError, match=r"^lower image"):
+        localizer.localize(IMAGE, IMAGE[..., [0, 0, 0]])
     with pytest.raises(ImageSizeError):
-        localizer.localize(IMAGE, np.zeros((32, 64, 3), np.uint8))
+        localizer.localize(IMAGE, IMAGE[:32, :64])
 
 
 def test_images_without_a_detector_are_named():

@@ -203,7 +203,7 @@ def test_whole_panoramas_match_mostly_at_equal_azimuth():
 
 
 def test_panoramas_without_any_feature_match_nothing():
-    plain = np.full((HEIGHT, WIDTH, 3), 90, np.uint8)
+    plain = np.full((HEIGHT, WIDTH, 3), (80, 90, 100), np.uint8)
     assert len(match_features(plain, plain, RIG)) == 0
     assert np.isnan(match_features(plain, plain, RIG).epipolar_share)
 
