@@ -18,10 +18,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from course_lib.spherical_stereo.experiment import LEAST_HEIGHT, LEAST_VISIBLE
+
 # Width of a whole panorama in memory: a 1280 x 512 network input is one and a quarter panorama, 1.25 * 1024 columns.
 STORED_WIDTH = 1024
-LEAST_VISIBLE_FRACTION = 0.5
-LEAST_HEIGHT_AT_1280 = 30.0
 
 
 class TrainingDataError(ValueError):
@@ -119,7 +119,7 @@ def labelled_panorama(entry: dict, image: np.ndarray, names: list[str], width: i
         raise TrainingDataError(f"{entry['file']} has a box that is none: expected u0 < u1 and v0 < v1, all finite")
     fraction = np.array([item["visible_fraction"] for item in objects], dtype=np.float32)
     height_at_1280 = (boxes[:, 3] - boxes[:, 1]) * (1280.0 / entry["width"])
-    ignored = (fraction < LEAST_VISIBLE_FRACTION) | (height_at_1280 < LEAST_HEIGHT_AT_1280)
+    ignored = (fraction < LEAST_VISIBLE) | (height_at_1280 < LEAST_HEIGHT)
     if image.shape[1] != width:
         image = cv2.resize(image, (width, width // 2), interpolation=cv2.INTER_AREA)
     labels = np.array([names.index(item["label"]) for item in objects], dtype=np.int64)

@@ -33,9 +33,9 @@ from course_lib.spherical_stereo.triangulation import OK, object_position, trian
 from course_lib.spherical_stereo.vertical_disparity import disparity_distance
 
 SOURCES = ("images", "exact_boxes")
-LEAST_VISIBLE = 0.5  # share of an object's pixels that must be seen for it to count; the issue's
-LEAST_HEIGHT = 30.0  # pixels at a width of 1280 that its visible box must be high to count; the issue's
-LARGEST_RANGE = 4.0  # m, horizontal: distances are judged below it; the issue's
+LEAST_VISIBLE = 0.5  # share of an object's pixels that must be seen for it to count; chosen
+LEAST_HEIGHT = 30.0  # pixels at a width of 1280 that its visible box must be high to count; chosen
+LARGEST_RANGE = 4.0  # m, horizontal: distances are judged below it; chosen
 
 
 class PairResult(NamedTuple):

@@ -6,7 +6,6 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.detector_training.anchors import choose_anchors, shape_overlap
 from course_lib.detector_training.augmentation import AugmentationRanges, augmented_sample, panorama_window, recoloured
 from course_lib.detector_training.images import (
     LabelledPanorama,
@@ -174,13 +173,3 @@ def test_bad_folders_are_named(tmp_path):
         PanoramaFolders([tmp_path], NAMES)
     with pytest.raises(TrainingDataError, match="a box that is none"):
         labelled_panorama(entry([thing([50, 100, 50, 130])], 64), np.zeros((32, 64, 3), np.uint8), NAMES, 64)
-
-
-def test_anchors_find_the_shapes_that_boxes_have():
-    rng = np.random.default_rng(0)
-    shapes = np.array([[20, 40], [60, 30], [150, 120]])
-    sizes = np.repeat(shapes, 50, axis=0) * rng.uniform(0.9, 1.1, (150, 2))
-    anchors = choose_anchors(sizes, 3, rng)
-    assert np.diag(shape_overlap(anchors, shapes)).min() > 0.9
-    with pytest.raises(TrainingDataError, match="3 anchors need at least"):
-        choose_anchors(sizes[:2], 3, rng)
