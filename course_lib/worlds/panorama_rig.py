@@ -13,8 +13,8 @@ from course_lib.geometry import pose_matrix, state_from_matrix
 class RigModel:
     """How far a rig that is set up by hand stands from upright."""
 
-    tilt_deg: float = 1.0  # degrees, greatest tilt of the rig as a whole; the issue's
-    relative_tilt_deg: float = 0.05  # degrees, greatest tilt of the lower camera against the upper; the issue's
+    tilt_deg: float = 1.0  # degrees, greatest tilt of the rig as a whole; chosen
+    relative_tilt_deg: float = 0.05  # degrees, greatest tilt of the lower camera against the upper; chosen
 
 
 @dataclass(frozen=True)
