@@ -80,20 +80,23 @@ def _made_ahead(make, count: int) -> Iterator:
     waiting: queue.Queue = queue.Queue(maxsize=QUEUE_LENGTH)
     stopped = threading.Event()
 
+    def put(item, error) -> None:
+        # With a time limit: when the one who takes them has left, nobody makes room any more.
+        while not stopped.is_set():
+            try:
+                waiting.put((item, error), timeout=0.2)
+                return
+            except queue.Full:
+                continue
+
     def produce() -> None:
         try:
             for number in range(count):
-                item = make(number)
-                while not stopped.is_set():
-                    try:
-                        waiting.put((item, None), timeout=0.2)
-                        break
-                    except queue.Full:
-                        continue
+                put(make(number), None)
                 if stopped.is_set():
                     return
         except BaseException as error:
-            waiting.put((None, error))
+            put(None, error)
 
     thread = threading.Thread(target=produce, name="batches", daemon=True)
     thread.start()

@@ -1,5 +1,6 @@
 """The training loop: it learns toy panoramas, goes on where it was stopped, and works with several processes."""
 
+import threading
 from itertools import pairwise
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
 
 from course_lib.detector_training.augmentation import AugmentationRanges  # noqa: E402
+from course_lib.detector_training.batches import QUEUE_LENGTH, _made_ahead  # noqa: E402
 from course_lib.detector_training.checkpoints import CheckpointError  # noqa: E402
 from course_lib.detector_training.export import read_weights  # noqa: E402
 from course_lib.detector_training.images import PanoramaFolders, TrainingDataError  # noqa: E402
@@ -27,6 +29,32 @@ def toy(tmp_path_factory):
     (folder / "tiny.cfg").write_text(TINY_CFG)
     write_toy_folder(folder / "images", 8, width=256)
     return folder
+
+
+def test_an_error_while_nobody_takes_batches_any_more_ends_the_thread():
+    failing = threading.Event()
+
+    def make(number):
+        if number == QUEUE_LENGTH + 1:  # the first is taken, the others fill the queue
+            failing.set()
+            raise OSError("the disk is full")
+        return number
+
+    batches = _made_ahead(make, 100)
+    assert next(batches) == 0
+    assert failing.wait(5)
+    closing = threading.Thread(target=batches.close, daemon=True)
+    closing.start()
+    closing.join(5)
+    assert not closing.is_alive()
+
+
+def test_an_error_in_the_making_of_a_batch_reaches_the_one_who_takes_them():
+    def make(number):
+        raise OSError("the disk is full")
+
+    with pytest.raises(OSError, match="disk is full"):
+        next(_made_ahead(make, 3))
 
 
 def plan(**changes):
