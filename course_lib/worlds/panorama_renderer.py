@@ -219,4 +219,7 @@ def _texture(picture: np.ndarray) -> vtkTexture:
     texture.InterpolateOn()
     texture.MipmapOn()
     texture.RepeatOn()
+    # Anisotropic filtering, VTK's default of 4, sends Mesa's software renderer into an endless loop where the texture's
+    # derivatives degenerate (one view of 240 did), and costs more than drawing twice as large.
+    texture.SetMaximumAnisotropicFiltering(1.0)
     return texture
