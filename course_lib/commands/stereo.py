@@ -12,17 +12,30 @@ from pathlib import Path
 
 import numpy as np
 
+BOXES_FORMAT = """\
+the boxes file, in pixels (left, top, right, bottom) of images of that size; "name" may be left out:
+  {"version": 1, "width": 1024, "height": 512, "upper": [{"label": "chair", "box": [420, 285, 498, 404]}],
+   "lower": [{"label": "chair", "box": [420, 270, 499, 391], "name": "the red one"}]}
+"""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `stereo`."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the example
+    parser.epilog = BOXES_FORMAT
     parser.add_argument("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
     parser.add_argument("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
     parser.add_argument("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
-    parser.add_argument("--boxes", type=Path, metavar="JSON", help="boxes in both images (format: boxes_file.py)")
+    parser.add_argument(
+        "--boxes",
+        type=Path,
+        metavar="JSON",
+        help="boxes in both images, as a JSON file in the format below (default: features alone, no distances)",
+    )
     parser.add_argument(
         "--sigma-pixels", type=float, default=1.0, metavar="PX", help="standard deviation of a box centre (default: 1)"
     )
-    parser.add_argument("--out", "--output", type=Path, metavar="FOLDER", help="write figures and results here")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="write figures and results here (default: nowhere)")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
 
 
@@ -36,6 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.spherical_stereo.sphere import StereoRig, check_panorama_pair, read_panorama
     from course_lib.spherical_stereo.stereo_matching import match_detections
 
+    if not (np.isfinite(arguments.baseline) and arguments.baseline > 0):
+        raise ValueError(f"--baseline must be a positive number of metres; got {arguments.baseline}")
     rig = StereoRig(arguments.baseline)
     if not (np.isfinite(arguments.sigma_pixels) and arguments.sigma_pixels > 0):
         raise ValueError(f"--sigma-pixels must be a positive number of pixels; got {arguments.sigma_pixels}")
@@ -113,15 +128,30 @@ def _nan_to_none(value):
 
 
 def _table(s: dict, has_boxes: bool) -> str:
+    if not s["matches"]:
+        lines = ["no features matched between the two images: are they sharp, and of one place?"]
+        return "\n".join(lines + _object_lines(s, has_boxes))
     lines = [
         f"{s['matches']} features matched over the two images; {s['epipolar_percent']:.1f} % of them obey the epipolar "
         f"constraint within {s['epipolar_tolerance_deg']:.2f} degrees",
-        f"median vertical disparity {s['median_disparity_px']:.1f} px, median azimuth difference "
-        f"{s['median_azimuth_difference_px']:.2f} px; features and matching took {s['seconds']:.2f} s",
     ]
+    if s["epipolar_percent"] > 0:
+        lines += [
+            f"median vertical disparity {s['median_disparity_px']:.1f} px, median azimuth difference "
+            f"{s['median_azimuth_difference_px']:.2f} px; features and matching took {s['seconds']:.2f} s"
+        ]
+    return "\n".join(lines + _object_lines(s, has_boxes))
+
+
+def _object_lines(s: dict, has_boxes: bool) -> list[str]:
     if not has_boxes:
-        return "\n".join([*lines, "", "No distances: give the objects' boxes with --boxes."])
-    lines += ["", f"{len(s['objects'])} objects seen in both images; metres, with one standard deviation"]
+        return ["", "No distances: give the objects' boxes with --boxes."]
+    lines = [
+        "",
+        f"{len(s['objects'])} objects seen in both images; metres, ± one standard deviation",
+        f"  from box centres: of the centre, whose u and v have {s['sigma_pixels']:g} px each",
+        "  from disparities: of the visible surface (the median of its features), not of the object's middle behind it",
+    ]
     lines += [f"{'':<28} {'':>8} {'from box centres':^25} {'from disparities':^25}"]
     lines += [f"{'object':<28} {'matches':>8} {'horizontal':>14} {'d':>10} {'horizontal':>14} {'d':>10}"]
     for row in s["objects"]:
@@ -129,7 +159,7 @@ def _table(s: dict, has_boxes: bool) -> str:
         lines.append(f"{(row['name'] or row['label'])[:28]:<28} {row['matches']:>8} {cells[0]} {cells[1]}")
     for row in s["unmatched"]:
         lines.append(f"{(row['name'] or row['label'])[:28]:<28} {'':>8} {row['side']} image only: {row['reason']}")
-    return "\n".join(lines)
+    return lines
 
 
 def _cell(measured: dict) -> str:
@@ -161,5 +191,5 @@ def _write(folder: Path, summary: dict, images, features, detections, objects) -
     disparity_figure(images[0], features).savefig(folder / "disparity.png", dpi=130)
     if objects:
         names = [row["name"] or row["label"] for row in summary["objects"]]
-        distances_figure(images, detections, objects).savefig(folder / "distances.png", dpi=130)
+        distances_figure(images, detections, objects, names).savefig(folder / "distances.png", dpi=130)
         room_figure(objects, names).savefig(folder / "room.png", dpi=130)

@@ -8,85 +8,59 @@ import cv2
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
 from course_lib.lessons.figures import BLACK, BLUE, GREEN, ORANGE, VERMILION, new_figure
+from course_lib.lessons.panorama_drawing import add_list, class_style, draw_box, draw_numbers, panorama
 from course_lib.spherical_stereo.evaluation import CORRECT, NO_OBJECT
 from course_lib.spherical_stereo.semantic_map import SemanticMap
 
-# Okabe and Ito's colours and a letter each, so that no class is told by colour alone.
-CLASS_STYLES = {
-    "sofa": ("#D55E00", "s"),
-    "chair": ("#0072B2", "^"),
-    "table": ("#009E73", "D"),
-    "television": ("#CC79A7", "P"),
-    "potted plant": ("#E69F00", "*"),
-    "refrigerator": ("#56B4E9", "X"),
-    "cabinet": ("#000000", "o"),
-}
-_OTHER = ("#666666", "h")
-
-
-def class_style(label: str) -> tuple[str, str]:
-    """Colour and marker of a class; grey hexagons for classes that the course's detector does not know."""
-    return CLASS_STYLES.get(label, _OTHER)
-
-
-def panorama(axes: Axes, image_bgr: np.ndarray, title: str) -> None:
-    """Draw a panorama `(H, W, 3)` uint8 BGR in edge coordinates, with azimuth written along the top."""
-    height, width = image_bgr.shape[:2]
-    axes.imshow(image_bgr[..., ::-1], extent=(0, width, height, 0), interpolation="antialiased")
-    axes.grid(False)
-    axes.set(title=title, xlabel="column u [pixels]", ylabel="row v [pixels]", xlim=(0, width), ylim=(height, 0))
-    above = axes.secondary_xaxis("top", functions=(lambda u: 180 - 360 * u / width, lambda a: (180 - a) * width / 360))
-    above.set_xticks([180, 90, 0, -90, -180])
-    above.set_xlabel("azimuth [degrees]", fontsize=8)
-
-
-def draw_box(axes: Axes, box: Sequence[float], width: int, label: str, text: str | None = None) -> None:
-    """One box on a panorama, on both sides where it crosses the seam, in its class's colour."""
-    u_min, v_min, u_max, v_max = box
-    colour, _ = class_style(label)
-    for turn in (0, -width) if u_max > width else (0,):
-        axes.add_patch(
-            Rectangle((u_min + turn, v_min), u_max - u_min, v_max - v_min, fill=False, edgecolor=colour, linewidth=1.6)
-        )
-        if text and u_min + turn >= 0:
-            axes.text(
-                u_min + turn,
-                v_min - 4,
-                text,
-                color="white",
-                fontsize=6.5,
-                bbox={"facecolor": colour, "edgecolor": "none", "pad": 0.8},
-                clip_on=True,
-            )
+__all__ = [
+    "detections_figure",
+    "draw_box",
+    "draw_pose",
+    "experiment_figure",
+    "map_axes",
+    "matches_figure",
+    "panorama",
+    "pose_figure",
+]
 
 
 def detections_figure(image_bgr: np.ndarray, detections: Sequence, title: str = "Detected objects") -> Figure:
-    """Every detection on its panorama: box, class, score, and hue (or that it is grey)."""
-    figure, axes = new_figure(size=(10.0, 5.6))
-    panorama(axes, image_bgr, f"{title}: {len(detections)}, with score and hue H")
+    """Every detection on its panorama, numbered; below, its class, score, and hue (or that it is grey)."""
+    figure, axes = new_figure(size=(10.0, 6.6))
+    panorama(axes, image_bgr, f"{title}: {len(detections)}")
+    labels = [one.label for one in detections]
+    hues = ["grey" if one.is_grey else f"{one.hue:3.0f}°" for one in detections]
+    lines = [f"{n:2d} {one.label:12} {one.score:.2f} {hues[n - 1]}" for n, one in enumerate(detections, start=1)]
+    add_list(figure, lines, 4, "number, class, score, hue", labels)
     for one in detections:
-        hue = "grey" if one.is_grey else f"H {one.hue:.0f}°"
-        draw_box(axes, one.box, image_bgr.shape[1], one.label, f"{one.label} {one.score:.2f} {hue}")
+        draw_box(axes, one.box, image_bgr.shape[1], one.label)
+    draw_numbers(axes, [one.box for one in detections], labels, image_bgr.shape[1])
     return figure
 
 
 def matches_figure(upper_bgr: np.ndarray, lower_bgr: np.ndarray, localization) -> Figure:
     """Both panoramas with the objects seen in both: one number an object, and its matched features."""
-    figure, (above, below) = new_figure(2, 1, size=(9.0, 9.6))
+    figure, rows = new_figure(2, 1, size=(9.0, 10.6))
     width = upper_bgr.shape[1]
-    for axes, image, name in ((above, upper_bgr, "Upper camera"), (below, lower_bgr, "Lower camera")):
-        panorama(axes, _faded(image), f"{name}: {len(localization.matches)} matched objects, dots are AKAZE features")
-    for number, match in enumerate(localization.matches):
-        for axes, detections, index, keypoints in (
-            (above, localization.upper_detections, match.upper, match.keypoints_upper),
-            (below, localization.lower_detections, match.lower, match.keypoints_lower),
-        ):
-            one = detections[index]
-            draw_box(axes, one.box, width, one.label, f"{number}: {one.label}, {match.n_matches}")
-            axes.plot(keypoints[:, 0] % width, keypoints[:, 1], ".", color=class_style(one.label)[0], markersize=2.5)
+    matches = localization.matches
+    labels = [localization.upper_detections[match.upper].label for match in matches]
+    lines = [
+        f"{n:2d} {label:12} {match.n_matches:3d}"
+        for n, (label, match) in enumerate(zip(labels, matches, strict=True), start=1)
+    ]
+    for axes, image, side in zip(rows, (upper_bgr, lower_bgr), ("Upper", "Lower"), strict=True):
+        panorama(axes, _faded(image), f"{side} camera: {len(matches)} matched objects, dots are AKAZE features")
+    add_list(figure, lines, 4, "number, class, matched features", labels)
+    for axes, side in zip(rows, ("upper", "lower"), strict=True):
+        detections = getattr(localization, f"{side}_detections")
+        boxes = [detections[getattr(match, side)].box for match in matches]
+        for match, box, label in zip(matches, boxes, labels, strict=True):
+            keypoints = getattr(match, f"keypoints_{side}")
+            draw_box(axes, box, width, label)
+            axes.plot(keypoints[:, 0] % width, keypoints[:, 1], ".", color=class_style(label)[0], markersize=2.5)
+        draw_numbers(axes, boxes, labels, width)
     return figure
 
 
@@ -117,7 +91,7 @@ def draw_pose(axes: Axes, x: float, y: float, theta: float, colour: str, label: 
 
 
 def pose_figure(semantic_map: SemanticMap, result, title: str) -> Figure:
-    """One pose on the map: true and estimated, lines to the objects used, crosses where they were measured."""
+    """One pose on the map: true and estimated; a line from each object as measured to the landmark it was taken for."""
     figure, axes = new_figure(size=(7.6, 6.2))
     _draw_result(axes, semantic_map, result)
     map_axes(axes, semantic_map, title)
@@ -147,8 +121,7 @@ def experiment_figure(semantic_map: SemanticMap, results: Sequence, title: str) 
 
 
 def _draw_result(axes: Axes, semantic_map: SemanticMap, result) -> None:
-    x, y, theta = result.pair.pose
-    draw_pose(axes, x, y, theta, BLACK, "true pose")
+    draw_pose(axes, *result.pair.pose, BLACK, "true pose")
     found = result.localization
     if found.pose is None:
         return
@@ -157,15 +130,18 @@ def _draw_result(axes: Axes, semantic_map: SemanticMap, result) -> None:
     named: set[bool] = set()
     for observation, landmark in found.used_pairs:
         right = result.true_landmarks[observation] == landmark != NO_OBJECT
+        # From where the object was measured to the landmark it was taken for: two that were swapped cross.
         axes.plot(
-            *zip((found.pose.x, found.pose.y), semantic_map.positions[landmark], strict=True),
+            *zip(points[observation], semantic_map.positions[landmark], strict=True),
             color=GREEN if right else VERMILION,
             linestyle="-" if right else "--",
-            linewidth=1.0,
-            label=None if right in named else ("right pair" if right else "wrong pair"),
+            linewidth=1.1,
+            label=None if right in named else f"taken for, {'right' if right else 'wrong'}ly",
         )
         named.add(right)
-    axes.plot(*points.T, "x", color=ORANGE, markersize=7, label="objects as measured, put on the map")
+    for point, observation in zip(points, found.observations, strict=True):
+        axes.plot(*point, "x", color=class_style(observation.label)[0], markersize=7, markeredgewidth=1.6)
+    axes.plot([], [], "x", color="0.4", markersize=7, label="object as measured, in its class's colour")
 
 
 def _faded(image_bgr: np.ndarray) -> np.ndarray:

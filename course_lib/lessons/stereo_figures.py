@@ -4,27 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import cv2
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
-from course_lib.lessons.figures import BLUE, ORANGE, SKY_BLUE, VERMILION, new_figure
+from course_lib.lessons.figures import BLUE, ORANGE, VERMILION, new_figure
+from course_lib.lessons.panorama_drawing import add_list, draw_box, draw_numbers, panorama
 
 # Share of the disparities that the colours span; a few wild matches would else use up the scale.
 _COLOUR_PERCENTILES = (2, 98)
-
-
-def panorama_axes(axes: Axes, image_bgr: np.ndarray, title: str) -> None:
-    """Shows a panorama with azimuth and elevation in degrees along its edges, in edge coordinates of its pixels."""
-    height, width = image_bgr.shape[:2]
-    axes.imshow(cv2.cvtColor(image_bgr, cv2.COLOR_BGR2RGB), extent=(0, width, height, 0))
-    azimuths, elevations = np.arange(180, -181, -60), np.arange(90, -91, -30)
-    axes.set_xticks((0.5 - azimuths / 360) * width, [f"{a}" for a in azimuths])
-    axes.set_yticks((0.5 - elevations / 180) * height, [f"{e}" for e in elevations])
-    axes.set(title=title, xlabel="azimuth [degrees]", ylabel="elevation [degrees]", xlim=(0, width), ylim=(height, 0))
-    axes.grid(visible=False)
 
 
 def disparity_figure(upper_image: np.ndarray, features) -> Figure:
@@ -33,7 +20,8 @@ def disparity_figure(upper_image: np.ndarray, features) -> Figure:
     features: `FeatureMatches`.
     """
     figure, axes = new_figure(size=(11, 6))
-    panorama_axes(axes, upper_image, f"{len(features)} matches, {100 * features.epipolar_share:.1f} % of equal azimuth")
+    share = f", {100 * features.epipolar_share:.1f} % of equal azimuth" if len(features) else ": nothing to measure"
+    panorama(axes, upper_image, f"{len(features)} matches{share}")
     good, disparity = features.epipolar, np.degrees(features.vertical_disparity)
     low, high = np.percentile(disparity[good], _COLOUR_PERCENTILES) if good.any() else (0.0, 1.0)
     points = axes.scatter(
@@ -44,20 +32,32 @@ def disparity_figure(upper_image: np.ndarray, features) -> Figure:
     return figure
 
 
-def distances_figure(images: Sequence[np.ndarray], detections: Sequence[Sequence], objects: Sequence) -> Figure:
-    """Both panoramas, one above the other, with the boxes of matched objects, numbered, and their distances.
+def distances_figure(
+    images: Sequence[np.ndarray], detections: Sequence[Sequence], objects: Sequence, names: Sequence[str]
+) -> Figure:
+    """Both panoramas, one above the other, with the boxes of matched objects, numbered; their distances below.
 
-    images, detections: (upper, lower). objects: `MeasuredObject` of each match.
+    images, detections: (upper, lower). objects: `MeasuredObject` of each match. names: of the objects.
     """
     boxes = np.array([d.box for found in detections for d in found])
-    margin = 0.04 * images[0].shape[0]
-    figure, rows = new_figure(2, 1, size=(13, 7))
-    for axes, image, found, side in zip(rows, images, detections, ("upper", "lower"), strict=True):
-        panorama_axes(axes, image, f"{side} camera: number, horizontal range from disparities (from box centres)")
+    margin = 0.06 * images[0].shape[0]
+    labels = [measured.label for measured in objects]
+    figure, rows = new_figure(2, 1, size=(13, 8.4))
+    for axes, image, side in zip(rows, images, ("Upper", "Lower"), strict=True):
+        panorama(axes, image, f"{side} camera")
         axes.set_ylim(boxes[:, 3].max() + margin, boxes[:, 1].min() - margin)
-        for number, measured in enumerate(objects, start=1):
-            text = f"{number}\n{_metres(measured.disparity)}\n({_metres(measured.box_centre)})"
-            _draw_box(axes, found[getattr(measured, side)].box, text, image.shape[1])
+    longest = max(map(len, names))
+    lines = [
+        f"{n:2d} {name:{longest}} {_metres(measured.disparity):>7} ({_metres(measured.box_centre)})"
+        for n, (name, measured) in enumerate(zip(names, objects, strict=True), start=1)
+    ]
+    title = "number, object, horizontal range from disparities (from box centres)"
+    add_list(figure, lines, 3, title, labels)
+    for axes, image, found, side in zip(rows, images, detections, ("upper", "lower"), strict=True):
+        shown = [found[getattr(measured, side)].box for measured in objects]
+        for box, label in zip(shown, labels, strict=True):
+            draw_box(axes, box, image.shape[1], label)
+        draw_numbers(axes, shown, labels, image.shape[1])
     return figure
 
 
@@ -65,34 +65,13 @@ def _metres(measurement) -> str:
     return f"{measurement.horizontal_range_m:.2f} m" if measurement.outcome == "ok" else measurement.outcome
 
 
-def _draw_box(axes: Axes, box, text: str, width: int) -> None:
-    """A box with its text; a box across the seam is drawn on both sides of it."""
-    u_min, v_min, u_max, v_max = box
-    for shift in (0, -width) if u_max > width else (0,):
-        axes.add_patch(
-            Rectangle(
-                (u_min + shift, v_min), u_max - u_min, v_max - v_min, fill=False, edgecolor=SKY_BLUE, linewidth=1.2
-            )
-        )
-    axes.text(
-        u_min + 1,
-        v_min + 1,
-        text,
-        fontsize=6,
-        color="white",
-        verticalalignment="top",
-        clip_on=True,
-        bbox={"facecolor": "black", "alpha": 0.6, "pad": 0.6, "linewidth": 0},
-    )
-
-
 def room_figure(objects: Sequence, names: Sequence[str]) -> Figure:
     """The objects from above, in the upper camera's frame: distances from disparities and from box centres, joined."""
-    figure, axes = new_figure(size=(7.5, 7))
+    figure, axes = new_figure(size=(9.0, 7))
     axes.plot(0, 0, marker="^", color="black", markersize=9)
     axes.annotate("rig", (0, 0), textcoords="offset points", xytext=(7, -3))
     styles = {"box_centre": ("s", ORANGE, "from box centres"), "disparity": ("o", BLUE, "from disparities")}
-    for number, (measured, name) in enumerate(zip(objects, names, strict=True), start=1):
+    for number, measured in enumerate(objects, start=1):
         azimuth = np.radians(measured.azimuth_deg)
         towards = np.array([np.cos(azimuth), np.sin(azimuth)])
         places = []
@@ -105,10 +84,12 @@ def room_figure(objects: Sequence, names: Sequence[str]) -> Figure:
             places.append(towards * one.horizontal_range_m)
             axes.plot(*places[-1], marker=marker, color=colour, markersize=5)
         if places:
-            axes.annotate(f"{number} {name}", places[-1], textcoords="offset points", xytext=(5, 4), fontsize=7)
+            axes.annotate(str(number), places[-1], textcoords="offset points", xytext=(4, 4), fontsize=8)
     for marker, colour, label in styles.values():
         axes.plot([], [], marker=marker, color=colour, linestyle="-", label=label)
-    axes.legend(loc="upper right")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     axes.set(title="Objects from above, with one standard deviation", xlabel="x, forward [m]", ylabel="y, left [m]")
     axes.set_aspect("equal")
+    longest = max(map(len, names), default=0)
+    add_list(figure, [f"{n:2d} {name:{longest}}" for n, name in enumerate(names, start=1)], 3, "number, object")
     return figure

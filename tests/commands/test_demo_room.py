@@ -6,6 +6,9 @@ import json
 import pytest
 
 from course_lib.cli import main
+from course_lib.commands.demo_room import remarks
+from course_lib.spherical_stereo.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
+from course_lib.worlds import room_data
 
 ERRORS = {f"{statistic}_{what}" for statistic in ("mean", "std") for what in ("dx_m", "dy_m", "dtheta_deg")}
 
@@ -65,6 +68,7 @@ def test_the_tables_hold_the_papers_numbers_beside_ours(tmp_path, capsys):
         (["--seed", "-1"], "--seed must be 0 or more"),
         (["--association", "psychic"], "association must be one of"),
         (["--data", "nowhere"], "nowhere"),
+        (["--data", "elsewhere", "--seed", "4"], "give one of the two"),
         (["--detector", "nowhere"], "nowhere"),
     ],
 )
@@ -73,3 +77,56 @@ def test_bad_arguments_are_named_in_one_line(words, message, tmp_path, capsys):
     error = capsys.readouterr().err
     assert message in error
     assert "Traceback" not in error
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--detector", "nowhere"], "no detector folder nowhere"),
+        (["--association", "psychic"], "--association must be one of"),
+        (["--score-threshold", "2"], "--score-threshold"),
+    ],
+)
+def test_a_bad_argument_is_told_before_another_seed_is_photographed(words, message, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(room_data, "make_room_data", lambda *_, **__: pytest.fail("40 pairs were photographed first"))
+    assert main(["demo", "room", "--seed", "7", *words, "--out", str(tmp_path)]) == 2
+    assert message in capsys.readouterr().err
+
+
+def numbers(unable=(0.0, 0.0), share=0.4, wrong=2.0, used=12.0, n=(6, 4)):
+    """A summary with these rates; mean errors of the incorrect poses are `share` of the paper's."""
+    exact = {"unable_percent": 90.0, "incorrect": {"n": 0}}
+    return {
+        "incorrect_poses": {"median_wrong_pairs": wrong, "median_used_pairs": used},
+        **{
+            f"experiment_{k + 1}": {
+                "greedy": {
+                    "unable_percent": unable[k],
+                    "incorrect": {"n": n[k], **{key: share * value for key, value in paper["incorrect"].items()}},
+                },
+                "greedy_exact_boxes": exact,
+            }
+            for k, paper in enumerate((PAPER_TABLE_3, PAPER_TABLE_4))
+        },
+    }
+
+
+def test_remarks_say_what_the_numbers_show():
+    hardly, swapped = remarks(numbers(unable=(5.0, 0.0)))
+    assert hardly.startswith("Hardly any pose is unable")
+    assert swapped.startswith(
+        "One swapped pair among a dozen barely moves the fit: of an incorrect pose's 12 pairs 2 are"
+    )
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"share": 0.6}, {"wrong": 4.0}, {"used": 4.0}, {"n": (0, 0), "wrong": None, "used": None}],
+    ids=["errors not small", "more than a swap", "few pairs", "none incorrect"],
+)
+def test_no_remark_on_swapped_pairs_without_the_numbers_for_it(change):
+    assert [sentence.split()[0] for sentence in remarks(numbers(**change))] == ["Hardly"]
+
+
+def test_no_remark_on_unable_poses_where_there_are_some():
+    assert remarks(numbers(unable=(0.0, 10.0), share=0.6)) == []

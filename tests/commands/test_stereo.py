@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
+from course_lib.commands.stereo import BOXES_FORMAT
 from course_lib.spherical_stereo.boxes_file import read_boxes
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
@@ -50,7 +51,7 @@ def arguments(folder, boxes="boxes.json", baseline="0.3", upper="upper.png", low
 
 
 def test_every_object_is_listed_with_both_distances(pair, tmp_path, capsys):
-    assert main([*arguments(pair), "--json", "--output", str(tmp_path / "out")]) == 0
+    assert main([*arguments(pair), "--json", "--out", str(tmp_path / "out")]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["matches"] > 100
     assert summary["epipolar_percent"] > 90
@@ -89,6 +90,7 @@ def test_the_table_names_every_object_and_why_one_has_no_partner(pair, capsys):
     for i, board in enumerate(scene()[0]):
         assert f"{board.label} {i}" in printed
     assert "upper image only: class not in the other image" in printed
+    assert "from disparities: of the visible surface" in printed
 
 
 def test_without_boxes_the_features_alone_are_matched(pair, tmp_path, capsys):
@@ -98,11 +100,34 @@ def test_without_boxes_the_features_alone_are_matched(pair, tmp_path, capsys):
     assert not (tmp_path / "distances.png").exists()
 
 
-def test_images_without_features_are_valid_json_too(tmp_path, capsys):
+@pytest.fixture
+def plain_pair(tmp_path):
+    """A folder with two images of one colour, which have no features."""
     image = np.full((64, 128, 3), (90, 100, 110), np.uint8)
     cv2.imwrite(str(tmp_path / "upper.png"), image)
     cv2.imwrite(str(tmp_path / "lower.png"), image)
-    assert main([*arguments(tmp_path, boxes=None), "--json", "--out", str(tmp_path / "out")]) == 0
+    return tmp_path
+
+
+def test_images_without_matches_are_told_in_words(plain_pair, capsys):
+    assert main(arguments(plain_pair, boxes=None)) == 0
+    printed = capsys.readouterr().out
+    assert "no features matched" in printed
+    assert "nan" not in printed
+
+
+def test_the_help_shows_a_boxes_file_that_can_be_read(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        main(["stereo", "--help"])
+    assert BOXES_FORMAT in capsys.readouterr().out
+    example = tmp_path / "boxes.json"
+    example.write_text("\n".join(BOXES_FORMAT.splitlines()[1:]))
+    boxes = read_boxes(example)
+    assert (boxes.width, boxes.height, len(boxes.upper), len(boxes.lower)) == (1024, 512, 1, 1)
+
+
+def test_images_without_features_are_valid_json_too(plain_pair, tmp_path, capsys):
+    assert main([*arguments(plain_pair, boxes=None), "--json", "--out", str(tmp_path / "out")]) == 0
     summary = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     assert summary["matches"] == 0
     assert summary["epipolar_percent"] is None
@@ -113,7 +138,7 @@ def test_images_without_features_are_valid_json_too(tmp_path, capsys):
     ("change", "message"),
     [
         ({"baseline": "0"}, "baseline must be a positive number"),
-        ({"baseline": "-0.3"}, "baseline must be a positive number"),
+        ({"baseline": "-0.3"}, "--baseline must be a positive number"),
         ({"upper": "missing.png"}, "there is no image file"),
         ({"upper": "boxes.json"}, "cannot be read as an image"),
         ({"upper": "lower.png", "lower": "upper.png"}, "swapped"),

@@ -1,0 +1,53 @@
+"""--detector, --input-size and --score-threshold: what reaches the detector, and what is refused."""
+
+import argparse
+
+import pytest
+
+from course_lib.cli import main
+from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+from course_lib.spherical_stereo.detection import YoloDetector
+
+
+def options(*words):
+    parser = argparse.ArgumentParser()
+    add_detector_arguments(parser)
+    return parser.parse_args(words)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A detector's folder with a threshold of its own."""
+    (tmp_path / "training.json").write_text('{"score_threshold": 0.3}')
+    return tmp_path
+
+
+@pytest.fixture(autouse=True)
+def loaded(monkeypatch):
+    """YoloDetector.load gives back what it was asked for."""
+    monkeypatch.setattr(YoloDetector, "load", lambda folder, **options: (folder, options))
+
+
+def test_what_is_not_given_is_left_to_the_folder(folder):
+    assert chosen_detector(options("--detector", str(folder))) == (folder, {"score_threshold": 0.3})
+
+
+def test_size_and_threshold_reach_the_detector(folder):
+    words = ["--detector", str(folder), "--input-size", "1280", "512", "--score-threshold", "0.7"]
+    assert chosen_detector(options(*words)) == (folder, {"input_size": (1280, 512), "score_threshold": 0.7})
+
+
+@pytest.mark.parametrize("command", [["demo", "room"], ["score-detector"]])
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--input-size", "1280", "500"], "--input-size must be two multiples of 32 above 0; got 1280 500"),
+        (["--input-size", "0", "512"], "--input-size must be two multiples of 32 above 0; got 0 512"),
+        (["--score-threshold", "1.5"], "--score-threshold must be between 0 and 1; got 1.5"),
+        (["--score-threshold", "nan"], "--score-threshold must be between 0 and 1; got nan"),
+    ],
+)
+def test_both_commands_name_the_option_that_does_not_fit(command, words, message, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main([*command, *words]) == 2
+    assert message in capsys.readouterr().err
