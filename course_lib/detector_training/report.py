@@ -24,7 +24,7 @@ PANORAMA_WIDTH = 1280
 
 
 def measure_detector(cfg: Path, weights: Path, names_file: Path, images: list[Path]) -> Validation:
-    """Precision and recall of the detector over all validation images, at the threshold of 95 % precision there.
+    """Precision and recall of the detector over all validation images, at the threshold with the best F1 there.
 
     Raises what `PanoramaFolders`, `YoloDetector` and `validate` raise.
     """

@@ -16,10 +16,10 @@ from course_lib.spherical_stereo.detection_scores import (
     Boxes,
     Matching,
     average_precision,
+    best_threshold,
     match_detections,
     precision_recall_curve,
     scores_at,
-    threshold_for_precision,
 )
 from course_lib.spherical_stereo.seam import appended_columns, select_on_circle
 
@@ -28,8 +28,6 @@ LEAST_SCORE = 0.05
 # Boxes of one class that overlap more than this are one object.
 SUPPRESSION_IOU = 0.45
 MOST_BOXES = 400
-# Share of the detections on validation rooms that must be right at the chosen threshold; chosen.
-LEAST_PRECISION = 0.95
 
 
 @dataclass(frozen=True)
@@ -38,7 +36,7 @@ class Validation:
 
     n_images: int
     threshold: float
-    """The lowest score at which 95 % of the detections on these images are right."""
+    """The score that gives the largest F1 on these images."""
     precision: float
     recall: float
     average_precision: float
@@ -59,7 +57,7 @@ def validate(
     names: list[str],
     threshold: float | None = None,
 ) -> Validation:
-    """Precision and recall at IoU 0.5 of `detect` over panoramas; the threshold of 95 % precision unless one is given.
+    """Precision and recall at IoU 0.5 of `detect` over panoramas; the threshold with the best F1 unless one is given.
 
     `detect` gives the boxes of a panorama in pixels of its image. Raises `DetectionScoreError` when the panoramas hold
     no object, or no detection is right and no threshold is given.
@@ -75,7 +73,7 @@ def validate(
             only = [_of_class(boxes, name) for boxes in (detections, objects)]
             of_class[name].append(match_detections(*only, ignored, width))
     curve = precision_recall_curve(found)
-    chosen = threshold_for_precision(curve, LEAST_PRECISION) if threshold is None else threshold
+    chosen = best_threshold(curve) if threshold is None else threshold
     by_class = {}
     for name, matchings in of_class.items():
         count = sum(matching.n_objects for matching in matchings)

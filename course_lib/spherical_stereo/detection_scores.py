@@ -141,20 +141,6 @@ def best_threshold(curve: PrecisionRecall) -> float:
     return float(curve.threshold[f1.argmax()])
 
 
-def threshold_for_precision(curve: PrecisionRecall, least_precision: float) -> float:
-    """The lowest threshold at which at least this share of the detections is right: the most recall at that price.
-
-    A localizer wants it rather than the best F1: an object that is missed costs it little, one that is not there is
-    matched to a landmark all the same. Where no threshold is so precise, the one with the best F1.
-    Raises `DetectionScoreError` when no detection is right at any threshold.
-    """
-    best = best_threshold(curve)
-    precise = np.flatnonzero(curve.precision >= least_precision)
-    # The curve's first points are a few detections: a lucky single one does not make a threshold.
-    precise = precise[curve.recall[precise] >= 0.5]
-    return float(curve.threshold[precise[-1]]) if len(precise) else best
-
-
 def average_precision(curve: PrecisionRecall) -> float:
     """Area under precision over recall, precision made monotone from the right (as PASCAL VOC since 2010)."""
     if not len(curve.recall):

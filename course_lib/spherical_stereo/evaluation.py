@@ -86,20 +86,23 @@ def wrong_pairs(localization: Localization, true_landmarks: Sequence[int]) -> tu
 
 
 def identify_detections(
-    detections: Sequence, true_objects: Sequence[tuple[str, Sequence[float]]], width: float
+    detections: Sequence, true_objects: Sequence[tuple[str, Sequence[float], Sequence[float]]], width: float
 ) -> tuple[int, ...]:
     """Which true object each detection shows: its index, or `NO_OBJECT`.
 
     A detection shows an object of its class whose box it overlaps with IoU >= 0.5, on the circle of columns; each
-    object is shown once, by the detection that overlaps it most. detections: anything with `label` and `box`.
-    true_objects: (label, box) of everything that can be seen. width: of the panorama, pixels.
-    Raises `BoxError` for a box that is none. Source: paper 2, section 3 (whose truth was told by eye).
+    object is shown once, by the detection that overlaps it most. An object half hidden has two boxes, around what is
+    seen of it and around all of it, and a detector may give either: the greater overlap counts. detections: anything
+    with `label` and `box`. true_objects: (label, visible box, unoccluded box) of everything that can be seen. width: of
+    the panorama, pixels. Raises `BoxError` for a box that is none.
+    Source: paper 2, section 3 (whose truth was told by eye).
     """
     found = [NO_OBJECT] * len(detections)
     if not len(detections) or not len(true_objects):
         return tuple(found)
-    overlap = box_iou([one.box for one in detections], [box for _, box in true_objects], width)
-    labels = [canonical_label(label) for label, _ in true_objects]
+    boxes = [one.box for one in detections]
+    overlap = np.maximum(*(box_iou(boxes, [thing[k] for thing in true_objects], width) for k in (1, 2)))
+    labels = [canonical_label(thing[0]) for thing in true_objects]
     for i, one in enumerate(detections):
         overlap[i, [label != canonical_label(one.label) for label in labels]] = 0.0
     while overlap.max() >= IDENTITY_IOU:

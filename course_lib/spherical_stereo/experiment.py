@@ -60,9 +60,9 @@ class MatchingCounts(NamedTuple):
     """Stereo matching over many pairs."""
 
     matched: int
-    """Pairs of detections."""
+    """Pairs of detections of which at least one shows an object that was detected in both images."""
     right: int
-    """Of them, those that show one object."""
+    """Of them, those whose two detections show one object."""
     seen_in_both: int
     """Objects detected in both images."""
     unmatched: int
@@ -138,15 +138,19 @@ def experiment_summary(results: Sequence[PairResult]) -> dict:
 
 
 def matching_counts(results: Sequence[PairResult]) -> MatchingCounts:
-    """How often stereo matching was right, over all pairs. Source: paper 2, section 2.3."""
+    """How often stereo matching was right about the objects detected in both images, over all pairs.
+
+    A detection that shows no object has no right partner, and is not counted. Source: paper 2, section 2.3.
+    """
     matched = right = both = unmatched = 0
     for result in results:
-        joined = [(result.upper_identity[m.upper], result.lower_identity[m.lower]) for m in result.localization.objects]
-        matched += len(joined)
-        right += sum(a == b != NO_OBJECT for a, b in joined)
         seen = (set(result.upper_identity) & set(result.lower_identity)) - {NO_OBJECT}
+        joined = [(result.upper_identity[m.upper], result.lower_identity[m.lower]) for m in result.localization.objects]
+        judged = [(a, b) for a, b in joined if a in seen or b in seen]
+        matched += len(judged)
+        right += sum(a == b for a, b in judged)
         both += len(seen)
-        unmatched += len(seen - {a for a, _ in joined})
+        unmatched += len(seen - {a for a, _ in judged})
     return MatchingCounts(matched, right, both, unmatched)
 
 
@@ -191,7 +195,8 @@ def failures(result: PairResult, semantic_map: SemanticMap) -> list[str]:
 
 def _identities(detections: Sequence[Detection], objects: Sequence[TrueObject], width: int) -> tuple[int, ...]:
     """Numbers of the objects that detections show."""
-    shown = identify_detections(detections, [(thing.label, thing.visible_box) for thing in objects], width)
+    known = [(thing.label, thing.visible_box, thing.unoccluded_box) for thing in objects]
+    shown = identify_detections(detections, known, width)
     return tuple(NO_OBJECT if index == NO_OBJECT else objects[index].number for index in shown)
 
 

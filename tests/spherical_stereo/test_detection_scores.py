@@ -12,7 +12,6 @@ from course_lib.spherical_stereo.detection_scores import (
     match_detections,
     precision_recall_curve,
     scores_at,
-    threshold_for_precision,
 )
 
 WIDTH = 1280.0
@@ -135,18 +134,6 @@ def test_the_best_threshold_has_the_largest_f1():
     # F1: 0.9 -> 0.5, 0.8 -> 0.8, 0.5 -> 6/7, 0.4 -> 6/8.
     curve = precision_recall_curve([matching([0.9, 0.8, 0.5, 0.4], [True, True, True, False], 3)])
     assert best_threshold(curve) == 0.5
-
-
-def test_the_precise_threshold_is_the_lowest_that_is_precise_enough():
-    # Precision 1, 1, 1, 3/4, 4/5, recall 1/5 to 4/5.
-    curve = precision_recall_curve([matching([0.9, 0.8, 0.7, 0.6, 0.5], [True, True, True, False, True], 5)])
-    assert threshold_for_precision(curve, 0.9) == 0.7
-    assert threshold_for_precision(curve, 0.8) == 0.5
-
-
-def test_one_lucky_detection_makes_no_precise_threshold():
-    curve = precision_recall_curve([matching([0.9, 0.8, 0.7, 0.6], [True, False, True, True], 4)])
-    assert threshold_for_precision(curve, 0.95) == best_threshold(curve) == 0.6
 
 
 def test_a_perfect_detector_has_average_precision_one_and_a_half_blind_one_a_half():

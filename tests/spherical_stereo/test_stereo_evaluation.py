@@ -108,7 +108,7 @@ def detection(label, u, v=300.0, across=100.0, down=80.0):
 
 
 def true(label, u, v=300.0, across=100.0, down=80.0):
-    return (label, (u, v, u + across, v + down))
+    return (label, (u, v, u + across, v + down), (u, v, u + across, v + down))
 
 
 def test_a_detection_shows_the_object_that_it_overlaps_most():
@@ -130,6 +130,13 @@ def test_of_two_detections_of_one_object_the_better_one_shows_it():
     assert found == (NO_OBJECT, 0)
 
 
+def test_a_half_hidden_object_is_recognized_by_what_is_seen_of_it_or_by_all_of_it():
+    sofa = [("sofa", (500, 300, 540, 380), (500, 300, 600, 380))]
+    for u_max in (545, 595):
+        whole_or_part = detection("sofa", 500, across=u_max - 500.0)
+        assert identify_detections([whole_or_part], sofa, WIDTH) == (0,)
+
+
 def test_a_box_across_the_seam_is_recognized_from_either_side():
     assert identify_detections([detection("sofa", 1230)], [true("sofa", -40)], WIDTH) == (0,)
 
@@ -145,7 +152,7 @@ def test_nothing_detected_or_nothing_there_shows_nothing():
 
 def test_a_true_box_that_is_none_is_named():
     with pytest.raises(BoxError):
-        identify_detections([detection("sofa", 500)], [("sofa", (5, 5, 1, 1))], WIDTH)
+        identify_detections([detection("sofa", 500)], [("sofa", (5, 5, 1, 1), (5, 5, 1, 1))], WIDTH)
 
 
 def with_objects():
