@@ -91,7 +91,7 @@ def test_two_objects_side_by_side_at_the_border_of_the_range_both_stay():
 
 
 def test_objects_of_two_classes_at_one_place_both_stay_unless_their_boxes_coincide():
-    boxes = np.array([[200.0, 100, 260, 180], [210, 100, 270, 180]])
+    boxes = np.array([[200.0, 100, 260, 180], [215, 100, 275, 180]])
     scores, classes = np.array([0.8, 0.7]), np.array([0, 1])
     assert len(select_on_circle(boxes, scores, classes, WIDTH, IOU)[0]) == 2
     boxes[1] = [202, 101, 261, 180]
