@@ -16,9 +16,7 @@ def parameter_tables(models: object, world: str) -> str:
 
     Raises `ValueError` for a parameter without a comment.
     """
-    parts = [
-        f"# Parameters of the simulated {world}\n\nWritten by `make-data {world}` from the models' source text.\n"
-    ]
+    parts = [f"# Parameters of the simulated {world}\n\nWritten by `make-data {world}` from the models' source text.\n"]
     for field in dataclasses.fields(models):
         model = getattr(models, field.name)
         if dataclasses.is_dataclass(model):

@@ -246,10 +246,11 @@ def test_only_the_sofas_look_alike(experiment):
             assert min(looks[i][1], looks[j][1]) >= 40, (LAYOUT[i][0], LAYOUT[j][0])
 
 
-def test_two_sofas_are_almost_equally_far_from_the_centroid_and_the_third_is_not(experiment):
+def test_only_the_distance_from_the_centroid_tells_the_sofas_apart(experiment):
     places = np.array([(item.x, item.y) for item in experiment.objects])
     from_centroid = np.linalg.norm(places - places.mean(axis=0), axis=1)
-    south, east, west = from_centroid[:3]
     assert [name for name, *_ in LAYOUT[:3]] == ["sofa south", "sofa east", "sofa west"]
-    assert 0.05 < abs(south - east) < 0.3
-    assert min(abs(west - south), abs(west - east)) > 0.6
+    apart = np.diff(np.sort(from_centroid[:3]))
+    # More than exact boxes get wrong, less than a few unseen objects move the centroid.
+    assert apart.min() > 0.3
+    assert apart.max() < 1.2
