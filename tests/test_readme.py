@@ -56,3 +56,52 @@ def test_every_local_link_leads_somewhere():
     for target in re.findall(r"\]\(([^)#]+)\)", README):
         if not target.startswith("http"):
             assert (ROOT / target).exists(), target
+
+
+ROOM_RESULTS = ROOT / "data" / "room" / "results"
+
+
+@pytest.mark.parametrize(
+    ("name", "method", "keys", "digits"),
+    [
+        ("correct [%]", "greedy", ("correct_percent",), 0),
+        ("incorrect [%]", "greedy", ("incorrect_percent",), 0),
+        ("unable [%]", "greedy", ("unable_percent",), 0),
+        ("mean error in x when correct [m]", "greedy", ("correct", "mean_dx_m"), 2),
+        ("mean error in y when correct [m]", "greedy", ("correct", "mean_dy_m"), 2),
+        ("mean error in heading when correct [degrees]", "greedy", ("correct", "mean_dtheta_deg"), 1),
+        ("correct from exact boxes [%]", "greedy_exact_boxes", ("correct_percent",), 0),
+    ],
+)
+def test_the_rows_of_the_room_are_the_medians_and_ranges_of_its_stored_results(name, method, keys, digits):
+    row = next(line for line in README.splitlines() if line.startswith(f"| {name} |"))
+    for experiment, cell in zip(("experiment_1", "experiment_2"), row.split("|")[2:4], strict=True):
+        values = []
+        for path in sorted(ROOM_RESULTS.glob("seed_*.json")):
+            value = json.loads(path.read_text())[experiment][method]
+            for key in keys:
+                value = value[key]
+            values.append(value)
+        assert len(values) == 4
+        quoted = [float(number) for number in re.findall(r"\d+(?:\.\d+)?", cell)]
+        expected = [float(f"{number:.{digits}f}") for number in (np.median(values), min(values), max(values))]
+        assert quoted == expected
+
+
+def test_the_readme_quotes_detector_stereo_and_distances_as_stored():
+    scores = json.loads((ROOT / "data" / "detector" / "scores.json").read_text())
+    stored = json.loads((ROOM_RESULTS / "seed_4.json").read_text())
+    errors, matching = stored["median_relative_range_error_percent"], stored["stereo_matching"]
+    for row, values in (
+        ("| detector on the experiment's room", [scores["experiment_room"][k] for k in ("precision", "recall")]),
+        ("| detector on 20 rooms", [scores["unseen_rooms"][k] for k in ("precision", "recall")]),
+        ("| stereo matching", [matching["right_percent"], matching["unmatched_percent"]]),
+        (
+            "| median relative error of distances",
+            [errors[k] for k in ("exact_boxes", "detected_box_centres", "akaze_disparities")],
+        ),
+    ):
+        line = next(line for line in README.splitlines() if line.startswith(row))
+        quoted = [number.strip() for number in line.split("|")[2].split(",")]
+        digits = len(quoted[0].split(".")[1])
+        assert quoted == [f"{value:.{digits}f}" for value in values]

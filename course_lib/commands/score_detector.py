@@ -11,9 +11,7 @@ import tempfile
 from pathlib import Path
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
-from course_lib.commands.make_training_rooms import FIRST_TEST_ROOM, N_TEST_ROOMS
-
-IMAGES_PER_ROOM = 3
+from course_lib.commands.make_training_rooms import FIRST_TEST_ROOM, IMAGES_PER_ROOM, N_TEST_ROOMS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

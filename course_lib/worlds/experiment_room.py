@@ -35,13 +35,13 @@ PLACES = np.array([(place.x, place.y) for place in MEASUREMENT_PLACES])  # metre
 # Where each piece stands: name, x, y (metres, map frame), the direction its front faces (degrees).
 LAYOUT = (
     ("sofa south", 3.25, -0.13, 90.0),
-    ("sofa east", 4.60, 2.65, 180.0),
+    ("sofa east", 5.00, 2.65, 180.0),
     ("sofa west", -0.02, 4.60, 0.0),
     ("red chair", 2.02, 0.66, 30.0),
-    ("green chair", 3.40, 5.16, -90.0),
+    ("green chair", 0.80, 5.14, -90.0),
     ("blue chair", 3.62, 2.10, 90.0),
     ("wooden table", 1.12, 2.10, 0.0),
-    ("blue table", 3.65, 3.62, 15.0),
+    ("blue table", 3.82, 3.62, 15.0),
     ("television", 2.42, 5.24, -90.0),
     ("green plant", 0.05, -0.08, 45.0),
     ("purple plant", 5.20, 1.18, 180.0),

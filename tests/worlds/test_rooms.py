@@ -251,6 +251,6 @@ def test_only_the_distance_from_the_centroid_tells_the_sofas_apart(experiment):
     from_centroid = np.linalg.norm(places - places.mean(axis=0), axis=1)
     assert [name for name, *_ in LAYOUT[:3]] == ["sofa south", "sofa east", "sofa west"]
     apart = np.diff(np.sort(from_centroid[:3]))
-    # More than exact boxes get wrong, less than a few unseen objects move the centroid.
-    assert apart.min() > 0.3
+    # About what boxes get wrong, and less than a few unseen objects move the centroid.
+    assert apart.min() > 0.2
     assert apart.max() < 1.2
