@@ -1,4 +1,4 @@
-"""Lesson 00, start here: the corridor's recording beside its map, and the panel that looks for equation (8)'s peak."""
+"""Lesson 00, start here: the corridor's recording beside its map, the panel that looks for eq. (8)'s peak, a room."""
 
 from __future__ import annotations
 
@@ -23,9 +23,14 @@ from course_lib.lessons.corridor_figures import floor_plan
 from course_lib.lessons.live_figure import LiveFigure
 from course_lib.lessons.panel import Drawing, Panel, Slider, Switch
 from course_lib.lessons.paths import data_path
+from course_lib.lessons.room_figures import draw_box, draw_pose, map_axes, panorama
+from course_lib.spherical_stereo.localization import Localization
+from course_lib.spherical_stereo.semantic_map import SemanticMap
+from course_lib.spherical_stereo.stereo_recording import StereoPair
 
 FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
 DEPTH_LIMITS = (0.0, 10.0)  # metres: the range of the camera
+PAIR = 3  # of the room's experiment 1: most objects in view, nothing special (chosen)
 _HALF_WIDTHS = {"x": 1.5, "y": 0.6, "yaw": 15.0}  # metres, metres, degrees about the true pose
 _STEPS = {"x": 0.05, "y": 0.01, "yaw": 0.1}
 _UNITS = {"x": "m", "y": "m", "yaw": "degrees"}
@@ -131,6 +136,23 @@ def filter_figure(estimates: list[Estimate], true: np.ndarray) -> Figure:
     axes.plot(positions[:, 0], positions[:, 1], **(figures.line_style(3) | {"markersize": 5}), label="estimate")
     axes.set(title="The filter at work, seen from above (y enlarged)", xlabel="x [m]", ylabel="y [m]")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    return figure
+
+
+def room_figure(pair: StereoPair, found: Localization, semantic_map: SemanticMap) -> Figure:
+    """The second method on one pair: what was detected in the upper panorama, and the pose on the map."""
+    image, _ = pair.images()
+    figure, (view, plan) = figures.new_figure(1, 2, size=(10.4, 4.0))
+    panorama(view, image, f"Upper camera: {len(found.upper_detections)} objects found")
+    for one in found.upper_detections:
+        draw_box(view, one.box, image.shape[1], one.label, one.label)
+    for index, (_, landmark) in enumerate(found.used_pairs):
+        ends = np.stack([(found.pose.x, found.pose.y), semantic_map.positions[landmark]])
+        plan.plot(*ends.T, color="0.6", linewidth=0.8, label=None if index else "used for the pose")
+    draw_pose(plan, *pair.pose, figures.BLACK, "true pose")
+    draw_pose(plan, found.pose.x, found.pose.y, found.pose.theta, figures.ORANGE, "estimated pose")
+    map_axes(plan, semantic_map, "The semantic map, from above")
+    plan.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7, frameon=False)
     return figure
 
 
