@@ -80,6 +80,12 @@ def test_the_stored_rates_from_images_show_the_papers_failure(experiment):
     assert max(over_seeds(experiment, "greedy", "unable_percent")) <= 10
 
 
+@pytest.mark.xfail(strict=True, reason="aim not met: objects that the detector misses move the centroid of eq. (1)")
+@pytest.mark.parametrize("experiment", EXPERIMENTS)
+def test_the_stored_rates_from_images_are_about_the_papers(experiment):
+    assert 45 <= np.median(over_seeds(experiment, "greedy", "correct_percent")) <= 80
+
+
 @pytest.mark.parametrize(("key", "limit"), [("mean_dx_m", 0.25), ("mean_dy_m", 0.25), ("mean_dtheta_deg", 3.5)])
 def test_the_stored_errors_of_correct_poses_from_images_are_small(key, limit):
     for experiment in EXPERIMENTS:

@@ -90,10 +90,11 @@ def test_a_sofa_is_found_exactly_once_wherever_the_seam_is(detector, recording, 
     assert (overlap > 0.5).sum() == 1
 
 
-def test_turning_the_rig_turns_the_heading_and_hardly_anything_else(localizer, recording):
-    """The images rolled: the pose follows where the same objects are taken for the same landmarks."""
+@pytest.fixture(scope="module")
+def rolled(localizer, recording):
+    """How far the pose moves (m) and turns (degrees) too much when the images roll and the associations agree."""
     moves, turns = [], []
-    for pair in recording.pairs[4:10:2]:
+    for pair in recording.pairs[4:14:2]:
         images = pair.images()
         straight = localizer.localize(*images)
         for shift in (97, 640, 1033):
@@ -101,9 +102,21 @@ def test_turning_the_rig_turns_the_heading_and_hardly_anything_else(localizer, r
             if _agree(straight, turned, angle):
                 moves.append(np.hypot(turned.pose.x - straight.pose.x, turned.pose.y - straight.pose.y))
                 turns.append(abs(np.rad2deg(wrap_angle(turned.pose.theta - straight.pose.theta - angle))))
+    return np.array(moves), np.array(turns)
+
+
+def test_turning_the_rig_turns_the_heading_and_mostly_nothing_else(rolled):
+    moves, turns = rolled
     assert len(moves) >= 3
     assert np.median(moves) < 0.10
     assert np.median(turns) < 2.0
+
+
+@pytest.mark.xfail(strict=True, reason="aim not met: the detector's boxes move by pixels when the image rolls")
+def test_turning_the_rig_never_moves_the_pose_by_more_than_a_decimetre(rolled):
+    moves, turns = rolled
+    assert moves.max() < 0.10
+    assert turns.max() < 2.0
 
 
 def _agree(straight, turned, angle: float) -> bool:
