@@ -19,9 +19,9 @@ CLASS_STYLES = {
     "television": ("#CC79A7", "P"),
     "potted plant": ("#E69F00", "*"),
     "refrigerator": ("#56B4E9", "X"),
-    "cabinet": ("#000000", "o"),
+    "cabinet": ("#5C5C5C", "p"),
 }
-_OTHER = ("#666666", "h")
+_OTHER = ("#9A9A9A", "h")
 _NUMBER_SIZE = 6.5  # points
 _STEPS = 9  # places tried along an edge of a box
 

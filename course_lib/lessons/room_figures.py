@@ -91,7 +91,7 @@ def draw_pose(axes: Axes, x: float, y: float, theta: float, colour: str, label: 
 
 
 def pose_figure(semantic_map: SemanticMap, result, title: str) -> Figure:
-    """One pose on the map: true and estimated; a line from each object as measured to the landmark it was taken for."""
+    """One pose on the map, true and estimated: rays to the objects used, and from each to what it was taken for."""
     figure, axes = new_figure(size=(7.6, 6.2))
     _draw_result(axes, semantic_map, result)
     map_axes(axes, semantic_map, title)
@@ -130,6 +130,8 @@ def _draw_result(axes: Axes, semantic_map: SemanticMap, result) -> None:
     named: set[bool] = set()
     for observation, landmark in found.used_pairs:
         right = result.true_landmarks[observation] == landmark != NO_OBJECT
+        ray = np.stack([(found.pose.x, found.pose.y), points[observation]])
+        axes.plot(*ray.T, color="0.75", linewidth=0.8, zorder=1, label=None if named else "object used")
         # From where the object was measured to the landmark it was taken for: two that were swapped cross.
         axes.plot(
             *zip(points[observation], semantic_map.positions[landmark], strict=True),
