@@ -87,7 +87,7 @@ def _dots(rng: np.random.Generator, pixels: int, count: int, radius: tuple[float
 
 
 # The patterns that generated rooms draw from; "tartan" and "lattice" are left to the room of the experiment.
-CLOTH_PATTERNS = ("plain", "stripes", "checks", "dots", "herringbone", "blotches")
+CLOTH_PATTERNS = ("plain", "stripes", "checks", "dots", "herringbone", "blotches", "windowpane", "waves")
 
 
 def cloth(
@@ -113,6 +113,10 @@ def cloth(
         mask = _dots(rng, pixels, 60, (0.012 / size * pixels, 0.03 / size * pixels)) > 0
     elif pattern == "herringbone":
         mask = np.sin(2 * np.pi * (2 * repeats * across + repeats * np.abs(2 * ((up * 4) % 1) - 1))) > 0
+    elif pattern == "windowpane":
+        mask = (((repeats * across) % 1.0) < 0.18) | (((repeats * up) % 1.0) < 0.18)
+    elif pattern == "waves":
+        mask = np.sin(2 * np.pi * (repeats * up + 0.5 * np.sin(2 * np.pi * repeats * across))) > 0.2
     elif pattern == "tartan":
         bands = [(np.sin(2 * np.pi * (repeats * line + 0.4 * np.sin(2 * np.pi * line))) > 0.5) for line in (across, up)]
         mask = 0.5 * bands[0] + 0.5 * bands[1]

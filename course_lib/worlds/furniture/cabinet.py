@@ -103,7 +103,7 @@ def build_cabinet(
 
 def random_cabinet(rng: np.random.Generator, kind: str | None = None) -> Piece:
     """A cabinet of any kind; kind: "sideboard", "drawers", "wardrobe" or "shelf" (None: any)."""
-    kind = kind or str(rng.choice(["sideboard", "drawers", "wardrobe", "shelf"]))
+    kind = kind or str(rng.choice(["sideboard", "sideboard", "drawers", "drawers", "wardrobe", "shelf"]))
     depth = rng.uniform(0.32, 0.5)
     if kind == "sideboard":
         rows = ((("door", 1.0),), (("door", 2.0), ("drawer", 1.0)), (("door", 1.6), ("open", 1.0)))[
@@ -112,7 +112,7 @@ def random_cabinet(rng: np.random.Generator, kind: str | None = None) -> Piece:
         width, height, columns = rng.uniform(0.9, 1.7), rng.uniform(0.5, 0.95), int(rng.integers(2, 5))
     elif kind == "drawers":
         rows = (("drawer", 1.0),) * int(rng.integers(3, 6))
-        width, height, columns = rng.uniform(0.5, 1.1), rng.uniform(0.65, 1.15), int(rng.integers(1, 3))
+        width, height, columns = rng.uniform(0.5, 1.3), rng.uniform(0.65, 1.15), int(rng.integers(1, 3))
     elif kind == "wardrobe":
         rows = ((("door", 1.0),), (("drawer", 1.0), ("door", 4.0)))[int(rng.integers(2))]
         width, height, columns = rng.uniform(0.7, 1.5), rng.uniform(1.5, 2.1), int(rng.integers(1, 4))
@@ -131,12 +131,18 @@ def random_cabinet(rng: np.random.Generator, kind: str | None = None) -> Piece:
         rows=rows,
         knob=str(rng.choice(["knob", "bar", "none"])),
         legs=rng.uniform(0.08, 0.2) if kind in ("sideboard", "drawers") and rng.random() < 0.4 else 0.0,
-        board=rng.uniform(0.016, 0.035),
+        board=rng.uniform(0.016, 0.038),
     )
     natural = colour(rng.uniform(10, 50), rng.uniform(15, 75), rng.uniform(25, 95))
-    body = wood(rng, natural if rng.random() < 0.6 else random_colour(rng, (5, 85), (25, 97)), 0.9)
+    hue, saturation, value = rng.uniform(0.0, 360.0), rng.uniform(5.0, 85.0), rng.uniform(25.0, 97.0)
+    finish = str(rng.choice(["one", "two shades", "many", "many"]))
+    plain = finish != "two shades" and rng.random() < 0.5
+    body = wood(rng, natural if plain else colour(hue, saturation, value), 0.9)
     fronts = [body]
-    if rng.random() < 0.6:
+    if finish == "two shades":
+        shade = colour(hue + rng.uniform(-10, 10), saturation, value * rng.uniform(0.6, 0.9))
+        fronts = [body, wood(rng, shade, 0.9)]
+    elif finish == "many":
         fronts = [wood(rng, random_colour(rng, (0, 85), (30, 98)), 0.9) for _ in range(int(rng.integers(1, 4)))]
     inside = wood(rng, natural, 0.6, 128)
     knob = metal(rng, random_colour(rng, (0, 40), (10, 85)), 0.3, 128)

@@ -107,7 +107,7 @@ def random_chair(rng: np.random.Generator) -> Piece:
         "width": rng.uniform(0.38, 0.56),
         "depth": rng.uniform(0.38, 0.54),
         "seat_height": rng.uniform(0.42, 0.5),
-        "leg_radius": rng.uniform(0.012, 0.026),
+        "leg_radius": rng.uniform(0.012, 0.0275),
         "splay": rng.uniform(0.0, 0.06),
     }
     fabric = cloth(rng, rgb, str(rng.choice(CLOTH_PATTERNS)), random_colour(rng) if rng.random() < 0.3 else None, 0.5)
@@ -118,7 +118,7 @@ def random_chair(rng: np.random.Generator) -> Piece:
         return build_chair(shape, frame, frame if rng.random() < 0.6 else painted)
     if kind == "upholstered":
         shape = Chair(height=rng.uniform(0.8, 1.08), back="solid", armrests=bool(rng.random() < 0.3), **common)
-        return build_chair(shape, timber if rng.random() < 0.6 else steel, fabric)
+        return build_chair(shape, (timber, timber, steel, painted)[int(rng.integers(4))], fabric)
     if kind == "office":
         shape = Chair(
             height=rng.uniform(0.85, 1.15), base="star", back="solid", armrests=bool(rng.random() < 0.6), **common
@@ -127,7 +127,8 @@ def random_chair(rng: np.random.Generator) -> Piece:
     if kind == "shell":
         base = str(rng.choice(["legs", "sledge"]))
         shape = Chair(height=rng.uniform(0.75, 0.9), base=base, back="shell", **common)
-        return build_chair(shape, timber if rng.random() < 0.5 else steel, painted if rng.random() < 0.5 else fabric)
+        frame = (timber, steel, painted)[int(rng.integers(3))]
+        return build_chair(shape, frame, painted if rng.random() < 0.5 else fabric)
     common["depth"] = common["width"]
     common["seat_height"] = rng.uniform(0.5, 0.68)
     shape = Chair(height=common["seat_height"] + rng.uniform(0.2, 0.32), back="ladder", round_seat=True, **common)

@@ -120,20 +120,24 @@ def random_plant(rng: np.random.Generator) -> Piece:
         pot_height=pot_height,
         foliage=foliage,
         height=pot_height + rng.uniform(0.35, 1.05),
-        spread=rng.uniform(0.22, 0.42),
+        spread=rng.uniform(0.22, 0.45),
         n_leaves={
-            "spiky": int(rng.integers(14, 36)),
+            "spiky": int(rng.integers(14, 39)),
             "bushy": int(rng.integers(60, 130)),
             "palm": int(rng.integers(10, 24)),
             "broad": int(rng.integers(10, 24)),
         }[foliage],
-        leaf_width=rng.uniform(0.03, 0.065),
+        leaf_width=rng.uniform(0.03, 0.069),
     )
-    hue = rng.choice([rng.uniform(85, 150), rng.uniform(85, 150), rng.uniform(60, 85), rng.uniform(290, 360)])
+    # Half of the plants are green; the rest is there so that the shape, not the green, makes a plant.
+    hue = rng.choice([rng.uniform(85, 150), rng.uniform(60, 150), rng.uniform(270, 380), rng.uniform(0, 360)])
     skins = [
         leaves(rng, colour(hue + rng.uniform(-12, 12), rng.uniform(40, 85), rng.uniform(25, 80))) for _ in range(2)
     ]
-    clay = ceramic(rng, random_colour(rng, (5, 90), (30, 97)))
+    clay = random_colour(rng, (5, 90), (30, 97))
+    if rng.random() < 0.35:
+        clay = colour(hue + rng.uniform(-25, 25), rng.uniform(30, 85), rng.uniform(30, 90))
+    clay = ceramic(rng, clay)
     earth = carpet(rng, colour(28, 45, 22), 0.5, 128)
     bark = wood(rng, colour(rng.uniform(20, 90), 45, rng.uniform(25, 50)), 0.4, 128)
     return build_plant(shape, clay, earth, skins, bark, rng)

@@ -93,7 +93,7 @@ def random_sofa(rng: np.random.Generator) -> Piece:
         seat_height=seat_height,
         back_height=rng.uniform(0.68, 0.95),
         arm=str(rng.choice(["box", "roll", "slope"])),
-        arm_width=rng.uniform(0.1, 0.26),
+        arm_width=rng.uniform(0.1, 0.27),
         arm_height=seat_height + rng.uniform(0.06, 0.24),
         leg_height=leg,
         seats=int(rng.integers(2, 4)) if width > 1.6 else int(rng.integers(1, 3)),

@@ -92,7 +92,7 @@ def build_table(shape: Table, top: Surface, frame: Surface, cover: Surface) -> P
 def random_table(rng: np.random.Generator) -> Piece:
     """A dining, side or coffee table of any kind that a generated room may have."""
     low = rng.random() < 0.35
-    is_round = bool(rng.random() < 0.35)
+    is_round = bool(rng.random() < 0.45)
     width = rng.uniform(0.55, 1.1) if low else rng.uniform(0.7, 1.7)
     depth = width if is_round and rng.random() < 0.7 else rng.uniform(0.5, 0.75) if low else rng.uniform(0.6, 0.95)
     if is_round:
@@ -114,7 +114,7 @@ def random_table(rng: np.random.Generator) -> Piece:
         leg=rng.uniform(0.035, 0.1),
         square_legs=bool(rng.random() < 0.6),
         shelf=bool(rng.random() < 0.2),
-        cloth=rng.uniform(0.12, 0.4) if not low and rng.random() < 0.3 else 0.0,
+        cloth=rng.uniform(0.12, 0.44) if not low and rng.random() < 0.5 else 0.0,
     )
     natural = colour(rng.uniform(10, 50), rng.uniform(20, 75), rng.uniform(25, 90))
     top = wood(rng, natural if rng.random() < 0.6 else random_colour(rng, (5, 80), (30, 95)), rng.uniform(0.7, 1.1))
@@ -123,6 +123,6 @@ def random_table(rng: np.random.Generator) -> Piece:
         frame = (
             metal(rng, random_colour(rng, (0, 60), (10, 85))) if rng.random() < 0.5 else wood(rng, random_colour(rng))
         )
-    second = random_colour(rng) if rng.random() < 0.5 else None
+    second = random_colour(rng) if rng.random() < 0.3 else None
     cover = cloth(rng, random_colour(rng), str(rng.choice(CLOTH_PATTERNS)), second, 0.7)
     return build_table(shape, top, frame, cover)
