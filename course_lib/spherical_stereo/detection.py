@@ -22,7 +22,7 @@ from course_lib.spherical_stereo.letterbox import boxes_to_image, letterbox_imag
 from course_lib.spherical_stereo.onnx_network import OnnxNetwork
 from course_lib.spherical_stereo.seam import extend_seam, select_on_circle
 from course_lib.spherical_stereo.sphere import check_panorama
-from course_lib.spherical_stereo.suppression import suppress_in_image
+from course_lib.spherical_stereo.suppression import VOTE_SCORE, suppress_in_image, vote_on_boxes
 
 __all__ = ["Detection", "DetectionError", "DetectorError", "YoloDetector"]
 
@@ -160,18 +160,21 @@ class YoloDetector:
         """What the network sees in an image taken as flat, repeated boxes suppressed, whatever its shape.
 
         image_bgr: (H, W, 3) uint8. Returns boxes (n, 4) in edge coordinates, clipped to the image, scores (n,), and
-        indices (n,) into `labels`, the greatest score first. Source: paper 2, section 2.2.
+        indices (n,) into `labels`, the greatest score first. A box is the mean of those that it suppresses
+        (`vote_on_boxes`). Source: paper 2, section 2.2.
         """
         padded, letterbox = letterbox_image(image_bgr, self._network.input_size)
         boxes, scores = self._network.infer(cv2.dnn.blobFromImage(padded, 1 / 255, swapRB=True))
         classes = scores.argmax(axis=1)
         scores = scores[np.arange(len(scores)), classes].astype(np.float64)
-        best = np.flatnonzero(scores >= self.score_threshold)
+        # Boxes below the threshold are no detections of their own, but they vote on where the others are.
+        best = np.flatnonzero(scores >= min(self.score_threshold, VOTE_SCORE))
         best = best[np.argsort(-scores[best], kind="stable")][:MOST_CANDIDATES]
         limits = (image_bgr.shape[1], image_bgr.shape[0])
         boxes = np.clip(boxes_to_image(boxes[best], letterbox), 0, np.tile(limits, 2))
         scores, classes = scores[best], self._label_of_class[classes[best]]
         whole = (boxes[:, 2] - boxes[:, 0] >= 1) & (boxes[:, 3] - boxes[:, 1] >= 1)  # under a pixel: all in the padding
         boxes, scores, classes = boxes[whole], scores[whole], classes[whole]
-        kept = suppress_in_image(boxes, scores, classes, self.iou_threshold)
-        return boxes[kept], scores[kept], classes[kept]
+        sure = np.flatnonzero(scores >= self.score_threshold)
+        kept = sure[suppress_in_image(boxes[sure], scores[sure], classes[sure], self.iou_threshold)]
+        return vote_on_boxes(boxes, scores, classes, kept), scores[kept], classes[kept]
