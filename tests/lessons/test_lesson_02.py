@@ -6,23 +6,19 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.lessons import lesson_02
+from course_lib.lessons import small_room
 from course_lib.lessons.box_world import Box, BoxWorld
-from course_lib.lessons.lesson_02 import (
+from course_lib.lessons.lesson_02 import camera_view, cut, row, shipped_numbers, true_view
+from course_lib.lessons.small_room import (
     STATIONS,
     MapQuality,
-    camera_view,
-    cut,
     distances,
     gaps,
     quality,
     room,
     room_map,
-    row,
     scans,
     seen_places,
-    shipped_numbers,
-    true_view,
 )
 
 
@@ -82,7 +78,7 @@ def test_the_door_of_another_day_is_most_of_what_differs():
 
 def test_the_same_survey_comes_out_again():
     before = scans(1)[0].ranges
-    lesson_02._scans.cache_clear()
+    small_room._scans.cache_clear()
     np.testing.assert_array_equal(scans(1)[0].ranges, before)
 
 
