@@ -21,6 +21,7 @@ if TYPE_CHECKING:  # imported where they are used, so that --help does not wait 
 
     from course_lib.spherical_stereo.detection import YoloDetector
     from course_lib.spherical_stereo.semantic_map import SemanticMap
+    from course_lib.spherical_stereo.turned_rig import Turn
 
 HEAD = f"{'':32} {'dx [m]':>8} {'dy [m]':>8} {'dtheta [deg]':>13}   {'std x':>6} {'std y':>6} {'std theta':>9}"
 MEANS = ("mean_dx_m", "mean_dy_m", "mean_dtheta_deg")
@@ -53,6 +54,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FOLDER",
         help="where results and figures go (default: results/room)",
     )
+    parser.add_argument(
+        "--roll",
+        type=int,
+        nargs="+",
+        metavar="K",
+        default=[],
+        help="also localize from the images rolled by K columns, as if the rig had turned, and print how far the pose "
+        "moves (default: not)",
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the tables")
 
 
@@ -72,6 +82,8 @@ def run(arguments: argparse.Namespace) -> int:
     require_output_folder(arguments.out)
     if arguments.poses is not None and arguments.poses < 1:
         raise ValueError(f"--poses must be at least 1; got {arguments.poses}")
+    if 0 in arguments.roll:
+        raise ValueError("--roll must not be 0: images that are not rolled are the experiment itself")
     if arguments.association not in ASSOCIATIONS:
         raise ValueError(f"--association must be one of {', '.join(ASSOCIATIONS)}; got {arguments.association!r}")
     if seed == SEED:
@@ -95,10 +107,12 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
     from course_lib.spherical_stereo.semantic_map import SemanticMap
     from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
+    from course_lib.spherical_stereo.turned_rig import turn_summary, turn_the_rig
 
     semantic_map = SemanticMap.load(folder / "semantic_map.json")
     detector = detector or chosen_detector(arguments)
     results: dict[str, dict[str, list]] = {}
+    turns: list[Turn] = []
     for number in (1, 2):
         recording = read_stereo_recording(folder / f"experiment_{number}")
         recording = replace(recording, pairs=recording.pairs[: arguments.poses])
@@ -115,7 +129,12 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
             )
             for source in SOURCES
         }
+        if arguments.roll:
+            bar = progress_bar(f"experiment {number}, rolled images", "pose")
+            turns += turn_the_rig(results[f"experiment_{number}"]["images"], localizer, arguments.roll, bar)
     summary = summarize(arguments, recording, results, semantic_map, recording.rig.baseline)
+    if arguments.roll:
+        summary["rolled_images"] = turn_summary(turns)
     written = write(arguments.out, summary, results, draw(semantic_map, results))
     if arguments.json:
         print(json.dumps(summary))
@@ -273,6 +292,8 @@ def tables(summary: dict) -> str:
         + ", ".join(f"{key.replace('_', ' ')} {value:.1f} %" for key, value in ranges.items() if value is not None),
         f"{summary['seconds_per_pose']:.2f} s a pose, from two images in memory",
     ]
+    if "rolled_images" in summary:
+        lines += ["", *_turns(summary["rolled_images"])]
     notes = remarks(summary)
     return "\n".join([*lines, *([""] if notes else []), *notes])
 
@@ -304,6 +325,21 @@ def remarks(summary: dict) -> list[str]:
             f"{'is' if wrong < 1.5 else 'are'} wrong (medians), and the mean errors are below half of the paper's."
         )
     return sentences
+
+
+def _turns(turns: dict) -> list[str]:
+    columns = ", ".join(str(k) for k in turns["columns"])
+    lines = [
+        f"Images rolled by {columns} columns: in {turns['associations_agree']} of {turns['n']} the same objects were "
+        "taken for the same landmarks"
+    ]
+    if turns["associations_agree"]:
+        lines.append(
+            f"  there the pose moved by {turns['median_moved_m']:.3f} m in the median, "
+            f"{turns['greatest_moved_m']:.2f} m at most ({turns['within_0.10_m']} within 0.10 m), and its heading by "
+            f"{turns['median_turned_deg']:.2f} and {turns['greatest_turned_deg']:.1f} degrees too much or too little"
+        )
+    return lines
 
 
 def _source_of(key: str) -> str:

@@ -43,6 +43,7 @@ The steps of figure 2, in order:
   3 how good it is
     experiment           the room experiment
     evaluation           tables 2 to 5: correct, incorrect, unable, and errors
+    turned_rig           the same place with the images rolled: does the pose stay?
     paper_tables         the paper's own numbers
     detection_scores     precision and recall of a detector, and its threshold
     detector_evaluation  a finished detector on panoramas whose objects are known

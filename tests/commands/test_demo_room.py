@@ -44,12 +44,14 @@ def test_a_row_a_pose_and_every_figure_are_written(demo):
 
 
 def test_one_json_object_is_printed_and_nothing_else(tmp_path, capsys):
-    assert main(["demo", "room", "--poses", "1", "--out", str(tmp_path), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["experiment_1"]["greedy"]["n"] == 1
+    assert main(["demo", "room", "--poses", "1", "--out", str(tmp_path), "--json", "--roll", "640", "97"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["experiment_1"]["greedy"]["n"] == 1
+    assert summary["rolled_images"]["n"] == 2 * 2, "two experiments, two numbers of columns"
 
 
 def test_the_tables_hold_the_papers_numbers_beside_ours(tmp_path, capsys):
-    assert main(["demo", "room", "--poses", "1", "--out", str(tmp_path)]) == 0
+    assert main(["demo", "room", "--poses", "1", "--out", str(tmp_path), "--roll", "640"]) == 0
     text = capsys.readouterr().out
     for number in range(1, 6):
         assert f"Table {number}" in text
@@ -57,6 +59,7 @@ def test_the_tables_hold_the_papers_numbers_beside_ours(tmp_path, capsys):
         "paper: correct                       0.23     0.44         11.94",
         "ours, exact boxes",
         "images, greedy",
+        "Images rolled by 640 columns",
     ):
         assert part in text
 
@@ -66,6 +69,7 @@ def test_the_tables_hold_the_papers_numbers_beside_ours(tmp_path, capsys):
     [
         (["--poses", "0"], "--poses must be at least 1"),
         (["--seed", "-1"], "--seed must be 0 or more"),
+        (["--roll", "97", "0"], "--roll must not be 0"),
         (["--association", "psychic"], "association must be one of"),
         (["--data", "nowhere"], "nowhere"),
         (["--data", "elsewhere", "--seed", "4"], "give one of the two"),

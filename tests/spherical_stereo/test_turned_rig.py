@@ -1,0 +1,81 @@
+"""Turning the rig: when do two poses agree, how far apart are they, and what is said about many of them."""
+
+import numpy as np
+import pytest
+
+from course_lib.spherical_stereo.association import Observation
+from course_lib.spherical_stereo.localization import UNABLE, Localization
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.semantic_map import Landmark, SemanticMap
+from course_lib.spherical_stereo.sphere import StereoRig
+from course_lib.spherical_stereo.turned_rig import Turn, compare, turn_summary
+
+WIDTH, COLUMNS = 1280, 97
+ANGLE = 2 * np.pi * COLUMNS / WIDTH
+MAP = SemanticMap(
+    (
+        Landmark("sofa", 4.0, 0.0, 20.0, 60.0),
+        Landmark("table", 1.0, 3.0, 120.0, 60.0),
+        Landmark("chair", -2.0, 1.0, 240.0, 60.0),
+    )
+)
+
+
+def localized(turn=0.0, shift=(0.0, 0.0), labels=("sofa", "table", "chair")):
+    """The pose from the map's objects as a rig at the map's origin, turned by `turn` to the left, would see them."""
+    cosine, sine = np.cos(turn), np.sin(turn)
+    seen = [
+        Observation(
+            one.label,
+            cosine * (one.x - shift[0]) + sine * (one.y - shift[1]),
+            -sine * (one.x - shift[0]) + cosine * (one.y - shift[1]),
+            one.hue,
+            one.saturation,
+        )
+        for one in MAP.landmarks
+        if one.label in labels
+    ]
+    return SemanticLocalizer(StereoRig(0.3, 1.4), MAP).localize_observations(seen)
+
+
+def test_a_rig_that_only_turns_stays_where_it_is():
+    turn = compare(localized(), localized(ANGLE), COLUMNS, WIDTH)
+    assert turn.agree
+    assert turn.moved == pytest.approx(0.0, abs=1e-9)
+    assert turn.turned == pytest.approx(0.0, abs=1e-9)
+
+
+def test_what_moves_and_turns_besides_is_measured():
+    turn = compare(localized(), localized(ANGLE - 0.02, (0.03, 0.04)), COLUMNS, WIDTH)
+    assert turn.agree
+    assert turn.moved == pytest.approx(0.05)
+    assert turn.turned == pytest.approx(0.02)
+
+
+def test_a_turn_the_other_way_does_not_agree():
+    assert not compare(localized(), localized(-ANGLE), COLUMNS, WIDTH).agree
+
+
+def test_an_object_more_or_less_does_not_agree():
+    assert not compare(localized(), localized(ANGLE, labels=("sofa", "table")), COLUMNS, WIDTH).agree
+
+
+def test_without_a_pose_nothing_agrees():
+    turn = compare(localized(), Localization(None, UNABLE), COLUMNS, WIDTH)
+    assert not turn.agree
+    assert np.isnan(turn.moved)
+
+
+def test_the_summary_is_of_those_that_agree():
+    turns = [Turn(97, True, 0.02, 0.01), Turn(640, True, 0.12, 0.03), Turn(97, False, 3.0, 1.0)]
+    found = turn_summary(turns)
+    assert (found["n"], found["associations_agree"], found["within_0.10_m"]) == (3, 2, 1)
+    assert found["columns"] == [97, 640]
+    assert found["greatest_moved_m"] == pytest.approx(0.12)
+    assert found["greatest_turned_deg"] == pytest.approx(np.rad2deg(0.03))
+
+
+def test_a_summary_of_nothing_that_agrees_has_no_numbers():
+    found = turn_summary([Turn(97, False, np.nan, np.nan)])
+    assert found["associations_agree"] == 0
+    assert found["median_moved_m"] is None
