@@ -1,4 +1,4 @@
-"""Lessons in JupyterLab in a real browser: all cells run, and a key on a panel's slider brings a new picture."""
+"""Lessons in JupyterLab in a real browser: all cells run; a key on a slider, or a button, brings a new picture."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import subprocess
 import time
 import urllib.error
 import urllib.request
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,10 @@ from course_lib.lessons.paths import REPOSITORY, notebook_paths
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-LESSONS = [path for path in notebook_paths() if path.name[:2] in ("00", "03", "08")]
+# Among them the three widgets used most: likelihood sliders (06), filter stepper (07), penalty weights (15).
+LESSONS = [path for path in notebook_paths() if path.name[:2] in ("00", "03", "06", "07", "08", "15")]
+# Buttons of a lesson's first panel to press in turn, besides its first slider; each has to bring a new picture.
+BUTTONS = {"07": ("Estimate", "Resample", "Propagate", "Weigh"), "15": ("From the start", "Next round", "Back")}
 TOKEN = "for-this-test-only"
 # A key press has to show its new picture within this time: LESSONS, section 3.
 MAX_SECONDS = 0.4
@@ -33,8 +37,8 @@ RUN_ALL = "() => window.jupyterapp.commands.execute('notebook:run-all-cells').th
 STATES = """() => window.jupyterapp.shell.currentWidget.content.widgets
     .filter(cell => cell.model.type === 'code')
     .map(cell => [cell.model.executionCount, cell.model.outputs.toJSON().some(o => o.output_type === 'error')])"""
-# Milliseconds from a key press on the focused slider to a new picture in its panel, decoded and ready to be painted.
-KEY_TO_PICTURE = """([panel, key]) => new Promise((resolve, reject) => {
+# Milliseconds from the next event of a kind (a key, a click) to a new picture in the panel, decoded and ready to paint.
+EVENT_TO_PICTURE = """([panel, event]) => new Promise((resolve, reject) => {
     const old = panel.querySelector('img').src;
     let started = null;
     const late = setTimeout(() => reject(new Error('no new picture within 5 s')), 5000);
@@ -44,7 +48,7 @@ KEY_TO_PICTURE = """([panel, key]) => new Promise((resolve, reject) => {
         observer.disconnect();
         image.decode().then(() => { clearTimeout(late); resolve(performance.now() - started); }, reject);
     }).observe(panel, {subtree: true, childList: true, attributes: true});
-    document.addEventListener('keydown', () => { started = performance.now(); }, {once: true, capture: true});
+    document.addEventListener(event, () => { started = performance.now(); }, {once: true, capture: true});
     window.courseIsWatching = true;
 })"""
 
@@ -119,7 +123,7 @@ def browser(lab):
 
 
 @pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
-def test_a_lesson_runs_and_its_first_panel_answers_a_key(browser, lab, path):
+def test_a_lesson_runs_and_its_first_panel_answers(browser, lab, path):
     page = browser.new_page(viewport={"width": 1400, "height": 1000})
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
@@ -139,20 +143,26 @@ def test_a_lesson_runs_and_its_first_panel_answers_a_key(browser, lab, path):
     panel = page.locator(".jp-OutputArea-output:has(.widget-slider)").first
     panel.scroll_into_view_if_needed()
     panel.locator(".noUi-handle").first.focus()
-    seconds = [press_and_wait(page, panel, key) for key in ("ArrowRight", "ArrowLeft") * N_PRESSES]
+    seconds = [
+        seconds_to_picture(page, panel, "keydown", lambda key=key: page.keyboard.press(key))
+        for key in ("ArrowRight", "ArrowLeft") * N_PRESSES
+    ]
+    for label in BUTTONS.get(path.name[:2], ()):
+        button = panel.get_by_role("button", name=label, exact=True)
+        seconds.append(seconds_to_picture(page, panel, "click", button.click))
     assert statistics.median(seconds) <= MAX_SECONDS, f"{seconds}"
     assert "This panel failed" not in panel.inner_text()
     assert errors == []
     page.close()
 
 
-def press_and_wait(page, panel, key: str) -> float:
-    """Seconds from pressing `key` to the new picture."""
+def seconds_to_picture(page, panel, event: str, act: Callable[[], None]) -> float:
+    """Seconds from the event ("keydown", "click") that `act` makes to the new picture."""
     page.evaluate("() => { window.courseIsWatching = false; }")
     element = panel.element_handle()
-    page.evaluate("([p, k]) => { window.courseWaits = (" + KEY_TO_PICTURE + ")([p, k]); }", [element, key])
+    page.evaluate("([p, e]) => { window.courseWaits = (" + EVENT_TO_PICTURE + ")([p, e]); }", [element, event])
     page.wait_for_function("() => window.courseIsWatching")
-    page.keyboard.press(key)
+    act()
     return page.evaluate("() => window.courseWaits") / 1000
 
 
