@@ -152,7 +152,7 @@ def penalty_panel(semantic_map: SemanticMap, scenes: dict[str, MatchingScene]) -
         return lambda values: values | {"done_rounds": float(np.clip(values["done_rounds"] + by, 0, most))}
 
     controls = [
-        Slider("p_obj", "p_obj (class) [-]", 0.0, 5.0, 5.0, 0.1),
+        Slider("p_obj", "p_obj (class) [-]", 0.0, 5.0, 3.0, 0.1),
         Slider("p_h", "p_h (hue) [-]", 0.0, 10.0, 1.0, 0.1),
         Slider("p_s", "p_s (saturation) [-]", 0.0, 10.0, 1.0, 0.1),
         Slider("p_d", "p_d (distance) [-]", 0.0, 5.0, 1.0, 0.1),
