@@ -103,7 +103,7 @@ def run(arguments: argparse.Namespace) -> int:
     cfg, names = arguments.out / arguments.cfg.name, arguments.out / arguments.names.name
     _log("measuring the finished detector (OpenCV) on the validation images")
     validation = measure_detector(cfg, result.weights, names, arguments.validation)
-    path = write_report(arguments.out / "training.json", plan, result, validation)
+    path = write_report(arguments.out / "training.json", plan, result, validation, arguments.weights)
     print(json.dumps(json.loads(path.read_text(encoding="utf-8")), indent=1))
     print(f"Written to {arguments.out}: {result.weights.name}, {cfg.name}, {names.name}, {path.name}")
     return 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import platform
 from dataclasses import asdict
+from hashlib import sha256
 from pathlib import Path
 
 import cv2
@@ -41,13 +42,23 @@ def measure_detector(cfg: Path, weights: Path, names_file: Path, images: list[Pa
     return validate(detect, tqdm(panoramas, total=len(folder), desc="validation", unit="image", disable=None), names)
 
 
-def write_report(path: Path, plan: TrainingPlan, result: TrainingResult, validation: Validation) -> Path:
-    """Writes the numbers, the seed and the versions as JSON; returns the path."""
+def write_report(
+    path: Path,
+    plan: TrainingPlan,
+    result: TrainingResult,
+    validation: Validation,
+    initial_weights: Path | None = None,
+) -> Path:
+    """Writes the numbers, the seed and the versions as JSON; returns the path.
+
+    initial_weights: the file that the training started from, of which the SHA-256 sum is written (None: random).
+    """
     content = {
         "version": 1,
         "score_threshold": round(validation.threshold, 3),
         "validation": {**asdict(validation), "by_class": {k: list(v) for k, v in validation.by_class.items()}},
         "plan": asdict(plan),
+        "started_from_sha256": sha256(initial_weights.read_bytes()).hexdigest() if initial_weights else None,
         "position": asdict(result.position),
         "images_per_second": round(result.images_per_second, 2),
         "versions": {

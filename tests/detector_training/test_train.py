@@ -1,5 +1,7 @@
 """The training loop: it learns toy panoramas, goes on where it was stopped, and works with several processes."""
 
+import hashlib
+import json
 import threading
 from itertools import pairwise
 
@@ -9,13 +11,14 @@ torch = pytest.importorskip("torch", reason="PyTorch, which only the training of
 
 from course_lib.detector_training.augmentation import AugmentationRanges  # noqa: E402
 from course_lib.detector_training.batches import QUEUE_LENGTH, _made_ahead  # noqa: E402
-from course_lib.detector_training.checkpoints import CheckpointError  # noqa: E402
+from course_lib.detector_training.checkpoints import CheckpointError, Position  # noqa: E402
 from course_lib.detector_training.export import read_weights  # noqa: E402
 from course_lib.detector_training.images import PanoramaFolders, TrainingDataError  # noqa: E402
 from course_lib.detector_training.network import DarknetNetwork  # noqa: E402
+from course_lib.detector_training.report import write_report  # noqa: E402
 from course_lib.detector_training.schedule import AveragedNetwork, learning_rate  # noqa: E402
-from course_lib.detector_training.train import TrainingPlan, train  # noqa: E402
-from course_lib.detector_training.validation import network_detector, validate  # noqa: E402
+from course_lib.detector_training.train import TrainingPlan, TrainingResult, train  # noqa: E402
+from course_lib.detector_training.validation import Validation, network_detector, validate  # noqa: E402
 from course_lib.spherical_stereo.darknet import check_weights, parse_cfg  # noqa: E402
 from tests.detector_training.toy_panoramas import CLASSES, ROOM_NAMES, TINY_CFG, write_toy_folder  # noqa: E402
 
@@ -146,3 +149,14 @@ def test_the_average_forgets_its_start_and_follows_the_weights():
     for _ in range(200):
         average.update(network)
     torch.testing.assert_close(average.network.weight, network.weight.detach())
+
+
+@pytest.mark.parametrize("warm", [False, True])
+def test_the_report_names_the_weights_that_the_training_started_from(warm, tmp_path):
+    first = tmp_path / "first.weights"
+    first.write_bytes(b"weights")
+    result = TrainingResult(first, Position(0), None, 10.0)
+    measured = Validation(1, 0.5, 1.0, 1.0, 1.0, {"sofa": (1.0, 1.0, 3)})
+    path = write_report(tmp_path / "training.json", plan(), result, measured, first if warm else None)
+    expected = hashlib.sha256(b"weights").hexdigest() if warm else None
+    assert json.loads(path.read_text())["started_from_sha256"] == expected
