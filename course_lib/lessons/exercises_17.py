@@ -203,7 +203,7 @@ EXERCISES = [
                 lambda n, q: unable_probability(n, 1 - q),
                 "You took q for the probability of missing an object; it is that of seeing it.",
             ),
-            Mistake(lambda n, q: 100 * unable_probability(n, q), "Yours is in percent; a probability goes from 0 to 1."),
+            Mistake(lambda n, q: 100 * unable_probability(n, q), "Yours is in percent; a probability is 0 to 1."),
         ),
         tolerance=1e-9,
     ),
