@@ -134,6 +134,15 @@ def _columns_stay_open(cost):
     return columns
 
 
+def _too_many_rounds(cost):
+    open_cost, columns = cost.copy(), np.full(len(cost), -1)
+    for _ in range(len(cost)):
+        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
+        columns[i] = j
+        open_cost[i], open_cost[:, j] = np.inf, np.inf
+    return columns
+
+
 def _struck_with_zero(cost):
     open_cost, columns = cost.copy(), np.full(len(cost), -1)
     for _ in range(min(cost.shape)):
@@ -156,6 +165,10 @@ EXERCISES = [
             Mistake(
                 lambda seen, on_map, p_h: p_h * _on_circle(seen, on_map) / 360,
                 "Grey has no hue: where either side is NaN the term is 0, not NaN.",
+            ),
+            Mistake(
+                lambda seen, on_map, p_h: np.where(np.isnan(seen), 0, p_h * _on_circle(seen, on_map) / 360),
+                "A landmark can be grey, too: the term is 0 where *either* hue is NaN.",
             ),
             Mistake(
                 lambda seen, on_map, p_h: p_h * np.abs(seen - on_map) / 360,
@@ -182,6 +195,14 @@ EXERCISES = [
                 "Your difference has a sign. A hue that is off to the other side must cost as much.",
             ),
             Mistake(
+                lambda seen, on_map, p_h: np.nan_to_num(p_h * (seen - on_map) / 360),
+                "Your difference has a sign, and may go the long way. Take its absolute value, then the shorter way.",
+            ),
+            Mistake(
+                lambda seen, on_map, p_h: np.nan_to_num(p_h * (np.abs(seen - on_map) % 180) / 360),
+                "The remainder by 180 makes opposite colours alike. Take the lesser of apart and 360 - apart.",
+            ),
+            Mistake(
                 lambda seen, on_map, p_h: np.nan_to_num(p_h * _on_circle(seen, on_map) / 360, nan=p_h),
                 "You let grey cost the most there is. Nothing is known of its hue, so nothing is held against it: 0.",
             ),
@@ -203,6 +224,10 @@ EXERCISES = [
             Mistake(
                 _distance(lambda far_c, far_m: (far_c - far_m) / far_m),
                 "Two things are missing: the absolute value, and the least divisor of 0.1 m.",
+            ),
+            Mistake(
+                _distance(lambda far_c, far_m: np.abs(far_c - far_m) / np.minimum(far_m, 0.1)),
+                "You divide by 0.1 m at most. At least 0.1 m means the greater of the two.",
             ),
             Mistake(
                 _distance(lambda far_c, far_m: np.abs(far_c - far_m) / (far_m + 0.1)),
@@ -230,6 +255,16 @@ EXERCISES = [
                 "You took one centroid for both. x_c is in the body frame: it has a centroid of its own.",
             ),
             Mistake(
+                lambda x_c, x_m, p_d: (
+                    p_d
+                    * np.abs(
+                        np.linalg.norm(x_c - x_c.mean(), axis=1)[:, None] - np.linalg.norm(x_m - x_m.mean(), axis=1)
+                    )
+                    / np.maximum(np.linalg.norm(x_m - x_m.mean(), axis=1), 0.1)
+                ),
+                "x_c.mean() is one number, of x and y together. The centroid is a point: mean over axis 0.",
+            ),
+            Mistake(
                 _of_vectors,
                 "You subtract vectors of two different frames. First take their lengths, then the difference.",
             ),
@@ -254,6 +289,10 @@ EXERCISES = [
             ),
             Mistake(_rows_stay_open, "You strike out the column only: a row that is matched may be chosen again."),
             Mistake(_columns_stay_open, "You strike out the row only: a column may be taken twice."),
+            Mistake(
+                _too_many_rounds,
+                "When all is struck out, argmin says 0: a row is matched once more. Stop when one side is used up.",
+            ),
             Mistake(
                 _struck_with_zero,
                 "You strike out with 0, which the next search may find the cheapest. What is never the least?",

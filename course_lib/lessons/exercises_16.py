@@ -238,6 +238,12 @@ EXERCISES = [
                 lambda source, target: (lambda a, b, dot, cross: np.hypot(dot, cross))(*_sums_of(source, target)),
                 "The division by the squared spread of the source is missing.",
             ),
+            Mistake(
+                lambda source, target: (lambda a, b, dot, cross: np.hypot(dot, cross) / len(a))(
+                    *_sums_of(source, target)
+                ),
+                "You divide by the number of pairs. Divide by the sum of the squared lengths of the source.",
+            ),
             Mistake(_uncentred, "Subtract each side's centroid first."),
         ),
     ),

@@ -161,6 +161,7 @@ def noise_figure(n_points: list[int], found: np.ndarray, expected: np.ndarray) -
     axes.loglog(n_points, found, **(figures.line_style(0) | {"linestyle": "none"}), label="tried")
     axes.set(title="Spread of the heading", xlabel="number of points n [-]", ylabel="spread [degrees]")
     axes.set_xticks(n_points, [str(n) for n in n_points])
+    axes.set_yticks([0.4, 0.8, 1.6], ["0.4", "0.8", "1.6"])
     axes.minorticks_off()
     axes.legend(frameon=False)
     return figure
