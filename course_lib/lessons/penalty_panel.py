@@ -174,8 +174,7 @@ def _summary(found: Matching, k: int, right: np.ndarray, names: list[str]) -> st
     if k:
         i, j = pairs[k - 1]
         one = found.association.penalties[k - 1]
-        lines.append(
-            f"last round: {names[found.shows[i]]} taken for {names[j]}: class {one.object:.2f} + hue {one.hue:.3f} + "
-            f"saturation {one.saturation:.3f} + distance {one.distance:.3f} = {one.total:.3f}"
-        )
+        colour = f"hue {one.hue:.3f} + saturation {one.saturation:.3f}"
+        lines.append(f"last round: {names[found.shows[i]]} taken for {names[j]}, penalty {one.total:.3f}:")
+        lines.append(f"class {one.object:.2f} + {colour} + distance {one.distance:.3f}")
     return "\n".join(lines)
