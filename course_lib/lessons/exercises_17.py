@@ -161,6 +161,13 @@ EXERCISES = [
                 ),
                 "Standard deviations cannot be averaged; squares can. Work with variances, take the root at the end.",
             ),
+            Mistake(
+                lambda n_a, mean_a, std_a, n_b, mean_b, std_b: (
+                    _weighted(n_a, mean_a, n_b, mean_b),
+                    math.hypot(std_a, std_b),
+                ),
+                "You add the squares. The groups lie one beside the other: average with n, then add the means' part.",
+            ),
             Mistake(_variance, "Your second number is a variance: its root is missing."),
             Mistake(_divisor_less_one, "You divide by n - 1. The paper's rows fit the divisor n."),
             Mistake(
@@ -182,6 +189,10 @@ EXERCISES = [
             Mistake(
                 lambda n, q: n * q * (1 - q) ** (n - 1),
                 "That is the probability of exactly one. Seeing none is unable, too: add it.",
+            ),
+            Mistake(
+                lambda n, q: unable_probability(n, q) + math.comb(n, 2) * q**2 * (1 - q) ** (n - 2),
+                "Two objects give a pose. Count only none and exactly one.",
             ),
             Mistake(
                 lambda n, q: (1 - q) ** n + q * (1 - q) ** (n - 1),

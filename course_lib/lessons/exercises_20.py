@@ -109,6 +109,10 @@ def _in_degrees(v_upper: np.ndarray, v_lower: np.ndarray, height: int, distance:
     return float(np.median(distance * (np.tan(e_lower) - np.tan(e_upper))))
 
 
+def _from_the_top(v_upper: np.ndarray, v_lower: np.ndarray, height: int, distance: np.ndarray) -> float:
+    return float(np.median(distance * (np.tan(np.pi * v_lower / height) - np.tan(np.pi * v_upper / height))))
+
+
 EXERCISES = [
     Exercise(
         number="20.1",
@@ -211,6 +215,10 @@ EXERCISES = [
             ),
             Mistake(_of_sines, "sin(e) goes with the slanted distance. `distance` is horizontal: use tan(e)."),
             Mistake(_in_degrees, "np.tan wants radians: the rows span pi, not 180."),
+            Mistake(
+                _from_the_top,
+                "Rows count from the top, elevations from the horizon, upwards: e = (1/2 - v / height) pi.",
+            ),
             Mistake(_full_turn, "Rows run from straight up to straight down: that is pi radians, not 2 pi."),
             Mistake(_mean, "You take the mean. One misread row pulls it away; the task asks for the median."),
             Mistake(_all_marks, "Yours has one number for each mark. Return their median, one number."),
