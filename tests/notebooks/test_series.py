@@ -1,0 +1,82 @@
+"""notebooks/README.md: every lesson with its time and its picture, and paths whose times add up."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from PIL import Image
+
+from course_lib.lessons.paths import REPOSITORY, notebook_paths
+from course_lib.lessons.series_pictures import (
+    CHOSEN,
+    MAX_BYTES,
+    SIZE,
+    SeriesPictureError,
+    small_png,
+    stored_picture,
+    write_pictures,
+)
+
+FOLDER = REPOSITORY / "notebooks"
+README = (FOLDER / "README.md").read_text(encoding="utf-8")
+BEYOND_THE_PAPERS = {"09", "10", "18", "19"}
+
+
+def minutes_of(number: str) -> int:
+    """How many minutes a lesson says that it takes."""
+    (path,) = FOLDER.glob(f"{number}_*.ipynb")
+    return int(re.search(r"\*\*(\d+) minutes", path.read_text(encoding="utf-8")).group(1))
+
+
+def row_of(path) -> str:
+    return next((line for line in README.splitlines() if f"]({path.name})" in line), "")
+
+
+@pytest.mark.parametrize("path", notebook_paths(), ids=lambda path: path.name[:2])
+def test_every_lesson_has_a_row_with_its_time_and_its_picture(path):
+    number, row = path.name[:2], row_of(path)
+    if number in BEYOND_THE_PAPERS and not row:
+        pytest.skip("a lesson beyond the papers, whose row comes with it")
+    assert row.startswith(f"| [{number} · ")
+    assert f"({minutes_of(number)} min)" in row
+    alt, source = re.search(r"!\[([^\]]+)\]\(([^)]+)\)", row).groups()
+    assert len(alt.split()) >= 4
+    assert source == f"pictures/{number}.png"
+    assert (FOLDER / source).stat().st_size <= MAX_BYTES
+
+
+def test_every_link_leads_somewhere():
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (FOLDER / target).exists(), target
+
+
+def test_the_times_of_the_paths_add_up():
+    rows = re.findall(r"^\| ([a-z0-9 ]+) \| ((?:\d\d(?:, )?)+) \| (\d+) h (\d+) min \|$", README, re.M)
+    assert [name for name, *_ in rows] == ["paper 1", "paper 2", "both"]
+    for _, lessons, hours, minutes in rows:
+        assert sum(minutes_of(number) for number in lessons.split(", ")) == 60 * int(hours) + int(minutes)
+    assert set(rows[0][1].split(", ") + rows[1][1].split(", ")) < set(rows[2][1].split(", "))
+
+
+def test_the_command_makes_the_pictures(tmp_path):
+    written = write_pictures(tmp_path / "pictures")
+    assert {path.stem for path in written} >= set(CHOSEN)
+    for path in written:
+        assert path.stat().st_size <= MAX_BYTES
+        with Image.open(path) as picture:
+            assert picture.width <= SIZE[0]
+            assert picture.height <= SIZE[1]
+
+
+def test_a_cell_without_a_picture_is_named(tmp_path):
+    path = tmp_path / "98_none.ipynb"
+    path.write_text('{"cells": [{"id": "98-a", "outputs": []}]}')
+    with pytest.raises(SeriesPictureError, match=r"98_none.ipynb: no cell 98-a"):
+        stored_picture(path, "98-a")
+
+
+def test_a_picture_that_cannot_be_made_small_is_refused(monkeypatch):
+    monkeypatch.setattr("course_lib.lessons.series_pictures.MAX_BYTES", 10)
+    with pytest.raises(SeriesPictureError, match="at most 10"):
+        small_png(Image.new("RGB", (50, 50), "white"))
