@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.patches import Polygon
 
 from course_lib.lessons import figures
-from course_lib.lessons.lesson_13 import pair_of, scene
 from course_lib.lessons.live_figure import LiveFigure
+from course_lib.lessons.matching_scene import pair_of, scene
 from course_lib.lessons.panel import Drawing, Panel, Slider
 from course_lib.lessons.paths import data_path
 from course_lib.lessons.triangulation_figures import errors_figure, growth_figure, places_figure, triangle_figure
@@ -233,7 +233,7 @@ def triangulation_panel() -> Panel:
         return Drawing(live.png(), alt, "\n".join(lines))
 
     controls = [
-        Slider("x", "object: x, forward [m]", 0.5, 9.0, 3.0, 0.1),
+        Slider("x", "object: x, forward [m]", 0.5, 9.0, 5.0, 0.1),
         Slider("y", "object: y, left [m]", -3.0, 3.0, 1.0, 0.1),
         Slider("z", "object: height of its centre [m]", 0.0, 2.5, 0.5, 0.1),
         Slider("camera", "upper camera: height [m]", 1.0, 2.5, 1.44, 0.02),

@@ -26,7 +26,7 @@ def pair_figure(
     images: Sequence[np.ndarray], detections: Sequence[Sequence], columns: Sequence[float] = (), numbers: bool = True
 ) -> Figure:
     """Strips of both panoramas, upper first, with their boxes; columns: vertical lines through both, pixels."""
-    figure, rows = new_figure(2, 1, size=(7.6, 4.5))
+    figure, rows = new_figure(2, 1, size=(7.0, 4.1))
     for axes, image, found, side in zip(rows, images, detections, ("Upper", "Lower"), strict=True):
         strip(axes, image, f"{side} camera")
         for one in found:
@@ -63,10 +63,12 @@ def spheres_figure(point: np.ndarray, baseline: float) -> Figure:
         axes.text(*(centre + np.array([0, 0, 0.15])), name, fontsize=8, ha="right")
     axes.plot([0, 0], [0, 0], [-baseline, 0], color="black", linewidth=2.4, label="baseline")
     axes.plot(*point[:, None], "*", color=VERMILION, markersize=13, label="point")
-    axes.set(title="One vertical plane cuts both spheres", xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
-    axes.set_aspect("equal")
+    axes.set(title="One vertical plane cuts both spheres", xlabel="x [m]", ylabel="y [m]")
+    axes.set_zlabel("z [m]", labelpad=8)
+    low, high = np.minimum(point, [-1, -1, -baseline - 1]) - 0.1, np.maximum(point, 1) + 0.1
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axes.set_box_aspect(high - low, zoom=0.9)
     axes.view_init(elev=18, azim=np.degrees(azimuth) - 55)
-    axes.set_box_aspect(None, zoom=0.85)
     axes.legend(loc="center left", bbox_to_anchor=(1.05, 0.5), fontsize=8, frameon=False)
     return figure
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_13 import (
+from course_lib.lessons.lesson_13 import band, matching_panel
+from course_lib.lessons.matching_scene import (
     EXPERIMENT,
     PLACE,
     WAYS,
-    band,
     count_table,
     matches_in_boxes,
     matches_when_turned,
-    matching_panel,
     object_names,
     pair_of,
     part_of,
