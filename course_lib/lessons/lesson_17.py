@@ -15,7 +15,7 @@ from course_lib.lessons.panel import Choice, Drawing, Panel, Slider
 from course_lib.lessons.paths import data_path
 from course_lib.lessons.room_causes import Thinned, is_matched_rightly, thinned
 from course_lib.lessons.room_figures import draw_pose, map_axes
-from course_lib.lessons.room_runs import StoredRoom, errors, rates, stored_rooms, table_3_or_4, table_5
+from course_lib.lessons.room_runs import StoredRoom, errors, rates, stored_rooms, table_3_or_4, table_5, used_pairs
 from course_lib.spherical_stereo.evaluation import CORRECT, INCORRECT, UNABLE
 from course_lib.spherical_stereo.experiment import PairResult, run_experiment
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -23,7 +23,14 @@ from course_lib.spherical_stereo.paper_tables import MEASUREMENT_PLACES, PAPER_T
 from course_lib.spherical_stereo.semantic_map import SemanticMap
 from course_lib.spherical_stereo.stereo_recording import StereoRecording, read_stereo_recording
 
-__all__ = ["errors", "rates", "stored_rooms", "table_3_or_4", "table_5"]  # for the notebook: read and print the seeds
+__all__ = [
+    "errors",
+    "rates",
+    "stored_rooms",
+    "table_3_or_4",
+    "table_5",
+    "used_pairs",
+]  # for the notebook: read and print the seeds
 
 EXPERIMENTS = (1, 2)
 KINDS = (CORRECT, INCORRECT, UNABLE)

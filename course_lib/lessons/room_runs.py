@@ -67,6 +67,11 @@ def errors(runs: Sequence[StoredRoom], experiment: int, source: str, kind: str) 
     return np.median(values, axis=0) if values else np.full(len(ERRORS), np.nan)
 
 
+def used_pairs(runs: Sequence[StoredRoom], source: str) -> np.ndarray:
+    """How many pairs each pose of every seed and both experiments used `(n,)`."""
+    return np.array([int(row["used_pairs"]) for run in runs for row in run.rows if row["source"] == source])
+
+
 def table_5(runs: Sequence[StoredRoom]) -> str:
     """The paper's table 5 and ours: percent of the poses, the median over the seeds and their range."""
     lines = [f"{'% of the poses':36} {'correct':>14} {'incorrect':>14} {'unable':>14}"]

@@ -29,7 +29,7 @@ from course_lib.lessons.room_causes import (
     rate_of,
     thinned,
 )
-from course_lib.lessons.room_runs import StoredRoom, errors, rates, stored_rooms, table_3_or_4, table_5
+from course_lib.lessons.room_runs import StoredRoom, errors, rates, stored_rooms, table_3_or_4, table_5, used_pairs
 from course_lib.spherical_stereo.association import Observation, associate_greedy
 from course_lib.spherical_stereo.evaluation import CORRECT, INCORRECT, UNABLE, wrong_pairs
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -86,6 +86,12 @@ def test_the_stored_rates_are_those_of_the_stored_poses():
         kinds = list(run.outcomes(2, "images").values())
         shares = [100 * kinds.count(kind) / len(kinds) for kind in (CORRECT, INCORRECT, UNABLE)]
         assert rates([run], 2, "images")[0] == pytest.approx(shares)
+
+
+def test_used_pairs_are_counted_over_all_stored_poses():
+    runs = stored_rooms()
+    assert used_pairs(runs, "exact_boxes").shape == (40 * len(runs),)
+    assert used_pairs(runs, "exact_boxes").min() > 5
 
 
 def test_a_folder_without_results_is_named(tmp_path):
