@@ -77,6 +77,25 @@ def _half_circle(matrix: np.ndarray) -> np.ndarray:
     return np.array([*matrix[:3, 3], roll, state_of(matrix)[4], yaw])
 
 
+def _left_undone(matrix: np.ndarray) -> np.ndarray:
+    return _with_rotation(matrix, BODY_FROM_OPTICAL.T @ matrix[:3, :3])[3:]
+
+
+def _pitch(matrix: np.ndarray, pitch: float) -> np.ndarray:
+    return np.concatenate([state_of(matrix)[:4], [pitch], state_of(matrix)[5:]])
+
+
+def _pitch_by_one_entry(matrix: np.ndarray) -> np.ndarray:
+    rotation = matrix[:3, :3] @ BODY_FROM_OPTICAL.T
+    return _pitch(matrix, np.arctan2(-rotation[2, 0], rotation[0, 0]))
+
+
+def _sine_second(matrix: np.ndarray) -> np.ndarray:
+    state = state_of(matrix)
+    roll, yaw = wrap_angle(np.pi / 2 - state[[3, 5]])
+    return np.array([*state[:3], roll, state[4], yaw])
+
+
 # 01.3: the weighted mean direction
 
 
@@ -136,6 +155,26 @@ EXERCISES = [
                 lambda points, state: points @ BODY_FROM_OPTICAL.T,
                 "That is the body frame. One more step leads to the world: the camera's pose.",
             ),
+            Mistake(
+                lambda points, state: points @ BODY_FROM_OPTICAL @ pose_matrix(state)[:3, :3] + state[:3],
+                "Both of your turns run backwards. For rows of points each matrix is transposed: `points @ M.T`.",
+            ),
+            Mistake(
+                lambda points, state: to_world(points, state) - 2 * state[:3],
+                "Turned rightly; then the position is added, not taken away.",
+            ),
+            Mistake(
+                lambda points, state: _moved(points[:, [2, 0, 1]], pose_matrix(state)),
+                "You reorder X, Y, Z and keep their signs. But right is *minus* left, and down is *minus* up.",
+            ),
+            Mistake(
+                lambda points, state: points @ (BODY_FROM_OPTICAL @ pose_matrix(state)[:3, :3]).T + state[:3],
+                "Your R acts before B. What acts first stands next to the point: R B p.",
+            ),
+            Mistake(
+                lambda points, state: to_world(points, state[[0, 1, 2, 5, 4, 3]]),
+                "You take the angles for yaw, pitch, roll. A state holds roll, pitch, yaw.",
+            ),
         ),
     ),
     Exercise(
@@ -187,6 +226,30 @@ EXERCISES = [
                 lambda matrix: state_of(matrix)[[3, 4, 5, 0, 1, 2]],
                 "The six numbers are right, but the position comes first.",
             ),
+            Mistake(
+                lambda matrix: _with_rotation(matrix, (matrix[:3, :3] @ BODY_FROM_OPTICAL.T).T),
+                "Your R is transposed: its angles are those of the way back, from world to body.",
+            ),
+            Mistake(
+                lambda matrix: np.concatenate([BODY_FROM_OPTICAL.T @ matrix[:3, 3], _left_undone(matrix)]),
+                "Undoing B on the left turns the position, too, which was right. Mend the 3 x 3 block, on its right.",
+            ),
+            Mistake(
+                lambda matrix: np.concatenate([BODY_FROM_OPTICAL @ matrix[:3, 3], state_of(matrix)[3:]]),
+                "The angles are right. The position is in the world already: it needs no B.",
+            ),
+            Mistake(
+                _pitch_by_one_entry,
+                "Your pitch divides by R00 alone, and R00 holds cos(yaw) as well: take the root of R00^2 + R10^2.",
+            ),
+            Mistake(
+                lambda matrix: _pitch(matrix, np.arctan(np.sin(state_of(matrix)[4]))),
+                "-R20 is the *sine* of the pitch. arcsin undoes it; arctan wants a quotient.",
+            ),
+            Mistake(
+                _sine_second,
+                "np.arctan2 takes the sine part first: R21 before R22, and R10 before R00.",
+            ),
         ),
     ),
     Exercise(
@@ -232,6 +295,26 @@ EXERCISES = [
             Mistake(
                 lambda yaws, w: wrap_angle(_mean_of_numbers(yaws, w) + np.pi),
                 "Adding 180 degrees to the mean of the numbers helps only by luck. Add arrows.",
+            ),
+            Mistake(
+                lambda yaws, w: np.arctan2(np.sum(np.sin(w * yaws)), np.sum(np.cos(w * yaws))),
+                "You weigh the headings themselves. A weight is the length of an arrow: w * sin(yaw), w * cos(yaw).",
+            ),
+            Mistake(
+                lambda yaws, w: np.arctan2(np.sum(w * np.sin(yaws)), np.sum(np.cos(yaws))),
+                "You weigh the sines, but not the cosines.",
+            ),
+            Mistake(
+                lambda yaws, w: np.arctan2(np.sum(w * np.sin(yaws)) / w.sum(), np.sum(w * np.cos(yaws))),
+                "You divide one of the two sums by the sum of the weights. Divide both, or none.",
+            ),
+            Mistake(
+                lambda yaws, w: mean_heading(np.deg2rad(yaws), w),
+                "The headings are in radians already; you convert them once more.",
+            ),
+            Mistake(
+                lambda yaws, w: wrap_angle(yaws[0] + np.sum(w * wrap_angle(yaws - yaws[0])) / np.sum(w)),
+                "Close: you move the wrap away, then average numbers. Add arrows instead: sines and cosines.",
             ),
         ),
     ),

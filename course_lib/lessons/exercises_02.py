@@ -38,6 +38,11 @@ def _points_and_pose(rng: np.random.Generator) -> tuple:
     return rng.uniform(-5, 5, (int(rng.integers(4, 8)), 3)), pose_matrix(state)
 
 
+def _yaw_alone(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    yaw = np.arctan2(pose[1, 0], pose[0, 0])
+    return to_world(points, pose_matrix(np.array([*pose[:3, 3], 0, 0, yaw])))
+
+
 # 02.3: the share of holes
 
 
@@ -47,17 +52,25 @@ def hole_share(seen: np.ndarray, mapped: np.ndarray, limit: float) -> float:
 
 
 def _nearest(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(a[:, None] - b[None], axis=2).min(axis=1)
+    return _distances(a, b).min(axis=1)
+
+
+def _distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(a[:, None] - b[None], axis=2)
 
 
 def _places_and_map(rng: np.random.Generator) -> tuple:
-    """A map with a gap, and some points in mid-air that no place is near (mixed pixels)."""
-    n = int(rng.integers(30, 50))
+    """A map with a gap, whose points lie aslant beside the places, nearer and farther than the limit, and some points
+    in mid-air that no place is near (mixed pixels)."""
+    n, limit = int(rng.integers(30, 50)), rng.uniform(0.06, 0.25)
     seen = np.column_stack([rng.uniform(0, 4, n), rng.uniform(0, 2, n), np.zeros(n)])
     kept = seen[(seen[:, 0] < 2.6) | (seen[:, 0] > 3.4)]
+    # Neither along an axis nor at 45 degrees: a distance that is not the root of a sum of squares comes out otherwise.
+    aslant = np.pi / 2 * rng.integers(4, size=len(kept)) + np.deg2rad(rng.uniform(25, 65, len(kept)))
+    away = rng.uniform(0, 1.6, len(kept)) * limit
+    mapped = kept + np.column_stack([away * np.cos(aslant), away * np.sin(aslant), 0 * away])
     stray = np.column_stack([rng.uniform(0, 4, (9, 2)), rng.uniform(1, 2, 9)])
-    limit = rng.uniform(0.08, 0.15)
-    return seen, np.concatenate([kept + rng.normal(0, 0.01, kept.shape), stray]), limit
+    return seen, np.concatenate([mapped, stray]), limit
 
 
 EXERCISES = [
@@ -94,6 +107,30 @@ EXERCISES = [
                 lambda r, a, e: scan_points(r, a, e).T,
                 "One point a row, please: (n, 3). Yours is (3, n).",
             ),
+            Mistake(
+                lambda r, a, e: scan_points(r, a, e)[:, [1, 0, 2]],
+                "x and y have changed places. Azimuth 0 is forward, along x: so x has the cosine of the azimuth.",
+            ),
+            Mistake(
+                lambda r, a, e: np.column_stack([scan_points(r, a, e)[:, :2], np.sin(e)]),
+                "x and y are right. Your z is that of a ray of length 1: how far up does a ray of length r end?",
+            ),
+            Mistake(
+                lambda r, a, e: np.stack([r * np.cos(a), r * np.sin(a), r * np.tan(e)], axis=1),
+                "You take the range for a distance on the floor. It is measured along the ray, and that is longer.",
+            ),
+            Mistake(
+                lambda r, a, e: np.stack([r * np.cos(e) * np.cos(a), r * np.sin(a), r * np.sin(e)], axis=1),
+                "Your x shrinks with the elevation, your y does not. Both belong to the shadow, r cos e.",
+            ),
+            Mistake(
+                lambda r, a, e: scan_points(r, a, e).T.reshape(-1, 3),
+                "The numbers are right, in the wrong places: reshape does not turn rows into columns. Use .T.",
+            ),
+            Mistake(
+                lambda r, a, e: scan_points(r, np.rad2deg(a), np.rad2deg(e)),
+                "You turn the angles into degrees; np.sin and np.cos take radians.",
+            ),
         ),
     ),
     Exercise(
@@ -124,6 +161,18 @@ EXERCISES = [
             Mistake(
                 lambda points, pose: points @ pose[:3, :3].T - pose[:3, 3],
                 "Turned rightly; then the place is added, not taken away.",
+            ),
+            Mistake(
+                lambda points, pose: (points + pose[:3, 3]) @ pose[:3, :3],
+                "Two slips: you add the place before you turn, and with one point a row R q is written points @ R.T.",
+            ),
+            Mistake(
+                lambda points, pose: points @ pose[:3, :3],
+                "Turned the other way, and not moved. For points as rows the pose has to be transposed, too.",
+            ),
+            Mistake(
+                _yaw_alone,
+                "You turn by the yaw alone. A tripod is never quite level: take the whole of R.",
             ),
         ),
     ),
@@ -157,10 +206,30 @@ EXERCISES = [
                 "That is a mean distance in metres. Count the places that are farther than the limit.",
             ),
             Mistake(
+                lambda seen, mapped, limit: float(np.mean(_distances(seen, mapped).mean(axis=1) > limit)),
+                "You let far map points count: one near a place is enough. Only the nearest one decides.",
+            ),
+            Mistake(
+                lambda seen, mapped, limit: float(np.mean(_distances(seen, mapped) > limit)),
+                "You take the share of all pairs. First find the nearest map point of each place, then count places.",
+            ),
+            Mistake(
+                lambda seen, mapped, limit: hole_share(seen[:, :2], mapped[:, :2], limit),
+                "You measure on the floor: a map point high above a place is not near it. Take x, y *and* z.",
+            ),
+            Mistake(
+                lambda seen, mapped, limit: float(np.mean(_nearest(seen, mapped) ** 2 > limit)),
+                "You compare a squared distance with the limit: take the root.",
+            ),
+            Mistake(
+                lambda seen, mapped, limit: hole_share(seen, mapped, 0.1),
+                "Your limit is always 0.1 m: use the argument.",
+            ),
+            Mistake(
                 lambda seen, mapped, limit: float(
-                    np.mean(np.linalg.norm(seen[:, None] - mapped[None], axis=2).mean(axis=1) > limit)
+                    np.mean(np.abs(seen[:, None] - mapped[None]).max(axis=2).min(axis=1) > limit)
                 ),
-                "You take the mean distance to all map points. Only the nearest one counts.",
+                "You test x, y and z one by one: that is a cube about the place. The distance is a root of squares.",
             ),
         ),
     ),

@@ -25,6 +25,16 @@ def _range_image(rng: np.random.Generator) -> tuple:
     return ranges, DepthCamera.from_fov(width, height, *fov_deg).rays()
 
 
+def _forward_left_out(ranges: np.ndarray, rays: np.ndarray) -> np.ndarray:
+    with np.errstate(divide="ignore"):
+        return ranges / np.linalg.norm(rays[..., :2], axis=-1)
+
+
+def _rays_as_metres(ranges: np.ndarray, rays: np.ndarray) -> np.ndarray:
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(ranges**2 - rays[..., 0] ** 2 - rays[..., 1] ** 2)
+
+
 # 04.2: ranges that repeat
 
 
@@ -43,6 +53,11 @@ def _true_ranges(rng: np.random.Generator) -> tuple:
 def _once(r: np.ndarray, f: float) -> np.ndarray:
     repeats = SPEED_OF_LIGHT / (2 * f)
     return np.where(r >= repeats, r - repeats, r)
+
+
+def _half_turns(r: np.ndarray, f: float) -> np.ndarray:
+    repeats = SPEED_OF_LIGHT / (2 * f)
+    return (r + repeats / 2) % repeats - repeats / 2
 
 
 # 04.3: one pixel, two surfaces
@@ -75,6 +90,16 @@ def _not_wrapped(r1: np.ndarray, a1: np.ndarray, r2: np.ndarray, a2: np.ndarray,
     return np.where(reading > repeats / 2, reading - repeats, reading)
 
 
+def _with_round_number(r1: np.ndarray, a1: np.ndarray, r2: np.ndarray, a2: np.ndarray, f: float) -> np.ndarray:
+    share = 3e8 / SPEED_OF_LIGHT  # another speed of light acts like another frequency
+    return mixed_range(r1, a1, r2, a2, f / share)
+
+
+def _half_circle(r1: np.ndarray, a1: np.ndarray, r2: np.ndarray, a2: np.ndarray, f: float) -> np.ndarray:
+    half = SPEED_OF_LIGHT / (4 * f)
+    return ((mixed_range(r1, a1, r2, a2, f) + half / 2) % half - half / 2) % (2 * half)
+
+
 EXERCISES = [
     Exercise(
         number="04.1",
@@ -104,6 +129,22 @@ EXERCISES = [
             Mistake(
                 lambda ranges, rays: np.nan_to_num(ranges / np.linalg.norm(rays, axis=-1)),
                 "A pixel without a measurement stays NaN; yours makes it 0 m, right at the lens.",
+            ),
+            Mistake(
+                _forward_left_out,
+                "Your ray has no forward component: the length of (x, y, 1) is not that of (x, y).",
+            ),
+            Mistake(
+                _rays_as_metres,
+                "x and y of a ray are no metres: they are per metre of depth. Range = depth times the ray's length.",
+            ),
+            Mistake(
+                lambda ranges, rays: ranges / (np.hypot(rays[..., 0], 1) * np.hypot(rays[..., 1], 1)),
+                "You multiply two tilts. The length of a ray is one root: of x^2 + y^2 + 1.",
+            ),
+            Mistake(
+                lambda ranges, rays: ranges / np.hypot(rays[..., 0], 1),
+                "Your rays are tilted to the side only. They are tilted up and down as well: y counts, too.",
             ),
         ),
     ),
@@ -137,6 +178,28 @@ EXERCISES = [
             Mistake(
                 lambda r, f: range_read(r, 15e6),
                 "You use 15 MHz always: the frequency is an argument, f.",
+            ),
+            Mistake(
+                lambda r, f: r % (SPEED_OF_LIGHT / 2 * f),
+                "Nothing is wrapped in yours. Mind the brackets: c / 2 * f is c times f, halved.",
+            ),
+            Mistake(
+                lambda r, f: r // (SPEED_OF_LIGHT / (2 * f)),
+                "That is how many whole turns the clock has made. The camera reads what is left: %, not //.",
+            ),
+            Mistake(
+                lambda r, f: range_read(r, f) * (4 * np.pi * f / SPEED_OF_LIGHT),
+                "That is the phase in radians. One whole turn, 2 pi, stands for c / 2f metres.",
+            ),
+            Mistake(
+                _half_turns,
+                "Some of your ranges are negative: np.angle runs from -pi to pi. The camera reads 0 to c / 2f.",
+            ),
+            Mistake(lambda r, f: range_read(r, 1e6 * f), "f is in 1/s already: 15 MHz comes as 15e6."),
+            Mistake(lambda r, f: r % 10, "Ranges repeat every 10 m at 15 MHz only: the frequency decides."),
+            Mistake(
+                lambda r, f: range_read(r / 2, f),
+                "Your phase is 2 pi f r / c. The light goes out *and* back: it travels 2 r.",
             ),
         ),
     ),
@@ -173,6 +236,42 @@ EXERCISES = [
             Mistake(
                 lambda r1, a1, r2, a2, f: mixed_range(r1, a1, r2, a2, f) * 2,
                 "Yours is twice too far: a whole turn is c / 2f, not c / f.",
+            ),
+            Mistake(
+                lambda r1, a1, r2, a2, f: mixed_range(r1, a1 / r1**2, r2, a2 / r2**2, f),
+                "a1 and a2 are amplitudes already: what is lost on the way, 1 / r^2, is in them.",
+            ),
+            Mistake(
+                lambda r1, a1, r2, a2, f: mixed_range(r1, a1**2, r2, a2**2, f),
+                "You square the amplitudes. A phasor is as long as its amplitude.",
+            ),
+            Mistake(
+                lambda r1, a1, r2, a2, f: mixed_range(r1, a1, r2, a2, f) * (4 * np.pi * f / SPEED_OF_LIGHT),
+                "That is the phase in radians. One whole turn, 2 pi, stands for c / 2f metres.",
+            ),
+            Mistake(
+                lambda r1, a1, r2, a2, f: np.abs(_not_wrapped(r1, a1, r2, a2, f)),
+                "You drop the sign of the angle. A hand at -90 degrees has made three quarters of a turn, not one.",
+            ),
+            Mistake(
+                _half_circle,
+                "arctan of a quotient knows half of the circle only: take np.angle, or arctan2.",
+            ),
+            Mistake(
+                lambda r1, a1, r2, a2, f: mixed_range(r1, a1, r2, a2, 15e6),
+                "You use 15 MHz always: the frequency is an argument, f.",
+            ),
+            Mistake(
+                _with_round_number,
+                "Close, but 3e8 is rounded: take c = 299_792_458 m/s.",
+            ),
+            Mistake(
+                lambda r1, a1, r2, a2, f: _half_phase(r1, a1, r2, a2, f) / 2,
+                "Your phase grows too slowly, 2 pi f r / c. Light goes out and back: it travels 2 r.",
+            ),
+            Mistake(
+                lambda r1, a1, r2, a2, f: mixed_range(r1, a1, r2, a2, f) * f**2,
+                "Far too far. Mind the brackets: c / 2 * f is c times f, halved.",
             ),
         ),
     ),

@@ -73,6 +73,18 @@ def _left_minus(particles, sigma_forward, sigma_left, draws):
     return moved
 
 
+def _by_matrix(rows):
+    """A mistake: the step in x and y is the matrix `rows(cos yaw, sin yaw)` times (forward, left)."""
+
+    def mistaken(particles, sigma_forward, sigma_left, draws):
+        turns = np.array(rows(np.cos(particles[:, 5]), np.sin(particles[:, 5])))
+        moved = particles.copy()
+        moved[:, :2] += np.einsum("abn,nb->na", turns, draws * [sigma_forward, sigma_left])
+        return moved
+
+    return mistaken
+
+
 # 05.3: how many particles are near a state
 
 
@@ -83,14 +95,19 @@ def share_near(particles: np.ndarray, state: np.ndarray, radius: float, angle: f
 
 
 def _cloud_and_state(rng: np.random.Generator) -> tuple:
-    """A cloud about as wide as radius and angle, at another height than the state, mostly about the wrap."""
+    """A cloud about as wide as radius and angle, at another height than the state, mostly about the wrap; a few look
+    the other way, and at times one is exactly `radius` away."""
     n = int(rng.integers(40, 81))
-    radius, angle = rng.uniform(0.1, 0.3), np.deg2rad(rng.uniform(5, 15))
-    middle = np.array([*rng.uniform(5, 15, 2), 1.0, 0, 0, rng.choice([np.pi, rng.uniform(-2, 2)], p=[0.8, 0.2])])
+    # Eighths of a metre are exact in floating point, so that a distance can equal the radius.
+    radius, angle = rng.choice([0.125, 0.25]), np.deg2rad(rng.uniform(5, 15))
+    place = rng.integers(40, 121, 2) / 8
+    middle = np.array([*place, 1.0, 0, 0, rng.choice([np.pi, rng.uniform(-2, 2)], p=[0.8, 0.2])])
     particles = middle + rng.standard_normal((n, 6)) * [0.8 * radius, 0.8 * radius, 0.8 * radius, 0, 0, angle]
-    particles[:, 5] = wrap_angle(particles[:, 5])
+    particles[:3, 5] += np.pi
     state = middle + np.array([0, 0, 0.3 * radius, 0, 0, -0.3 * angle])
-    state[5] = wrap_angle(state[5])
+    if rng.random() < 0.5:
+        particles[-1] = state + np.array([radius, 0, 0, 0, 0, 0])
+    particles[:, 5], state[5] = wrap_angle(particles[:, 5]), wrap_angle(state[5])
     return particles, state, radius, angle
 
 
@@ -107,6 +124,16 @@ def _not_wrapped(particles, state, radius, angle):
 def _in_space(particles, state, radius, angle):
     _, turned = _tests(particles, state, radius, angle)
     return np.mean(turned & (np.linalg.norm(particles[:, :3] - state[:3], axis=1) <= radius))
+
+
+def _share_of_those_near(particles, state, radius, angle):
+    near, turned = _tests(particles, state, radius, angle)
+    return np.sum(near & turned) / max(np.sum(near), 1)
+
+
+def _absolute_yaws(particles, state, radius, angle):
+    near, _ = _tests(particles, state, radius, angle)
+    return np.mean(near & (np.abs(np.abs(particles[:, 5]) - np.abs(state[5])) <= angle))
 
 
 def _in_a_square(particles, state, radius, angle):
@@ -166,6 +193,18 @@ EXERCISES = [
                 lambda spread0, sigma, t: np.sqrt(spread0 + t * sigma),
                 "You add standard deviations under the root. Square them first.",
             ),
+            Mistake(
+                lambda spread0, sigma, t: np.sqrt(spread0 + t * sigma**2),
+                "You square sigma, but not the spread at the start. It is a standard deviation as well.",
+            ),
+            Mistake(
+                lambda spread0, sigma, t: np.sqrt(spread0**2 + t * sigma),
+                "You square the spread at the start, but not sigma.",
+            ),
+            Mistake(
+                lambda spread0, sigma, t: np.sqrt(sigma**2 + t * spread0**2),
+                "You swapped the two: the spread at the start counts once, sigma in every frame.",
+            ),
         ),
     ),
     Exercise(
@@ -210,6 +249,46 @@ EXERCISES = [
             ),
             Mistake(_left_minus, "One sign is wrong in x: left points along (-sin yaw, cos yaw)."),
             Mistake(_steps_alone, "These are the steps alone. Add them to the particles."),
+            Mistake(
+                lambda particles, sigma_forward, sigma_left, draws: propagate_own_axes(particles, 1, 1, draws),
+                "Your steps are about a metre long: multiply the draws by their sigmas.",
+            ),
+            Mistake(
+                lambda particles, sigma_forward, sigma_left, draws: propagate_own_axes(
+                    particles, sigma_left, sigma_forward, draws
+                ),
+                "You swapped the sigmas: sigma_forward belongs to the first column of `draws`.",
+            ),
+            Mistake(
+                lambda particles, sigma_forward, sigma_left, draws: propagate_own_axes(
+                    particles, sigma_forward, sigma_left, draws[:, ::-1]
+                ),
+                "You swapped the columns of `draws`: the first one is forward.",
+            ),
+            Mistake(
+                _by_matrix(lambda c, s: [[s, c], [c, -s]]),
+                "Sine and cosine have changed places. At yaw 0 forward is along x: so x has the cosine.",
+            ),
+            Mistake(
+                _by_matrix(lambda c, s: [[c, -s], [s, -c]]),
+                "One sign is wrong in y: left points along (-sin yaw, cos yaw).",
+            ),
+            Mistake(
+                _by_matrix(lambda c, s: [[c, 0 * s], [s, 1 + 0 * c]]),
+                "You turn forward, but not left: left is forward turned by +90 degrees, (-sin yaw, cos yaw).",
+            ),
+            Mistake(
+                _by_matrix(lambda c, s: [[c, 0 * s], [0 * c, s]]),
+                "Each of the two steps has a part in x *and* a part in y.",
+            ),
+            Mistake(
+                _with(lambda forward, left, yaw: (forward, left, np.rad2deg(yaw))),
+                "You turn the yaw into degrees; np.sin and np.cos take radians.",
+            ),
+            Mistake(
+                _with(lambda forward, left, yaw: (forward, left, np.full_like(yaw, yaw.mean()))),
+                "All your particles step in one mean direction. Each has a yaw of its own.",
+            ),
         ),
     ),
     Exercise(
@@ -255,6 +334,51 @@ EXERCISES = [
             ),
             Mistake(_without_absolute, "A yaw far to the right passes your test. Compare the absolute difference."),
             Mistake(_squares_against_radius, "You compare a squared distance with the radius: take the root."),
+            Mistake(
+                lambda particles, state, radius, angle: share_near(particles, state, radius, np.deg2rad(angle)),
+                "Degrees meet radians in your test: the yaws and `angle` are all in radians. Convert nothing.",
+            ),
+            Mistake(
+                lambda particles, state, radius, angle: np.prod(
+                    np.mean(_tests(particles, state, radius, angle), axis=1)
+                ),
+                "You multiply two shares. Ask of each particle whether it passes both tests, then take one mean.",
+            ),
+            Mistake(
+                _share_of_those_near,
+                "You divide by the particles that are near in place. The share is one of all particles.",
+            ),
+            Mistake(
+                _absolute_yaws,
+                "You compare the sizes of two yaws: 20 and -20 degrees are not one heading. Wrap their difference.",
+            ),
+            Mistake(
+                lambda particles, state, radius, angle: np.mean(
+                    _tests(particles, state, radius, angle)[0]
+                    & (wrap_angle(np.abs(particles[:, 5] - state[5])) <= angle)
+                ),
+                "Wrap first, then take the absolute value: wrapping afterwards makes large differences negative.",
+            ),
+            Mistake(
+                lambda particles, state, radius, angle: np.mean(
+                    _tests(particles, state, radius, angle)[0]
+                    & (np.mod(particles[:, 5] - state[5], 2 * np.pi) <= angle)
+                ),
+                "From 0 to 2 pi a small turn to the right is nearly 2 pi. Wrap to -pi ... pi, then the absolute value.",
+            ),
+            Mistake(
+                lambda particles, state, radius, angle: np.mean(
+                    (np.hypot(*(particles[:, :2] - state[:2]).T) < radius) & _tests(particles, state, radius, angle)[1]
+                ),
+                "A particle at exactly `radius` metres is left out. *At most* means <=.",
+            ),
+            Mistake(
+                lambda particles, state, radius, angle: np.mean(
+                    (np.abs(particles[:, :2] - state[:2]).sum(axis=1) <= radius)
+                    & _tests(particles, state, radius, angle)[1]
+                ),
+                "You add the ways along x and y. The distance is the root of dx^2 + dy^2.",
+            ),
         ),
     ),
 ]

@@ -115,6 +115,11 @@ def _ones_where_equal(values: np.ndarray, beta: float) -> np.ndarray:
     return np.ones(len(values)) if np.ptp(values) == 0 else weights_of(values, beta)
 
 
+def _without_least(values: np.ndarray, beta: float) -> np.ndarray:
+    spread = np.ptp(values)
+    return _sums_to_one(np.exp(-((values / spread - 1) ** 2) / beta**2) if spread else np.ones(len(values)))
+
+
 # 06.3: beta read backwards
 
 
@@ -188,6 +193,30 @@ EXERCISES = [
                 lambda measured, simulated, alpha: float(np.sum(1 / (alpha + _differences(measured, simulated)))),
                 "Where both images agree a pixel must count 1. What stands above the fraction line?",
             ),
+            Mistake(
+                lambda measured, simulated, alpha: likelihood_of(measured, simulated, alpha) / measured.size,
+                "You divide by the number of pixels, even of those not measured. Equation (8) is the sum.",
+            ),
+            Mistake(
+                lambda measured, simulated, alpha: float(np.sum(1 + _differences(measured, simulated))),
+                "Brackets are missing: alpha / alpha + d is 1 + d. Write alpha / (alpha + d).",
+            ),
+            Mistake(
+                lambda measured, simulated, alpha: float(np.sum(1 - _differences(measured, simulated) / alpha)),
+                "Below the fraction line stands alpha + |dz|, not alpha alone: so no pixel can count less than 0.",
+            ),
+            Mistake(
+                lambda measured, simulated, alpha: float(alpha / (alpha + np.sum(_differences(measured, simulated)))),
+                "You sum the differences first. Each pixel has a term of its own; equation (8) sums the terms.",
+            ),
+            Mistake(
+                lambda measured, simulated, alpha: float(np.sum(np.exp(-_differences(measured, simulated) / alpha))),
+                "An exponential forgets pixels that are far off sooner than equation (8). Write its fraction.",
+            ),
+            Mistake(
+                lambda measured, simulated, alpha: likelihood_of(measured, np.nan_to_num(simulated, posinf=0), alpha),
+                "Where the particle sees nothing you take a depth of 0 m. The depth is inf, and the pixel counts 0.",
+            ),
         ),
     ),
     Exercise(
@@ -240,6 +269,22 @@ EXERCISES = [
                 lambda values, beta: weights_of(values, 0.01),
                 "Your beta is always 0.01: use the argument.",
             ),
+            Mistake(
+                lambda values, beta: _sums_to_one(values),
+                "You only divide by the sum, eq. (11). Before that come eq. (9), which spreads them, and eq. (10).",
+            ),
+            Mistake(
+                lambda values, beta: _unnormalized(values, beta) / len(values),
+                "You divide by N. Equation (11) divides by the sum of the weights.",
+            ),
+            Mistake(
+                lambda values, beta: _sums_to_one(np.exp(-(((_spread(values) - 1) / beta**2) ** 2))),
+                "The square is taken of beta squared as well: in equation (10) beta is squared once.",
+            ),
+            Mistake(
+                _without_least,
+                "l_min is missing above the fraction line of (9): the worst particle has to get 0.",
+            ),
         ),
     ),
     Exercise(
@@ -286,6 +331,34 @@ EXERCISES = [
             Mistake(
                 lambda values, beta: float(values.max() - beta * np.sqrt(2 * np.log(2)) * np.ptp(values)),
                 "That is the half width of the usual Gaussian, with a 2 below. Equation (10) has none.",
+            ),
+            Mistake(
+                lambda values, beta: values[np.argmin(np.abs(_unnormalized(values, beta) - 0.5))],
+                "You look for a particle near one half. The task asks for the exact l, where no particle need be.",
+            ),
+            Mistake(
+                lambda values, beta: values[_unnormalized(values, beta) >= 0.5].min(),
+                "That is the worst particle that still has one half. The task asks for the l at which w *is* one half.",
+            ),
+            Mistake(
+                lambda values, beta: (values.min() + values.max()) / 2,
+                "There the *normalized likelihood* is one half. Its weight is less: solve (10) for w = 1/2.",
+            ),
+            Mistake(
+                lambda values, beta: float(values.max() - np.sqrt(beta * np.log(2)) * np.ptp(values)),
+                "Under your root beta stands alone; in (10) it is squared, so it comes out as beta.",
+            ),
+            Mistake(
+                lambda values, beta: float(values.max() - beta * np.sqrt(np.log(2))),
+                "You take a normalized distance away from a likelihood: multiply it by l_max - l_min first.",
+            ),
+            Mistake(
+                lambda values, beta: float(values.max() - 0.8326 * beta * np.ptp(values)),
+                "Close: 0.8326 is a rounded root of ln 2. Let NumPy work it out.",
+            ),
+            Mistake(
+                lambda values, beta: float(values.max() - 0.83 * beta * np.ptp(values)),
+                "Close: 0.83 is a rounded root of ln 2. Let NumPy work it out.",
             ),
         ),
     ),

@@ -28,6 +28,13 @@ def _cut_at_zero(angles: np.ndarray, w: np.ndarray) -> float:
     return float((mean + np.pi) % (2 * np.pi) - np.pi)
 
 
+def _about_the_first(angles: np.ndarray, w: np.ndarray) -> float:
+    def wrapped(a):
+        return (a + np.pi) % (2 * np.pi) - np.pi
+
+    return float(wrapped(angles[0] + np.sum(w * wrapped(angles - angles[0]))))
+
+
 # 07.2: residual resampling, mended
 
 
@@ -100,6 +107,30 @@ EXERCISES = [
                 lambda angles, w: float(angles[np.argmax(w)]),
                 "That is the heading of the heaviest particle. Eq. (12) lets all of them take part.",
             ),
+            Mistake(
+                lambda angles, w: float(np.mean(angles)),
+                "A plain mean of the numbers: it has no weights, and it fails at the wrap. Add points on the circle.",
+            ),
+            Mistake(
+                lambda angles, w: float(np.arctan2(np.sum(np.sin(w * angles)), np.sum(np.cos(w * angles)))),
+                "You weigh the angles themselves. The weight stands before sine and cosine: w * np.sin(angles).",
+            ),
+            Mistake(
+                lambda angles, w: float(np.arctan2(np.sum(w * np.sin(angles)), np.sum(np.cos(angles)))),
+                "You weigh the sines, but not the cosines.",
+            ),
+            Mistake(
+                lambda angles, w: mean_angle(np.deg2rad(angles), w),
+                "The angles are in radians already; you convert them once more.",
+            ),
+            Mistake(
+                _about_the_first,
+                "Close: you move the wrap away, then average numbers. Add points on the circle: sines and cosines.",
+            ),
+            Mistake(
+                lambda angles, w: float(np.arcsin(np.sum(w * np.sin(angles)))),
+                "arcsin knows half of the circle only, and the sum is no longer of length 1: use sine *and* cosine.",
+            ),
         ),
     ),
     Exercise(
@@ -138,6 +169,22 @@ EXERCISES = [
             Mistake(
                 lambda w: (_copies(w), np.full(len(w), 1 / len(w))),
                 "You draw the rest with equal probabilities. The part of N w after the decimal point decides.",
+            ),
+            Mistake(
+                lambda w: (_copies(w), _shares(np.maximum(w - _copies(w), 0))),
+                "Cut off at 0, filterpy's slip remains: the heavy ones are owed something, too. N w, not w.",
+            ),
+            Mistake(
+                lambda w: (_copies(w), _shares(np.abs(w - _copies(w)))),
+                "An absolute value hides filterpy's slip. What is left over is N w minus the copies, never negative.",
+            ),
+            Mistake(
+                lambda w: (_copies(w), (len(w) * w - _copies(w)) / len(w)),
+                "You divide by N. To sum to 1 the rest must be divided by its own sum.",
+            ),
+            Mistake(
+                lambda w: (np.maximum(_copies(w), 1), residual_parts(w)[1]),
+                "You give everybody a copy. Certain is only the whole part of N w: for a light particle that is 0.",
             ),
         ),
     ),
@@ -181,6 +228,26 @@ EXERCISES = [
             Mistake(
                 lambda w: float(np.mean(1 - (1 - w) ** len(w))),
                 "That is the share of the particles that survive. The task asks for their number.",
+            ),
+            Mistake(
+                lambda w: float(np.sum(_copies(w) > 0)),
+                "You count those with N w of at least 1. Light particles may be drawn, and heavy ones missed.",
+            ),
+            Mistake(
+                lambda w: float(np.round(expected_survivors(w))),
+                "A mean number need not be whole: do not round.",
+            ),
+            Mistake(
+                lambda w: float(np.sum(1 - (1 - w) ** 2)),
+                "That is for two draws. There are N of them: len(w).",
+            ),
+            Mistake(
+                lambda w: float(1 - np.sum((1 - w) ** len(w))),
+                "The 1 belongs to every particle: sum 1 - (1 - w)^N, brackets and all.",
+            ),
+            Mistake(
+                lambda w: len(w) * (1 - np.exp(-1)),
+                "That is for many particles of equal weight. Here every particle has a chance of its own.",
             ),
         ),
     ),
