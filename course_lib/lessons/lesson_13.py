@@ -86,7 +86,8 @@ def matching_panel() -> Panel:
         axes.plot([], [], "o", color=figures.YELLOW, markersize=3.5, mec="black", mew=0.4)[0] for axes in figure.axes
     ]
     (crosses,) = below.plot([], [], "X", color=figures.VERMILION, markersize=6, mec="white", mew=0.5)
-    picture = below.images[0]
+    # Over the picture at rest, and shown only when the camera is turned: an image is what takes longest to draw.
+    picture = below.imshow(below.images[0].get_array(), extent=below.images[0].get_extent(), interpolation="nearest")
     boxes = [box for rectangles, _ in candidates for box in rectangles]
     live = LiveFigure(
         figure,
@@ -119,7 +120,9 @@ def matching_panel() -> Panel:
             else:
                 _place(rectangles, (-9, -9, -8, -8), width)
                 text.set_text("")
-        picture.set_data(np.roll(one.lower.image[ROWS[0] : ROWS[1], :, ::-1], round(columns), axis=1))
+        picture.set_visible(round(columns) != 0)
+        if picture.get_visible():
+            picture.set_data(np.roll(one.lower.image[ROWS[0] : ROWS[1], :, ::-1], round(columns), axis=1))
         all_features.set_data(*uppers[i].keypoints.T)
         nothing = np.zeros((0, 2))
         for line, points in zip(dots, found.get(best, (nothing, nothing)), strict=True):
