@@ -94,6 +94,11 @@ def _signed(columns: np.ndarray, width: int) -> float:
     return float(np.arctan2(np.sin(angles).sum(), np.cos(angles).sum()) / (2 * np.pi) * width)
 
 
+def _unrolled(columns: np.ndarray, width: int) -> float:
+    first = columns[0]
+    return float((first + np.mean((columns - first + width / 2) % width - width / 2)) % width)
+
+
 def _by_half_circle(columns: np.ndarray, width: int) -> float:
     angles = columns / width * np.pi
     return float(np.arctan2(np.sin(angles).sum(), np.cos(angles).sum()) / np.pi * width % width)
@@ -232,6 +237,10 @@ EXERCISES = [
             Mistake(
                 lambda columns, width: float(np.median(columns)),
                 "A median does not know the circle either: across the seam it lies on one edge.",
+            ),
+            Mistake(
+                _unrolled,
+                "Nearly: you unroll the columns and take a plain mean. Add up unit vectors: not quite the same.",
             ),
             Mistake(
                 _signed,

@@ -216,7 +216,7 @@ def sphere_panel() -> Panel:
     controls = [
         Slider("u", "column u [pixels]", 0, 1600, 1200, 10),
         Slider("v", "row v [pixels]", 0, 640, 410, 10),
-        Slider("look", "look at the sphere towards [deg]", -180, 180, 150, 15),
+        Slider("look", "look towards [degrees]", -180, 180, 150, 15),
     ]
     return Panel("11 panorama and sphere", controls, draw)
 

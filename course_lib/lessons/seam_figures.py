@@ -160,14 +160,15 @@ def seam_panel(cuts: dict[int, object], pieces_of: Callable, best_overlap: Calla
         overlap = best_overlap(objects, now.sofa, width)
         lines = [
             f"seam at {cut:.0f} % of the sofa, {'with' if extension else 'without'} the extension, threshold "
-            f"{threshold:.2f}: boxes on this sofa {len(pieces)}, best overlap with its exact box (IoU) {overlap:.1f}",
-            f"boxes that the network saw: {len(seen.boxes)}; objects in the end: {len(objects.boxes)}",
+            f"{threshold:.2f}",
+            f"boxes on this sofa: {len(pieces)}; best overlap with its exact box (IoU) {overlap:.1f}; "
+            f"in the whole image the network saw {len(seen.boxes)} boxes, objects in the end: {len(objects.boxes)}",
         ]
         return Drawing(live.png(), f"A panorama with the boxes of detected objects. {lines[0]}", "\n".join(lines))
 
     controls = [
-        Slider("cut", "seam at [% of the sofa's width]", 0, 100, 50, 10),
-        Switch("extension", "extend the image by its left quarter"),
+        Slider("cut", "seam at [% of the sofa]", 0, 100, 50, 10),
+        Switch("extension", "append the left quarter (extension)"),
         Slider("threshold", "score threshold [-]", 0.1, 0.9, 0.5, 0.05),
     ]
     return Panel("12 slide the seam", controls, draw)
@@ -236,7 +237,7 @@ def hue_panel(image_bgr: np.ndarray, things: Sequence[TrueObject]) -> Panel:
     first = next(iter(shown_things))
     controls = [
         Choice("thing", "object", tuple(shown_things), first),
-        Slider("share", "part of the box used [share]", 0.1, 1.0, 0.5, 0.1),
+        Slider("share", "part of the box [share]", 0.1, 1.0, 0.5, 0.1),
     ]
     return Panel("12 hue and saturation", controls, draw)
 

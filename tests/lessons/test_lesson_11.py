@@ -8,6 +8,7 @@ import shutil
 import numpy as np
 import pytest
 
+from course_lib.lessons.exercises import find_exercise, judge
 from course_lib.lessons.lesson_11 import all_bearings, look_up, object_at_the_seam, recording, sphere_panel, the_image
 from course_lib.lessons.paths import REPOSITORY, data_path
 from course_lib.lessons.sphere_scene import SCENE, Scene, scene_html, write_scene
@@ -158,3 +159,27 @@ def test_arrow_keys_move_the_point(page):
     page.locator("#panorama").focus()
     page.keyboard.press("ArrowLeft")
     assert page.evaluate("() => scene.state.u") == WIDTH - 1
+
+
+def along_the_shorter_way(u_from, u_to, width):
+    gap = (u_from - u_to) * 360 / width
+    return gap - 360 if gap >= 180 else gap + 360 if gap < -180 else gap
+
+
+@pytest.mark.parametrize(
+    ("number", "answer"),
+    [
+        ("11.1", lambda u, v, w, h: pixel_to_direction([u, v], w, h)),
+        (
+            "11.1",
+            lambda u, v, w, h: direction_from_angles(np.pi - 2 * np.pi * u / w, np.pi / 2 - np.pi * v / h).tolist(),
+        ),
+        ("11.2", along_the_shorter_way),
+        ("11.2", lambda a, b, w: np.degrees(np.angle(np.exp(2j * np.pi * (a - b) / w)))),
+        ("11.3", lambda c, w: np.angle(np.exp(2j * np.pi * c / w).mean()) / (2 * np.pi) * w % w),
+        ("11.3", lambda c, w: np.arctan2(*(f(2 * np.pi * c / w).mean() for f in (np.sin, np.cos))) * w / 2 / np.pi % w),
+    ],
+    ids=lambda given: given if isinstance(given, str) else "",
+)
+def test_another_way_to_the_right_values_passes(number, answer):
+    assert {judge(find_exercise(number), answer, seed).status for seed in range(8)} == {"right"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from course_lib.lessons.exercises import find_exercise, judge
 from course_lib.lessons.lesson_11 import the_image
 from course_lib.lessons.lesson_12 import (
     CUTS,
@@ -21,6 +22,7 @@ from course_lib.lessons.lesson_12 import (
     true_object,
 )
 from course_lib.lessons.seam_figures import crop_of, hues_and_saturations, outline, part_of, seam_panel
+from course_lib.spherical_stereo.boxes import box_iou
 from course_lib.spherical_stereo.colour import central_half, mean_hue_saturation
 
 WIDTH = 1280
@@ -118,5 +120,29 @@ def test_a_crop_goes_around_the_seam_and_says_where_it_is():
 def test_the_extension_switch_changes_what_the_panel_says_of_the_sofa():
     panel = seam_panel({50: cut_sofa(50)}, pieces_of_sofa, best_overlap)
     off, on = (panel.draw(**(panel.defaults() | {"extension": e, "threshold": 0.3})).summary for e in (False, True))
-    overlap = [float(text.split("(IoU) ")[1].split()[0]) for text in (off, on)]
+    overlap = [float(text.split("(IoU) ")[1].split(";")[0]) for text in (off, on)]
     assert overlap[1] > overlap[0]
+
+
+def by_one_turn(a, b, width):
+    """Move the box that lies left by a turn where the two are far apart."""
+    if b[0] - a[0] > width / 2:
+        a = a + np.array([width, 0, width, 0])
+    elif a[0] - b[0] > width / 2:
+        b = b + np.array([width, 0, width, 0])
+    return box_iou(a[None], b[None], 100 * width)[0, 0]
+
+
+@pytest.mark.parametrize(
+    ("number", "answer"),
+    [
+        ("12.1", by_one_turn),
+        ("12.1", lambda a, b, w: box_iou(a[None], b[None], w).item()),
+        ("12.2", lambda boxes, w: np.floor((boxes[:, [0, 2]].mean(axis=1) - w / 8) / w) == 0),
+        ("12.3", lambda h, s: np.degrees(np.angle((s * np.exp(1j * np.radians(h))).sum())) % 360),
+        ("12.3", lambda h, s: np.degrees(np.arctan2(-s @ np.sin(h / 180 * np.pi), -s @ np.cos(h / 180 * np.pi))) + 180),
+    ],
+    ids=lambda given: given if isinstance(given, str) else "",
+)
+def test_another_way_to_the_right_values_passes(number, answer):
+    assert {judge(find_exercise(number), answer, seed).status for seed in range(8)} == {"right"}
