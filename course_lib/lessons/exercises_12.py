@@ -36,9 +36,9 @@ def _iou(shared: float, a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _two_boxes(rng: np.random.Generator) -> tuple:
-    """Two boxes up to a quarter wide: overlapping, apart, or one of them with its columns one turn on."""
+    """Two boxes up to a quarter wide: overlapping, apart, one with its columns one turn on, one across the seam."""
     width = int(rng.choice([640, 1280, 1920]))
-    case = rng.integers(4)
+    case = rng.integers(5)
     a = np.array([rng.uniform(0.3, 0.6), 0.4, 0.0, 0.55])
     a[2] = a[0] + rng.uniform(0.1, 0.2)
     if case != 0:
@@ -50,10 +50,27 @@ def _two_boxes(rng: np.random.Generator) -> tuple:
         b[[0, 2]] -= 1.0
     if case == 1:
         b[[1, 3]] += 0.3  # below the other one
-        b[[0, 2]] -= 0.35  # and beside it: two negative lengths, whose product is positive
+        if rng.random() < 0.5:
+            b[[0, 2]] -= 0.35  # and beside it: two negative lengths, whose product is positive
+    if case == 4:
+        a[2], b[2] = rng.uniform(0.95, 0.99), rng.uniform(1.01, 1.08)  # only one of them passes the seam
     if rng.random() < 0.5:
         a, b = b, a
     return a * width, b * width, width  # both were shares of the width
+
+
+def _moved_if_across(a: np.ndarray, b: np.ndarray, width: int) -> float:
+    a, b = (box - np.array([1, 0, 1, 0]) * width * (box[2] > width) for box in (a, b))
+    return _iou(_across(a, b) * _down(a, b), a, b)
+
+
+def _uncut(a: np.ndarray, b: np.ndarray, width: int, across: bool) -> float:
+    """Negative lengths are not cut off at 0: across, or else down."""
+    turns = [b[[0, 2]] + turn for turn in (-width, 0, width)]
+    length = max(min(a[2], right) - max(a[0], left) for left, right in turns)
+    if across:
+        return _iou(length * _down(a, b), a, b)
+    return _iou(max(0.0, length) * (min(a[3], b[3]) - max(a[1], b[1])), a, b)
 
 
 # 12.2: which boxes count
@@ -132,6 +149,26 @@ EXERCISES = [
                 "You divide by the first box alone. Below stands the area of the union.",
             ),
             Mistake(
+                lambda a, b, w: float(_shared_on_circle(a, b, w) / _area(b)),
+                "You divide by the second box alone. Below stands the area of the union.",
+            ),
+            Mistake(
+                lambda a, b, w: float(_shared_on_circle(a, b, w) / max(_area(a), _area(b))),
+                "You divide by the larger box. Below stands the area of the union.",
+            ),
+            Mistake(
+                _moved_if_across,
+                "You move a box only where it passes the seam itself. The other one may end before it: try all turns.",
+            ),
+            Mistake(
+                lambda a, b, w: _uncut(a, b, w, across=True),
+                "Boxes that are apart side by side share nothing: cut the length across off at 0.",
+            ),
+            Mistake(
+                lambda a, b, w: _uncut(a, b, w, across=False),
+                "Boxes one above the other share nothing: cut the length down off at 0.",
+            ),
+            Mistake(
                 lambda a, b, w: float(_shared_on_circle(a, b, w)),
                 "That is the shared area in square pixels. Divide by the area of the union.",
             ),
@@ -157,6 +194,26 @@ EXERCISES = [
             Mistake(
                 lambda boxes, width: _in_range(boxes[:, 0], width / 8, width / 8 + width),
                 "You look at the left edge. The centre of the box decides.",
+            ),
+            Mistake(
+                lambda boxes, width: _in_range(boxes[:, 2], width / 8, width / 8 + width),
+                "You look at the right edge. The centre of the box decides.",
+            ),
+            Mistake(
+                lambda boxes, width: _in_range((boxes[:, 1] + boxes[:, 3]) / 2, width / 8, width / 8 + width),
+                "You look at the rows. The centre's column is the mean of u_min and u_max: numbers 0 and 2 of a box.",
+            ),
+            Mistake(
+                lambda boxes, width: _in_range((boxes[:, 2] - boxes[:, 0]) / 2, width / 8, width / 8 + width),
+                "That is half the width of a box. The centre is the mean of its two edges: add them.",
+            ),
+            Mistake(
+                lambda boxes, width: _in_range(_centre(boxes), width / 8, width),
+                "Your range ends at W: less than one turn, so that some objects count nowhere. It ends at W/8 + W.",
+            ),
+            Mistake(
+                lambda boxes, width: _in_range(_centre(boxes), width / 8, 7 * width / 8),
+                "You leave out an eighth at both ends. The range is one whole turn: to W/8 + W.",
             ),
             Mistake(
                 lambda boxes, width: _in_range(_centre(boxes), 0, width),
@@ -216,6 +273,34 @@ EXERCISES = [
             Mistake(
                 lambda hues, saturations: float(np.degrees(_mean_angle(np.radians(hues), saturations))),
                 "Some of yours are negative. Hues lie in [0, 360).",
+            ),
+            Mistake(
+                lambda hues, saturations: float(
+                    np.degrees(
+                        np.arctan(
+                            np.sum(saturations * np.sin(np.radians(hues)))
+                            / np.sum(saturations * np.cos(np.radians(hues)))
+                        )
+                    )
+                    % 360
+                ),
+                "np.arctan cannot tell a colour from its opposite. np.arctan2, with two arguments, can.",
+            ),
+            Mistake(
+                lambda hues, saturations: float(abs(np.degrees(_mean_angle(np.radians(hues), saturations)))),
+                "The absolute value turns -10 into 10. A hue of -10 is one of 350: take the remainder by 360.",
+            ),
+            Mistake(
+                lambda hues, saturations: float(np.degrees(_mean_angle(np.radians(hues), saturations)) + 180),
+                "You add 180, which gives the opposite colour. The remainder by 360 brings it into [0, 360).",
+            ),
+            Mistake(
+                lambda hues, saturations: float(_mean_angle(np.radians(hues), saturations) % (2 * np.pi)),
+                "These are radians; the task asks for degrees.",
+            ),
+            Mistake(
+                lambda hues, saturations: float(np.average((hues + 180) % 360 - 180, weights=saturations) % 360),
+                "You moved the seam to 180 degrees, and took a plain mean. Add up vectors: they have no seam.",
             ),
             Mistake(
                 lambda hues, saturations: float(_mean_angle(np.radians(hues), saturations)),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from course_lib.lessons.exercises import Exercise, Mistake
@@ -72,6 +74,23 @@ def _distance_for_place(box_upper: np.ndarray, box_lower: np.ndarray, width: int
     return float(np.linalg.norm(place_of(box_upper, box_lower, width, baseline)))
 
 
+def _place_with(distance: Callable, turn_up: float = 1.0) -> Callable:
+    """A mistake: `distance(e_u, e_l, baseline)` along the upper direction; elevations times `turn_up`."""
+
+    def mistaken(box_upper, box_lower, width, baseline):
+        (a, e_u), (_, e_l) = (_angles(_centre(box), width) for box in (box_upper, box_lower))
+        e_u, e_l = turn_up * e_u, turn_up * e_l
+        return distance(e_u, e_l, baseline) * _direction(a, e_u)
+
+    return mistaken
+
+
+def _place_on_a_square_image(box_upper: np.ndarray, box_lower: np.ndarray, width: int, baseline: float) -> np.ndarray:
+    (a, _), _ = _angles(_centre(box_upper), width), None
+    e_u, e_l = ((0.5 - _centre(box)[1] / width) * np.pi for box in (box_upper, box_lower))
+    return _distance(e_u, e_l, baseline) * _direction(a, e_u)
+
+
 # 14.2: the standard deviation of a range
 
 
@@ -124,7 +143,7 @@ def _matches(rng: np.random.Generator) -> tuple:
     z = rng.uniform(-1.3, -0.2, n)
     e_u, e_l = np.arctan2(z, rho), np.arctan2(z + baseline, rho) + 0.004 * rng.standard_normal(n)
     strangers = rng.permutation(n)[: max(1, n // 4)]
-    e_l[strangers] = e_u[strangers] + rng.uniform(-0.03, 0.03, len(strangers))
+    e_l[strangers] = e_u[strangers] + rng.uniform(-0.3, 0.03, len(strangers))
     return e_u, e_l, baseline
 
 
@@ -168,6 +187,42 @@ EXERCISES = [
                 _place_of_corners, "You took the boxes' corners (u_min, v_min); the centre is the mean of both corners."
             ),
             Mistake(_distance_for_place, "That is d alone. The place is d times the unit vector: three numbers."),
+            Mistake(
+                _place_with(lambda e_u, e_l, baseline: baseline * np.cos(e_l) / np.sin(e_u - e_l)),
+                "Your point lies behind the camera: the angle at the point is e_l - e_u, lower minus upper.",
+            ),
+            Mistake(
+                _place_with(_distance, turn_up=-1.0),
+                "Your elevations are upside down: row 0 is straight up, e = (1/2 - v/H) pi.",
+            ),
+            Mistake(
+                _place_with(_distance, turn_up=2.0),
+                "The rows span pi, from straight up to straight down; only the columns span 2 pi.",
+            ),
+            Mistake(
+                _place_with(lambda e_u, e_l, baseline: baseline / np.sin(e_l - e_u)),
+                "The cosine of the lower elevation is missing above the fraction line of d.",
+            ),
+            Mistake(
+                _place_with(lambda e_u, e_l, baseline: baseline / np.tan(e_l - e_u)),
+                "No right angle there, so no tangent: d = B cos e_l / sin(e_l - e_u).",
+            ),
+            Mistake(
+                _place_with(lambda e_u, e_l, baseline: 1.0),
+                "That is the unit vector alone. Multiply it by the distance d.",
+            ),
+            Mistake(
+                _place_on_a_square_image,
+                "You divide the row by the width. A panorama is half as high as it is wide: H = W / 2.",
+            ),
+            Mistake(
+                lambda box_upper, box_lower, width, baseline: place_of(box_upper, box_lower, width, 0.3),
+                "Your baseline is always 0.3 m: use the argument.",
+            ),
+            Mistake(
+                lambda box_upper, box_lower, width, baseline: place_of(box_upper, box_lower, 1280, baseline),
+                "Your panorama is always 1280 columns wide: use the argument.",
+            ),
         ),
     ),
     Exercise(
@@ -181,6 +236,40 @@ EXERCISES = [
             Mistake(_sigma_one_camera, "Only the upper camera's noise is in it; the lower one's belongs there too."),
             Mistake(_variance, "That is the variance; the standard deviation is its root."),
             Mistake(_sigma_subtracted, "Independent errors do not cancel: add their squares, whatever the signs."),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: (
+                    rho**2 / baseline * sigma * np.sqrt(np.cos(e_u) ** -2 + np.cos(e_l) ** -2)
+                ),
+                "Under the root stands the square of 1 / cos^2, which is 1 / cos^4.",
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: (
+                    rho**2 / baseline * sigma * np.hypot(np.cos(e_u) ** 2, np.cos(e_l) ** 2)
+                ),
+                "The cosines stand below the fraction line: steep rays make the error larger.",
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: (
+                    rho**2 / baseline * sigma * (np.cos(e_u) ** -4 + np.cos(e_l) ** -4)
+                ),
+                "The squares are added, but their root is missing.",
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: range_sigma(rho, e_u, e_l, baseline, 1.0),
+                "sigma is missing: without noise there is no error.",
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: range_sigma(rho, e_u, e_l, baseline**2, sigma),
+                "The baseline counts once: twice the baseline, half the error.",
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: range_sigma(rho, e_u, e_l, 1 / baseline, sigma),
+                "You multiply by the baseline. A longer one makes the error smaller: divide.",
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: rho**2 / baseline * sigma / np.cos(e_l) ** 2,
+                "Only the lower camera's noise is in it; the upper one's belongs there too.",
+            ),
         ),
     ),
     Exercise(
@@ -196,6 +285,26 @@ EXERCISES = [
             Mistake(_angles_not_tangents, "It is the tangents that differ by B / rho, not the angles."),
             Mistake(_other_order, "Your range is negative: the lower camera sees points higher, tan e_l - tan e_u."),
             Mistake(_medians_apart, "Subtract match by match first: the two medians may belong to different features."),
+            Mistake(
+                lambda e_u, e_l, baseline: float(baseline / np.median(np.abs(np.tan(e_l) - np.tan(e_u)))),
+                "A negative slope is a wrong match. Its absolute value makes it look right: take slopes as they are.",
+            ),
+            Mistake(
+                lambda e_u, e_l, baseline: float(baseline / np.median(np.tan(e_l - e_u))),
+                "You take the tangent of the difference. Take the difference of the two tangents.",
+            ),
+            Mistake(
+                lambda e_u, e_l, baseline: 1 / range_of(e_u, e_l, baseline),
+                "That is 1 / rho: divide the other way round.",
+            ),
+            Mistake(
+                lambda e_u, e_l, baseline: range_of(e_u, e_l, 1.0),
+                "The baseline is missing: a slope alone has no metres.",
+            ),
+            Mistake(
+                lambda e_u, e_l, baseline: baseline / (np.tan(e_l) - np.tan(e_u)),
+                "That is one range for each match. One range is asked for: the median of the slopes first.",
+            ),
         ),
     ),
 ]

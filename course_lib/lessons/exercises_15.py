@@ -82,6 +82,11 @@ def _of_vectors(x_c, x_m, p_d):
     return p_d * np.linalg.norm(dx_c[:, None] - dx_m, axis=-1) / np.maximum(np.linalg.norm(dx_m, axis=1), 0.1)
 
 
+def _from_lengths(far: Callable) -> Callable:
+    """A mistake: the term from `far(points (n, 2))` in place of the distances to the centroid."""
+    return lambda x_c, x_m, p_d: p_d * np.abs(far(x_c)[:, None] - far(x_m)) / np.maximum(far(x_m), 0.1)
+
+
 # 15.3: the repeated minimum
 
 
@@ -152,6 +157,47 @@ def _struck_with_zero(cost):
     return columns
 
 
+def _rounds(cost, rounds: int, struck: float = np.inf):
+    open_cost, columns = cost.copy(), np.full(len(cost), -1)
+    for _ in range(rounds):
+        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
+        columns[i] = j
+        open_cost[i], open_cost[:, j] = struck, struck
+    return columns
+
+
+def _while_positive(cost):
+    open_cost, columns = cost.copy(), np.full(len(cost), -1)
+    while 0 < open_cost.min() < np.inf:
+        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
+        columns[i] = j
+        open_cost[i], open_cost[:, j] = np.inf, np.inf
+    return columns
+
+
+def _numbers_move_up(cost):
+    open_cost, columns = cost, np.full(len(cost), -1)
+    for _ in range(min(cost.shape)):
+        i, j = np.unravel_index(np.argmin(open_cost), open_cost.shape)
+        columns[i] = j
+        open_cost = np.delete(np.delete(open_cost, i, axis=0), j, axis=1)
+    return columns
+
+
+def _column_by_column(cost):
+    open_cost, columns = cost.copy(), np.full(len(cost), -1)
+    for j in range(min(cost.shape)):
+        i = np.argmin(open_cost[:, j])
+        columns[i] = j
+        open_cost[i] = np.inf
+    return columns
+
+
+def _each_other_s_best(cost):
+    best = np.argmin(cost, axis=1)
+    return np.where(np.argmin(cost, axis=0)[best] == np.arange(len(cost)), best, -1)
+
+
 EXERCISES = [
     Exercise(
         number="15.1",
@@ -205,6 +251,30 @@ EXERCISES = [
             Mistake(
                 lambda seen, on_map, p_h: np.nan_to_num(p_h * _on_circle(seen, on_map) / 360, nan=p_h),
                 "You let grey cost the most there is. Nothing is known of its hue, so nothing is held against it: 0.",
+            ),
+            Mistake(
+                lambda seen, on_map, p_h: np.where(np.isnan(on_map), 0, p_h * _on_circle(seen, on_map) / 360),
+                "An observed object can be grey, too: the term is 0 where *either* hue is NaN.",
+            ),
+            Mistake(
+                lambda seen, on_map, p_h: np.where(
+                    np.isnan(seen) & np.isnan(on_map), 0, p_h * _on_circle(seen, on_map) / 360
+                ),
+                "One grey side is enough: the term is 0 where *either* hue is NaN, not only where both are.",
+            ),
+            Mistake(
+                lambda seen, on_map, p_h: np.nan_to_num(
+                    p_h * np.maximum(np.abs(seen - on_map), 360 - np.abs(seen - on_map)) / 360
+                ),
+                "You go the longer way around the circle. np.minimum takes the shorter one.",
+            ),
+            Mistake(
+                lambda seen, on_map, p_h: np.nan_to_num(p_h * ((seen - on_map) % 360) / 360),
+                "The remainder by 360 goes one way around only: 10 and 350 become 20, but 350 and 10 become 340.",
+            ),
+            Mistake(
+                lambda seen, on_map, p_h: np.nan_to_num(_on_circle(seen, on_map) / 360 / p_h),
+                "You divide by p_h. A larger weight must make the term larger.",
             ),
         ),
     ),
@@ -268,6 +338,26 @@ EXERCISES = [
                 _of_vectors,
                 "You subtract vectors of two different frames. First take their lengths, then the difference.",
             ),
+            Mistake(
+                _from_lengths(lambda points: np.sum((points - points.mean(axis=0)) ** 2, axis=1)),
+                "These are squared distances: the root is missing.",
+            ),
+            Mistake(
+                _from_lengths(lambda points: np.abs(points - points.mean(axis=0)).sum(axis=1)),
+                "You add the ways along x and along y. A distance is the root of the sum of squares.",
+            ),
+            Mistake(
+                _from_lengths(lambda points: np.linalg.norm(points - points.mean(axis=1, keepdims=True), axis=1)),
+                "Your mean goes over x and y of each point. The centroid is the mean over the points: axis 0.",
+            ),
+            Mistake(
+                _from_lengths(lambda points: np.linalg.norm(points - np.median(points, axis=0), axis=1)),
+                "The centroid is the mean of the places, not their median.",
+            ),
+            Mistake(
+                _distance(lambda far_c, far_m: np.maximum(np.abs(far_c - far_m) / far_m, 0.1)),
+                "The divisor is at least 0.1 m, not the whole term.",
+            ),
         ),
     ),
     Exercise(
@@ -308,6 +398,42 @@ EXERCISES = [
             Mistake(
                 lambda cost: match_greedily(cost.T),
                 "Yours tells for every column its row. Asked is, for every row, its column.",
+            ),
+            Mistake(
+                lambda cost: _rounds(cost, cost.shape[1]),
+                "One round for each column is too many where rows run out first. Stop when one side is used up.",
+            ),
+            Mistake(
+                lambda cost: _rounds(cost, min(cost.shape) - 1),
+                "You stop one round too early: the last open row and column belong together, too.",
+            ),
+            Mistake(
+                lambda cost: _rounds(cost, min(cost.shape), struck=1.0),
+                "You strike out with 1, and costs can be larger. What is never the least?",
+            ),
+            Mistake(
+                lambda cost: _rounds(cost, min(cost.shape), struck=np.nan),
+                "You strike out with NaN, and argmin takes a NaN for the least. np.inf is never the least.",
+            ),
+            Mistake(
+                _while_positive,
+                "You stop at costs below 0. A cost may be negative: ask whether anything is left, not whether it is 0.",
+            ),
+            Mistake(
+                _numbers_move_up,
+                "You delete rows and columns, so those behind them get other numbers. Strike out with np.inf instead.",
+            ),
+            Mistake(
+                _column_by_column,
+                "You serve the columns in their order. The cheapest of *all* open combinations comes first.",
+            ),
+            Mistake(
+                _each_other_s_best,
+                "You match only rows and columns that are each other's cheapest. Go on with those that are left.",
+            ),
+            Mistake(
+                lambda cost: np.where(match_greedily(cost) < 0, -1, match_greedily(cost) + 1),
+                "You count columns from 1. Python counts from 0.",
             ),
         ),
     ),

@@ -36,7 +36,7 @@ def _angle(source: np.ndarray, target: np.ndarray) -> float:
 
 def _points(rng: np.random.Generator) -> tuple:
     """Noisy points in the body frame and the world, all headings, two points among the numbers."""
-    n = int(rng.integers(2, 9))
+    n = 2 if rng.random() < 0.3 else int(rng.integers(3, 9))
     source = rng.uniform(-4, 4, (n, 2)) + rng.uniform(-1, 1, 2)
     theta = rng.uniform(-np.pi, np.pi)
     return source, source @ _rotation(theta).T + rng.uniform(1, 5, 2) + rng.normal(0, 0.1, (n, 2))
@@ -75,6 +75,24 @@ def _mean_of_angles(source, target):
 def _half_plane(source, target):
     dot, cross = _sums(source - source.mean(axis=0), target - target.mean(axis=0))
     return np.arctan(cross / dot)
+
+
+def _with_a_plus(source, target):
+    a, b = source - source.mean(axis=0), target - target.mean(axis=0)
+    return np.arctan2(np.sum(a[:, 0] * b[:, 1] + a[:, 1] * b[:, 0]), np.sum(a * b))
+
+
+def _about_one_number(source, target):
+    dot, cross = _sums(source - source.mean(), target - target.mean())
+    return np.arctan2(cross, dot)
+
+
+def _by_svd_without_sign(source, target):
+    a, b = source - source.mean(axis=0), target - target.mean(axis=0)
+    u, _, vt = np.linalg.svd(b.T @ a)
+    turn = u @ vt
+    x, y = target.mean(axis=0) - turn @ source.mean(axis=0)
+    return float(x), float(y), float(np.arctan2(turn[1, 0], turn[0, 0]))
 
 
 def _inverse(source, target):
@@ -133,12 +151,14 @@ def _residuals(source: np.ndarray, target: np.ndarray) -> np.ndarray:
 
 
 def _points_with_an_odd_pair(rng: np.random.Generator) -> tuple:
-    """Points near each other and one far out, taken for another place: it drags the fit along with it."""
+    """Points near each other and an odd one far out, which drags the fit along; at times a right one still farther."""
     while True:
         n = int(rng.integers(5, 8))
         source = rng.uniform(-1, 1, (n, 2))
         k = int(rng.integers(n))
         source[k] = rng.uniform(3, 5) * np.array([1, rng.uniform(-0.3, 0.3)])
+        if rng.random() < 0.5:  # else the farthest pair would be the odd one always, and nobody need look at targets
+            source[k - 1] = rng.uniform(6, 7) * np.array([-1, rng.uniform(-0.3, 0.3)])
         theta = rng.uniform(-np.pi, np.pi)
         target = source @ _rotation(theta).T + rng.uniform(1, 5, 2) + rng.normal(0, 0.05, (n, 2))
         target[k] += _rotation(theta) @ [0, rng.choice([-1, 1]) * rng.uniform(1.5, 4)]
@@ -161,6 +181,27 @@ def _worst_of_one_fit(source, target):
 
 def _moved_most(source, target):
     return int(np.argmax(np.sum((source - target) ** 2, axis=1)))
+
+
+def _without(judged: Callable, choose: Callable) -> Callable:
+    """A mistake: `choose` of `judged(fit without k, source, target, k)` over all k."""
+
+    def mistaken(source, target):
+        values = []
+        for k in range(len(source)):
+            fit = fit_rigid_2d(np.delete(source, k, axis=0), np.delete(target, k, axis=0))
+            values.append(judged(fit, source, target, k))
+        return choose(values)
+
+    return mistaken
+
+
+def _squares_of_all(fit, source, target, k):
+    return np.sum((fit.apply(source) - target) ** 2)
+
+
+def _squares_of_rest(fit, source, target, k):
+    return np.sum(np.delete((fit.apply(source) - target) ** 2, k, axis=0))
 
 
 EXERCISES = [
@@ -203,6 +244,34 @@ EXERCISES = [
             ),
             Mistake(_inverse, "That takes the world to the body. Asked is the pose: from the body to the world."),
             Mistake(_in_degrees, "Give theta in radians."),
+            Mistake(
+                _posed(lambda s, t: wrap_angle(np.pi / 2 - _angle(s, t)), _right_place),
+                "np.arctan2 takes the cross product first, then the dot product.",
+            ),
+            Mistake(
+                _posed(_angle, lambda s, t, theta: t.mean(axis=0) + _rotation(theta) @ s.mean(axis=0)),
+                "The heading is right. Subtract the turned centroid of the source; you add it.",
+            ),
+            Mistake(
+                _posed(_angle, lambda s, t, theta: t[0] - _rotation(theta) @ s[0]),
+                "The heading is right. The place comes from the centroids, not from the first pair alone.",
+            ),
+            Mistake(
+                _posed(_with_a_plus, _right_place),
+                "The cross product has a minus: a_x b_y - a_y b_x.",
+            ),
+            Mistake(
+                _posed(_about_one_number, _right_place),
+                "source.mean() is one number, of x and y together. The centroid is a point: mean over axis 0.",
+            ),
+            Mistake(
+                _posed(lambda s, t: _angle(s, t) % (2 * np.pi), _right_place),
+                "The pose is right, but give theta from -pi to pi, as np.arctan2 does.",
+            ),
+            Mistake(
+                _by_svd_without_sign,
+                "U V^T may be a mirror, which turns the pose round: the sign of the determinant is missing.",
+            ),
         ),
     ),
     Exercise(
@@ -245,6 +314,30 @@ EXERCISES = [
                 "You divide by the number of pairs. Divide by the sum of the squared lengths of the source.",
             ),
             Mistake(_uncentred, "Subtract each side's centroid first."),
+            Mistake(
+                lambda source, target: _spread_ratio(source, target) ** 2,
+                "That is the ratio of squared spreads, with noise counted as size. Above stands the root of C² + S².",
+            ),
+            Mistake(
+                lambda source, target: (lambda a, b, dot, cross: (dot**2 + cross**2) / np.sum(a**2))(
+                    *_sums_of(source, target)
+                ),
+                "The root of the sum of squares is missing above the fraction line.",
+            ),
+            Mistake(
+                lambda source, target: (lambda a, b, dot, cross: np.hypot(dot, cross) / np.linalg.norm(a))(
+                    *_sums_of(source, target)
+                ),
+                "Below stands the sum of the squared lengths itself, without a root.",
+            ),
+            Mistake(
+                lambda source, target: fitted_scale(source, target) / _spread_ratio(source, target),
+                "That is a correlation, never above 1. Divide by the squared spread of the source alone.",
+            ),
+            Mistake(
+                lambda source, target: 2 * fitted_scale(source, target),
+                "Yours is twice too large: the derivative of c² A - 2 c B is 2 c A - 2 B, and the twos cancel.",
+            ),
         ),
     ),
     Exercise(
@@ -267,6 +360,22 @@ EXERCISES = [
             Mistake(
                 lambda source, target: odd_pair(source, target) + 1,
                 "You count pairs from 1. Python counts from 0.",
+            ),
+            Mistake(
+                lambda source, target: int(np.argmax(np.linalg.norm(source - source.mean(axis=0), axis=1))),
+                "That is the pair farthest out, which may be right. Only source and target together tell.",
+            ),
+            Mistake(
+                _without(_squares_of_all, lambda values: int(np.argmin(values))),
+                "You fit the rest, but sum over all pairs: the residual of the one left out does not belong in it.",
+            ),
+            Mistake(
+                _without(_squares_of_rest, lambda values: float(min(values))),
+                "That is the least sum itself. Asked is which pair was left out: np.argmin.",
+            ),
+            Mistake(
+                _without(_squares_of_rest, lambda values: int(np.argmin(values[:-1]))),
+                "You never leave out the last pair: range(len(source)) counts up to it.",
             ),
         ),
     ),

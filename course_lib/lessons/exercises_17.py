@@ -30,7 +30,7 @@ def _poses(rng: np.random.Generator) -> tuple:
     dx[3], dy[4], dx[5] = rng.uniform(2.1, 4.0), rng.uniform(2.1, 4.0), 2.0
     dx[6] = dy[6] = 1.6  # farther off than 2 m in all, but neither in x nor in y
     n_wrong[7], n_wrong[8], dy[8] = 1, 2, 3.0
-    n_used[7:9] = 9
+    n_used[7:9] = 9, 2
     order = rng.permutation(10)
     return dx[order], dy[order], n_used[order], n_wrong[order]
 
