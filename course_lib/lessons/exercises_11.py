@@ -172,6 +172,22 @@ EXERCISES = [
                 lambda u, v, w, h: direction_of(u, v, 1280, 640),
                 "Your image is always 1280 x 640: use the arguments.",
             ),
+            Mistake(
+                lambda u, v, w, h: _from_angles(u / w * 2 * np.pi, (0.5 - v / h) * np.pi),
+                "Your azimuth is 0 at the left edge and grows to the right. It is 0 in the middle and grows leftwards.",
+            ),
+            Mistake(
+                lambda u, v, w, h: _from_angles((0.5 - u / w) * 2 * np.pi, (0.5 - v / w) * np.pi),
+                "You divide the row by the width. Rows run over the height.",
+            ),
+            Mistake(
+                lambda u, v, w, h: direction_of(u, v, w, h)[[1, 2, 0]] * [-1, -1, 1],
+                "That is x right, y down, z forward, as in a depth camera. Here x is ahead, y left, z up.",
+            ),
+            Mistake(
+                lambda u, v, w, h: np.array([*direction_of(u, v, w, h)[:2], np.cos((0.5 - v / h) * np.pi)]),
+                "z is the sine of the elevation: 0 on the horizon, 1 straight up.",
+            ),
         ),
     ),
     Exercise(
@@ -223,6 +239,22 @@ EXERCISES = [
                 lambda a, b, w: column_gap_deg(a, b, 1280),
                 "Your image is always 1280 columns wide: use the argument.",
             ),
+            Mistake(
+                lambda a, b, w: float(np.sign(a - b) * abs(column_gap_deg(a, b, w))),
+                "The size is right. But across the seam the shorter way goes to the other side: wrap sign and all.",
+            ),
+            Mistake(
+                lambda a, b, w: float(column_gap_deg(a, b, 2 * w)),
+                "The whole width is 360 degrees; in yours it is 180.",
+            ),
+            Mistake(
+                lambda a, b, w: float((_plain_gap(a, b, w) / 2 + 90) % 180 - 90),
+                "You took 180 degrees for the whole width, and wrapped by 180. It is 360.",
+            ),
+            Mistake(
+                lambda a, b, w: float(_plain_gap(a, b, w) % 180),
+                "The remainder by 180 makes opposite directions alike. `(d + 180) % 360 - 180` keeps them apart.",
+            ),
         ),
     ),
     Exercise(
@@ -269,6 +301,22 @@ EXERCISES = [
             Mistake(
                 lambda columns, width: mean_column(columns, 1280),
                 "Your image is always 1280 columns wide: use the argument.",
+            ),
+            Mistake(
+                lambda columns, width: (width / 2 - mean_column(columns, width)) % width,
+                "You go to angles from the middle, leftwards: come back to columns the same way, not from the edge.",
+            ),
+            Mistake(
+                lambda columns, width: -mean_column(columns, width) % width,
+                "Your mean is mirrored: come back from the angle to the column the same way as you went.",
+            ),
+            Mistake(
+                lambda columns, width: float(np.angle(np.exp(1j * columns / width * 360).sum()) / 360 * width % width),
+                "np.sin and np.cos take radians: the whole width is 2 pi.",
+            ),
+            Mistake(
+                lambda columns, width: float(round(mean_column(columns, width))),
+                "Columns are edge coordinates here, with fractions: do not round.",
             ),
         ),
     ),

@@ -73,6 +73,10 @@ def _uncut(a: np.ndarray, b: np.ndarray, width: int, across: bool) -> float:
     return _iou(max(0.0, length) * (min(a[3], b[3]) - max(a[1], b[1])), a, b)
 
 
+def _edges_on_image(box: np.ndarray, width: int) -> np.ndarray:
+    return np.array([box[0] % width, box[1], box[2] % width, box[3]])
+
+
 # 12.2: which boxes count
 
 
@@ -167,6 +171,13 @@ EXERCISES = [
             Mistake(
                 lambda a, b, w: _uncut(a, b, w, across=False),
                 "Boxes one above the other share nothing: cut the length down off at 0.",
+            ),
+            Mistake(
+                lambda a, b, w: _iou(
+                    _across(_edges_on_image(a, w), _edges_on_image(b, w)) * _down(a, b),
+                    *(_edges_on_image(box, w) for box in (a, b)),
+                ),
+                "The remainder of u_max turns a box at the seam inside out: its right edge is then left of the other.",
             ),
             Mistake(
                 lambda a, b, w: float(_shared_on_circle(a, b, w)),

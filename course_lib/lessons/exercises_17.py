@@ -139,6 +139,20 @@ EXERCISES = [
                 lambda dx, dy, n_used, n_wrong: np.where(n_used < 2, -1, (n_wrong == 0) | ((dx <= 2) & (dy <= 2))),
                 "Correct needs both: no wrong pair, and small errors. You let one of the two suffice.",
             ),
+            Mistake(
+                lambda dx, dy, n_used, n_wrong: np.where(
+                    n_used - n_wrong < 2, -1, judge_poses(dx, dy, n_used, n_wrong)
+                ),
+                "You count the right pairs. A pose is unable by the number of pairs *used*, right or wrong.",
+            ),
+            Mistake(
+                lambda dx, dy, n_used, n_wrong: _judged(dx + dy, 0, n_used, n_wrong),
+                "You limit the sum of the errors. Table 2 limits the errors in x and in y, each by itself.",
+            ),
+            Mistake(
+                lambda dx, dy, n_used, n_wrong: np.where(n_used < 2, -1, 1 - judge_poses(dx, dy, n_used, n_wrong)),
+                "Correct and incorrect are exchanged: 1 is correct, 0 is incorrect.",
+            ),
         ),
     ),
     Exercise(
@@ -173,6 +187,31 @@ EXERCISES = [
             Mistake(
                 _about_zero,
                 "Your second number is a root mean square about zero. Subtract the common mean from each group's.",
+            ),
+            Mistake(
+                lambda n_a, mean_a, std_a, n_b, mean_b, std_b: (
+                    _weighted(n_a, mean_a, n_b, mean_b),
+                    math.sqrt(((n_a - 1) * std_a**2 + (n_b - 1) * std_b**2) / (n_a + n_b - 2)),
+                ),
+                "That is the pooled deviation about each group's own mean. All together scatter about the common mean.",
+            ),
+            Mistake(
+                lambda n_a, mean_a, std_a, n_b, mean_b, std_b: (
+                    _weighted(n_a, mean_a, n_b, mean_b),
+                    math.sqrt(_weighted(n_a, std_a**2, n_b, std_b**2) + (mean_a - mean_b) ** 2),
+                ),
+                "You take how far the means are from each other. Each one's distance from the common mean counts.",
+            ),
+            Mistake(
+                lambda n_a, mean_a, std_a, n_b, mean_b, std_b: (
+                    _weighted(n_a, mean_a, n_b, mean_b),
+                    combined(n_a, mean_a, std_a, n_b, mean_b, std_b)[1] * math.sqrt(n_a + n_b),
+                ),
+                "The sum of squares is not divided by the number of poses, n_a + n_b.",
+            ),
+            Mistake(
+                lambda n_a, mean_a, std_a, n_b, mean_b, std_b: combined(n_b, mean_a, std_a, n_a, mean_b, std_b),
+                "You weigh each group with the other one's number.",
             ),
         ),
         tolerance=1e-9,
@@ -215,6 +254,18 @@ EXERCISES = [
                 "You took q for the probability of missing an object; it is that of seeing it.",
             ),
             Mistake(lambda n, q: 100 * unable_probability(n, q), "Yours is in percent; a probability is 0 to 1."),
+            Mistake(
+                lambda n, q: (1 - q) ** n + (1 - q) ** (n - 1),
+                "Exactly one is seen: its own probability q belongs there, and any of the n may be the one.",
+            ),
+            Mistake(
+                lambda n, q: 1 - (1 - q) ** n,
+                "That is the probability that at least one is seen. At most one: add none and exactly one.",
+            ),
+            Mistake(
+                lambda n, q: (1 - q) ** n * n * q * (1 - q) ** (n - 1),
+                "None and exactly one exclude each other: add their probabilities, do not multiply.",
+            ),
         ),
         tolerance=1e-9,
     ),

@@ -51,6 +51,12 @@ def _centre_only(k: np.ndarray, scale: float) -> np.ndarray:
     return _with(k, 1.0, lambda c: scale * (c + 0.5) - 0.5)
 
 
+def _one_focal_length(k: np.ndarray, scale: float) -> np.ndarray:
+    square = k.copy()
+    square[1, 1] = k[0, 0]
+    return resized_intrinsics(square, scale)
+
+
 # 20.3: the baseline from marks at known distances
 
 
@@ -159,6 +165,28 @@ EXERCISES = [
                 lambda raw, units_per_metre, invalid: _filled(raw, 1000 * raw / units_per_metre, invalid, np.nan),
                 "Yours is in millimetres. Metres are asked for.",
             ),
+            Mistake(
+                lambda raw, units_per_metre, invalid: np.where(
+                    raw / units_per_metre == invalid, np.nan, raw / units_per_metre
+                ),
+                "You compare metres with `invalid`. It is a raw number: compare before you divide.",
+            ),
+            Mistake(
+                lambda raw, units_per_metre, invalid: np.where(raw != invalid, np.nan, raw / units_per_metre),
+                "The two are exchanged: yours is NaN where there is a measurement.",
+            ),
+            Mistake(
+                lambda raw, units_per_metre, invalid: np.where(raw >= invalid, np.nan, raw / units_per_metre),
+                "Only a pixel that is equal to `invalid` is a hole, not every one that is larger.",
+            ),
+            Mistake(
+                lambda raw, units_per_metre, invalid: _filled(raw, raw / 5000, invalid, np.nan),
+                "You always divide by 5000. The file says how many units make a metre: use `units_per_metre`.",
+            ),
+            Mistake(
+                lambda raw, units_per_metre, invalid: _filled(raw, raw / units_per_metre, invalid, -1.0),
+                "A hole is -1 m in yours. It must be NaN, which no later step can take for a depth.",
+            ),
         ),
     ),
     Exercise(
@@ -194,6 +222,22 @@ EXERCISES = [
                 lambda k, scale: resized_intrinsics(k, 1 / scale),
                 "You divide by the scale. An image of half the width (scale 0.5) has half the focal length.",
             ),
+            Mistake(
+                lambda k, scale: _with(k, scale, lambda c: scale * c - 0.5),
+                "You come back from the edge, but never went there: add 0.5 before you scale.",
+            ),
+            Mistake(
+                lambda k, scale: _with(k, scale, lambda c: scale * c + 0.5),
+                "Add 0.5 before you scale, and subtract 0.5 after it.",
+            ),
+            Mistake(
+                lambda k, scale: resized_intrinsics(k, scale).T,
+                "Your matrix is transposed: cx and cy stand in the last column.",
+            ),
+            Mistake(
+                _one_focal_length,
+                "You take fx for fy as well. A camera's two focal lengths may differ.",
+            ),
         ),
     ),
     Exercise(
@@ -225,6 +269,27 @@ EXERCISES = [
             Mistake(
                 lambda u, v, height, distance: 1000 * baseline_from_marks(u, v, height, distance),
                 "Yours is in millimetres; metres are asked for.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: baseline_from_marks(u, v, height, 1 / distance),
+                "You divide by the distance. Seen under the same angle, a far mark is higher: multiply.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: float(
+                    np.median(distance * np.tan(np.pi * (0.5 - v / height)))
+                    - np.median(distance * np.tan(np.pi * (0.5 - u / height)))
+                ),
+                "You subtract two medians, which may be of different marks. Subtract mark by mark first.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: float(
+                    np.median(distance) * np.median(_all_marks(u, v, height, np.ones(len(distance))))
+                ),
+                "Two medians may be of different marks. Compute the baseline from each mark, then take one median.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: baseline_from_marks(u, v, 512, distance),
+                "Your panorama is always 512 rows high: use the argument.",
             ),
         ),
     ),

@@ -1,4 +1,4 @@
-"""Answers to lessons 12 to 16: what is wrong fails with a hint that fits, what is right by another way passes."""
+"""Answers to lessons 11 to 17: what is wrong fails with a hint that fits, what is right by another way passes."""
 
 from __future__ import annotations
 
@@ -165,6 +165,8 @@ def each(source, target, **options):
 
 
 WRONG = [
+    ("11.2", lambda a, b, w: np.sign(a - b) * min(abs(a - b), w - abs(a - b)) / w * 360, "sign and all"),
+    ("11.3", lambda c, w: -np.angle(np.exp(2j * PI * c / w).sum()) / (2 * PI) * w % w, "mirrored"),
     ("12.1", moved_if_across, "try all turns"),
     ("12.1", lambda a, b, w: iou(sum(turns(a, b, w)) * down(a, b), a, b), "cut the length down off at 0"),
     ("12.1", lambda a, b, w: sum(turns(a, b, w)) * max(0, down(a, b)) / max(area(a), area(b)), "larger box"),
@@ -229,10 +231,13 @@ WRONG = [
     ("16.3", lambda s, m: np.argmin(each(s, m, everything=True)), "sum over all pairs"),
     ("16.3", lambda s, m: min(each(s, m)), "np.argmin"),
     ("16.3", lambda s, m: np.argmin(each(s, m)[:-1]), "never leave out the last"),
+    ("17.1", lambda x, y, k, n: np.where(k - n < 2, -1, (n == 0) & (x <= 2) & (y <= 2)), "pairs *used*"),
+    ("17.3", lambda n, q: 1 - (1 - q) ** n, "at least one"),
 ]
 RIGHT = [
+    ("11.2", lambda a, b, w: np.degrees(wrap_angle((a - b) / w * 2 * PI))),
+    ("11.3", lambda c, w: (0.5 - np.angle(np.exp(2j * PI * (0.5 - c / w)).sum()) / (2 * PI)) * w % w),
     ("12.1", nearest_copy),
-    ("12.1", lambda a, b, w: iou(max(turns(a, b, w)) * max(0, down(a, b)), a, b)),
     ("12.2", lambda boxes, w: [w / 8 <= (box[0] + box[2]) / 2 < w / 8 + w for box in boxes]),
     ("12.2", lambda boxes, w: ((centre(boxes) - w / 8) // w == 0).astype(int)),
     ("12.3", lambda h, s: np.angle(hue_arrow(h, s), deg=True) % 360),
