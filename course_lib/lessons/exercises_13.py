@@ -165,16 +165,13 @@ def _row_by_row(counts: np.ndarray) -> np.ndarray:
     return result
 
 
-def _repeated_maximum(counts: np.ndarray, rounds: int, row_out: bool = True, column_out: bool = True) -> np.ndarray:
-    """A mistake: so many rounds, and a pair takes only its row or only its column out."""
+def _repeated_maximum(counts: np.ndarray, rounds: int) -> np.ndarray:
+    """A mistake: so many rounds, whether or not a count above 0 is left."""
     counts, result = np.array(counts), np.full(len(counts), -1)
     for _ in range(rounds):
         i, j = np.unravel_index(counts.argmax(), counts.shape)
         result[i] = j
-        if row_out:
-            counts[i] = 0
-        if column_out:
-            counts[:, j] = 0
+        counts[i], counts[:, j] = 0, 0
     return result
 
 

@@ -86,7 +86,7 @@ def _place_with(distance: Callable, turn_up: float = 1.0) -> Callable:
 
 
 def _place_on_a_square_image(box_upper: np.ndarray, box_lower: np.ndarray, width: int, baseline: float) -> np.ndarray:
-    (a, _), _ = _angles(_centre(box_upper), width), None
+    a, _ = _angles(_centre(box_upper), width)
     e_u, e_l = ((0.5 - _centre(box)[1] / width) * np.pi for box in (box_upper, box_lower))
     return _distance(e_u, e_l, baseline) * _direction(a, e_u)
 
