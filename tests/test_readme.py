@@ -82,7 +82,7 @@ def test_the_rows_of_the_room_are_the_medians_and_ranges_of_its_stored_results(n
             for key in keys:
                 value = value[key]
             values.append(value)
-        assert len(values) == 4
+        assert len(values) == 5
         quoted = [float(number) for number in re.findall(r"\d+(?:\.\d+)?", cell)]
         expected = [float(f"{number:.{digits}f}") for number in (np.median(values), min(values), max(values))]
         assert quoted == expected
@@ -92,9 +92,12 @@ def test_the_readme_quotes_detector_stereo_and_distances_as_stored():
     scores = json.loads((ROOT / "data" / "detector" / "scores.json").read_text())
     stored = json.loads((ROOM_RESULTS / "seed_4.json").read_text())
     errors, matching = stored["median_relative_range_error_percent"], stored["stereo_matching"]
+    turns = stored["rolled_images"]
     for row, values in (
         ("| detector on the experiment's room", [scores["experiment_room"][k] for k in ("precision", "recall")]),
         ("| detector on 20 rooms", [scores["unseen_rooms"][k] for k in ("precision", "recall")]),
+        ("| images rolled by", [turns["alike"][k] for k in ("greatest_moved_m", "greatest_turned_deg")]),
+        ("| the same, pairs weighted", [turns["by_covariance"][k] for k in ("greatest_moved_m", "greatest_turned_deg")]),
         ("| stereo matching", [matching["right_percent"], matching["unmatched_percent"]]),
         (
             "| median relative error of distances",

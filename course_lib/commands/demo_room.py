@@ -21,12 +21,13 @@ if TYPE_CHECKING:  # imported where they are used, so that --help does not wait 
 
     from course_lib.spherical_stereo.detection import YoloDetector
     from course_lib.spherical_stereo.semantic_map import SemanticMap
-    from course_lib.spherical_stereo.turned_rig import Turn
+    from course_lib.spherical_stereo.turned_rig import RolledPair
 
 HEAD = f"{'':32} {'dx [m]':>8} {'dy [m]':>8} {'dtheta [deg]':>13}   {'std x':>6} {'std y':>6} {'std theta':>9}"
 MEANS = ("mean_dx_m", "mean_dy_m", "mean_dtheta_deg")
 COLUMNS = (*MEANS, "std_dx_m", "std_dy_m", "std_dtheta_deg")
 EXACT = "_exact_boxes"  # ends the key of the numbers from exact boxes
+FITS = {"alike": "all pairs counted alike, the paper's way", "by_covariance": "pairs weighted by their covariance"}
 FEW_UNABLE_PERCENT = 5.0  # half of the paper's 10
 MANY_PAIRS = 8  # so many that the others outvote two wrong ones
 
@@ -107,12 +108,12 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
     from course_lib.spherical_stereo.semantic_map import SemanticMap
     from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
-    from course_lib.spherical_stereo.turned_rig import turn_summary, turn_the_rig
+    from course_lib.spherical_stereo.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
 
     semantic_map = SemanticMap.load(folder / "semantic_map.json")
     detector = detector or chosen_detector(arguments)
     results: dict[str, dict[str, list]] = {}
-    turns: list[Turn] = []
+    rolled: dict[str, list[RolledPair]] = {name: [] for name in FITS}
     for number in (1, 2):
         recording = read_stereo_recording(folder / f"experiment_{number}")
         recording = replace(recording, pairs=recording.pairs[: arguments.poses])
@@ -131,10 +132,12 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
         }
         if arguments.roll:
             bar = progress_bar(f"experiment {number}, rolled images", "pose")
-            turns += turn_the_rig(results[f"experiment_{number}"]["images"], localizer, arguments.roll, bar)
+            pairs = turn_the_rig(results[f"experiment_{number}"]["images"], localizer, arguments.roll, bar)
+            rolled["alike"] += pairs
+            rolled["by_covariance"] += weigh_by_covariance(pairs, localizer)
     summary = summarize(arguments, recording, results, semantic_map, recording.rig.baseline)
     if arguments.roll:
-        summary["rolled_images"] = turn_summary(turns)
+        summary["rolled_images"] = {name: turn_summary(pairs) for name, pairs in rolled.items()}
     written = write(arguments.out, summary, results, draw(semantic_map, results))
     if arguments.json:
         print(json.dumps(summary))
@@ -327,18 +330,22 @@ def remarks(summary: dict) -> list[str]:
     return sentences
 
 
-def _turns(turns: dict) -> list[str]:
-    columns = ", ".join(str(k) for k in turns["columns"])
+def _turns(rolled: dict) -> list[str]:
+    first = rolled["alike"]
+    columns = ", ".join(str(k) for k in first["columns"])
     lines = [
-        f"Images rolled by {columns} columns: in {turns['associations_agree']} of {turns['n']} the same objects were "
-        "taken for the same landmarks"
+        f"Images rolled by {columns} columns: in {first['associations_agree']} of {first['n']} the same objects were "
+        "taken for the same landmarks;",
+        "  there the pose moved, and its heading turned too much or too little, by",
     ]
-    if turns["associations_agree"]:
-        lines.append(
-            f"  there the pose moved by {turns['median_moved_m']:.3f} m in the median, "
-            f"{turns['greatest_moved_m']:.2f} m at most ({turns['within_0.10_m']} within 0.10 m), and its heading by "
-            f"{turns['median_turned_deg']:.2f} and {turns['greatest_turned_deg']:.1f} degrees too much or too little"
-        )
+    for name, words in FITS.items():
+        turns = rolled[name]
+        if turns["associations_agree"]:
+            lines.append(
+                f"  {words:42} {turns['median_moved_m']:.3f} m and {turns['median_turned_deg']:.2f} degrees in the "
+                f"median, {turns['greatest_moved_m']:.2f} m and {turns['greatest_turned_deg']:.2f} degrees at most; "
+                f"{turns['within_0.10_m']} within 0.10 m"
+            )
     return lines
 
 

@@ -47,7 +47,7 @@ def test_one_json_object_is_printed_and_nothing_else(tmp_path, capsys):
     assert main(["demo", "room", "--poses", "1", "--out", str(tmp_path), "--json", "--roll", "640", "97"]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["experiment_1"]["greedy"]["n"] == 1
-    assert summary["rolled_images"]["n"] == 2 * 2, "two experiments, two numbers of columns"
+    assert summary["rolled_images"]["alike"]["n"] == 2 * 2, "two experiments, two numbers of columns"
 
 
 def test_the_tables_hold_the_papers_numbers_beside_ours(tmp_path, capsys):
@@ -60,6 +60,7 @@ def test_the_tables_hold_the_papers_numbers_beside_ours(tmp_path, capsys):
         "ours, exact boxes",
         "images, greedy",
         "Images rolled by 640 columns",
+        "pairs weighted by their covariance",
     ):
         assert part in text
 

@@ -8,7 +8,7 @@ from course_lib.spherical_stereo.localization import UNABLE, Localization
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.semantic_map import Landmark, SemanticMap
 from course_lib.spherical_stereo.sphere import StereoRig
-from course_lib.spherical_stereo.turned_rig import Turn, compare, turn_summary
+from course_lib.spherical_stereo.turned_rig import RolledPair, compare, turn_summary, weigh_by_covariance
 
 WIDTH, COLUMNS = 1280, 97
 ANGLE = 2 * np.pi * COLUMNS / WIDTH
@@ -38,44 +38,72 @@ def localized(turn=0.0, shift=(0.0, 0.0), labels=("sofa", "table", "chair")):
     return SemanticLocalizer(StereoRig(0.3, 1.4), MAP).localize_observations(seen)
 
 
+def pair(rolled, straight=None):
+    return RolledPair(COLUMNS, WIDTH, straight or localized(), rolled)
+
+
 def test_a_rig_that_only_turns_stays_where_it_is():
-    turn = compare(localized(), localized(ANGLE), COLUMNS, WIDTH)
+    turn = compare(pair(localized(ANGLE)))
     assert turn.agree
     assert turn.moved == pytest.approx(0.0, abs=1e-9)
     assert turn.turned == pytest.approx(0.0, abs=1e-9)
 
 
 def test_what_moves_and_turns_besides_is_measured():
-    turn = compare(localized(), localized(ANGLE - 0.02, (0.03, 0.04)), COLUMNS, WIDTH)
+    turn = compare(pair(localized(ANGLE - 0.02, (0.03, 0.04))))
     assert turn.agree
     assert turn.moved == pytest.approx(0.05)
     assert turn.turned == pytest.approx(0.02)
 
 
 def test_a_turn_the_other_way_does_not_agree():
-    assert not compare(localized(), localized(-ANGLE), COLUMNS, WIDTH).agree
+    assert not compare(pair(localized(-ANGLE))).agree
 
 
 def test_an_object_more_or_less_does_not_agree():
-    assert not compare(localized(), localized(ANGLE, labels=("sofa", "table")), COLUMNS, WIDTH).agree
+    assert not compare(pair(localized(ANGLE, labels=("sofa", "table")))).agree
 
 
 def test_without_a_pose_nothing_agrees():
-    turn = compare(localized(), Localization(None, UNABLE), COLUMNS, WIDTH)
+    turn = compare(pair(Localization(None, UNABLE)))
     assert not turn.agree
     assert np.isnan(turn.moved)
 
 
 def test_the_summary_is_of_those_that_agree():
-    turns = [Turn(97, True, 0.02, 0.01), Turn(640, True, 0.12, 0.03), Turn(97, False, 3.0, 1.0)]
-    found = turn_summary(turns)
+    found = turn_summary(
+        [
+            pair(localized(ANGLE - 0.01, (0.0, 0.02))),
+            pair(localized(ANGLE, (0.105, 0.0))),
+            pair(localized(-ANGLE, (3.0, 0.0))),
+        ]
+    )
     assert (found["n"], found["associations_agree"], found["within_0.10_m"]) == (3, 2, 1)
-    assert found["columns"] == [97, 640]
-    assert found["greatest_moved_m"] == pytest.approx(0.12)
-    assert found["greatest_turned_deg"] == pytest.approx(np.rad2deg(0.03))
+    assert found["columns"] == [COLUMNS]
+    assert found["greatest_moved_m"] == pytest.approx(0.105)
+    assert found["greatest_turned_deg"] == pytest.approx(np.rad2deg(0.01))
 
 
 def test_a_summary_of_nothing_that_agrees_has_no_numbers():
-    found = turn_summary([Turn(97, False, np.nan, np.nan)])
+    found = turn_summary([pair(Localization(None, UNABLE))])
     assert found["associations_agree"] == 0
     assert found["median_moved_m"] is None
+
+
+def test_weighted_by_covariance_a_far_object_that_moves_hardly_moves_the_pose():
+    """The sofa, of which the covariance says that it is uncertain, is seen half a metre farther away."""
+    sure, unsure = 0.01 * np.eye(2), np.eye(2)
+    seen = [
+        Observation(one.label, one.x, one.y, one.hue, one.saturation, unsure if one.label == "sofa" else sure)
+        for one in MAP.landmarks
+    ]
+    moved = [one._replace(x=one.x + 0.5) if one.label == "sofa" else one for one in seen]
+    localizer = SemanticLocalizer(StereoRig(0.3, 1.4), MAP)
+    pairs = [
+        RolledPair(0, WIDTH, localizer.localize_observations(seen), localizer.localize_observations(moved)),
+        RolledPair(0, WIDTH, localizer.localize_observations(seen), Localization(None, UNABLE)),
+    ]
+    alike, weighted = compare(pairs[0]), compare(weigh_by_covariance(pairs, localizer)[0])
+    assert alike.agree
+    assert weighted.agree
+    assert weighted.moved < 0.2 * alike.moved
