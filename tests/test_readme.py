@@ -92,12 +92,12 @@ def test_the_readme_quotes_detector_stereo_and_distances_as_stored():
     scores = json.loads((ROOT / "data" / "detector" / "scores.json").read_text())
     stored = json.loads((ROOM_RESULTS / "seed_4.json").read_text())
     errors, matching = stored["median_relative_range_error_percent"], stored["stereo_matching"]
-    turns = stored["rolled_images"]
+    turns, greatest = stored["rolled_images"], ("greatest_moved_m", "greatest_turned_deg")
     for row, values in (
         ("| detector on the experiment's room", [scores["experiment_room"][k] for k in ("precision", "recall")]),
         ("| detector on 20 rooms", [scores["unseen_rooms"][k] for k in ("precision", "recall")]),
-        ("| images rolled by", [turns["alike"][k] for k in ("greatest_moved_m", "greatest_turned_deg")]),
-        ("| the same, pairs weighted", [turns["by_covariance"][k] for k in ("greatest_moved_m", "greatest_turned_deg")]),
+        ("| images rolled by", [turns["alike"][key] for key in greatest]),
+        ("| the same, pairs weighted", [turns["by_covariance"][key] for key in greatest]),
         ("| stereo matching", [matching["right_percent"], matching["unmatched_percent"]]),
         (
             "| median relative error of distances",

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.exercises import find_exercise, judge
+from tests.lessons import answers_01_to_07, answers_11_to_17
 
 # Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
 SEEDS = range(8)
@@ -169,9 +170,15 @@ RIGHT = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("number", "answer", "words"), WRONG, ids=lambda given: given if isinstance(given, str) else ""
-)
+WRONG_ANSWERS = [*WRONG, *answers_01_to_07.WRONG, *answers_11_to_17.WRONG]
+RIGHT_ANSWERS = [*RIGHT, *answers_01_to_07.RIGHT, *answers_11_to_17.RIGHT]
+
+
+def number_of(given):
+    return given if isinstance(given, str) else ""
+
+
+@pytest.mark.parametrize(("number", "answer", "words"), WRONG_ANSWERS, ids=number_of)
 def test_a_wrong_answer_fails_with_a_hint_that_fits(number, answer, words):
     for seed in SEEDS:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -180,7 +187,7 @@ def test_a_wrong_answer_fails_with_a_hint_that_fits(number, answer, words):
         assert words in verdict.message
 
 
-@pytest.mark.parametrize(("number", "answer"), RIGHT, ids=lambda given: given if isinstance(given, str) else "")
+@pytest.mark.parametrize(("number", "answer"), RIGHT_ANSWERS, ids=number_of)
 def test_another_way_to_the_right_values_passes(number, answer):
     for seed in SEEDS:
         assert judge(find_exercise(number), answer, seed).status == "right"

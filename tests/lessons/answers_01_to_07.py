@@ -1,15 +1,11 @@
-"""Answers to lessons 01, 02 and 04 to 07: what is wrong fails with a hint that fits, right by another way passes."""
+"""Answers that students may give to lessons 01, 02 and 04 to 07, for test_exercise_answers.py."""
 
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from course_lib.geometry import BODY_FROM_OPTICAL, optical_pose, pose_matrix, state_from_matrix, wrap_angle
-from course_lib.lessons.exercises import find_exercise, judge
 
-# Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
-SEEDS = range(4)
 B = BODY_FROM_OPTICAL
 LIGHT = 299_792_458.0  # m/s
 
@@ -135,6 +131,7 @@ def in_place(likelihoods, beta):
     return to_sum_one(w_of(likelihoods, beta))
 
 
+# Exercise, answer, words of the hint that must come.
 WRONG = [
     ("01.1", lambda p, s: p @ B @ rotation(s) + s[:3], "Both of your turns run backwards"),
     ("01.1", lambda p, s: p[:, [2, 0, 1]] @ rotation(s).T + s[:3], "keep their signs"),
@@ -206,6 +203,7 @@ WRONG = [
     ("07.3", lambda w: np.sum(1 - (1 - w) ** 2), "two draws"),
     ("07.3", lambda w: 1 - np.sum((1 - w) ** len(w)), "belongs to every particle"),
 ]
+# Exercise, answer by another way than the solution.
 RIGHT = [
     ("01.1", lambda p, s: (optical_pose(s) @ homogeneous(p).T)[:3].T),
     ("01.1", lambda p, s: [list(rotation(s) @ B @ q + s[:3]) for q in p]),
@@ -229,22 +227,3 @@ RIGHT = [
     ("07.2", lambda w: [(len(w) * w).astype(int), (len(w) * w % 1) / (len(w) - (len(w) * w).astype(int).sum())]),
     ("07.3", lambda w: len(w) - sum((1 - share) ** len(w) for share in w)),
 ]
-
-
-def number_of(given):
-    return given if isinstance(given, str) else ""
-
-
-@pytest.mark.parametrize(("number", "answer", "words"), WRONG, ids=number_of)
-def test_a_wrong_answer_fails_with_a_hint_that_fits(number, answer, words):
-    for seed in SEEDS:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            verdict = judge(find_exercise(number), answer, seed)
-        assert verdict.status == "wrong"
-        assert words in verdict.message
-
-
-@pytest.mark.parametrize(("number", "answer"), RIGHT, ids=number_of)
-def test_another_way_to_the_right_values_passes(number, answer):
-    for seed in SEEDS:
-        assert judge(find_exercise(number), answer, seed).status == "right"
