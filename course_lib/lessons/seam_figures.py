@@ -162,7 +162,7 @@ def seam_panel(cuts: dict[int, object], pieces_of: Callable, best_overlap: Calla
             f"seam at {cut:.0f} % of the sofa, {'with' if extension else 'without'} the extension, threshold "
             f"{threshold:.2f}",
             f"boxes on this sofa: {len(pieces)}; best overlap with its exact box (IoU) {overlap:.1f}; "
-            f"in the whole image the network saw {len(seen.boxes)} boxes, objects in the end: {len(objects.boxes)}",
+            f"in the image: {len(seen.boxes)} boxes, {len(objects.boxes)} objects in the end",
         ]
         return Drawing(live.png(), f"A panorama with the boxes of detected objects. {lines[0]}", "\n".join(lines))
 
