@@ -8,6 +8,7 @@
     localizer            figure 1: all of it in order
     evaluation           section 4: table 1
     fallon, planar_map   the method that table 1 compares with
+    gaussian             the textbook's likelihood, to compare with (8)
     sequence             recordings on disk
 
 State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`.

@@ -16,6 +16,7 @@ from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.semantic_map import SemanticMap
 from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
 from course_lib.spherical_stereo.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
+from course_lib.worlds.data_folder import checksums
 from course_lib.worlds.room_images import labelled_images, make_room_images
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "detector"
@@ -41,6 +42,13 @@ def localizer(detector, recording):
 @pytest.fixture(scope="module")
 def scores():
     return json.loads((FOLDER / "scores.json").read_text())
+
+
+FILES = ("room_yolo.cfg", "room_yolo.names", "room_yolo.weights", "scores.json", "training.json")
+
+
+def test_the_checksums_are_those_of_the_files():
+    assert (FOLDER / "SHA256SUMS").read_text() == checksums(FOLDER, FILES)
 
 
 def test_the_network_is_small_and_whole(detector):
