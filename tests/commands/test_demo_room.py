@@ -6,7 +6,7 @@ import json
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands.demo_room import remarks
+from course_lib.commands.room_tables import remarks
 from course_lib.spherical_stereo.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
 from course_lib.worlds import room_data
 
