@@ -7,6 +7,7 @@ choose what runs; without a path everything does.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import subprocess
 import sys
@@ -52,8 +53,8 @@ def run(arguments: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="course-test-") as home:
         for name, pytest_arguments in parts.items():
             print(f"\n=== {name}", flush=True)
-            command = [sys.executable, "-m", "pytest", *pytest_arguments]
-            codes[name] = subprocess.run(command, cwd=ROOT, env=part_environment(name, Path(home))).returncode
+            runs = [pytest_arguments] if chosen or name != "notebooks" else in_two_halves(pytest_arguments)
+            codes[name] = run_side_by_side(runs, part_environment(name, Path(home)))
     return conclude(codes, chosen, time.monotonic() - started)
 
 
@@ -78,6 +79,39 @@ def choose_parts(
     if notebooks and not no_notebooks:
         parts["notebooks"] = [*nbval_options(), *options, *notebooks]
     return parts
+
+
+def in_two_halves(pytest_arguments: list[str], processors: int | None = os.cpu_count()) -> list[list[str]]:
+    """The arguments of all lessons as two lists, each of every other lesson: a kernel keeps one processor busy, not two.
+
+    With one processor, or a lesson alone, they stay one run.
+    """
+    lessons = sorted((ROOT / "notebooks").glob("*.ipynb"))
+    if (processors or 1) < 2 or len(lessons) < 2:
+        return [pytest_arguments]
+    options = pytest_arguments[:-1]
+    return [[*options, *(str(path.relative_to(ROOT)) for path in lessons[half::2])] for half in (0, 1)]
+
+
+def run_side_by_side(runs: list[list[str]], environment: dict[str, str]) -> int:
+    """Runs pytest once for each list of arguments, all at once; the first exit code that is not 0, or 0.
+
+    The first run prints as it goes; what the others print follows when it has ended, so that lines do not mix.
+    """
+    commands = [[sys.executable, "-m", "pytest", *arguments] for arguments in runs]
+    with contextlib.ExitStack() as stack:
+        others = []
+        for command in commands[1:]:
+            printed = stack.enter_context(tempfile.TemporaryFile("w+"))
+            process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=printed, stderr=subprocess.STDOUT)
+            stack.callback(process.kill)
+            others.append((process, printed))
+        codes = [subprocess.run(commands[0], cwd=ROOT, env=environment).returncode]
+        for process, printed in others:
+            codes.append(process.wait())
+            printed.seek(0)
+            print(printed.read(), flush=True)
+    return next((code for code in codes if code != 0), 0)
 
 
 def looks_like_a_path(word: str) -> bool:

@@ -98,6 +98,29 @@ def test_a_failing_test_and_a_wrong_stored_output_fail_the_run(tmp_path, monkeyp
     assert (run_in(tmp_path, monkeypatch) == 0) == passes
 
 
+@pytest.mark.parametrize("wrong", range(4))
+def test_a_wrong_output_in_either_half_of_the_lessons_fails_the_run(tmp_path, monkeypatch, capfd, wrong):
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests" / "test_one.py").write_text("def test_one():\n    pass\n")
+    for number in range(3):
+        write_notebook(
+            tmp_path / "notebooks" / f"0{number}_a.ipynb", "print(1 + 1)", "3\n" if number == wrong else "2\n"
+        )
+    assert (run_in(tmp_path, monkeypatch) == 0) == (wrong == 3)
+    printed = capfd.readouterr().out
+    assert all(f"0{number}_a.ipynb" in printed for number in range(3))
+
+
+def test_with_one_processor_the_lessons_run_one_after_the_other(tmp_path, monkeypatch):
+    monkeypatch.setattr(test_command, "ROOT", tmp_path)
+    for number in range(3):
+        write_notebook(tmp_path / "notebooks" / f"0{number}_a.ipynb", "print(2)", "2\n")
+    assert test_command.in_two_halves(["--nbval", "notebooks"], 1) == [["--nbval", "notebooks"]]
+    first, second = test_command.in_two_halves(["--nbval", "notebooks"], 2)
+    assert first == ["--nbval", os.path.join("notebooks", "00_a.ipynb"), os.path.join("notebooks", "02_a.ipynb")]
+    assert second == ["--nbval", os.path.join("notebooks", "01_a.ipynb")]
+
+
 def test_no_test_at_all_fails_with_a_sentence(tmp_path, monkeypatch, capfd):
     (tmp_path / "tests").mkdir()
     (tmp_path / "notebooks").mkdir()
