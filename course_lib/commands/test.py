@@ -82,7 +82,7 @@ def choose_parts(
 
 
 def in_two_halves(pytest_arguments: list[str], processors: int | None = os.cpu_count()) -> list[list[str]]:
-    """The arguments of all lessons as two lists, each of every other lesson: a kernel keeps one processor busy, not two.
+    """The arguments of all lessons as two lists of every other lesson: a kernel keeps one processor busy, not two.
 
     With one processor, or a lesson alone, they stay one run.
     """
