@@ -99,3 +99,18 @@ def test_the_stored_stereo_matching_and_distances_meet_the_aims():
         assert errors["exact_boxes"] <= 8
         assert errors["detected_box_centres"] <= 15
         assert errors["akaze_disparities"] <= 9
+
+
+def test_weighted_by_covariance_rolled_images_never_move_the_stored_poses_by_more_than_a_decimetre():
+    turns = stored(SHIPPED_SEED)["rolled_images"]["by_covariance"]
+    assert turns["associations_agree"] > 80
+    assert turns["within_0.10_m"] == turns["associations_agree"]
+    assert turns["greatest_turned_deg"] < 2.0
+
+
+@pytest.mark.xfail(
+    strict=True, reason="aim not met: counted alike, far objects move the pose with a pixel of their boxes"
+)
+def test_counted_alike_rolled_images_never_move_the_stored_poses_by_more_than_a_decimetre():
+    turns = stored(SHIPPED_SEED)["rolled_images"]["alike"]
+    assert turns["within_0.10_m"] == turns["associations_agree"]
