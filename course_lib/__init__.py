@@ -1,8 +1,13 @@
 """Indoor localization by doing it: depth-camera Monte Carlo localization and spherical stereo.
 
-`course_lib.geometry` holds the frames both methods share, `course_lib.depth_mcl` paper 1 (Hatakeyama, Kanai, Date),
-`course_lib.worlds` the simulated places that data/ was made from, `course_lib.lessons` what only the notebooks use.
-The command line is `python -m course_lib`, normally reached through `python3 course.py`.
+geometry             the frames that both methods share
+depth_mcl            paper 1 (Hatakeyama, Kanai, Date)
+spherical_stereo     paper 2 (Onozeki, Iriyama, Ogasa, Pathak, Umeda)
+experiments          both papers' tables, as functions of a seed
+simulation           the places that data/ was made from
+detector_training    the network that finds objects (needs PyTorch)
+plots, lessons       figures, and what only the notebooks use
+commands, cli        `python -m course_lib`, normally reached through `python3 course.py`
 """
 
 __version__ = "0.1.0"

@@ -39,10 +39,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs all rows of the table; 0 when every one reached the last frame."""
     from course_lib.commands.arguments import require_output_folder, require_seed
     from course_lib.commands.progress import progress_bar
-    from course_lib.depth_mcl.experiment import METHODS, path_errors, run_method
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
-    from course_lib.lessons.paths import data_path
+    from course_lib.experiments.corridor import METHODS, path_errors, run_method
+    from course_lib.lessons.kit.paths import data_path
 
     require_seed(arguments.seed)
     require_output_folder(arguments.out)
@@ -78,8 +78,8 @@ def summarize(seed: int, n_particles: int, runs: dict, errors: dict) -> dict:
     """The numbers of table 1: the paper's experiment at the top level, every method below `methods`."""
     import numpy as np
 
-    from course_lib.depth_mcl.experiment import METHODS
     from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
+    from course_lib.experiments.corridor import METHODS
 
     rows = {}
     for key, run in runs.items():
@@ -110,8 +110,8 @@ def draw(scene_map: SceneMap, sequence: DepthSequence, runs: dict, errors: dict,
     """Figures 5 and 6 and the overview, by file name."""
     import numpy as np
 
-    from course_lib.lessons.corridor_figures import figure_5, figure_6, floor_plan
-    from course_lib.lessons.overview_figure import overview_figure
+    from course_lib.plots.corridor_figures import figure_5, figure_6, floor_plan
+    from course_lib.plots.overview_figure import overview_figure
 
     ours = runs["proposed"]
     shown = {"ours": "proposed", "Fallon-style, 20 x 15": "fallon"}
@@ -132,7 +132,7 @@ def write(
     """Writes numbers (JSON, CSV a row a frame), trajectory (TUM) and figures; the names of the files."""
     import numpy as np
 
-    from course_lib.datasets import write_results, write_tum
+    from course_lib.experiments.results import write_results, write_tum
 
     ours = runs["proposed"]
     rows = [

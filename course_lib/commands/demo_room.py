@@ -20,9 +20,9 @@ from course_lib.commands.room_tables import EXACT, FITS, tables
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from matplotlib.figure import Figure
 
-    from course_lib.spherical_stereo.detection import YoloDetector
-    from course_lib.spherical_stereo.semantic_map import SemanticMap
-    from course_lib.spherical_stereo.turned_rig import RolledPair
+    from course_lib.experiments.turned_rig import RolledPair
+    from course_lib.spherical_stereo.detection.detector import YoloDetector
+    from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -63,8 +63,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Runs both experiments, from images and from exact boxes; returns the exit code."""
     from course_lib.commands.arguments import require_output_folder, require_seed
-    from course_lib.lessons.paths import data_path
-    from course_lib.spherical_stereo.association import ASSOCIATIONS
+    from course_lib.lessons.kit.paths import data_path
+    from course_lib.spherical_stereo.semantic_map.association import ASSOCIATIONS
 
     if arguments.seed is not None and arguments.data is not None:
         raise ValueError(
@@ -90,18 +90,18 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _photograph(folder: Path, seed: int) -> None:
     from course_lib.commands.progress import progress_bar
-    from course_lib.worlds.room_data import make_room_data
+    from course_lib.simulation.room.data import make_room_data
 
     make_room_data(folder, seed, progress=progress_bar("photographs", "pair"))
 
 
 def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector | None = None) -> int:
     from course_lib.commands.progress import progress_bar
-    from course_lib.spherical_stereo.experiment import SOURCES, run_experiment
+    from course_lib.experiments.room import SOURCES, run_experiment
+    from course_lib.experiments.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
-    from course_lib.spherical_stereo.semantic_map import SemanticMap
-    from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
-    from course_lib.spherical_stereo.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
+    from course_lib.spherical_stereo.recording import read_stereo_recording
+    from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
     semantic_map = SemanticMap.load(folder / "semantic_map.json")
     detector = detector or chosen_detector(arguments)
@@ -144,7 +144,7 @@ def summarize(arguments, recording, results: dict, semantic_map: SemanticMap, ba
     """Tables 3 to 5 by experiment and association method, stereo matching and distances over all poses."""
     import numpy as np
 
-    from course_lib.spherical_stereo.experiment import experiment_summary, matching_counts, range_errors
+    from course_lib.experiments.room import experiment_summary, matching_counts, range_errors
 
     name = arguments.association
     from_images = [result for experiment in results.values() for result in experiment["images"]]
@@ -184,7 +184,7 @@ def _pairs_of_incorrect(results: list) -> dict:
     """How many pairs of an incorrect pose are wrong, of how many used; None where no pose is incorrect."""
     import numpy as np
 
-    from course_lib.spherical_stereo.evaluation import INCORRECT, wrong_pairs
+    from course_lib.experiments.room_evaluation import INCORRECT, wrong_pairs
 
     incorrect = [result for result in results if result.outcome.kind == INCORRECT]
     wrong = [len(wrong_pairs(result.localization, result.true_landmarks)) for result in incorrect]
@@ -197,8 +197,8 @@ def _pairs_of_incorrect(results: list) -> dict:
 
 def draw(semantic_map: SemanticMap, results: dict) -> dict[str, Figure]:
     """The figures, by file name: of one pose that is right, of one that is wrong, and of all poses from above."""
-    from course_lib.lessons import room_figures as figures
-    from course_lib.spherical_stereo.evaluation import CORRECT, INCORRECT
+    from course_lib.experiments.room_evaluation import CORRECT, INCORRECT
+    from course_lib.plots import room_figures as figures
 
     drawn: dict[str, Figure] = {}
     for experiment, by_source in results.items():
@@ -220,7 +220,7 @@ def draw(semantic_map: SemanticMap, results: dict) -> dict[str, Figure]:
 
 def write(out: Path, summary: dict, results: dict, figures: dict[str, Figure]) -> list[str]:
     """Writes numbers (JSON, CSV a row a pose) and figures; returns the names of the files."""
-    from course_lib.datasets import write_results
+    from course_lib.experiments.results import write_results
 
     rows = [
         {

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # imported where it is used, so that --help does not wait for OpenCV
-    from course_lib.spherical_stereo.detection import YoloDetector
+    from course_lib.spherical_stereo.detection.detector import YoloDetector
 
 STRIDE = 32  # pixels of the input that one cell of a YOLOv4's coarsest grid covers
 
@@ -42,7 +42,7 @@ def chosen_detector(arguments: argparse.Namespace) -> YoloDetector:
 
     Raises `ValueError` for an input size or a threshold that no network can have, and what `load_detector` raises.
     """
-    from course_lib.lessons.shipped_detector import load_detector
+    from course_lib.lessons.kit.shipped_detector import load_detector
 
     options: dict = {}
     if arguments.input_size is not None:

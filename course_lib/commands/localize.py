@@ -53,9 +53,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs the filter; 0 when it reached the last frame."""
     from course_lib.commands.arguments import require_output_folder, require_seed
     from course_lib.commands.progress import progress_bar
-    from course_lib.depth_mcl.experiment import pose_error_summary, run_sequence
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
+    from course_lib.experiments.corridor import pose_error_summary, run_sequence
 
     require_seed(arguments.seed)
     if arguments.out:
@@ -126,9 +126,9 @@ def _table(s: dict) -> str:
 
 
 def _write(folder: Path, summary: dict, result: object, sequence: object) -> None:
-    from course_lib.datasets import write_results, write_tum
     from course_lib.depth_mcl.evaluation import pose_errors
-    from course_lib.lessons.corridor_figures import figure_6
+    from course_lib.experiments.results import write_results, write_tum
+    from course_lib.plots.corridor_figures import figure_6
 
     true = sequence.camera_to_world[: len(result.frames)]
     position, rotation = pose_errors(result.camera_to_world, true)

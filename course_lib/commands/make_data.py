@@ -26,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
     require_seed(arguments.seed)
     from tqdm import tqdm
 
-    from course_lib.worlds.corridor_data import make_corridor_data
+    from course_lib.simulation.corridor.data import make_corridor_data
 
     summary = make_corridor_data(
         arguments.out, arguments.seed, progress=lambda items, text: tqdm(items, desc=f"{text:28s}", ascii=True)

@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     out = arguments.out or FOLDER
     require_output_folder(out)
     from course_lib.commands.progress import progress_bar
-    from course_lib.worlds.room_data import make_room_data
+    from course_lib.simulation.room.data import make_room_data
 
     summary = make_room_data(out, arguments.seed, progress=progress_bar("photographs", "pair"))
     print(f"wrote {summary['pairs']} pairs of a room with {summary['objects']} objects to {out}")

@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
         if value < least:
             raise ValueError(f"{option} must be at least {least}; got {value}")
     require_output_folder(arguments.out)
-    from course_lib.worlds.room_images import make_room_images
+    from course_lib.simulation.room.training_images import make_room_images
 
     images = make_room_images(
         arguments.out,

@@ -13,12 +13,8 @@ MANY_PAIRS = 8  # so many that the others outvote two wrong ones
 
 def tables(summary: dict) -> str:
     """Tables 1 to 5, the paper's numbers beside ours."""
-    from course_lib.spherical_stereo.paper_tables import (
-        MEASUREMENT_PLACES,
-        PAPER_TABLE_3,
-        PAPER_TABLE_4,
-        PAPER_TABLE_5,
-    )
+    from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
+    from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 
     lines = ["Table 1: places (x [m], y [m]) and the two headings [deg] at each"]
     lines += [
@@ -58,7 +54,7 @@ def tables(summary: dict) -> str:
 
 def remarks(summary: dict) -> list[str]:
     """What sets the numbers from images apart from the paper's: a sentence for each difference that is there."""
-    from course_lib.spherical_stereo.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
+    from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
 
     ours = [
         next(values for key, values in summary[f"experiment_{number}"].items() if not key.endswith(EXACT))

@@ -39,10 +39,10 @@ def run(arguments: argparse.Namespace) -> int:
     from itertools import chain
 
     from course_lib.commands.progress import progress_bar
-    from course_lib.lessons.paths import data_path
-    from course_lib.spherical_stereo.detector_evaluation import labelled_panoramas, score_detector
-    from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
-    from course_lib.worlds.room_images import labelled_images, make_room_images
+    from course_lib.experiments.detector_evaluation import labelled_panoramas, score_detector
+    from course_lib.lessons.kit.paths import data_path
+    from course_lib.simulation.room.training_images import labelled_images, make_room_images
+    from course_lib.spherical_stereo.recording import read_stereo_recording
 
     if arguments.rooms < 1:
         raise ValueError(f"--rooms must be at least 1; got {arguments.rooms}")

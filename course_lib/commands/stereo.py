@@ -42,12 +42,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Matches, measures, prints; 0 when the two images could be matched."""
     from course_lib.commands.arguments import require_output_folder
-    from course_lib.spherical_stereo.boxes_file import read_boxes
-    from course_lib.spherical_stereo.feature_matching import match_detected_features
-    from course_lib.spherical_stereo.features import detect_features
-    from course_lib.spherical_stereo.object_distances import measure_objects
-    from course_lib.spherical_stereo.sphere import StereoRig, check_panorama_pair, read_panorama
-    from course_lib.spherical_stereo.stereo_matching import match_detections
+    from course_lib.spherical_stereo.detection.boxes_file import read_boxes
+    from course_lib.spherical_stereo.matching.feature_matching import match_detected_features
+    from course_lib.spherical_stereo.matching.features import detect_features
+    from course_lib.spherical_stereo.matching.object_matching import match_detections
+    from course_lib.spherical_stereo.panorama import StereoRig, check_panorama_pair, read_panorama
+    from course_lib.spherical_stereo.ranging.object_distances import measure_objects
 
     if not (np.isfinite(arguments.baseline) and arguments.baseline > 0):
         raise ValueError(f"--baseline must be a positive number of metres; got {arguments.baseline}")
@@ -170,8 +170,8 @@ def _cell(measured: dict) -> str:
 
 
 def _write(folder: Path, summary: dict, images, features, detections, objects) -> None:
-    from course_lib.datasets import write_results
-    from course_lib.lessons.stereo_figures import disparity_figure, distances_figure, room_figure
+    from course_lib.experiments.results import write_results
+    from course_lib.plots.stereo_figures import disparity_figure, distances_figure, room_figure
 
     rows = [
         {

@@ -25,7 +25,7 @@ from course_lib.depth_mcl.particle_filter import (
     resample,
     weighted_mean_state,
 )
-from course_lib.depth_mcl.renderer import DepthRenderer, OpenGLError, RendererClosedError
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from course_lib.depth_mcl.scene_map import SceneMap, SceneMapError
 from course_lib.depth_mcl.sensor import depth_image_from_points
 from course_lib.depth_mcl.sequence import SequenceError, read_sequence

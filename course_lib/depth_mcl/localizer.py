@@ -36,7 +36,7 @@ from course_lib.depth_mcl.particle_filter import (
     weighted_mean_pose,
     weighted_mean_state,
 )
-from course_lib.depth_mcl.renderer import DepthRenderer
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.geometry import as_states, pose_matrix, rotation_log, wrap_angle
 
 # Standard deviations of the system noise a frame for the paper's experiment (x, y, yaw), metres and radians. Chosen on

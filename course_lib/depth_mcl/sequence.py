@@ -1,11 +1,11 @@
 """Depth-camera recordings: a folder of depth images with intrinsics and poses, as in the 7-Scenes dataset.
 
-    depth/NNNNNN*.png   16-bit, depth along the optical axis in millimetres, 0 = no measurement
-    intrinsics.txt      3 x 3 matrix K in pixels, pixel centres at integer coordinates
-    poses.txt           frame number, then a row-major 4 x 4 camera-to-world matrix (x right, y down, z forward)
-    up.txt              optional: which world axis points up (x, -x, y, -y, z, -z); without it nothing is known
-    groundtruth.txt     optional: the same poses with time stamps, TUM format (t tx ty tz qx qy qz qw)
-    path_on_floor.txt   optional: the surveyed line on the floor below the camera, x y z per row (the paper's truth)
+depth/NNNNNN*.png   16-bit, depth along the optical axis in millimetres, 0 = no measurement
+intrinsics.txt      3 x 3 matrix K in pixels, pixel centres at integer coordinates
+poses.txt           frame number, then a row-major 4 x 4 camera-to-world matrix (x right, y down, z forward)
+up.txt              optional: which world axis points up (x, -x, y, -y, z, -z); without it nothing is known
+groundtruth.txt     optional: the same poses with time stamps, TUM format (t tx ty tz qx qy qz qw)
+path_on_floor.txt   optional: the surveyed line on the floor below the camera, x y z per row (the paper's truth)
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ import torch
 from torch import nn
 
 from course_lib.detector_training.network import DarknetNetwork
-from course_lib.spherical_stereo.darknet import check_weights, header_bytes
+from course_lib.spherical_stereo.detection.darknet import check_weights, header_bytes
 
 VERSION = (0, 2, 5)
 

@@ -18,7 +18,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from course_lib.spherical_stereo.experiment import LEAST_HEIGHT, LEAST_VISIBLE
+from course_lib.experiments.room import LEAST_HEIGHT, LEAST_VISIBLE
 
 # Width of a whole panorama in memory: a 1280 x 512 network input is one and a quarter panorama, 1.25 * 1024 columns.
 STORED_WIDTH = 1024

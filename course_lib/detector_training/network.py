@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import torch
 from torch import nn
 
-from course_lib.spherical_stereo.darknet import DarknetError, Section, layer_channels
+from course_lib.spherical_stereo.detection.darknet import DarknetError, Section, layer_channels
 
 # Darknet divides by sqrt(variance + 1e-6), and so does OpenCV for Darknet files.
 BATCH_NORM_EPSILON = 1e-6

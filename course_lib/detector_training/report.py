@@ -16,9 +16,9 @@ from tqdm import tqdm
 from course_lib.detector_training.images import LabelledPanorama, PanoramaFolders
 from course_lib.detector_training.train import TrainingPlan, TrainingResult
 from course_lib.detector_training.validation import LEAST_SCORE, Validation, validate
-from course_lib.spherical_stereo.darknet import read_names
-from course_lib.spherical_stereo.detection import YoloDetector
-from course_lib.spherical_stereo.detection_scores import Boxes
+from course_lib.experiments.detection_scores import Boxes
+from course_lib.spherical_stereo.detection.darknet import read_names
+from course_lib.spherical_stereo.detection.detector import YoloDetector
 
 # Width of the recorded panoramas; the detector sees them as they are, not scaled as the training keeps them.
 PANORAMA_WIDTH = 1280

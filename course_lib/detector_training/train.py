@@ -27,8 +27,8 @@ from course_lib.detector_training.workers import (
     average_statistics,
     start_others,
 )
-from course_lib.spherical_stereo.darknet import check_names, read_cfg, read_names
-from course_lib.spherical_stereo.detection_scores import DetectionScoreError
+from course_lib.experiments.detection_scores import DetectionScoreError
+from course_lib.spherical_stereo.detection.darknet import check_names, read_cfg, read_names
 
 # Gradients longer than this are shortened: one odd batch must not undo the ones before.
 LONGEST_GRADIENT = 10.0

@@ -12,7 +12,7 @@ from course_lib.detector_training.augmentation import panorama_window
 from course_lib.detector_training.batches import images_to_tensor
 from course_lib.detector_training.images import LabelledPanorama, PanoramaFolders
 from course_lib.detector_training.network import DarknetNetwork, decode
-from course_lib.spherical_stereo.detection_scores import (
+from course_lib.experiments.detection_scores import (
     Boxes,
     Matching,
     average_precision,
@@ -21,7 +21,7 @@ from course_lib.spherical_stereo.detection_scores import (
     precision_recall_curve,
     scores_at,
 )
-from course_lib.spherical_stereo.seam import appended_columns, select_on_circle
+from course_lib.spherical_stereo.detection.seam import appended_columns, select_on_circle
 
 # Boxes below this score are not looked at: far below any threshold that could be chosen.
 LEAST_SCORE = 0.05

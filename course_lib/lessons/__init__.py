@@ -16,9 +16,9 @@ A new lesson NN is three files:
 Then `python3 course.py refresh NN` runs the notebook and stores its outputs. The tests find all three by their names.
 """
 
-from course_lib.lessons.exercises import check
-from course_lib.lessons.figures import show
-from course_lib.lessons.paths import data_path
-from course_lib.lessons.progress_bar import progress
+from course_lib.lessons.kit.exercises import check
+from course_lib.lessons.kit.paths import data_path
+from course_lib.lessons.kit.progress_bar import progress
+from course_lib.plots.figures import show
 
 __all__ = ["check", "data_path", "progress", "show"]

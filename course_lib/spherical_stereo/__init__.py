@@ -51,21 +51,20 @@ The steps of figure 2, in order:
 Images are BGR uint8 arrays, as OpenCV reads them. Boxes and points on them are in edge coordinates (`sphere`).
 """
 
-from course_lib.spherical_stereo.association import (
-    Association,
-    AssociationError,
-    Observation,
-    Penalty,
-    PenaltyWeights,
-    associate_greedy,
-    penalty,
-    penalty_table,
-)
-from course_lib.spherical_stereo.detection import Detection, DetectionError, DetectorError, YoloDetector
-from course_lib.spherical_stereo.feature_matching import SwappedImagesError
-from course_lib.spherical_stereo.localization import Localization
+from course_lib.spherical_stereo.detection.detector import Detection, DetectionError, DetectorError, YoloDetector
+from course_lib.spherical_stereo.detection.seam import extend_seam
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
-from course_lib.spherical_stereo.rigid_fit import (
+from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError
+from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_objects
+from course_lib.spherical_stereo.panorama import (
+    PanoramaError,
+    StereoRig,
+    direction_to_pixel,
+    pixel_to_direction,
+    read_panorama,
+)
+from course_lib.spherical_stereo.pose.localization import Localization
+from course_lib.spherical_stereo.pose.rigid_fit import (
     CoincidentPoints,
     MirroredPoints,
     NotFinite,
@@ -76,23 +75,24 @@ from course_lib.spherical_stereo.rigid_fit import (
     fit_covariance,
     fit_rigid_2d,
 )
-from course_lib.spherical_stereo.seam import extend_seam
-from course_lib.spherical_stereo.semantic_map import Landmark, SemanticMap, SemanticMapError
-from course_lib.spherical_stereo.sphere import (
-    PanoramaError,
-    StereoRig,
-    direction_to_pixel,
-    pixel_to_direction,
-    read_panorama,
-)
-from course_lib.spherical_stereo.stereo_matching import ObjectMatch, match_objects
-from course_lib.spherical_stereo.triangulation import (
+from course_lib.spherical_stereo.ranging.triangulation import (
     TriangulationError,
     triangulate,
     triangulation_covariance,
     triangulation_outcome,
 )
-from course_lib.spherical_stereo.vertical_disparity import disparity_distance
+from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
+from course_lib.spherical_stereo.semantic_map.association import (
+    Association,
+    AssociationError,
+    Observation,
+    Penalty,
+    PenaltyWeights,
+    associate_greedy,
+    penalty,
+    penalty_table,
+)
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
 
 __all__ = [
     "Association",

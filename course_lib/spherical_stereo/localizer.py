@@ -11,23 +11,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from course_lib.spherical_stereo import localization as outcomes
-from course_lib.spherical_stereo.association import (
-    ASSOCIATIONS,
-    DISTANCE_TERMS,
-    Observation,
-    PenaltyWeights,
-)
-from course_lib.spherical_stereo.labels import canonical_label
-from course_lib.spherical_stereo.localization import OK, UNABLE, Localization, PlacedObject
-from course_lib.spherical_stereo.localizer_input import (
+from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.detection.localizer_input import (
     LocalizerError,
     check_boxes_fit,
     checked_matches,
     checked_size,
 )
-from course_lib.spherical_stereo.object_places import DISTANCES, place_objects
-from course_lib.spherical_stereo.rigid_fit import (
+from course_lib.spherical_stereo.matching.object_matching import stereo_matching
+from course_lib.spherical_stereo.panorama import StereoRig, check_panorama_pair
+from course_lib.spherical_stereo.pose import localization as outcomes
+from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Localization, PlacedObject
+from course_lib.spherical_stereo.pose.rigid_fit import (
     CoincidentPoints,
     MirroredPoints,
     RigidFitError,
@@ -36,10 +31,15 @@ from course_lib.spherical_stereo.rigid_fit import (
     fit_covariance,
     fit_rigid_2d,
 )
-from course_lib.spherical_stereo.semantic_map import SemanticMap
-from course_lib.spherical_stereo.sphere import StereoRig, check_panorama_pair
-from course_lib.spherical_stereo.stereo_matching import stereo_matching
-from course_lib.spherical_stereo.triangulation import DIVERGING
+from course_lib.spherical_stereo.ranging.object_places import DISTANCES, place_objects
+from course_lib.spherical_stereo.ranging.triangulation import DIVERGING
+from course_lib.spherical_stereo.semantic_map.association import (
+    ASSOCIATIONS,
+    DISTANCE_TERMS,
+    Observation,
+    PenaltyWeights,
+)
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 IMAGE_SIZE = (1280, 640)
 """Width and height in pixels of the panoramas under data/room."""

@@ -7,8 +7,8 @@ import pytest
 
 from course_lib.cli import main
 from course_lib.commands.room_tables import remarks
-from course_lib.spherical_stereo.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
-from course_lib.worlds import room_data
+from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
+from course_lib.simulation.room import data as room_data
 
 ERRORS = {f"{statistic}_{what}" for statistic in ("mean", "std") for what in ("dx_m", "dy_m", "dtheta_deg")}
 

@@ -6,7 +6,7 @@ import pytest
 
 from course_lib.cli import main
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
-from course_lib.spherical_stereo.detection import YoloDetector
+from course_lib.spherical_stereo.detection.detector import YoloDetector
 
 
 def options(*words):

@@ -5,7 +5,8 @@ import json
 import pytest
 
 from course_lib.cli import main
-from course_lib.worlds import room_data, room_images
+from course_lib.simulation.room import data as room_data
+from course_lib.simulation.room import training_images as room_images
 
 
 @pytest.fixture

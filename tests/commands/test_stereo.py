@@ -9,7 +9,7 @@ import pytest
 
 from course_lib.cli import main
 from course_lib.commands.stereo import BOXES_FORMAT
-from course_lib.spherical_stereo.boxes_file import read_boxes
+from course_lib.spherical_stereo.detection.boxes_file import read_boxes
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.lessons.shipped_detector import load_detector
-from course_lib.spherical_stereo.experiment import experiment_summary, localize_pair, range_errors, run_experiment
+from course_lib.experiments.room import experiment_summary, localize_pair, range_errors, run_experiment
+from course_lib.lessons.kit.shipped_detector import load_detector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.semantic_map import SemanticMap
-from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
+from course_lib.spherical_stereo.recording import read_stereo_recording
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "room"
 SHIPPED_SEED, SEEDS = 4, (1, 2, 3, 4, 5)

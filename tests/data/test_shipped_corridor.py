@@ -12,11 +12,11 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import optical_pose, rotation_angle, state_from_optical_pose
-from course_lib.worlds.corridor import CLUTTER, make_corridor
-from course_lib.worlds.corridor_data import PRODUCTS, CorridorModels, parameter_tables
-from course_lib.worlds.data_folder import checksums
-from course_lib.worlds.mesh_files import read_world_ply
-from course_lib.worlds.ray_casting import WorldCaster
+from course_lib.simulation.corridor.data import PRODUCTS, CorridorModels, parameter_tables
+from course_lib.simulation.corridor.mesh_files import read_world_ply
+from course_lib.simulation.corridor.world import CLUTTER, make_corridor
+from course_lib.simulation.data_folder import checksums
+from course_lib.simulation.sensors.ray_casting import WorldCaster
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "corridor"
 

@@ -6,18 +6,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.lessons.shipped_detector import load_detector
-from course_lib.spherical_stereo.boxes import box_iou
-from course_lib.spherical_stereo.darknet import check_weights, read_cfg
-from course_lib.spherical_stereo.detector_evaluation import labelled_panoramas, score_detector
-from course_lib.spherical_stereo.experiment import localize_pair
-from course_lib.spherical_stereo.labels import CANONICAL_LABELS
+from course_lib.experiments.detector_evaluation import labelled_panoramas, score_detector
+from course_lib.experiments.room import localize_pair
+from course_lib.experiments.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
+from course_lib.lessons.kit.shipped_detector import load_detector
+from course_lib.simulation.data_folder import checksums
+from course_lib.simulation.room.training_images import labelled_images, make_room_images
+from course_lib.spherical_stereo.detection.boxes import box_iou
+from course_lib.spherical_stereo.detection.darknet import check_weights, read_cfg
+from course_lib.spherical_stereo.detection.labels import CANONICAL_LABELS
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.semantic_map import SemanticMap
-from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
-from course_lib.spherical_stereo.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
-from course_lib.worlds.data_folder import checksums
-from course_lib.worlds.room_images import labelled_images, make_room_images
+from course_lib.spherical_stereo.recording import read_stereo_recording
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "detector"
 ROOM = FOLDER.parent / "room"

@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from course_lib.experiments.room import counts_as_object
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.association import hue_difference
-from course_lib.spherical_stereo.experiment import counts_as_object
-from course_lib.spherical_stereo.paper_tables import CAMERA_HEIGHTS, MEASUREMENT_PLACES
-from course_lib.spherical_stereo.semantic_map import SemanticMap
-from course_lib.spherical_stereo.stereo_recording import read_stereo_recording
-from course_lib.worlds.data_folder import checksums
-from course_lib.worlds.experiment_room import make_experiment_room
-from course_lib.worlds.parameter_tables import parameter_tables
-from course_lib.worlds.room_data import PRODUCTS, RoomModels
+from course_lib.simulation.data_folder import checksums
+from course_lib.simulation.parameter_tables import parameter_tables
+from course_lib.simulation.room.data import PRODUCTS, RoomModels
+from course_lib.simulation.room.experiment_room import make_experiment_room
+from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES
+from course_lib.spherical_stereo.recording import read_stereo_recording
+from course_lib.spherical_stereo.semantic_map.association import hue_difference
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "room"
 

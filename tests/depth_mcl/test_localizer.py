@@ -9,10 +9,9 @@ from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning, run_localizer
-from course_lib.depth_mcl.renderer import DepthRenderer
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.geometry import wrap_angle
-
-from .shapes import SMALL, random_triangles, room, room_depth
+from tests.depth_mcl.shapes import SMALL, random_triangles, room, room_depth
 
 START = np.array([0.5, -0.3, 0.2, 0.0, 0.0, 0.4])
 SIGMA = [0.05, 0.05, 0, 0, 0, 0.03]

@@ -7,8 +7,7 @@ import trimesh
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.scene_map import SceneMap, SceneMapError
 from course_lib.depth_mcl.sensor import depth_image_from_points, subsample_depth
-
-from .shapes import OFF_CENTRE, SMALL, room
+from tests.depth_mcl.shapes import OFF_CENTRE, SMALL, room
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
 

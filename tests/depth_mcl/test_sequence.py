@@ -15,8 +15,7 @@ from course_lib.depth_mcl.sequence import (
     write_tum,
 )
 from course_lib.geometry import optical_pose, state_from_optical_pose
-
-from .shapes import SMALL, random_states
+from tests.depth_mcl.shapes import SMALL, random_states
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ torch = pytest.importorskip("torch", reason="PyTorch, which only the training of
 
 from course_lib.detector_training.export import read_weights, write_weights  # noqa: E402
 from course_lib.detector_training.network import PRIOR_OBJECTNESS, DarknetNetwork, decode, decode_boxes  # noqa: E402
-from course_lib.spherical_stereo.darknet import DarknetError, expected_weight_floats, parse_cfg, read_cfg  # noqa: E402
+from course_lib.spherical_stereo.detection.darknet import DarknetError, expected_weight_floats, parse_cfg, read_cfg  # noqa: E402
 from tests.detector_training.toy_panoramas import ROOM_CFG, TINY_CFG  # noqa: E402
 
 

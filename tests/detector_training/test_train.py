@@ -19,7 +19,7 @@ from course_lib.detector_training.report import write_report  # noqa: E402
 from course_lib.detector_training.schedule import AveragedNetwork, learning_rate  # noqa: E402
 from course_lib.detector_training.train import TrainingPlan, TrainingResult, train  # noqa: E402
 from course_lib.detector_training.validation import Validation, network_detector, validate  # noqa: E402
-from course_lib.spherical_stereo.darknet import check_weights, parse_cfg  # noqa: E402
+from course_lib.spherical_stereo.detection.darknet import check_weights, parse_cfg  # noqa: E402
 from tests.detector_training.toy_panoramas import CLASSES, ROOM_NAMES, TINY_CFG, write_toy_folder  # noqa: E402
 
 STILL = AugmentationRanges((1.0, 1.0), 0.0, 0.0, 0.0, 0.0, (1.0, 1.0), 0.0, 0.0)

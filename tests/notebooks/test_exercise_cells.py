@@ -8,7 +8,7 @@ import types
 
 import pytest
 
-from course_lib.lessons.exercises import find_exercise, judge, lesson_exercises, lesson_numbers
+from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises, lesson_numbers
 
 # Seeds other than that of `check`: what is right or wrong must not hang on one set of inputs.
 SEEDS = (0, 1, 2, 3)

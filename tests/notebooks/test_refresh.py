@@ -12,7 +12,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from course_lib.commands import refresh
 from course_lib.commands.refresh import RefreshError
-from course_lib.lessons.paths import REPOSITORY
+from course_lib.lessons.kit.paths import REPOSITORY
 
 SANITIZE = REPOSITORY / "tests" / "nbval_sanitize.cfg"
 

@@ -7,7 +7,7 @@ import re
 import statistics
 
 from course_lib.commands.refresh import MAX_BYTES, METADATA, WIDGET_VIEW
-from course_lib.lessons.paths import REPOSITORY
+from course_lib.lessons.kit.paths import REPOSITORY
 
 FORBIDDEN_WIDGETS = {"Output", "interact", "interactive", "interactive_output", "interact_manual", "Play"}
 SHOWN_TYPES = {"text/plain", "text/html", "text/markdown", "text/latex"}
@@ -103,7 +103,7 @@ def test_no_lesson_uses_widgets_that_hang_or_global_random_numbers(lesson):
 
 
 def test_no_plumbing_uses_widgets_that_hang():
-    for path in (REPOSITORY / "course_lib" / "lessons").glob("*.py"):
+    for path in (REPOSITORY / "course_lib" / "lessons").glob("**/*.py"):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         names = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
         names |= {a.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for a in node.names}

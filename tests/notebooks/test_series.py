@@ -7,8 +7,8 @@ import re
 import pytest
 from PIL import Image
 
-from course_lib.lessons.paths import REPOSITORY, notebook_paths
-from course_lib.lessons.series_pictures import (
+from course_lib.lessons.kit.paths import REPOSITORY, notebook_paths
+from course_lib.lessons.kit.series_pictures import (
     CHOSEN,
     MAX_BYTES,
     SIZE,
@@ -77,6 +77,6 @@ def test_a_cell_without_a_picture_is_named(tmp_path):
 
 
 def test_a_picture_that_cannot_be_made_small_is_refused(monkeypatch):
-    monkeypatch.setattr("course_lib.lessons.series_pictures.MAX_BYTES", 10)
+    monkeypatch.setattr("course_lib.lessons.kit.series_pictures.MAX_BYTES", 10)
     with pytest.raises(SeriesPictureError, match="at most 10"):
         small_png(Image.new("RGB", (50, 50), "white"))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from course_lib.spherical_stereo.sphere import direction_to_pixel, pixel_to_direction
+from course_lib.spherical_stereo.panorama import direction_to_pixel, pixel_to_direction
 
 WIDTH, HEIGHT = 512, 256
 BASELINE = 0.3

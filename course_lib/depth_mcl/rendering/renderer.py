@@ -1,0 +1,138 @@
+"""GPU scene simulation (paper 1, 3.3.1): what a depth camera would measure at every particle's pose.
+
+`DepthRenderer` is one door with two rooms behind it. Backend "vtk" draws the map once per particle, as tiles of one
+off-screen window, and reads the z-buffer back once (vtk_backend.py): the paper's method. Backend "ray" shoots one ray
+through every pixel centre (ray_backend.py): the reference that tests compare with. Both take float64 states, subtract
+the map's origin before anything becomes float32, and give depth along the optical axis, `inf` where nothing between the
+camera's near and far planes is hit.
+"""
+
+from __future__ import annotations
+
+from types import TracebackType
+
+import numpy as np
+
+from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.geometry import as_states, is_rotation, optical_pose
+
+# Pixels of one off-screen window: 200 tiles of the SR4000, about 80 MB with colour and depth.
+MAX_BATCH_PIXELS = 200 * 176 * 144
+
+
+class RendererClosedError(RuntimeError):
+    """A renderer was used after it had been closed."""
+
+
+class OpenGLError(RuntimeError):
+    """OpenGL could not start or draw; the message names the cure."""
+
+
+class DepthRenderer:
+    """Depth images of a map from any number of poses.
+
+    scene_map: triangles in the world. camera: the depth camera, its resolution, and its near and far planes.
+    backend: "vtk" (z-buffer) or "ray" (ray casting, the reference). max_batch_pixels bounds the memory of one batch:
+    as many images as fit are drawn at once, at least one.
+    A context manager; `close()` frees the window, after which every call raises `RendererClosedError`.
+    Raises `OpenGLError` where OpenGL cannot start (backend "vtk"), `ValueError` for an unknown backend.
+    """
+
+    def __init__(
+        self,
+        scene_map: SceneMap,
+        camera: DepthCamera,
+        backend: str = "vtk",
+        *,
+        max_batch_pixels: int = MAX_BATCH_PIXELS,
+    ) -> None:
+        if int(max_batch_pixels) != max_batch_pixels or max_batch_pixels < 1:
+            raise ValueError(f"max_batch_pixels must be a whole number, at least 1; got {max_batch_pixels!r}")
+        self.scene_map = scene_map
+        self.camera = camera
+        self.backend = backend
+        batch_size = max(1, int(max_batch_pixels) // (camera.width * camera.height))
+        if backend == "vtk":
+            from course_lib.depth_mcl.rendering.vtk_backend import VtkBackend
+
+            self._backend = VtkBackend(scene_map, camera, batch_size)
+        elif backend == "ray":
+            from course_lib.depth_mcl.rendering.ray_backend import RayBackend
+
+            self._backend = RayBackend(scene_map, camera)
+        else:
+            raise ValueError(f"backend must be 'vtk' (z-buffer) or 'ray' (ray casting); got {backend!r}")
+        self.batch_size = batch_size
+
+    def render(self, states: np.ndarray) -> np.ndarray:
+        """Depth images `(N, H, W)` float32 metres of the map from states `(N, 6)`; `inf` where nothing is hit.
+
+        Z_(i) = {z_(i)^1, ..., z_(i)^m}: one value a pixel, m = H x W as many as the real camera has.
+        A single state `(6,)` counts as N = 1. Drawn in batches of bounded memory.
+        Raises `ValueError` for states of a wrong shape or not finite, `RendererClosedError` after `close()`.
+        Source: paper 1, eq. (6).
+        """
+        states = np.atleast_2d(as_states(states))
+        if states.ndim != 2:
+            raise ValueError(f"states must have shape (N, 6); got {states.shape}")
+        return self.render_poses(optical_pose(states))
+
+    def render_poses(self, camera_to_world: np.ndarray) -> np.ndarray:
+        """The same from camera-to-world matrices `(N, 4, 4)` in the optical convention."""
+        self._require_open()
+        poses = np.array(camera_to_world, dtype=np.float64)
+        if poses.ndim != 3 or poses.shape[1:] != (4, 4):
+            raise ValueError(f"camera_to_world must have shape (N, 4, 4); got {poses.shape}")
+        if not (np.isfinite(poses).all() and is_rotation(poses[:, :3, :3]).all()):
+            raise ValueError("camera_to_world must hold rigid transforms: finite, with a rotation in the upper left")
+        poses[:, :3, 3] -= self.scene_map.origin
+        images = np.empty((len(poses), *self.camera.shape), dtype=np.float32)
+        for start in range(0, len(poses), self.batch_size):
+            batch = slice(start, start + self.batch_size)
+            self._backend.render(poses[batch], images[batch])
+        return images
+
+    def render_points(self, points: np.ndarray) -> np.ndarray:
+        """Depth image `(H, W)` float32 metres of the camera's own points; NaN where none fell.
+
+        points: `(..., 3)` metres in the optical frame; NaN points are no measurement. They go through the projection
+        and the z-buffer that the particles' views go through, so that both images obey one rule: of several points on
+        one pixel the nearest counts, and what lies outside near and far is not seen.
+        Z_t = {z_t^1, ..., z_t^m}. `depth_image_from_points` is the same in NumPy.
+        Raises `ValueError` for a wrong shape, `RendererClosedError` after `close()`. Source: paper 1, section 3.3.2.
+        """
+        self._require_open()
+        points = np.asarray(points, dtype=np.float64)
+        if points.ndim == 0 or points.shape[-1] != 3:
+            raise ValueError(f"points must have shape (..., 3); got {points.shape}")
+        points = points.reshape(-1, 3)
+        return self._backend.render_points(points[np.isfinite(points).all(axis=1)])
+
+    def describe(self) -> str:
+        """Name of what draws: the OpenGL renderer string, or the ray caster."""
+        self._require_open()
+        return self._backend.describe()
+
+    def close(self) -> None:
+        """Frees the window and its memory; closing twice is harmless."""
+        if self._backend is not None:
+            self._backend.close()
+            self._backend = None
+
+    def _require_open(self) -> None:
+        if self._backend is None:
+            raise RendererClosedError("this renderer was closed; make a new DepthRenderer(scene_map, camera)")
+
+    def __enter__(self) -> DepthRenderer:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        state = "closed" if self._backend is None else "open"
+        size = f"{self.camera.width} x {self.camera.height}"
+        return f"DepthRenderer({self.scene_map!r}, {size} pixels, backend={self.backend!r}, {state})"

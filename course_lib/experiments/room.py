@@ -1,0 +1,215 @@
+"""The room experiment of paper 2 (section 3) as plain functions of a recording: from images, or from exact boxes.
+
+"images" is the whole method: detector, stereo matching, triangulation, map matching, fit. "exact boxes" starts after a
+perfect detector and a perfect stereo matching: it tells how much of the error is the method's own.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.experiments.room_evaluation import (
+    NO_OBJECT,
+    PoseOutcome,
+    identify_detections,
+    outcome,
+    summary,
+    true_landmarks_of,
+    wrong_pairs,
+)
+from course_lib.spherical_stereo.detection.boxes import box_centre
+from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
+from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.panorama import pixel_to_direction
+from course_lib.spherical_stereo.pose.localization import Localization
+from course_lib.spherical_stereo.ranging.triangulation import OK, object_position, triangulation_outcome
+from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
+from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+SOURCES = ("images", "exact_boxes")
+LEAST_VISIBLE = 0.5  # share of an object's pixels that must be seen for it to count; chosen
+LEAST_HEIGHT = 30.0  # pixels at a width of 1280 that its visible box must be high to count; chosen
+LARGEST_RANGE = 4.0  # m, horizontal: distances are judged below it; chosen
+
+
+class PairResult(NamedTuple):
+    """What the method made of one pair of panoramas, and what it should have made of it."""
+
+    pair: StereoPair
+    localization: Localization
+    outcome: PoseOutcome
+    true_landmarks: tuple[int, ...]
+    """For every observation the landmark it shows; `NO_OBJECT` for none."""
+    upper_identity: tuple[int, ...]
+    """For every detection of the upper image the number of the object it shows; `NO_OBJECT` for none."""
+    lower_identity: tuple[int, ...]
+    """The same for the lower image."""
+    size: tuple[int, int]
+    """(width, height) of the panoramas, pixels."""
+    seconds: float
+    """From two images in memory to the pose."""
+
+
+class MatchingCounts(NamedTuple):
+    """Stereo matching over many pairs."""
+
+    matched: int
+    """Pairs of detections of which at least one shows an object that was detected in both images."""
+    right: int
+    """Of them, those whose two detections show one object."""
+    seen_in_both: int
+    """Objects detected in both images."""
+    unmatched: int
+    """Of them, those that no match was found for."""
+
+
+def counts_as_object(thing: TrueObject, width: int) -> bool:
+    """Whether an object is one to be found: half of it visible, its visible box 30 pixels high at a width of 1280."""
+    _, v_min, _, v_max = thing.visible_box
+    return thing.visible_fraction >= LEAST_VISIBLE and (v_max - v_min) * 1280 / width >= LEAST_HEIGHT
+
+
+def exact_detections(objects: Sequence[TrueObject], image: np.ndarray) -> tuple[list[Detection], list[int]]:
+    """What a perfect detector would report of an image `(H, W, 3)` BGR, and which object each detection shows.
+
+    The boxes are those around the visible pixels; hue and saturation are measured on the image as always.
+    """
+    chosen = [thing for thing in objects if counts_as_object(thing, image.shape[1])]
+    detections = [
+        Detection(thing.label, 1.0, thing.visible_box, *mean_hue_saturation(image, thing.visible_box))
+        for thing in chosen
+    ]
+    return detections, [thing.number for thing in chosen]
+
+
+def localize_pair(pair: StereoPair, localizer: SemanticLocalizer, source: str = "images") -> PairResult:
+    """Localize one pair and judge the result by table 2. Landmark k of the map is object k of the recording.
+
+    source: "images" or "exact_boxes". Raises `ValueError` for another source, `PanoramaError` for images that cannot
+    be used. Source: paper 2, section 3.
+    """
+    if source not in SOURCES:
+        raise ValueError(f"the source must be one of {SOURCES}; got {source!r}")
+    upper_image, lower_image = pair.images()
+    width, height = upper_image.shape[1], upper_image.shape[0]
+    start = time.perf_counter()
+    if source == "images":
+        found = localizer.localize(upper_image, lower_image)
+        seconds = time.perf_counter() - start
+        identities = [
+            _identities(detections, objects, width)
+            for detections, objects in (
+                (found.upper_detections, pair.upper_objects),
+                (found.lower_detections, pair.lower_objects),
+            )
+        ]
+    else:
+        upper, upper_numbers = exact_detections(pair.upper_objects, upper_image)
+        lower, lower_numbers = exact_detections(pair.lower_objects, lower_image)
+        matches = [(i, lower_numbers.index(n)) for i, n in enumerate(upper_numbers) if n in lower_numbers]
+        found = localizer.localize_detections(upper, lower, matches, (width, height))
+        seconds = time.perf_counter() - start
+        identities = [tuple(upper_numbers), tuple(lower_numbers)]
+    landmarks = true_landmarks_of(found, identities[0], range(len(localizer.semantic_map)), identities[1])
+    return PairResult(
+        pair, found, outcome(found, pair.pose, landmarks), landmarks, *identities, (width, height), seconds
+    )
+
+
+def run_experiment(
+    recording: StereoRecording,
+    localizer: SemanticLocalizer,
+    source: str = "images",
+    progress: Callable = iter,
+) -> list[PairResult]:
+    """Localize every pair of a recording. progress: wraps the pairs (tqdm). Source: paper 2, section 3."""
+    return [localize_pair(pair, localizer, source) for pair in progress(recording.pairs)]
+
+
+def experiment_summary(results: Sequence[PairResult]) -> dict:
+    """Tables 3 to 5 of one experiment as `evaluation.summary` gives them. Source: paper 2, tables 3 to 5."""
+    return summary([result.outcome for result in results])
+
+
+def matching_counts(results: Sequence[PairResult]) -> MatchingCounts:
+    """How often stereo matching was right about the objects detected in both images, over all pairs.
+
+    A detection that shows no object has no right partner, and is not counted. Source: paper 2, section 2.3.
+    """
+    matched = right = both = unmatched = 0
+    for result in results:
+        seen = (set(result.upper_identity) & set(result.lower_identity)) - {NO_OBJECT}
+        joined = [(result.upper_identity[m.upper], result.lower_identity[m.lower]) for m in result.localization.objects]
+        judged = [(a, b) for a, b in joined if a in seen or b in seen]
+        matched += len(judged)
+        right += sum(a == b for a, b in judged)
+        both += len(seen)
+        unmatched += len(seen - {a for a, _ in judged})
+    return MatchingCounts(matched, right, both, unmatched)
+
+
+def range_errors(
+    results: Sequence[PairResult], semantic_map: SemanticMap, baseline: float, distance: str
+) -> np.ndarray:
+    """Relative errors of the horizontal distances to the objects' centroids on the map, below 4 m.
+
+    |rho - rho_true| / rho_true for every match that joins two views of one object; a match without a distance counts
+    as infinite. distance: "box_centre" or "disparity" (which needs matches with features). Returns `(n,)`.
+    Source: paper 2, section 2.4.
+    """
+    errors = []
+    for result in results:
+        found = result.localization
+        for match, placed in zip(found.matches, found.objects, strict=True):
+            number = result.upper_identity[placed.upper]
+            if number == NO_OBJECT or result.lower_identity[placed.lower] != number:
+                continue
+            true = float(np.linalg.norm(semantic_map.positions[number] - result.pair.pose[:2]))
+            if true < LARGEST_RANGE:
+                errors.append(abs(_range(result, match, placed, baseline, distance) - true) / true)
+    return np.array(errors)
+
+
+def failures(result: PairResult, semantic_map: SemanticMap) -> list[str]:
+    """What went wrong with one pose, a line each: which observation was taken for which landmark."""
+    if result.localization.pose is None:
+        return [f"{result.localization.reason}: {result.localization.explanation}"]
+    lines = []
+    for observation, landmark, shown in wrong_pairs(result.localization, result.true_landmarks):
+        label = result.localization.observations[observation].label
+        x, y = semantic_map.positions[landmark]
+        truth = (
+            "nothing"
+            if shown == NO_OBJECT
+            else "the {} at ({:.1f}, {:.1f})".format(semantic_map.labels[shown], *semantic_map.positions[shown])
+        )
+        lines.append(f"the {label} that shows {truth} was taken for the one at ({x:.1f}, {y:.1f})")
+    return lines
+
+
+def _identities(detections: Sequence[Detection], objects: Sequence[TrueObject], width: int) -> tuple[int, ...]:
+    """Numbers of the objects that detections show."""
+    known = [(thing.label, thing.visible_box, thing.unoccluded_box) for thing in objects]
+    shown = identify_detections(detections, known, width)
+    return tuple(NO_OBJECT if index == NO_OBJECT else objects[index].number for index in shown)
+
+
+def _range(result: PairResult, match, placed, baseline: float, distance: str) -> float:
+    """Horizontal range of a match, metres; infinite when it has none."""
+    found, (width, height) = result.localization, result.size
+    if distance == "disparity":
+        measured = disparity_distance(match, width, height, baseline)
+        return measured.horizontal_range if measured.outcome == OK else np.inf
+    upper, lower = (
+        pixel_to_direction(box_centre(detections[index].box), width, height)
+        for detections, index in ((found.upper_detections, placed.upper), (found.lower_detections, placed.lower))
+    )
+    if triangulation_outcome(upper, lower) != OK:
+        return np.inf
+    return float(np.linalg.norm(object_position(upper, lower, baseline)[:2]))

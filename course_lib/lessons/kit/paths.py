@@ -1,0 +1,26 @@
+"""Where the lessons find the repository's data, whatever folder a notebook runs in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[3]
+
+
+def data_path(relative: str) -> Path:
+    """Path of a file or folder under `data/`, such as `data_path("corridor/map.ply")`.
+
+    Raises `FileNotFoundError` where there is none: the message names the folder that was searched and the cure.
+    """
+    path = REPOSITORY / "data" / relative
+    if not path.exists():
+        raise FileNotFoundError(
+            f"no {relative!r} in {REPOSITORY / 'data'}: the lessons run on the data that comes with the repository. "
+            "Get a complete copy of it, or make the data again as data/README.md says"
+        )
+    return path
+
+
+def notebook_paths() -> list[Path]:
+    """The lessons, `notebooks/NN_title.ipynb`, in order."""
+    return sorted((REPOSITORY / "notebooks").glob("[0-9][0-9]_*.ipynb"))

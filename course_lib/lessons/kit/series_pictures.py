@@ -1,0 +1,94 @@
+"""The small picture of every lesson in notebooks/README.md, taken from the lessons' stored outputs.
+
+    python -m course_lib.lessons.kit.series_pictures
+
+writes notebooks/pictures/NN.png for every lesson. Run it again when a lesson's picture has changed.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import re
+from pathlib import Path
+
+from PIL import Image
+
+from course_lib.lessons.kit.paths import REPOSITORY, notebook_paths
+
+CHOSEN = {
+    "00": "00-second-picture",
+    "01": "01-order-picture",
+    "02": "02-idea-picture",
+    "03": "03-tiles-picture",
+    "04": "04-idea-picture",
+    "05": "05-idea-picture",
+    "06": "06-idea-picture",
+    "07": "07-idea-comb",
+    "08": "08-figure-5",
+    "11": "11-idea-picture",
+    "12": "12-idea-picture",
+    "13": "13-idea-picture",
+    "14": "14-places-picture",
+    "15": "15-panel",
+    "16": "16-idea-picture",
+    "17": "17-places",
+    "20": "20-check-picture",
+}
+"""Lesson -> the cell whose picture stands for it; a lesson that is not here gives its first picture."""
+
+SIZE = (420, 230)  # pixels, at most
+MAX_BYTES = 30_000
+_COLOURS = (128, 64, 32, 16)  # of the palette, fewer until the picture is small enough
+
+
+class SeriesPictureError(ValueError):
+    """A lesson without a stored picture, or one that cannot be made small enough."""
+
+
+def stored_picture(path: Path, cell_id: str | None = None) -> Image.Image:
+    """The picture that a cell of a notebook stored, in RGB; None: the notebook's first.
+
+    Raises `SeriesPictureError` where there is none.
+    """
+    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+        if cell_id is not None and cell["id"] != cell_id:
+            continue
+        for output in cell.get("outputs", []):
+            text = "".join(output.get("data", {}).get("text/html", ""))
+            found = re.search(r'src="data:image/png;base64,([^"]+)"', text)
+            if found:
+                return Image.open(io.BytesIO(base64.b64decode(found.group(1)))).convert("RGB")
+    where = "no cell" if cell_id is None else f"no cell {cell_id}"
+    raise SeriesPictureError(f"{path.name}: {where} with a stored picture; refresh the lesson, or choose another cell")
+
+
+def small_png(picture: Image.Image) -> bytes:
+    """The picture within SIZE as a PNG of at most MAX_BYTES. Raises `SeriesPictureError` where that cannot be."""
+    picture = picture.copy()
+    picture.thumbnail(SIZE, Image.Resampling.LANCZOS)
+    for colours in _COLOURS:
+        buffer = io.BytesIO()
+        reduced = picture.quantize(colours, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+        reduced.save(buffer, format="PNG", optimize=True)
+        if buffer.tell() <= MAX_BYTES:
+            return buffer.getvalue()
+    raise SeriesPictureError(f"{buffer.tell()} bytes with {_COLOURS[-1]} colours, at most {MAX_BYTES}: make it smaller")
+
+
+def write_pictures(folder: Path) -> list[Path]:
+    """Write NN.png of every lesson into `folder`; returns the paths. Raises `SeriesPictureError`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for path in notebook_paths():
+        number = path.name[:2]
+        target = folder / f"{number}.png"
+        target.write_bytes(small_png(stored_picture(path, CHOSEN.get(number))))
+        written.append(target)
+    return written
+
+
+if __name__ == "__main__":
+    for made in write_pictures(REPOSITORY / "notebooks" / "pictures"):
+        print(f"{made.relative_to(REPOSITORY)}: {made.stat().st_size / 1000:.0f} kB")

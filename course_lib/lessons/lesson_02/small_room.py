@@ -1,0 +1,157 @@
+"""A small room and its laser survey, quick enough for a lesson: scans, fused maps, and how good they are."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.lessons.kit.box_world import Box, BoxWorld
+from course_lib.simulation.corridor.mesh_files import to_polydata
+from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
+from course_lib.simulation.sensors.laser_survey import Scan, ScannerModel, survey
+
+SIZE = (5.0, 4.0, 2.5)  # metres, the room's inside from the origin
+# Where the scanner stands, in this order; x, y in metres.
+STATIONS = ((1.0, 1.0), (4.0, 2.6), (1.2, 3.4), (3.2, 0.6))
+# A survey in a second: 0.75 degrees between rays (the corridor's has 0.15).
+SCANNER = ScannerModel(step_deg=0.75, registration_position=0.0, registration_tilt_deg=0.0, registration_heading_deg=0)
+HOLE_DISTANCE = 0.10  # metres: what has no map within it counts as a hole
+
+
+@functools.cache
+def room(door_open: bool = False) -> BoxWorld:
+    """A room of 5 x 4 x 2.5 m with a pillar, a cabinet, a table and a door, and a bit of corridor behind the door."""
+    (x, y, z), w = SIZE, 0.2
+    paint, wood = 0.72, 0.55
+    boxes = [
+        Box((-w, -w, -w), (x + w, y + 2.0, 0.0), 0.4),  # floor
+        Box((-w, -w, z), (x + w, y + 2.0, z + w), paint),  # ceiling
+        Box((-w, -w, 0.0), (0.0, y + 2.0, z), paint),
+        Box((x, -w, 0.0), (x + w, y + 2.0, z), paint),
+        Box((0.0, -w, 0.0), (x, 0.0, z), paint),
+        Box((0.0, y, 0.0), (3.2, y + w, z), paint),  # the wall with the door
+        Box((4.1, y, 0.0), (x, y + w, z), paint),
+        Box((3.2, y, 2.05), (4.1, y + w, z), paint),
+        Box((-w, y + 1.8, 0.0), (x + w, y + 2.0, z), paint),  # the corridor's far wall
+        Box((2.3, 1.7, 0.0), (2.7, 2.1, z), paint),  # pillar
+        Box((4.2, 0.0, 0.0), (x, 1.0, 1.8), wood),  # cabinet
+        Box((0.3, 1.9, 0.70), (0.9, 3.0, 0.74), wood),  # table top
+    ]
+    for along in (0.32, 0.84):
+        boxes += [Box((along, across, 0.0), (along + 0.04, across + 0.04, 0.7), wood) for across in (1.92, 2.94)]
+    leaf = (
+        Box((4.06, y - 0.9, 0.0), (4.1, y, 2.05), wood)
+        if door_open
+        else Box((3.2, y, 0.0), (4.1, y + 0.05, 2.05), wood)
+    )
+    return BoxWorld([*boxes, leaf])
+
+
+def scanner(noise_mm: float = 1.0, registration_mm: float = 0.0) -> ScannerModel:
+    """The lesson's scanner with this range noise and this error of each station's believed position, one sigma each."""
+    return dataclasses.replace(
+        SCANNER, noise_constant=noise_mm / 1000, noise_per_metre=0.0, registration_position=registration_mm / 1000
+    )
+
+
+def scans(
+    n_stations: int, noise_mm: float = 1.0, registration_mm: float = 0.0, door_open: bool = False
+) -> tuple[Scan, ...]:
+    """The room scanned from the first `n_stations` of `STATIONS`; kept, since a panel asks again and again."""
+    return _scans(n_stations, float(noise_mm), float(registration_mm), door_open)
+
+
+@functools.lru_cache(maxsize=16)
+def _scans(n_stations: int, noise_mm: float, registration_mm: float, door_open: bool) -> tuple[Scan, ...]:
+    model, rng = scanner(noise_mm, registration_mm), np.random.default_rng(2)
+    return tuple(survey(room(door_open), model, rng, STATIONS[:n_stations]))
+
+
+def fusion(voxel: float, triangles: int = 10**9) -> FusionModel:
+    """How the room's scans are fused: voxels of this size [m], signed distances cut at three of them."""
+    pieces = max(4, round(0.1 / voxel**2))  # loose pieces below a tenth of a square metre are removed
+    return FusionModel(voxel=voxel, truncation=3 * voxel, slab=8.0, least_component=pieces, triangles=triangles)
+
+
+def room_map(
+    n_stations: int,
+    noise_mm: float = 1.0,
+    registration_mm: float = 0.0,
+    voxel: float = 0.1,
+    keep: float = 1.0,
+    door_open: bool = False,
+) -> SceneMap:
+    """Scans of the room, fused and decimated to the share `keep` of the triangles; kept like `scans`."""
+    return _decimated((n_stations, float(noise_mm), float(registration_mm), door_open), voxel, keep)
+
+
+@functools.lru_cache(maxsize=12)
+def _fused(survey_day: tuple, voxel: float) -> tuple[np.ndarray, np.ndarray]:
+    return fuse(list(_scans(*survey_day)), fusion(voxel))
+
+
+@functools.lru_cache(maxsize=32)
+def _decimated(survey_day: tuple, voxel: float, keep: float) -> SceneMap:
+    vertices, faces = _fused(survey_day, voxel)
+    return SceneMap(*simplify(vertices, faces, fusion(voxel, max(20, round(keep * len(faces))))))
+
+
+class MapQuality(NamedTuple):
+    """How good a map of the room is."""
+
+    triangles: int
+    median: float
+    """of the distance from points on the map to the surveyed room [m]"""
+    p90: float
+    """nine in ten of these distances are below it [m]"""
+    holes: float
+    """share of what eyes in the room see that has no map within `HOLE_DISTANCE`"""
+
+
+@functools.lru_cache(maxsize=64)
+def quality(scene_map: SceneMap, door_open: bool = False) -> MapQuality:
+    """Distances from the map to the room as it was on the survey day, and the share of holes."""
+    distance = distances(scene_map, door_open)
+    holes = float((gaps(scene_map, door_open) > HOLE_DISTANCE).mean())
+    return MapQuality(len(scene_map), float(np.median(distance)), float(np.percentile(distance, 90)), holes)
+
+
+def distances(scene_map: SceneMap, door_open: bool = False, n: int = 4000) -> np.ndarray:
+    """Distances [m] from `n` places on the map, drawn by area, to the nearest surface of the room."""
+    corners = scene_map.vertices[scene_map.faces]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    rng = np.random.default_rng(0)
+    face = rng.choice(len(area), n, p=area / area.sum())
+    # Equal chances all over a triangle: Dirichlet shares of its corners.
+    points = np.einsum("nk,nkd->nd", rng.dirichlet(np.ones(3), n), corners[face])
+    low, high = room(door_open).low, room(door_open).high
+    off = np.maximum(low - points[:, None], points[:, None] - high)  # beyond each box's sides, negative inside
+    outside = np.linalg.norm(np.maximum(off, 0), axis=2)
+    return np.abs(outside + np.minimum(off.max(axis=2), 0)).min(axis=1)
+
+
+def gaps(scene_map: SceneMap, door_open: bool = False) -> np.ndarray:
+    """Distance [m] to the nearest place of the map from each of 3,000 places of the room that eyes in it see."""
+    mesh = to_polydata(scene_map.vertices, scene_map.faces)
+    seen = seen_places(door_open)
+    return np.linalg.norm(seen - mesh.find_closest_cell(seen, return_closest_point=True)[1], axis=1)
+
+
+@functools.cache
+def seen_places(door_open: bool = False, n: int = 3000) -> np.ndarray:
+    """Places `(n, 3)` on the room's surfaces: what rays in all directions from eyes all over the room meet."""
+    rng, places = np.random.default_rng(5), []
+    while sum(map(len, places)) < n:
+        eyes = rng.uniform([0.1, 0.1, 0.9], [SIZE[0] - 0.1, SIZE[1] - 0.1, 1.9], (4 * n, 3))
+        free = ~((eyes[:, :2] > [2.2, 1.6]) & (eyes[:, :2] < [2.8, 2.2])).all(axis=1)  # not in the pillar
+        free &= ~((eyes[:, :2] > [4.0, -1]) & (eyes[:, :2] < [9, 1.1])).all(axis=1)  # nor in the cabinet
+        eyes = eyes[free]
+        directions = rng.normal(size=eyes.shape)
+        distance = room(door_open).cast(eyes, directions).distance
+        hit = np.isfinite(distance)
+        places.append(eyes[hit] + directions[hit] * distance[hit][:, None])
+    return np.concatenate(places)[:n]

@@ -1,0 +1,287 @@
+"""Exercises of lesson 08: the paper's error, the three numbers of its table 1, and noticing that a filter is lost."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course_lib.lessons.kit.exercises import Exercise, Mistake
+
+# 08.1: distance to the nearest point of the path
+
+
+def nearest_distances(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
+    """Horizontal distance (T,) [m] from each estimate (T, 3) to the nearest point of the path (P, 3)."""
+    return _pairwise(estimated[:, :2], path[:, :2]).min(axis=1)
+
+
+def _pairwise(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(a[:, None, :] - b[None, :, :], axis=2)
+
+
+def _track_and_path(rng: np.random.Generator) -> tuple:
+    n, p = int(rng.integers(4, 8)), int(rng.integers(9, 15))
+    path = np.column_stack([np.linspace(0, 6, p), 0.3 * rng.normal(size=p), np.zeros(p)])
+    estimated = np.column_stack([rng.uniform(0, 6, n), rng.normal(0, 0.3, n), np.full(n, rng.uniform(0.8, 1.2))])
+    return estimated, path
+
+
+def _same_index(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(estimated[:, :2] - path[: len(estimated), :2], axis=1)
+
+
+def _nearest_along_x(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
+    nearest = np.abs(estimated[:, None, 0] - path[None, :, 0]).argmin(axis=1)
+    return np.linalg.norm(estimated[:, :2] - path[nearest, :2], axis=1)
+
+
+def _to_segments(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
+    start, along = path[:-1, :2], np.diff(path[:, :2], axis=0)
+    share = ((estimated[:, None, :2] - start) * along).sum(axis=2) / (along**2).sum(axis=1)
+    nearest = start + np.clip(share, 0, 1)[:, :, None] * along
+    return np.linalg.norm(estimated[:, None, :2] - nearest, axis=2).min(axis=1)
+
+
+def _along_the_axes(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
+    return np.abs(estimated[:, None, :2] - path[None, :, :2]).sum(axis=2).min(axis=1)
+
+
+# 08.2: the three numbers of a row of table 1
+
+
+def table_row(errors: np.ndarray) -> tuple[float, float, float]:
+    """Median [m], sigma about zero [m] and share of errors of at most 0.30 m, of errors (T,) in metres."""
+    return np.median(errors), np.sqrt(np.mean(errors**2)), np.mean(errors <= 0.30)
+
+
+def _errors(rng: np.random.Generator) -> tuple:
+    errors = np.abs(rng.normal(0.1, 0.2, size=rng.integers(12, 30))) + 0.05
+    # Exactly at the gate: "at most" lets it in.
+    errors[rng.integers(errors.size)] = 0.30
+    return (errors,)
+
+
+def _own_three_sigma(errors: np.ndarray) -> tuple[float, float, float]:
+    sigma = np.sqrt(np.mean(errors**2))
+    return np.median(errors), sigma, np.mean(errors <= 3 * sigma)
+
+
+# 08.3: since when has the filter been lost?
+
+
+def lost_since(scores: np.ndarray, limit: float, patience: int) -> int:
+    """First frame at which the last `patience` scores, its own included, all lie below `limit`; -1 if never."""
+    in_a_row = 0
+    for frame, score in enumerate(scores):
+        in_a_row = in_a_row + 1 if score < limit else 0
+        if in_a_row == patience:
+            return frame
+    return -1
+
+
+def _scores(rng: np.random.Generator) -> tuple:
+    """Scores with two short dips and, mostly, one long one; the dips alone add up to the patience or more.
+
+    The long dip is at the start, in the middle, complete with the last frame, cut off one frame before it is complete,
+    or left out. The first short dip ends with a score equal to the limit, which is not below it.
+    """
+    patience, n = int(rng.integers(2, 6)), int(rng.integers(40, 61))
+    limit = rng.uniform(0.3, 0.6)
+    scores = limit + rng.uniform(0.01, 0.2, size=n)
+    low = limit - rng.uniform(0.01, 0.2, size=n)
+    long_start = rng.choice([0, 30, n - patience, n - patience + 1, n], p=[0.2, 0.2, 0.3, 0.2, 0.1])
+    long_length = patience + int(rng.integers(0, 3))
+    for start, length in ((8, patience - 1), (18, patience - 1), (long_start, long_length)):
+        scores[start : start + length] = low[start : start + length]
+    scores[8 + patience - 1] = limit
+    return scores, limit, patience
+
+
+def _first_dip(scores: np.ndarray, limit: float, patience: int) -> int:
+    below = np.flatnonzero(scores < limit)
+    return int(below[0]) if len(below) else -1
+
+
+def _counted_in_all(scores: np.ndarray, limit: float, patience: int) -> int:
+    below = np.flatnonzero(scores < limit)
+    return int(below[patience - 1]) if len(below) >= patience else -1
+
+
+def _start_of_dip(scores: np.ndarray, limit: float, patience: int) -> int:
+    frame = lost_since(scores, limit, patience)
+    return frame - patience + 1 if frame >= 0 else -1
+
+
+def _one_late(scores: np.ndarray, limit: float, patience: int) -> int:
+    return lost_since(scores, limit, patience + 1)
+
+
+def _from_one(scores: np.ndarray, limit: float, patience: int) -> int:
+    frame = lost_since(scores, limit, patience)
+    return frame + 1 if frame >= 0 else -1
+
+
+def _equal_is_low(scores: np.ndarray, limit: float, patience: int) -> int:
+    return lost_since(scores, np.nextafter(limit, np.inf), patience)
+
+
+def _last_left_out(scores: np.ndarray, limit: float, patience: int) -> int:
+    return lost_since(scores[:-1], limit, patience)
+
+
+def _over_the_end(scores: np.ndarray, limit: float, patience: int) -> int:
+    low = (bool((scores[i : i + patience] < limit).all()) for i in range(len(scores)))
+    return next((i + patience - 1 for i, is_low in enumerate(low) if is_low), -1)
+
+
+def _averaged(scores: np.ndarray, limit: float, patience: int) -> int:
+    means = [scores[i : i + patience].mean() for i in range(len(scores) - patience + 1)]
+    return next((i + patience - 1 for i, mean in enumerate(means) if mean < limit), -1)
+
+
+def _gives_up(scores: np.ndarray, limit: float, patience: int) -> int:
+    return patience - 1 if (scores[:patience] < limit).all() else -1
+
+
+def _zero_for_never(scores: np.ndarray, limit: float, patience: int) -> int:
+    return max(lost_since(scores, limit, patience), 0)
+
+
+EXERCISES = [
+    Exercise(
+        number="08.1",
+        reference=nearest_distances,
+        inputs=_track_and_path,
+        mistakes=(
+            Mistake(
+                lambda estimated, path: _pairwise(estimated, path).min(axis=1),
+                "Your distance includes z: the camera is a metre above the line on the floor. Use x and y only.",
+            ),
+            Mistake(
+                _same_index,
+                "You compare point k with estimate k. Nobody says that they belong together: search the whole path.",
+            ),
+            Mistake(
+                lambda estimated, path: _pairwise(estimated[:, :2], path[:, :2]).min(axis=0),
+                "Yours has one number for each point of the path: you took the minimum over the wrong axis.",
+            ),
+            Mistake(
+                lambda estimated, path: _pairwise(estimated[:, :2], path[:, :2]).mean(axis=1),
+                "That is the mean distance to all points of the path. Only the nearest one counts.",
+            ),
+            Mistake(
+                lambda estimated, path: _pairwise(estimated[:, :2], path[:, :2]).min(axis=1) ** 2,
+                "Yours is in square metres: the last square root is missing.",
+            ),
+            Mistake(
+                lambda estimated, path: np.abs(estimated[:, None, 1] - path[None, :, 1]).min(axis=1),
+                "You look at y alone. The distance on the floor has two parts, x and y.",
+            ),
+            Mistake(
+                lambda estimated, path: _pairwise(estimated[:, :2], path[:, :2]).argmin(axis=1),
+                "argmin tells which point is nearest, its number; the task asks how far it is, in metres.",
+            ),
+            Mistake(
+                lambda estimated, path: np.sqrt((_pairwise(estimated[:, :2], path[:, :2]) ** 2).sum(axis=1)),
+                "You sum over the whole path. np.linalg.norm needs axis=1 to give one distance for each point.",
+            ),
+            Mistake(
+                _to_segments,
+                "You measure to the lines between the points of the path. Here only the points themselves count.",
+            ),
+            Mistake(
+                _along_the_axes,
+                "You add the ways along x and y. The straight way is the root of the sum of their squares.",
+            ),
+            Mistake(
+                _nearest_along_x,
+                "You take the point with the nearest x. Where the path bends, another point may be nearer.",
+            ),
+        ),
+    ),
+    Exercise(
+        number="08.2",
+        reference=table_row,
+        inputs=_errors,
+        mistakes=(
+            Mistake(
+                lambda errors: (np.median(errors), np.std(errors), np.mean(errors <= 0.30)),
+                "np.std measures the scatter about the mean: a constant error of 5 m would get 0. Take it about zero.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.std(errors, ddof=1), np.mean(errors <= 0.30)),
+                "That is a standard deviation about the mean. Here sigma is about zero: nothing is subtracted.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.linalg.norm(errors), np.mean(errors <= 0.30)),
+                "Your sigma grows with the number of frames: divide the sum of the squares by T before the root.",
+            ),
+            Mistake(
+                lambda errors: (np.mean(errors), np.sqrt(np.mean(errors**2)), np.mean(errors <= 0.30)),
+                "Your first number is the mean; one wild frame pulls it up. The table holds the median.",
+            ),
+            Mistake(
+                _own_three_sigma,
+                "You use three of the run's own sigma: a bad run would then get a wide gate. It is 0.30 m for all.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.mean(errors**2), np.mean(errors <= 0.30)),
+                "Your sigma is in square metres: the square root is missing.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.sqrt(np.mean(errors**2)), 100 * np.mean(errors <= 0.30)),
+                "Your last number is in percent; here it is a share from 0 to 1.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.sqrt(np.mean(errors**2)), np.sum(errors <= 0.30)),
+                "Your last number counts frames. A share is that count divided by the number of frames.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.sqrt(np.mean(errors**2)), np.mean(errors < 0.30)),
+                "An error of exactly 0.30 m is *at most* 0.30 m: it counts.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.sqrt(np.mean(errors**2)), np.mean(errors > 0.30)),
+                "Your last number is the share of the errors beyond 0.30 m; the task asks for the others.",
+            ),
+            Mistake(
+                lambda errors: tuple(np.round(table_row(errors), 3)),
+                "You round to three digits, as the example is printed. Give the numbers as they come out.",
+            ),
+        ),
+        tolerance=1e-9,
+    ),
+    Exercise(
+        number="08.3",
+        reference=lost_since,
+        inputs=_scores,
+        mistakes=(
+            Mistake(_first_dip, "You raise the alarm at the first low score. A person who walks by would do that."),
+            Mistake(
+                _counted_in_all,
+                "You count all low scores together. Start again from 0 whenever a score is good: in a row.",
+            ),
+            Mistake(
+                _start_of_dip,
+                "You name the frame where the row begins. Nobody can know that yet: name the one where it is complete.",
+            ),
+            Mistake(_one_late, "You wait one frame too long: the row is complete with its patience-th low score."),
+            Mistake(_from_one, "Your frame is one too high: do you count frames from 1? The first is frame 0."),
+            Mistake(_equal_is_low, "A score equal to the limit is not below it."),
+            Mistake(_last_left_out, "You never look at the last score: the row may be complete with just that one."),
+            Mistake(
+                _over_the_end,
+                "Near the end fewer than `patience` scores are left, and yours takes them for a whole row.",
+            ),
+            Mistake(
+                _averaged,
+                "You take the mean of a row: one very low score then hides a good one. Each of them must be low.",
+            ),
+            Mistake(
+                lambda scores, limit, patience: -1,
+                "Yours says -1 whatever the scores are. Does the -1 stand inside the loop? It belongs after it.",
+            ),
+            Mistake(_gives_up, "Yours gives up at the first good score. That only starts the count again: go on."),
+            Mistake(_zero_for_never, "Where the filter is never lost yours says frame 0. The task asks for -1."),
+        ),
+    ),
+]

@@ -1,0 +1,1 @@
+"""Figures that commands and lessons share, in one style."""

@@ -1,0 +1,175 @@
+"""Triangles with a material: the few solids from which the corridor is put together.
+
+Everything is built in local coordinates and set into the world by a `Placement`. Metres throughout.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+import trimesh
+from scipy.spatial import ConvexHull
+
+from course_lib.simulation.corridor.materials import Material
+
+_BOX_FACES = np.array(
+    [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6],
+     [1, 3, 5], [3, 7, 5]]
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class WorldMesh:
+    """One state of the world as triangles.
+
+    vertices `(V, 3)` metres; faces `(F, 3)`; reflectivity `(F,)` at 850 nm, 0 to 1; colours `(F, 3)` 0 to 255;
+    parts `(F,)` index into part_names, so that a picture or a test can ask what a ray met.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    reflectivity: np.ndarray
+    colours: np.ndarray
+    parts: np.ndarray
+    part_names: tuple[str, ...]
+
+    def faces_of(self, part_name: str) -> np.ndarray:
+        """Indices of the faces of every part whose name begins with `part_name`."""
+        wanted = [i for i, name in enumerate(self.part_names) if name.startswith(part_name)]
+        return np.flatnonzero(np.isin(self.parts, wanted))
+
+    def part_bounds(self, part_name: str) -> np.ndarray:
+        """Corners `(2, 3)` of the box, along the world axes, around the parts whose name begins with `part_name`."""
+        faces = self.faces_of(part_name)
+        if len(faces) == 0:
+            raise ValueError(f"no part begins with {part_name!r}; there are {sorted(set(self.part_names))}")
+        points = self.vertices[self.faces[faces]].reshape(-1, 3)
+        return np.array([points.min(axis=0), points.max(axis=0)])
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A local frame in the world: origin `(3,)` and the world directions of the local axes as rows of `axes` `(3, 3)`.
+
+    For a wall the local axes are: along the wall, into the wall (away from the corridor), and up.
+    """
+
+    origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    axes: np.ndarray = field(default_factory=lambda: np.eye(3))
+
+    def __call__(self, points: np.ndarray) -> np.ndarray:
+        return self.origin + np.asarray(points, dtype=np.float64) @ self.axes
+
+    def moved(self, along: float = 0.0, into: float = 0.0, up: float = 0.0, turn_deg: float = 0.0) -> Placement:
+        """The frame moved by local steps in metres, then turned about its own up axis (first axis to second)."""
+        c, s = np.cos(np.deg2rad(turn_deg)), np.sin(np.deg2rad(turn_deg))
+        turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        return Placement(self([along, into, up]), turn @ self.axes)
+
+
+class MeshBuilder:
+    """Collects solids; `build` gives the `WorldMesh`. `part` names what is added from then on."""
+
+    def __init__(self, bow: Callable[[np.ndarray], np.ndarray] | None = None) -> None:
+        """bow: displacement in metres of large panels at world points `(N, 3)`, along the panel's normal."""
+        self._pieces: list[tuple[np.ndarray, np.ndarray, Material, str]] = []
+        self._bow = bow or (lambda points: np.zeros(len(points)))
+        self.part = "building"
+
+    def add(self, vertices: np.ndarray, faces: np.ndarray, material: Material, closed: bool = True) -> None:
+        """Add triangles given in world coordinates; those of a closed solid are turned to face outward."""
+        vertices, faces = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
+        if closed:
+            corners = (vertices - vertices.mean(axis=0))[faces]
+            signed_volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum()
+            faces = faces if signed_volume > 0 else faces[:, ::-1]
+        self._pieces.append((vertices, faces, material, self.part))
+
+    def box(self, place: Placement, low: tuple, high: tuple, material: Material, bevel: float = 0.0) -> None:
+        """Box between two local corners; `bevel` metres are cut off every edge."""
+        low, high = np.minimum(low, high).astype(float), np.maximum(low, high).astype(float)
+        if bevel <= 0 or (high - low).min() <= 2.1 * bevel:
+            corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
+            self.add(place(low + corners * (high - low)), _BOX_FACES, material)
+            return
+        self.add(place(low + _bevelled_corners(high - low, bevel)), _bevelled_faces(), material)
+
+    def panel(self, place: Placement, corner: tuple, u: tuple, v: tuple, material: Material, step: float = 0.5) -> None:
+        """Large rectangle from a local corner along u and v, in cells of about `step` metres, bowed like a wall."""
+        corner, u, v = (np.asarray(a, dtype=float) for a in (corner, u, v))
+        n_u, n_v = (max(1, int(np.ceil(np.linalg.norm(a) / step))) for a in (u, v))
+        i, j = np.meshgrid(np.arange(n_u + 1), np.arange(n_v + 1), indexing="ij")
+        points = place(corner + (i / n_u).reshape(-1, 1) * u + (j / n_v).reshape(-1, 1) * v)
+        normal = np.cross(u, v) / np.linalg.norm(np.cross(u, v)) @ place.axes
+        points += self._bow(points)[:, None] * np.abs(normal)
+        index = (i * (n_v + 1) + j)[:-1, :-1].ravel()
+        first = np.stack([index, index + n_v + 1, index + 1], axis=1)
+        second = np.stack([index + 1, index + n_v + 1, index + n_v + 2], axis=1)
+        self.add(points, np.concatenate([first, second]), material, closed=False)
+
+    def tube(
+        self, place: Placement, start: tuple, end: tuple, radius: float, material: Material, sides: int = 12
+    ) -> None:
+        """Closed cylinder between two local points."""
+        start, end = place(start), place(end)
+        mesh = trimesh.creation.cylinder(radius=radius, segment=np.array([start, end]), sections=sides)
+        self.add(mesh.vertices, mesh.faces, material)
+
+    def ellipsoid(self, place: Placement, centre: tuple, radii: tuple, material: Material, level: int = 2) -> None:
+        """Ellipsoid with its axes along the local axes."""
+        ball = trimesh.creation.icosphere(subdivisions=level)
+        self.add(place(np.asarray(centre) + ball.vertices * np.asarray(radii)), ball.faces, material)
+
+    def cone(
+        self, place: Placement, centre: tuple, bottom: float, top: float, height: float, material: Material
+    ) -> None:
+        """Frustum standing on a local point: bottom and top radius, height; closed."""
+        angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+        ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(24)], axis=1)
+        points = np.concatenate([ring * bottom, ring * top + [0, 0, height], [[0, 0, 0], [0, 0, height]]])
+        i, k = np.arange(24), (np.arange(24) + 1) % 24
+        sides = np.concatenate([np.stack([i, k, i + 24], 1), np.stack([k, k + 24, i + 24], 1)])
+        caps = np.concatenate([np.stack([k, i, np.full(24, 48)], 1), np.stack([i + 24, k + 24, np.full(24, 49)], 1)])
+        self.add(place(np.asarray(centre) + points), np.concatenate([sides, caps]), material)
+
+    def take(self, other: MeshBuilder, part: str) -> None:
+        """Add all solids of another builder under one part name."""
+        self._pieces += [(vertices, faces, material, part) for vertices, faces, material, _ in other._pieces]
+
+    def build(self) -> WorldMesh:
+        """All solids as one mesh. Raises `ValueError` when nothing was added."""
+        if not self._pieces:
+            raise ValueError("nothing was added to the world: add at least one solid before build()")
+        names = tuple(dict.fromkeys(piece[3] for piece in self._pieces))
+        counts = [len(piece[1]) for piece in self._pieces]
+        starts = np.cumsum([0] + [len(piece[0]) for piece in self._pieces])
+        return WorldMesh(
+            vertices=np.concatenate([piece[0] for piece in self._pieces]),
+            faces=np.concatenate([piece[1] + start for piece, start in zip(self._pieces, starts, strict=False)]),
+            reflectivity=np.repeat([piece[2].reflectivity for piece in self._pieces], counts),
+            colours=np.repeat(np.array([piece[2].colour for piece in self._pieces], dtype=np.uint8), counts, axis=0),
+            parts=np.repeat([names.index(piece[3]) for piece in self._pieces], counts),
+            part_names=names,
+        )
+
+
+def _bevelled_corners(size: np.ndarray, bevel: float) -> np.ndarray:
+    """Corners `(24, 3)` of a box from the origin with bevelled edges: each of its 8 corners becomes three."""
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
+    inner = corners * size + np.where(corners > 0, -bevel, bevel)
+    outward = np.where(corners > 0, bevel, -bevel)
+    return np.concatenate([inner + outward * np.eye(3)[axis] for axis in range(3)])
+
+
+@functools.cache
+def _bevelled_faces() -> np.ndarray:
+    """Triangles `(44, 3)` of `_bevelled_corners`, outward: the hull of one such box serves boxes of all sizes."""
+    points = _bevelled_corners(np.ones(3), 0.2)
+    faces = ConvexHull(points).simplices
+    corners = points[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = np.einsum("ij,ij->i", normals, corners.mean(axis=1) - 0.5) < 0
+    return np.where(inward[:, None], faces[:, ::-1], faces)

@@ -1,0 +1,246 @@
+"""The true world: a fourth-floor corridor of 40 m along +x, on the survey day and on the run day.
+
+z is up, the floor is at z = 0 (the fourth floor's; the building's other storeys are not there), the corridor runs from
+x = 0 to x = 40 m between y = +1.2 m and y = -1.38 m (-1.2 m beyond x = 20.4 m). Left is +y. Positions along the
+corridor follow no common spacing, so that one place does not look like the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from course_lib.simulation.corridor import clutter as clutter
+from course_lib.simulation.corridor import materials as m
+from course_lib.simulation.corridor import parts as parts
+from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement, WorldMesh
+
+LENGTH = 40.0  # m, chosen
+LEFT, RIGHT, RIGHT_NARROW, STEP_AT = 1.2, -1.38, -1.2, 20.4  # m, chosen
+JUNCTION = (16.6, 18.8, 5.5)  # m: start and end along x, depth of the side corridor; chosen
+STAIRS = (29.3, 32.1)  # m: start and end along x; chosen
+BOW_AMPLITUDE = 0.004  # m, chosen: plaster walls are flat to a few millimetres over some metres
+JITTER = 0.10  # m, chosen: how far the seed moves each thing along the corridor
+
+# (along x in m, leaf width in m, recess depth in m, hinge at the far end, degrees open on survey day, on run day)
+LEFT_DOORS = (
+    (2.3, 0.90, 0.32, False, 0.0, 0.0),
+    (7.6, 0.90, 0.24, True, 72.0, 18.0),
+    (12.9, 1.00, 0.35, False, 0.0, 65.0),
+    (21.9, 0.90, 0.14, True, 30.0, 0.0),
+    (26.0, 0.90, 0.30, False, 85.0, 85.0),
+    (35.0, 0.95, 0.20, True, 0.0, 40.0),
+    (38.3, 0.85, 0.30, False, 12.0, 0.0),
+)
+RIGHT_DOORS = ((32.7, 0.90, 0.26, False, 0.0, 0.0),)
+# (start, end in m along x, recess depth in m, shares at which mullions stand, radiator below)
+WINDOWS = (
+    (1.0, 2.6, 0.22, (0.5,), True),
+    (4.4, 6.3, 0.22, (0.33, 0.66), True),
+    (8.9, 10.2, 0.30, (), True),
+    (12.2, 13.7, 0.22, (0.4,), False),
+    (16.1, 17.5, 0.30, (0.5,), True),
+    (21.2, 22.9, 0.18, (0.6,), True),
+    (25.0, 26.1, 0.26, (), False),
+    (29.7, 31.3, 0.18, (0.5,), True),
+    (35.5, 36.9, 0.26, (0.3,), True),
+    (38.5, 39.5, 0.18, (), False),
+)
+LEFT_PILLARS = ((6.0, 0.45, 0.22), (19.7, 0.50, 0.28), (27.2, 0.40, 0.20), (36.6, 0.45, 0.25))  # (x, width, out) in m
+RIGHT_PILLARS = ((3.5, 0.40, 0.25), (8.1, 0.50, 0.30), (18.9, 0.45, 0.22), (24.2, 0.45, 0.25), (37.8, 0.50, 0.20))
+LEFT_BOARDS, RIGHT_BOARDS = ((4.4, 1.6, 0.9), (33.5, 1.3, 1.1)), ((34.3, 1.2, 0.9),)  # (x, length, height) in m
+LEFT_BENCHES = ((10.6, 1.5), (23.9, 1.8))  # (x, length) in m
+EXTINGUISHERS = (9.1, 20.6, 32.6)  # m along the left wall
+PORTALS = ((14.5, 0.14, 0.38, 0.16), (27.85, 0.11, 0.30, 0.14))  # (x, jamb, drop of the lintel, thickness) in m
+SOFFITS = ((5.35, 0.30, 0.16), (11.5, 0.22, 0.24), (20.3, 0.40, 0.20), (33.9, 0.26, 0.18))  # (x, length, drop) in m
+LAMPS = ((1.4, 1.2), (4.0, 0.6), (6.9, 1.2), (9.4, 1.5), (12.9, 1.2), (16.2, 0.6), (17.9, 1.2), (21.9, 1.5),
+         (24.6, 0.6),
+         (26.4, 1.2), (30.2, 1.5), (32.6, 0.6), (35.7, 1.2), (38.6, 1.2))  # (x, length) in m  # fmt: skip
+
+# Clutter of the run day: (kind, x, y, turn in degrees)
+CLUTTER = (
+    ("cartons", 6.9, -1.02, 10.0),
+    ("chair", 11.2, -1.08, 150.0),
+    ("person", 15.9, 0.88, 200.0),
+    ("person", 16.5, 0.62, 40.0),
+    ("trolley", 19.9, -1.06, 3.0),
+    ("plant", 23.2, -0.86, 0.0),
+    ("ladder", 25.12, 0.80, 0.0),
+    ("bin", 28.95, 0.86, 0.0),
+    ("cartons", 33.9, 0.86, 80.0),
+    ("person", 36.0, -0.75, 90.0),
+)
+
+
+@dataclass(frozen=True)
+class TrueWorld:
+    """The corridor in its two states, as meshes. clutter_boxes: `(n, 2, 2)` [[x, y] low, high], metres."""
+
+    survey_day: WorldMesh
+    run_day: WorldMesh
+    clutter_boxes: np.ndarray
+
+
+def make_corridor(rng: np.random.Generator) -> TrueWorld:
+    """The corridor drawn with `rng`: the seed moves every feature by up to JITTER and draws bow and small parts."""
+    moves = iter(rng.uniform(-JITTER, JITTER, 200))
+    phases = rng.uniform(0, 2 * np.pi, 6)
+    seed = int(rng.integers(2**62))
+    layout = {name: [(row[0] + next(moves), *row[1:]) for row in rows] for name, rows in _features().items()}
+    windows = [(low + (move := next(moves)), high + move, *rest) for low, high, *rest in WINDOWS]
+    built = {}
+    for day in ("survey", "run"):
+        builder = MeshBuilder(lambda points: _bow(points, phases))
+        detail = np.random.default_rng(seed)
+        _shell(builder, layout, windows)
+        _fittings(builder, layout, windows, detail)
+        _doors(builder, layout, day)
+        boxes = _clutter(builder, detail) if day == "run" else None
+        built[day] = builder.build()
+    return TrueWorld(built["survey"], built["run"], boxes)
+
+
+def left_wall() -> Placement:
+    """Frame of the left wall: along +x, into +y."""
+    return Placement(np.array([0.0, LEFT, 0.0]), np.eye(3))
+
+
+def right_wall(x: float) -> Placement:
+    """Frame of the right wall, which steps inward at STEP_AT: along +x, into -y."""
+    return Placement(np.array([0.0, RIGHT if x < STEP_AT else RIGHT_NARROW, 0.0]), np.diag([1.0, -1.0, 1.0]))
+
+
+def _cross_wall(x: float, y: float, sense: float) -> Placement:
+    """Frame of a wall across the corridor: along +y, into sense * x."""
+    return Placement(np.array([x, y, 0.0]), np.array([[0.0, 1, 0], [sense, 0, 0], [0, 0, 1.0]]))
+
+
+def _features() -> dict[str, tuple]:
+    return {
+        "left doors": LEFT_DOORS, "right doors": RIGHT_DOORS,
+        "left pillars": LEFT_PILLARS, "right pillars": RIGHT_PILLARS,
+        "left boards": LEFT_BOARDS, "right boards": RIGHT_BOARDS, "benches": LEFT_BENCHES, "portals": PORTALS,
+        "soffits": SOFFITS, "lamps": LAMPS, "extinguishers": tuple((x,) for x in EXTINGUISHERS),
+    }  # fmt: skip
+
+
+def _bow(points: np.ndarray, phases: np.ndarray) -> np.ndarray:
+    """Smooth displacement of large panels in metres, waves of 2 to 7 m, at most BOW_AMPLITUDE."""
+    x, y, z = points.T
+    waves = np.sin(2 * np.pi * x / 6.7 + phases[0] + y) + np.sin(2 * np.pi * x / 3.1 + phases[1] + 1.7 * z)
+    return BOW_AMPLITUDE / 3 * (waves + np.sin(2 * np.pi * z / 2.3 + phases[2] + 0.9 * y))
+
+
+def _door_opening(x: float, width: float) -> tuple[float, float, float, float]:
+    return x - width / 2 - 0.06, x + width / 2 + 0.06, 0.0, 2.06
+
+
+def _shell(b: MeshBuilder, layout: dict, windows: list) -> None:
+    """Floor, ceiling, walls with their openings, side corridor, stairwell, ends, soffits and portals."""
+    h, (start, end, depth) = parts.CEILING_HEIGHT, JUNCTION
+    b.part = "floor"
+    world = Placement()
+    b.panel(world, (0, RIGHT - 0.02, 0), (LENGTH, 0, 0), (0, LEFT - RIGHT + 0.04, 0), m.LINOLEUM)
+    b.panel(world, (start, LEFT, 0), (end - start, 0, 0), (0, depth, 0), m.LINOLEUM)
+    b.box(world, (0.5, -0.7, -0.01), (1.9, 0.7, 0.012), m.DOOR_MAT, bevel=0.004)
+    b.part = "ceiling"
+    b.panel(world, (0, RIGHT - 0.02, h), (LENGTH, 0, 0), (0, LEFT - RIGHT + 0.04, 0), m.CEILING_PAINT)
+    b.panel(world, (start, LEFT, h), (end - start, 0, 0), (0, depth, 0), m.CEILING_PAINT)
+    left_openings = [_door_opening(x, width) for x, width, *_ in layout["left doors"]]
+    left_openings += [(start, end, 0.0, h), (*STAIRS, 0.0, h)]
+    parts.wall(b, left_wall(), 0.0, LENGTH, left_openings)
+    right = [(low, high, 0.88, 2.28) for low, high, *_ in windows]
+    right += [_door_opening(x, width) for x, width, *_ in layout["right doors"]]
+    parts.wall(b, right_wall(0.0), 0.0, STEP_AT, [o for o in right if o[0] < STEP_AT])
+    parts.wall(b, right_wall(LENGTH), STEP_AT, LENGTH, [o for o in right if o[0] >= STEP_AT])
+    b.panel(world, (STEP_AT, RIGHT - 0.01, 0), (0, RIGHT_NARROW - RIGHT + 0.015, 0), (0, 0, h), m.WALL_PAINT)
+    parts.wall(b, _cross_wall(0.0, 0.0, -1.0), RIGHT, LEFT, [(-0.6, 0.6, 0.88, 2.28)])
+    parts.window_niche(b, _cross_wall(0.0, 0.0, -1.0), -0.6, 0.6, 0.25, (0.5,))
+    parts.wall(b, _cross_wall(LENGTH, 0.0, 1.0), RIGHT_NARROW, LEFT, [_door_opening(0.1, 1.0)])
+    for x, sense in ((start, -1.0), (end, 1.0)):
+        side = _cross_wall(x, LEFT, sense)
+        openings = [_door_opening(3.1, 0.9)] if sense > 0 else [_door_opening(4.2, 0.9)]
+        parts.wall(b, side, -parts.BEAD, depth, openings)
+    back = left_wall().moved(into=depth)
+    parts.wall(b, back, start, end, [(start + 0.5, end - 0.7, 0.88, 2.28)])
+    parts.window_niche(b, back, start + 0.5, end - 0.7, 0.24, (0.5,))
+    parts.stairwell(b, left_wall().moved(along=(STAIRS[0] + STAIRS[1]) / 2), STAIRS[1] - STAIRS[0])
+    for x, jamb, drop, thick in layout["portals"]:
+        low = RIGHT if x < STEP_AT else RIGHT_NARROW
+        parts.portal(b, Placement(np.array([x, (LEFT + low) / 2, 0.0])), (LEFT - low) / 2, jamb, drop, thick)
+    b.part = "soffit"
+    for x, length, drop in layout["soffits"]:
+        b.box(world, (x, RIGHT, h - drop), (x + length, LEFT, h + 0.03), m.WALL_PAINT, bevel=0.01)
+
+
+def _fittings(b: MeshBuilder, layout: dict, windows: list, rng: np.random.Generator) -> None:
+    """Windows, radiators, pillars, boards, benches, lamps, cable tray, signs, cabinet."""
+    for low, high, depth, mullions, has_radiator in windows:
+        place = right_wall(low)
+        parts.window_niche(b, place, low, high, depth, mullions)
+        if has_radiator:
+            parts.radiator(b, place, low + 0.15, high - 0.2)
+    for x, width, out in layout["left pillars"]:
+        parts.pillar(b, left_wall().moved(along=x), width, out)
+    for x, width, out in layout["right pillars"]:
+        parts.pillar(b, right_wall(x).moved(along=x), width, out)
+    for x, length, height in layout["left boards"]:
+        parts.notice_board(b, left_wall().moved(along=x), length, height, rng)
+    for x, length, height in layout["right boards"]:
+        parts.notice_board(b, right_wall(x).moved(along=x), length, height, rng)
+    for x, length in layout["benches"]:
+        parts.bench(b, left_wall().moved(along=x), length)
+    parts.notice_board(b, _cross_wall(JUNCTION[1], LEFT, 1.0).moved(along=1.3), 1.2, 0.9, rng)
+    parts.bench(b, _cross_wall(JUNCTION[0], LEFT, -1.0).moved(along=2.2), 1.4)
+    for (x,) in layout["extinguishers"]:
+        parts.extinguisher(b, left_wall().moved(along=x))
+    ceiling = Placement(np.array([0.0, 0.0, parts.CEILING_HEIGHT]))
+    for i, (x, length) in enumerate(layout["lamps"]):
+        parts.lamp(b, ceiling.moved(along=x, into=0.1, turn_deg=90.0 if i % 4 == 1 else 0.0), length)
+    parts.lamp(b, ceiling.moved(along=17.6, into=4.2, turn_deg=90.0), 1.2)
+    for x in (14.1, 28.6, 39.2):
+        parts.exit_sign(b, ceiling.moved(along=x, into=0.1))
+    brackets = np.sort(rng.uniform(0.5, LENGTH - 0.5, 27))
+    parts.cable_tray(b, ceiling.moved(into=-0.92), 0.02, LENGTH - 0.02, brackets)
+    b.part = "cabinet"
+    b.box(right_wall(11.2), (10.75, -0.36, 0.03), (11.0, -0.02, 1.35), m.CABINET, bevel=0.01)
+    b.part = "pipe"
+    b.tube(left_wall(), (15.95, -0.06, 0.0), (15.95, -0.06, parts.CEILING_HEIGHT), 0.045, m.STEEL, 16)
+    b.tube(left_wall(), (34.2, -0.05, 0.0), (34.2, -0.05, parts.CEILING_HEIGHT), 0.03, m.STEEL, 16)
+
+
+def _doors(b: MeshBuilder, layout: dict, day: str) -> None:
+    """All doors as they stand on `day`, and a room behind each that is open on either day."""
+    rows = [(left_wall(), *row) for row in layout["left doors"]]
+    rows += [(right_wall(row[0]), *row) for row in layout["right doors"]]
+    rows.append((_cross_wall(LENGTH, 0.0, 1.0), 0.1, 1.0, 0.35, False, 0.0, 0.0))
+    rows.append((_cross_wall(JUNCTION[1], LEFT, 1.0), 3.1, 0.9, 0.16, False, 0.0, 0.0))
+    rows.append((_cross_wall(JUNCTION[0], LEFT, -1.0), 4.2, 0.9, 0.16, True, 0.0, 0.0))
+    for number, (frame, along, width, depth, hinge_at_end, survey_angle, run_angle) in enumerate(rows):
+        place = frame.moved(along=along)
+        parts.door(
+            b, place, f"door {number}", width, depth, survey_angle if day == "survey" else run_angle, hinge_at_end
+        )
+        if survey_angle or run_angle:
+            parts.room_behind(b, place, width, depth, 1.1 + 0.12 * number)
+
+
+def _clutter(b: MeshBuilder, rng: np.random.Generator) -> np.ndarray:
+    """Things of the run day; returns their boxes on the floor plan `(n, 2, 2)`."""
+    boxes = []
+    for number, (kind, x, y, turn) in enumerate(CLUTTER):
+        place, piece = Placement(np.array([x, y, 0.0])).moved(turn_deg=turn), MeshBuilder()
+        if kind == "cartons":
+            clutter.cartons(piece, place, rng)
+        elif kind == "person":
+            clutter.person(piece, place, rng.uniform(1.62, 1.82), rng)
+        elif kind == "plant":
+            clutter.plant(piece, place, rng)
+        else:
+            {"chair": clutter.chair, "trolley": clutter.trolley, "ladder": clutter.ladder, "bin": clutter.bin_with_lid}[
+                kind
+            ](piece, place)
+        b.take(piece, f"clutter {number} {kind}")
+        boxes.append(piece.build().vertices[:, :2])
+    return np.array([[points.min(axis=0), points.max(axis=0)] for points in boxes])

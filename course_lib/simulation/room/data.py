@@ -1,0 +1,109 @@
+"""Everything under data/room from one seed: the paper's stereo panoramas, exact boxes and poses, the semantic map.
+
+Everything is made in the system's temporary folder and put in its place at the end: a run that is stopped leaves the
+old data as they were.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from course_lib.simulation.data_folder import checksums, move_products, require_folder
+from course_lib.simulation.parameter_tables import parameter_tables
+from course_lib.simulation.room.experiment_room import make_experiment_room
+from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
+from course_lib.simulation.room.object_boxes import object_boxes
+from course_lib.simulation.room.survey import RoomSurveyModel, survey_room
+from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
+from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
+from course_lib.simulation.sensors.panorama_rig import RigModel, stand_up
+
+PRODUCTS = ("experiment_1", "experiment_2", "semantic_map.json", "PARAMETERS.md", "SHA256SUMS")
+
+Progress = Callable[[Iterable], Iterable]
+
+
+@dataclass(frozen=True)
+class RigHeights:
+    """The paper's rigs (section 3): two THETA Z1, 0.30 m apart on one vertical axis."""
+
+    upper_1: float = 1.32  # m above the floor, upper camera of experiment 1; paper 2, section 3
+    upper_2: float = 1.44  # m above the floor, upper camera of experiment 2; paper 2, section 3
+    baseline: float = 0.30  # m between the cameras; paper 2, section 3
+
+
+@dataclass(frozen=True)
+class RoomModels:
+    """All parameters of the room's data. The defaults are the shipped data's; tests take smaller ones."""
+
+    heights: RigHeights = field(default_factory=RigHeights)
+    rig: RigModel = field(default_factory=RigModel)
+    camera: PanoramaCameraModel = field(default_factory=PanoramaCameraModel)
+    survey: RoomSurveyModel = field(default_factory=RoomSurveyModel)
+    width: int = 1280  # pixels
+    places: tuple[int, ...] = tuple(place.place for place in MEASUREMENT_PLACES)  # of the paper's table 1
+
+
+def make_room_data(
+    out: str | Path, seed: int, models: RoomModels | None = None, progress: Progress = lambda items: items
+) -> dict:
+    """Make the data in folder `out`; returns a summary. One seed gives one set of bytes.
+
+    progress(items) wraps the loop over the 40 pairs. Raises `ValueError` where `out` cannot be a folder.
+    """
+    models = models or RoomModels()
+    out = require_folder(out)
+    survey_rng, rng = np.random.default_rng(seed).spawn(2)
+    room = make_experiment_room()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        survey_room(room, models.survey, survey_rng).save(folder / "semantic_map.json")
+        shots = [
+            (experiment, upper_height, place, turn)
+            for experiment, upper_height in ((1, models.heights.upper_1), (2, models.heights.upper_2))
+            for place in MEASUREMENT_PLACES
+            if place.place in models.places
+            for turn in range(2)
+        ]
+        lists: dict[int, list[dict]] = {1: [], 2: []}
+        with PanoramaRenderer(room, models.width) as renderer:
+            for experiment, upper_height, place, turn in progress(shots):
+                (folder / f"experiment_{experiment}").mkdir(exist_ok=True)
+                name = f"{place.place:02d}_{'ab'[turn]}"
+                heading = np.deg2rad(place.headings_deg[turn])
+                rig = stand_up(place.x, place.y, heading, upper_height, models.heights.baseline, models.rig, rng)
+                entry = _photograph_pair(renderer, rig, folder / f"experiment_{experiment}", name, models.camera, rng)
+                lists[experiment].append(entry)
+        for experiment, entries in lists.items():
+            _write_poses(folder / f"experiment_{experiment}" / "poses.json", seed, models, entries)
+        (folder / "PARAMETERS.md").write_text(parameter_tables(models, "room"))
+        (folder / "SHA256SUMS").write_text(checksums(folder, PRODUCTS))
+        move_products(folder, out, PRODUCTS)
+    return {"seed": seed, "pairs": sum(map(len, lists.values())), "objects": len(room.objects)}
+
+
+def _photograph_pair(renderer, rig, folder: Path, name: str, camera: PanoramaCameraModel, rng) -> dict:
+    entry = {"name": name, "rig": asdict(rig)}
+    for side, state in zip(("upper", "lower"), rig.camera_states(), strict=True):
+        file = f"{name}_{side}.jpg"
+        write_photograph(folder / file, photograph(renderer.render(state), camera, rng), camera, rng)
+        entry[side] = {"file": file, "objects": [box.as_dict() for box in object_boxes(renderer, state)]}
+    return entry
+
+
+def _write_poses(path: Path, seed: int, models: RoomModels, entries: list[dict]) -> None:
+    content = {
+        "version": 1,
+        "seed": seed,
+        "width": models.width,
+        "height": models.width // 2,
+        "baseline": models.heights.baseline,
+        "pairs": entries,
+    }
+    path.write_text(json.dumps(content) + "\n")

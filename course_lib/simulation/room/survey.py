@@ -1,0 +1,81 @@
+"""The semantic map of a room as a surveyor makes it: on another day, under other light, with a measuring error.
+
+The surveyor's lamps are warmer or colder than those of the experiment, so that the map's colours and the colours that
+the rig sees later are not the same numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from course_lib.geometry import circular_mean
+from course_lib.simulation.room.random_room import free_places
+from course_lib.simulation.room.scene import Lamp, Room
+from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph
+from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
+from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+
+
+@dataclass(frozen=True)
+class RoomSurveyModel:
+    """How the semantic map is surveyed."""
+
+    position_error: float = 0.01  # m, standard deviation of each coordinate of a centroid; chosen: a tape measure
+    places: int = 6  # places from which the colours are photographed; chosen
+    camera_height: float = 1.5  # m above the floor; chosen
+    lamp_colour: tuple[float, float, float] = (1.0, 0.94, 0.84)  # RGB, warmer than the room's own lamps; chosen
+    lamp_gain: float = 1.15  # strength of the lamps against the room's own; chosen
+    width: int = 1280  # pixels of the survey's panoramas; chosen
+    fewest_pixels: int = 150  # an object seen by fewer pixels is not judged from that place; chosen
+
+
+def survey_room(room: Room, model: RoomSurveyModel, rng: np.random.Generator) -> SemanticMap:
+    """The semantic map of a room: class, centroid, hue and saturation of the whole object, and the walls.
+
+    Hue and saturation are means over all pixels that show the object, and over the places that see it well.
+    Raises `ValueError` for an object that no place sees.
+    """
+    lamps = tuple(
+        Lamp(lamp.position, tuple(np.multiply(lamp.colour, model.lamp_colour)), lamp.strength * model.lamp_gain)
+        for lamp in room.lamps
+    )
+    lit = replace(room, lamps=lamps, ambient=tuple(np.multiply(room.ambient, model.lamp_colour)))
+    colours = _photographed_colours(lit, model, rng)
+    landmarks = []
+    for number, thing in enumerate(room.objects):
+        if not colours[number]:
+            raise ValueError(
+                f"object {number} ({thing.label} at {thing.x:.2f}, {thing.y:.2f}) is seen from none of the "
+                f"{model.places} places of the survey: give more places, or move the object."
+            )
+        hue, saturation = _mean_colour(colours[number])
+        x, y = np.array([thing.x, thing.y]) + model.position_error * rng.standard_normal(2)
+        landmarks.append(Landmark(thing.label, round(float(x), 3), round(float(y), 3), hue, saturation))
+    return SemanticMap(tuple(landmarks), walls=np.asarray(room.walls, float))
+
+
+def _photographed_colours(room: Room, model: RoomSurveyModel, rng: np.random.Generator) -> list[list]:
+    colours: list[list] = [[] for _ in room.objects]
+    with PanoramaRenderer(room, model.width, number_scale=1) as renderer:
+        for x, y in free_places(room, model.places, rng):
+            state = np.array([x, y, model.camera_height, 0.0, 0.0, rng.uniform(-np.pi, np.pi)])
+            image = photograph(renderer.render(state), PanoramaCameraModel(), rng)
+            numbers = renderer.render_objects(state)
+            for number in range(len(room.objects)):
+                mask = numbers == number
+                if mask.sum() >= model.fewest_pixels:
+                    colours[number].append(mean_hue_saturation(image, mask=mask))
+    return colours
+
+
+def _mean_colour(colours: list[tuple[float, float]]) -> tuple[float, float]:
+    hues, saturations = np.array(colours).T
+    coloured = np.isfinite(hues)
+    # Seen as grey from most places: grey.
+    if coloured.sum() * 2 < len(hues):
+        return float("nan"), round(float(saturations.mean()), 1)
+    hue = np.rad2deg(circular_mean(np.deg2rad(hues[coloured]), saturations[coloured])) % 360.0
+    return round(float(hue), 1) % 360.0, round(float(saturations.mean()), 1)

@@ -1,0 +1,113 @@
+"""Photographs of many rooms with their boxes: what a detector is trained and tested on.
+
+No room of these is the experiment's: `make_room(seed)` draws other layouts, shapes, textures and light each time.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from course_lib.simulation.room.object_boxes import object_boxes
+from course_lib.simulation.room.random_room import free_places, make_room
+from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
+from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
+from course_lib.simulation.sensors.panorama_rig import RigModel, stand_up
+from course_lib.spherical_stereo.panorama import read_panorama
+from course_lib.spherical_stereo.recording import TrueObject, true_object
+
+VERSION = 1
+BOXES_FILE = "boxes.json"
+WIDTH = 1280  # pixels
+CAMERA_HEIGHTS = (0.9, 1.6)  # m above the floor, lowest and highest; chosen around the paper's 1.02 to 1.44
+
+# Wider ranges than the experiment's camera has, so that what is learned holds for other cameras too; chosen.
+TRAINING_CAMERA = PanoramaCameraModel(
+    exposure_stops=0.4, white_balance=0.06, shot_noise=0.35, read_noise=1.5, jpeg_quality=(86, 93)
+)
+
+Progress = Callable[[Iterable], Iterable]
+
+
+class OtherImagesPerRoom(ValueError):
+    """A folder of images to go on in that has another number of each room."""
+
+
+def make_room_images(
+    folder: str | Path,
+    first_seed: int,
+    n_rooms: int,
+    images_per_room: int = 4,
+    progress: Progress = lambda items: items,
+) -> list[dict]:
+    """Photograph rooms `first_seed` to `first_seed + n_rooms - 1`; go on where an earlier run in the folder stopped.
+
+    Writes NNNNNN_K.jpg (room, photograph) and boxes.json, which is complete after every room. A room depends on its
+    seed alone; its photographs depend on images_per_room too, because the places of all of them are drawn first.
+    Returns the list of images as boxes.json holds it.
+    Raises `ValueError` for numbers below one, `OtherImagesPerRoom` for a folder begun with another number of images.
+    """
+    if n_rooms < 1 or images_per_room < 1 or first_seed < 0:
+        raise ValueError(
+            f"rooms {n_rooms}, images per room {images_per_room}, first seed {first_seed}: expected at least one room, "
+            "one image each, and a seed that is not negative."
+        )
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    images = read_image_list(folder) if (folder / BOXES_FILE).exists() else []
+    done = Counter(image["room_seed"] for image in images)
+    for seed, count in done.items():
+        if count != images_per_room:
+            raise OtherImagesPerRoom(
+                f"{folder} was begun with {count} images of a room (room {seed}), now {images_per_room} are asked for: "
+                "go on with the same number, or give another folder."
+            )
+    for seed in progress(range(first_seed, first_seed + n_rooms)):
+        if seed in done:
+            continue
+        images += _photograph_room(folder, seed, images_per_room)
+        _write_image_list(folder, images)
+    return images
+
+
+def read_image_list(folder: str | Path) -> list[dict]:
+    """The images of a folder with their objects, from its boxes.json. Raises `ValueError` for another version."""
+    path = Path(folder) / BOXES_FILE
+    content = json.loads(path.read_text())
+    if content.get("version") != VERSION:
+        raise ValueError(f"{path} has version {content.get('version')!r}; this program reads version {VERSION}.")
+    return content["images"]
+
+
+def labelled_images(folder: str | Path) -> Iterator[tuple[np.ndarray, list[TrueObject]]]:
+    """Every image `(H, W, 3)` BGR of a folder with everything that can be seen on it."""
+    for image in read_image_list(folder):
+        yield read_panorama(Path(folder) / image["file"]), [true_object(entry) for entry in image["objects"]]
+
+
+def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:
+    room_rng, rng = np.random.default_rng(seed).spawn(2)
+    room = make_room(room_rng)
+    rig_model = RigModel()
+    images = []
+    with PanoramaRenderer(room, WIDTH, number_scale=1) as renderer:
+        for index, (x, y) in enumerate(free_places(room, count, rng)):
+            rig = stand_up(x, y, rng.uniform(-np.pi, np.pi), rng.uniform(*CAMERA_HEIGHTS), 0.3, rig_model, rng)
+            state, _ = rig.camera_states()
+            name = f"{seed:06d}_{index}.jpg"
+            image = photograph(renderer.render(state), TRAINING_CAMERA, rng)
+            write_photograph(folder / name, image, TRAINING_CAMERA, rng)
+            objects = [box.as_dict() for box in object_boxes(renderer, state)]
+            images.append({"file": name, "room_seed": seed, "width": WIDTH, "height": WIDTH // 2, "objects": objects})
+    return images
+
+
+def _write_image_list(folder: Path, images: list[dict]) -> None:
+    partial = folder / (BOXES_FILE + ".partial")
+    partial.write_text(json.dumps({"version": VERSION, "images": images}))
+    os.replace(partial, folder / BOXES_FILE)

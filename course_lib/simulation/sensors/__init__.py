@@ -1,0 +1,1 @@
+"""Simulated sensors: laser scanner, time-of-flight camera, panorama cameras and their rig."""

@@ -1,0 +1,225 @@
+"""Equirectangular pictures of a room from any place, and which object each pixel shows.
+
+VTK draws the six faces of a cube around the camera and bends them into one panorama (vtkPanoramicProjectionPass). Two
+scenes live side by side: one lit and textured, one in which every object is painted with its own number.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import cv2
+import numpy as np
+
+from course_lib.geometry import pose_matrix
+from course_lib.simulation.room.scene import Room
+from course_lib.simulation.textured_mesh import TexturedMesh
+
+if sys.platform.startswith("linux"):
+    # Before VTK makes a window: no display is needed. An empty value would crash VTK.
+    os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW") or "vtkEGLRenderWindow"
+
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - registers the OpenGL classes behind the names below
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints, vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
+from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTexture
+from vtkmodules.vtkRenderingOpenGL2 import vtkPanoramicProjectionPass, vtkRenderStepsPass
+
+NEAR, FAR = 0.05, 30.0  # m: nothing stands nearer to the rig than its clearance; no room is 30 m across
+FEATURE_ANGLE_DEG = 40.0  # chosen: edges sharper than this stay sharp, cushions look round
+BACKGROUND = 255  # the number that stands for walls, floor and everything the map does not list
+OVERSAMPLING = 2  # pictures are drawn twice as large and averaged down, against jagged edges
+
+
+class PanoramaRenderer:
+    """Draws one room. A context manager: the two windows live until `close`.
+
+    room: what to draw; at most 255 objects.
+    width: of the panoramas, pixels, an even number; their height is half of it.
+    number_scale: the pictures of object numbers are so many times as large: boxes exact to a part of a pixel.
+    Raises `ValueError` for an odd or too large width, or too many objects.
+    """
+
+    def __init__(self, room: Room, width: int = 1280, number_scale: int = 2) -> None:
+        if width % 2 or not 16 <= width <= 4096:
+            raise ValueError(f"a panorama {width} pixels wide: expected an even width from 16 to 4096.")
+        if len(room.objects) >= BACKGROUND:
+            raise ValueError(f"{len(room.objects)} objects: one panorama can tell apart at most {BACKGROUND - 1}.")
+        self.room, self.width, self.height = room, width, width // 2
+        self._picture = _Scene(OVERSAMPLING * width, interpolate=True)
+        self._numbers = _Scene(number_scale * width, interpolate=False)
+        for lamp in room.lamps:
+            self._picture.add_lamp(lamp.position, lamp.colour, lamp.strength)
+        numbered = [(mesh, BACKGROUND) for mesh in room.shell]
+        numbered += [(mesh, number) for number, thing in enumerate(room.objects) for mesh in thing.meshes]
+        for mesh, number in numbered:
+            data = _poly_data(mesh)
+            self._picture.add(data, mesh.texture, mesh.emission, room.ambient)
+            self._numbers.add_flat(data, number)
+
+    def render(self, state: np.ndarray) -> np.ndarray:
+        """The panorama from a camera pose, without the camera's own faults: noise and the like come later.
+
+        state: `(6,)` [x, y, z, roll, pitch, yaw] of the camera's body frame, metres and radians.
+        Returns `(height, width, 3)` float32 BGR, 0 to 255, brightness 255 being full scale at exposure 1.
+        """
+        image = self._picture.draw(state).astype(np.float32)
+        return cv2.resize(image, (self.width, self.height), interpolation=cv2.INTER_AREA)[..., ::-1].copy()
+
+    def render_objects(self, state: np.ndarray) -> np.ndarray:
+        """Which object each pixel shows, `number_scale` times the panorama's size.
+
+        Returns uint8 `(number_scale height, number_scale width)`: the index into `room.objects`, or `BACKGROUND`.
+        """
+        return self._numbers.draw(state)[..., 0].copy()
+
+    def show_only(self, number: int | None) -> None:
+        """Let `render_objects` draw one object as if nothing else were there; None: everything again."""
+        self._numbers.show_only(number)
+
+    def close(self) -> None:
+        """Free the windows."""
+        for scene in (self._picture, self._numbers):
+            scene.close()
+
+    def __enter__(self) -> PanoramaRenderer:
+        return self
+
+    def __exit__(self, *exception) -> None:
+        self.close()
+
+
+class _Scene:
+    """One window, one renderer, one panoramic pass."""
+
+    def __init__(self, width: int, interpolate: bool) -> None:
+        self._width = width
+        self._actors: list[tuple[vtkActor, int]] = []
+        self._renderer = vtkRenderer()
+        self._renderer.SetBackground(1.0, 1.0, 1.0)
+        self._renderer.SetAutomaticLightCreation(False)
+        self._renderer.SetLightFollowCamera(False)
+        self._renderer.SetTwoSidedLighting(True)
+        # The culler knows the front camera's view only and would throw away what is behind and beside it.
+        self._renderer.GetCullers().RemoveAllItems()
+        panoramic = vtkPanoramicProjectionPass()
+        panoramic.SetProjectionTypeToEquirectangular()
+        panoramic.SetAngle(360.0)
+        # A cube face covers a quarter of the panorama's width; its middle is the coarsest part, 4 / pi times as fine.
+        panoramic.SetCubeResolution(int(np.ceil(width / np.pi)))
+        panoramic.SetInterpolate(interpolate)
+        panoramic.SetDelegatePass(vtkRenderStepsPass())
+        self._renderer.SetPass(panoramic)
+        self._pass = panoramic
+        self._window = vtkRenderWindow()
+        self._window.SetOffScreenRendering(True)
+        self._window.SetMultiSamples(0)
+        self._window.SetSize(width, width // 2)
+        self._window.AddRenderer(self._renderer)
+        self._pixels = vtkUnsignedCharArray()
+
+    def add_lamp(self, position, colour, strength: float) -> None:
+        light = vtkLight()
+        light.SetLightTypeToSceneLight()
+        light.SetPositional(True)
+        light.SetPosition(*position)
+        light.SetConeAngle(180.0)
+        light.SetColor(*colour)
+        light.SetIntensity(strength)
+        # Falls off with the square of the distance, but stays finite beside the lamp; 1 at one metre.
+        light.SetAttenuationValues(0.4, 0.0, 0.6)
+        self._renderer.AddLight(light)
+
+    def add(self, data: vtkPolyData, texture: np.ndarray, emission: float, ambient) -> None:
+        actor = _actor(data)
+        actor.SetTexture(_texture(texture))
+        surface = actor.GetProperty()
+        surface.SetAmbient(1.0)
+        surface.SetAmbientColor(*np.clip(emission + (1.0 - emission) * np.asarray(ambient), 0.0, 1.0))
+        surface.SetDiffuse(1.0 - emission)
+        surface.SetSpecular(0.0)
+        self._renderer.AddActor(actor)
+
+    def add_flat(self, data: vtkPolyData, number: int) -> None:
+        actor = _actor(data)
+        surface = actor.GetProperty()
+        surface.LightingOff()
+        surface.SetColor(number / 255.0, number / 255.0, number / 255.0)
+        self._renderer.AddActor(actor)
+        self._actors.append((actor, number))
+
+    def show_only(self, number: int | None) -> None:
+        for actor, its_number in self._actors:
+            actor.SetVisibility(number is None or its_number == number)
+
+    def draw(self, state: np.ndarray) -> np.ndarray:
+        pose = pose_matrix(np.asarray(state, float))
+        camera = self._renderer.GetActiveCamera()
+        camera.SetPosition(*pose[:3, 3])
+        camera.SetFocalPoint(*(pose[:3, 3] + pose[:3, 0]))
+        camera.SetViewUp(*pose[:3, 2])
+        camera.SetClippingRange(NEAR, FAR)
+        self._window.Render()
+        self._window.GetPixelData(0, 0, self._width - 1, self._width // 2 - 1, 1, self._pixels, 0)
+        image = vtk_to_numpy(self._pixels).reshape(self._width // 2, self._width, 3)
+        return image[::-1]
+
+    def close(self) -> None:
+        if self._window is not None:
+            self._pass.ReleaseGraphicsResources(self._window)
+            self._renderer.RemoveAllViewProps()
+            self._window.RemoveRenderer(self._renderer)
+            self._window.Finalize()
+        self._window = self._renderer = self._pass = None
+        self._actors = []
+
+
+def _poly_data(mesh: TexturedMesh) -> vtkPolyData:
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(mesh.vertices, np.float32), deep=True))
+    faces = np.asarray(mesh.faces, np.int64)
+    cells = vtkCellArray()
+    cells.ImportLegacyFormat(
+        numpy_to_vtkIdTypeArray(np.column_stack([np.full(len(faces), 3), faces]).ravel(), deep=True)
+    )
+    data = vtkPolyData()
+    data.SetPoints(points)
+    data.SetPolys(cells)
+    coordinates = numpy_to_vtk(np.ascontiguousarray(mesh.texture_coordinates, np.float32), deep=True)
+    coordinates.SetName("texture")
+    data.GetPointData().SetTCoords(coordinates)
+    normals = vtkPolyDataNormals()
+    normals.SetInputData(data)
+    normals.SetFeatureAngle(FEATURE_ANGLE_DEG)
+    normals.SplittingOn()
+    normals.ConsistencyOff()
+    normals.Update()
+    return normals.GetOutput()
+
+
+def _actor(data: vtkPolyData) -> vtkActor:
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    return actor
+
+
+def _texture(picture: np.ndarray) -> vtkTexture:
+    height, width = picture.shape[:2]
+    image = vtkImageData()
+    image.SetDimensions(width, height, 1)
+    # VTK counts texture rows from the bottom.
+    image.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(picture[::-1]).reshape(-1, 3), deep=True))
+    texture = vtkTexture()
+    texture.SetInputData(image)
+    texture.InterpolateOn()
+    texture.MipmapOn()
+    texture.RepeatOn()
+    # Anisotropic filtering, VTK's default of 4, sends Mesa's software renderer into an endless loop where the texture's
+    # derivatives degenerate (one view of 240 did), and costs more than drawing twice as large.
+    texture.SetMaximumAnisotropicFiltering(1.0)
+    return texture

@@ -1,0 +1,69 @@
+"""Rays through the true world, with what they meet: distance, incidence and reflectivity. Embree through embreex."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from course_lib.simulation.corridor.mesh_building import WorldMesh
+
+try:
+    from embreex.mesh_construction import TriangleMesh
+    from embreex.rtcore_scene import EmbreeScene
+except ImportError:  # no wheel for this processor
+    EmbreeScene = TriangleMesh = None
+
+# Rays per call, so that the results of one call stay below about 100 MB.
+_BATCH = 1_000_000
+
+
+@dataclass(frozen=True)
+class Hits:
+    """What rays met. distance `(...)` in units of the ray direction's length, inf = nothing; cosine of incidence
+    `(...)`, 0 to 1; face `(...)` index, -1 = nothing."""
+
+    distance: np.ndarray
+    cosine: np.ndarray
+    face: np.ndarray
+
+
+class WorldCaster:
+    """Casts rays at triangles. vertices `(V, 3)` metres, faces `(F, 3)`; reflectivity `(F,)` or one number.
+
+    Raises `ImportError` where embreex is missing: a survey is 30 million rays, too many for anything slower.
+    """
+
+    def __init__(self, vertices: np.ndarray, faces: np.ndarray, reflectivity: np.ndarray | float = 1.0) -> None:
+        if EmbreeScene is None:
+            raise ImportError(
+                "the simulated world needs embreex, which has wheels for x86-64 and for macOS: make the data there "
+                "(the shipped data and the lessons do not need it)"
+            )
+        triangles = np.ascontiguousarray(vertices[faces], dtype=np.float32)
+        self._scene = EmbreeScene(robust=True)
+        self._mesh = TriangleMesh(self._scene, triangles)
+        self.reflectivity = np.broadcast_to(np.asarray(reflectivity, dtype=np.float64), (len(faces),))
+
+    @classmethod
+    def of(cls, world: WorldMesh) -> WorldCaster:
+        """Caster of a world with its reflectivities."""
+        return cls(world.vertices, world.faces, world.reflectivity)
+
+    def cast(self, origins: np.ndarray, directions: np.ndarray) -> Hits:
+        """First hits of rays; origins and directions broadcast to `(..., 3)`, directions need not have length one."""
+        origins, directions = np.broadcast_arrays(np.float32(origins), np.float32(directions))
+        shape = directions.shape[:-1]
+        origins, directions = origins.reshape(-1, 3), directions.reshape(-1, 3)
+        n = len(directions)
+        distance, cosine, face = np.empty(n, np.float32), np.empty(n, np.float32), np.empty(n, np.int32)
+        for start in range(0, n, _BATCH):
+            part = slice(start, start + _BATCH)
+            d = np.ascontiguousarray(directions[part])
+            out = self._scene.run(np.ascontiguousarray(origins[part]), d, output=True)
+            normal, hit = out["Ng"], out["primID"] >= 0
+            length = np.linalg.norm(normal, axis=1) * np.linalg.norm(d, axis=1)
+            cosine[part] = np.where(hit, np.abs(np.einsum("ij,ij->i", normal, d)) / np.where(length > 0, length, 1), 0)
+            distance[part] = np.where(hit, out["tfar"], np.inf)
+            face[part] = out["primID"]
+        return Hits(distance.reshape(shape), cosine.reshape(shape), face.reshape(shape))

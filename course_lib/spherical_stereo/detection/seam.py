@@ -1,0 +1,128 @@
+"""The seam of a panorama (paper 2, figure 3): every object whole once, and counted once.
+
+A panorama is cut behind the camera, and an object there is cut in two. So the left quarter is appended at the right.
+Now every object up to a quarter wide is whole somewhere, but those of the appended quarter are there twice. A range of
+W columns decides which copy counts, by its centre:
+
+    W/8 <= centre < W/8 + W
+
+An object with its centre in there and a width up to W/4 is whole. Centres jitter by a few pixels from one copy to the
+other, so one copy at 1 px before the range and the other at 1 px past it would be lost; hence a margin on the range
+and, against the duplicates that a margin lets in, suppression on the circle.
+Source: paper 2, section 2.2.
+"""
+
+import numpy as np
+
+from course_lib.spherical_stereo.detection.boxes import box_area, box_iou, shared_area, wrapped_box
+from course_lib.spherical_stereo.detection.suppression import limit_by_class, suppress
+
+MARGIN = 1 / 32
+"""Margin of the valid range at either end, as a share of the panorama's width (11 degrees). A cut copy that it lets in
+shows at least 3/4 of its object, enough for the whole copy to suppress it."""
+
+EDGE_TOLERANCE = 1 / 64
+"""How near to an end of the extended image a box counts as cut by it, as a share of the panorama's width."""
+
+
+def appended_columns(width: int) -> int:
+    """Columns appended at the right: a quarter of the panorama's width, rounded. Source: paper 2, section 2.2."""
+    return round(width / 4)
+
+
+def extend_seam(image: np.ndarray) -> np.ndarray:
+    """The panorama (H, W, ...) with its left quarter appended at the right: (H, 1.25 W, ...).
+
+    Source: paper 2, section 2.2.
+    """
+    return np.concatenate([image, image[:, : appended_columns(image.shape[1])]], axis=1)
+
+
+def valid_range(width: int) -> tuple[float, float]:
+    """The columns [start, stop) of the extended image in which a centre counts: [W/8, W/8 + W).
+
+    Source: paper 2, section 2.2 ("a range in which objects can be detected"; the paper does not print it).
+    """
+    start = appended_columns(width) / 2
+    return start, start + width
+
+
+def centres_in_range(boxes: np.ndarray, width: int, margin: float = 0.0) -> np.ndarray:
+    """Which boxes (n, 4) of the extended image have their centre in the valid range; `margin` in pixels widens it."""
+    start, stop = valid_range(width)
+    centre = (boxes[:, 0] + boxes[:, 2]) / 2
+    return (centre >= start - margin) & (centre < stop + margin)
+
+
+def join_cut_pairs(
+    boxes: np.ndarray, scores: np.ndarray, classes: np.ndarray, width: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Put together objects wider than a quarter that both ends of the extended image cut.
+
+    Such an object fills the whole quarter at the left end and the whole quarter at the right end, once cut at its left
+    and once at its right. Two boxes of one class that do so, at overlapping heights, are one: from the right one's
+    start to the left one's end, with the greater score. Boxes (n, 4) in the extended image, scores (n,),
+    classes (n,); returns the three.
+    """
+    quarter, tolerance = appended_columns(width), EDGE_TOLERANCE * width
+    at_left = (boxes[:, 0] <= tolerance) & (boxes[:, 2] >= quarter - tolerance)
+    at_right = (boxes[:, 2] >= width + quarter - tolerance) & (boxes[:, 0] <= width + tolerance)
+    gone = np.zeros(len(boxes), dtype=bool)
+    boxes, scores = boxes.copy(), scores.copy()
+    for right in np.flatnonzero(at_right & ~at_left):
+        for left in np.flatnonzero(at_left & ~at_right & ~gone & (classes == classes[right])):
+            shared = min(boxes[left, 3], boxes[right, 3]) - max(boxes[left, 1], boxes[right, 1])
+            if shared > 0.5 * min(boxes[left, 3] - boxes[left, 1], boxes[right, 3] - boxes[right, 1]):
+                low, high = min(boxes[left, 1], boxes[right, 1]), max(boxes[left, 3], boxes[right, 3])
+                start, end = boxes[right, 0], min(boxes[left, 2] + width, boxes[right, 0] + width)
+                # Whole now, so it counts: of its places a turn apart, the one with its centre in the valid range.
+                turn = width if (start + end) / 2 >= valid_range(width)[1] else 0
+                boxes[right] = (start - turn, low, end - turn, high)
+                scores[right] = max(scores[left], scores[right])
+                gone[left] = True
+                break
+    return boxes[~gone], scores[~gone], classes[~gone]
+
+
+def select_on_circle(
+    boxes: np.ndarray, scores: np.ndarray, classes: np.ndarray, width: int, iou_threshold: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """From detections on the extended image to one per object, with 0 <= u_min < W.
+
+    Objects cut at both ends are put together; centres outside the valid range (with its margin) go; of boxes of one
+    class that overlap on the circle by more than `iou_threshold` one stays: a whole one before one that an end of the
+    extended image cuts, one with its centre inside the range before one in the margin, then the greater score. The
+    overlap of a cut box is taken of its own area instead of the union: it may be a part of the other.
+
+    The one that stays keeps its box and takes the greatest score among itself and those that it replaces, with that
+    one's class: they show one object, and the network was that sure of it once. So a faint copy in the range does not
+    hide a clear one in the margin, and the result of a low score threshold holds that of a higher one.
+
+    boxes (n, 4), scores (n,), classes (n,) integers. Returns the three, the greatest score first.
+    Source: paper 2, section 2.2.
+    """
+    tolerance = EDGE_TOLERANCE * width
+    boxes, scores, classes = join_cut_pairs(boxes, scores, classes, width)
+    near = centres_in_range(boxes, width, MARGIN * width)
+    boxes, scores, classes = boxes[near], scores[near], classes[near]
+    inside = centres_in_range(boxes, width)
+    cut = (boxes[:, 0] <= tolerance) | (boxes[:, 2] >= width + appended_columns(width) - tolerance)
+    boxes = wrapped_box(
+        np.column_stack([boxes[:, :2], np.minimum(boxes[:, 2], boxes[:, 0] + width), boxes[:, 3]]), width
+    )
+    iou = box_iou(boxes, boxes, width)
+    overlap = np.where(cut[None, :], shared_area(boxes, boxes, width) / box_area(boxes)[None, :], iou)
+    overlap = limit_by_class(overlap, iou, classes)
+    kept = suppress(overlap, scores + inside - 2.0 * cut, iou_threshold)
+    best = _best_copies(overlap, kept, scores, iou_threshold)
+    order = np.argsort(-scores[best], kind="stable")
+    return boxes[kept[order]], scores[best[order]], classes[best[order]]
+
+
+def _best_copies(overlap: np.ndarray, kept: np.ndarray, scores: np.ndarray, threshold: float) -> np.ndarray:
+    """(k,) For each kept box the index of the greatest score among itself and those that it suppressed."""
+    replaces = overlap[kept] > threshold
+    replaces[np.arange(len(kept)), kept] = True
+    # `kept` is in the order of suppression: what several overlap went with the first of them.
+    replaces &= np.cumsum(replaces, axis=0) == 1
+    return np.where(replaces, scores, -np.inf).argmax(axis=1) if len(kept) else kept

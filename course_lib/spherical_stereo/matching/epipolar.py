@@ -1,0 +1,152 @@
+"""The epipolar constraint on the sphere, and the feature matches that obey it (paper 2, 2.3).
+
+Two cameras and a point span a plane. With both cameras on one vertical axis it is a vertical plane through the axis, so
+both cameras see the point at one azimuth: on the two panoramas its column is the same. In general, with the baseline
+along z,
+
+    z . (x_upper x x_lower) = cos e_u cos e_l sin(a_l - a_u) = 0,   and a_l - a_u is not pi.
+
+The lower camera sees every point at a higher elevation: e_l > e_u. A tilt of the whole rig changes neither
+statement, as the baseline tilts along.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures
+from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_difference
+
+# How far, in radians on the sphere, a match may lie from its epipolar half-circle: 3 columns at 1280 (chosen: AKAZE's
+# own noise is about one column, and a lower camera turned by half a degree against the upper one is still let through).
+EPIPOLAR_TOLERANCE = 0.015
+# No object's surface is nearer to the rig's axis than this, metres (chosen; the paper's places keep 0.3 m clear).
+NEAREST_RANGE = 0.3
+# Bits of 486 in which the descriptors of one point may differ (chosen from a real pair).
+MAX_HAMMING = 120
+
+_BIT_COUNT = np.array([bin(byte).count("1") for byte in range(256)], dtype=np.uint8)
+
+
+@dataclass(frozen=True, eq=False)
+class EpipolarPairs:
+    """Pairs of features, one of each image, that the epipolar constraint allows: one element a pair, `(n,)` each.
+
+    upper, lower: indices into the features. distance: Hamming distance of the descriptors, bits. disparity: e_l - e_u,
+    radians, of either sign. slope: tan e_l - tan e_u, which is baseline / horizontal range for a true pair.
+    """
+
+    upper: np.ndarray
+    lower: np.ndarray
+    distance: np.ndarray
+    disparity: np.ndarray
+    slope: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.upper)
+
+    def where(self, chosen: np.ndarray) -> EpipolarPairs:
+        """The pairs that a mask or an index array chooses."""
+        return EpipolarPairs(*(getattr(self, name)[chosen] for name in self.__dataclass_fields__))
+
+
+def epipolar_residual(azimuth_upper, elevation_upper, azimuth_lower, elevation_lower) -> np.ndarray:
+    """How far two directions are from obeying the epipolar constraint, radians on the sphere, in [0, pi/2].
+
+    Each direction has a distance to the other's epipolar half-circle, the meridian of its azimuth:
+    asin(cos e |sin da|), or pi/2 - |e|, the way to the pole, when da is beyond a right angle. The larger of the two is
+    returned. Angles in radians, broadcast together. Source: paper 2, section 2.3.
+    """
+    gap = np.abs(azimuth_difference(azimuth_lower, azimuth_upper))
+    cosine = np.maximum(np.cos(elevation_upper), np.cos(elevation_lower))
+    return np.arcsin(np.clip(cosine * np.where(gap > np.pi / 2, 1.0, np.sin(gap)), 0.0, 1.0))
+
+
+def epipolar_pairs(
+    upper: PanoramaFeatures,
+    lower: PanoramaFeatures,
+    tolerance: float = EPIPOLAR_TOLERANCE,
+    max_hamming: int = MAX_HAMMING,
+) -> EpipolarPairs:
+    """Pairs of features within `tolerance` (radians) of the epipolar constraint and `max_hamming` bits of each other.
+
+    For each upper feature only the lower ones near its azimuth are looked at, which are few: n log n, not n squared.
+    Raises `PanoramaError` for a tolerance outside (0, pi/2). Source: paper 2, section 2.3.
+    """
+    if not 0 < tolerance < np.pi / 2:
+        raise PanoramaError(f"tolerance must be an angle between 0 and pi/2 radians; got {tolerance!r}")
+    (azimuth_u, elevation_u), (azimuth_l, elevation_l) = upper.angles(), lower.angles()
+    rows, columns = _near_in_azimuth(azimuth_u, elevation_u, azimuth_l, tolerance)
+    residual = epipolar_residual(azimuth_u[rows], elevation_u[rows], azimuth_l[columns], elevation_l[columns])
+    rows, columns = rows[residual <= tolerance], columns[residual <= tolerance]
+    distance = hamming(upper.descriptors, lower.descriptors, rows, columns)
+    near = distance <= max_hamming
+    rows, columns, distance = rows[near], columns[near], distance[near]
+    e_u, e_l = elevation_u[rows], elevation_l[columns]
+    return EpipolarPairs(rows, columns, distance, e_l - e_u, np.tan(e_l) - np.tan(e_u))
+
+
+def _near_in_azimuth(azimuth_u, elevation_u, azimuth_l, tolerance) -> tuple[np.ndarray, np.ndarray]:
+    """Index pairs whose azimuths differ by at most what `tolerance` is at the upper feature's elevation."""
+    if len(azimuth_u) == 0 or len(azimuth_l) == 0:
+        return np.zeros(0, int), np.zeros(0, int)
+    sine = np.sin(tolerance) / np.cos(elevation_u)
+    # Within the tolerance of a pole every azimuth is near; the whole circle is half-open, so that nothing comes twice.
+    window = np.where(sine < 1, np.arcsin(np.minimum(sine, 1.0)), np.pi)
+    order = np.argsort(azimuth_l, kind="stable")
+    # One more turn on either side, so that a window across the seam is one stretch of the list.
+    circle = np.concatenate([azimuth_l[order] + turn for turn in (-2 * np.pi, 0.0, 2 * np.pi)])
+    first = np.searchsorted(circle, azimuth_u - window, side="left")
+    count = np.searchsorted(circle, azimuth_u + window, side="left") - first
+    rows = np.repeat(np.arange(len(azimuth_u)), count)
+    within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    return rows, order[(np.repeat(first, count) + within) % len(order)]
+
+
+def hamming(first: np.ndarray, second: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Hamming distances `(n,)` in bits between descriptors first[rows] and second[columns], each `(k, bytes)` uint8."""
+    # Eight bytes at a time; zeros fill up the last eight, equal in both, so they add nothing.
+    first, second = (np.pad(d, ((0, 0), (0, -d.shape[1] % 8))).view(np.uint64) for d in (first, second))
+    different = np.bitwise_xor(first[rows], second[columns])
+    if hasattr(np, "bitwise_count"):
+        return np.bitwise_count(different).sum(axis=-1, dtype=np.int64)
+    return _BIT_COUNT[different.view(np.uint8)].sum(axis=-1, dtype=np.int64)  # NumPy 1.26
+
+
+def allowed_by_rig(pairs: EpipolarPairs, baseline: float, nearest_range: float = NEAREST_RANGE) -> np.ndarray:
+    """Which pairs can be one point in front of the rig: 0 < tan e_l - tan e_u <= baseline / nearest_range; bool `(n,)`.
+
+    The horizontal range is baseline / (tan e_l - tan e_u): it must be positive and at least `nearest_range` metres.
+    Source: paper 2, section 2.3.
+    """
+    return (pairs.disparity > 0) & (pairs.slope > 0) & (pairs.slope <= baseline / nearest_range)
+
+
+def best_pairs(pairs: EpipolarPairs, ratio: float) -> EpipolarPairs:
+    """The pairs in which each feature is the other's nearest, and clearly so: one-to-one.
+
+    A pair stays when its Hamming distance is the smallest of both its features (equal ones: none stays) and at most
+    `ratio` times the second smallest of the upper feature.
+    """
+    if len(pairs) == 0:
+        return pairs
+    best_upper, second_upper = _two_smallest(pairs.upper, pairs.distance)
+    best_lower, second_lower = _two_smallest(pairs.lower, pairs.distance)
+    d = pairs.distance
+    nearest = (d == best_upper) & (d < second_upper) & (d == best_lower) & (d < second_lower)
+    return pairs.where(nearest & (d <= ratio * second_upper))
+
+
+def _two_smallest(group: np.ndarray, value: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For each element the smallest and the second smallest value in its group (infinity when there is no second)."""
+    order = np.lexsort((value, group))
+    starts = np.flatnonzero(np.r_[True, group[order][1:] != group[order][:-1]])
+    sizes = np.diff(np.r_[starts, len(group)])
+    sorted_value = np.r_[value[order].astype(float), np.inf]
+    second = np.where(sizes > 1, sorted_value[np.minimum(starts + 1, len(group))], np.inf)
+    smallest, runner_up = np.empty(len(group)), np.empty(len(group))
+    smallest[order] = np.repeat(sorted_value[starts], sizes)
+    runner_up[order] = np.repeat(second, sizes)
+    return smallest, runner_up

@@ -1,0 +1,170 @@
+"""From two directions to a place: X = d x_hat, how sure it is, and when there is none (paper 2, 2.4).
+
+Seen from the rig's vertical axis, upper camera, lower camera and point make a triangle. Its angle at the point is the
+parallax e_l - e_u, its angle at the lower camera pi/2 - e_l, so the law of sines gives
+
+    d = baseline cos e_l / sin(e_l - e_u)          (along the upper camera's direction)
+    rho = d cos e_u = baseline / (tan e_l - tan e_u)          (horizontal range)
+
+The centres of two boxes around one object differ a little in azimuth too, so the two rays are skew and meet nowhere.
+The distance comes from the elevations alone and the azimuth is the upper camera's: the baseline is vertical, azimuth
+says nothing about distance. A large difference in azimuth means that the boxes do not show one object, and has its own
+outcome.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
+from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, azimuth_elevation, direction_from_angles
+
+# Parallax (e_l - e_u), radians, below which rays count as parallel: a fifth of a row at 1280 x 640, where the smallest
+# error of a box makes any distance; 300 m at a baseline of 0.3 m.
+PARALLEL_TOLERANCE = 1e-3
+# Epipolar residual, radians on the sphere, above which two box centres are not one object's: 20 columns at 1280
+# (chosen: 0.6 of the width of a chair three metres away).
+AZIMUTH_GAP_TOLERANCE = 0.1
+
+OK, PARALLEL, DIVERGING, AZIMUTH_GAP = "ok", "parallel", "diverging", "azimuth gap"
+
+
+class TriangulationError(ValueError):
+    """Two directions that give no distance."""
+
+
+class ParallelDirections(TriangulationError):
+    """Directions without usable parallax: the object is too far away for this baseline, or straight up or down."""
+
+
+class DivergingDirections(TriangulationError):
+    """The lower camera's direction points below the upper one's: the rays move apart."""
+
+
+class AzimuthGap(TriangulationError):
+    """Directions at different azimuths: they cannot show one object."""
+
+
+def triangulation_outcome(
+    direction_upper: np.ndarray,
+    direction_lower: np.ndarray,
+    parallel_tolerance: float = PARALLEL_TOLERANCE,
+    azimuth_gap_tolerance: float = AZIMUTH_GAP_TOLERANCE,
+) -> np.ndarray:
+    """What two directions `(..., 3)` give: "ok", "parallel", "diverging" or "azimuth gap", an array `(...)` of names.
+
+    "azimuth gap": the epipolar residual is above `azimuth_gap_tolerance`; else "diverging": e_l - e_u is below
+    -`parallel_tolerance`; else "parallel": it is at most `parallel_tolerance`, or a direction is within that of
+    straight up or down, along the baseline. Tolerances in radians. Raises `PanoramaError` for directions that are
+    none.
+    Source: paper 2, section 2.4.
+    """
+    _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
+    parallax = lower - upper
+    upright = np.pi / 2 - np.maximum(np.abs(upper), np.abs(lower)) <= parallel_tolerance
+    return np.select(
+        [residual > azimuth_gap_tolerance, parallax < -parallel_tolerance, (parallax <= parallel_tolerance) | upright],
+        [AZIMUTH_GAP, DIVERGING, PARALLEL],
+        OK,
+    )
+
+
+def triangulate(
+    direction_upper: np.ndarray,
+    direction_lower: np.ndarray,
+    baseline: float,
+    parallel_tolerance: float = PARALLEL_TOLERANCE,
+    azimuth_gap_tolerance: float = AZIMUTH_GAP_TOLERANCE,
+) -> np.ndarray:
+    """Distances d `(...)` in metres along the upper camera's directions: the object is at X = d x_hat_upper.
+
+    d = baseline cos e_l / sin(e_l - e_u)
+
+    Directions `(..., 3)` in the body frame, broadcast together; baseline in metres. A rotation about the vertical
+    leaves d as it is. Raises `ParallelDirections`, `DivergingDirections` or `AzimuthGap` (all `TriangulationError`)
+    when any pair of directions has that outcome (`triangulation_outcome` tells which), `RigError` for a baseline that
+    is not positive, `PanoramaError` for directions that are none. Source: paper 2, section 2.4.
+    """
+    baseline = StereoRig(baseline).baseline
+    outcome = triangulation_outcome(direction_upper, direction_lower, parallel_tolerance, azimuth_gap_tolerance)
+    _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
+    for name, error in ((AZIMUTH_GAP, AzimuthGap), (DIVERGING, DivergingDirections), (PARALLEL, ParallelDirections)):
+        if (outcome == name).any():
+            raise error(_explanation(name, tuple(np.argwhere(outcome == name)[0]), upper, lower, residual))
+    return _distance(upper, lower, baseline)
+
+
+def _explanation(name, first, upper, lower, residual) -> str:
+    """What was wrong with the first pair of directions of an outcome."""
+    where = f" (element {', '.join(map(str, first))})" if first else ""
+    e_u, e_l, gap = np.degrees([upper[first], lower[first], residual[first]])
+    return {
+        AZIMUTH_GAP: f"the two directions{where} are {gap:.2f} degrees apart across the epipolar half-circle: "
+        "they do not show one object; match the objects first",
+        DIVERGING: f"the two directions{where} diverge: the lower camera's elevation {e_l:.2f} degrees is below the "
+        f"upper camera's {e_u:.2f}. Are the images swapped, or the boxes two objects'?",
+        PARALLEL: f"the two directions{where} are parallel or along the baseline (elevations {e_u:.3f} and "
+        f"{e_l:.3f} degrees): they tell no distance; a nearer object or a longer baseline is needed",
+    }[name]
+
+
+def object_position(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
+    """Places X = d x_hat `(..., 3)` in metres, in the frame of the upper camera (x forward, y left, z up).
+
+    Raises what `triangulate` raises. Source: paper 2, section 2.4.
+    """
+    distance = triangulate(direction_upper, direction_lower, baseline)
+    azimuth, elevation = azimuth_elevation(direction_upper)
+    return distance[..., None] * direction_from_angles(azimuth, elevation)
+
+
+def triangulation_covariance(
+    direction_upper: np.ndarray,
+    direction_lower: np.ndarray,
+    baseline: float,
+    sigma_azimuth: float | np.ndarray,
+    sigma_elevation: float | np.ndarray,
+) -> np.ndarray:
+    """Covariances `(..., 3, 3)` of X = d x_hat, square metres, that noise of the two directions implies (first order).
+
+    C = J diag(s_a^2, s_e^2, s_e^2) J'  with J the derivative of
+
+    X(a, e_u, e_l) = rho (cos a, sin a, tan e_u),      rho = baseline / (tan e_l - tan e_u)
+    d rho / d e_u = rho^2 sec^2 e_u / baseline,        d rho / d e_l = -rho^2 sec^2 e_l / baseline
+
+    The standard deviation along the ray grows with d^2 / baseline, the one across with d only. sigma_azimuth: of the
+    upper camera's azimuth, sigma_elevation: of either camera's elevation, radians, taken as independent; sigma pixels
+    are 2 pi sigma / W and pi sigma / H. (The two errors of box centres around one object are alike in part, which this
+    does not use: it errs on the side of caution.)
+    Raises what `triangulate` raises, and `PanoramaError` for a sigma that is negative or not finite.
+    Source: paper 2, section 2.4.
+    """
+    for name, sigma in (("sigma_azimuth", sigma_azimuth), ("sigma_elevation", sigma_elevation)):
+        if not (np.isfinite(sigma).all() and (np.asarray(sigma) >= 0).all()):
+            raise PanoramaError(f"{name} must be radians, not negative; got {sigma!r}")
+    rho = triangulate(direction_upper, direction_lower, baseline)
+    azimuth, upper, _, lower, _ = _angles(direction_upper, direction_lower)
+    rho = rho * np.cos(upper)
+    azimuth, sigma_azimuth, sigma_elevation = np.broadcast_arrays(azimuth, sigma_azimuth, sigma_elevation)[:3]
+    along = np.stack([np.cos(azimuth), np.sin(azimuth), np.broadcast_to(np.tan(upper), azimuth.shape)], axis=-1)
+    by_azimuth = rho[..., None] * np.stack([-np.sin(azimuth), np.cos(azimuth), np.zeros_like(azimuth)], axis=-1)
+    secant_upper, secant_lower = 1 / np.cos(upper) ** 2, 1 / np.cos(lower) ** 2
+    by_upper = (rho**2 * secant_upper / baseline)[..., None] * along
+    by_upper[..., 2] += rho * secant_upper
+    by_lower = -(rho**2 * secant_lower / baseline)[..., None] * along
+    jacobian = np.stack([by_azimuth, by_upper, by_lower], axis=-1)
+    variance = np.stack([sigma_azimuth, sigma_elevation, sigma_elevation], axis=-1) ** 2
+    return (jacobian * variance[..., None, :]) @ np.swapaxes(jacobian, -1, -2)
+
+
+def _distance(elevation_upper: np.ndarray, elevation_lower: np.ndarray, baseline: float) -> np.ndarray:
+    return baseline * np.cos(elevation_lower) / np.sin(elevation_lower - elevation_upper)
+
+
+def _angles(direction_upper, direction_lower):
+    """Azimuth and elevation of both directions, broadcast together, and their epipolar residual; radians, `(...)`."""
+    azimuth_u, elevation_u = azimuth_elevation(direction_upper)
+    azimuth_l, elevation_l = azimuth_elevation(direction_lower)
+    azimuth_u, elevation_u, azimuth_l, elevation_l = np.broadcast_arrays(azimuth_u, elevation_u, azimuth_l, elevation_l)
+    residual = epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l)
+    return azimuth_u, elevation_u, azimuth_l, elevation_l, residual

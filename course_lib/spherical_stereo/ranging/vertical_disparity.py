@@ -1,0 +1,114 @@
+"""A second distance of an object, from the vertical disparity of its matched features (paper 2, 2.3 and 2.4).
+
+The paper takes the centres of two boxes as one point of the object. A box's edge is uncertain by some pixels, and
+cameras at two heights see another part of the object, so the parallax of the centres is rough. The features that
+paired the boxes are true points of the object's surface, matched to about a pixel, and each gives a horizontal range
+of its own.
+
+What they measure is the *visible surface*: the map's centroid lies behind it by about half the object's depth, and some
+features in a box belong to what is in front of the object or behind it. The centre is the median of the features'
+inverse ranges, so a minority of strangers does no harm; the missing half depth is not added here, because it is not in
+the images (a map that knows the objects' sizes could).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from course_lib.spherical_stereo.panorama import (
+    PanoramaError,
+    StereoRig,
+    azimuth_elevation,
+    azimuth_elevation_of_pixel,
+    direction_from_angles,
+)
+from course_lib.spherical_stereo.ranging.triangulation import OK, PARALLEL, PARALLEL_TOLERANCE
+
+TOO_FEW_MATCHES = "too few matches"
+# Matches below which a median says nothing about its own spread.
+FEWEST_MATCHES = 3
+# Standard deviation of a normal distribution over its median absolute deviation.
+_NORMAL_OVER_MAD = 1.4826
+# Standard deviation of the median over that of the mean, of normally distributed numbers: sqrt(pi / 2).
+_MEDIAN_OVER_MEAN = 1.2533
+
+
+@dataclass(frozen=True)
+class DisparityDistance:
+    """Horizontal range of one object from its matched features.
+
+    outcome: "ok", "too few matches", or "parallel" (no usable disparity); the numbers are nan unless it is "ok".
+    horizontal_range: metres from the rig's axis, the median over the matches. spread: robust standard deviation of
+    single matches' ranges, metres; it contains the object's own depth. sigma: standard deviation of the median, metres.
+    n_matches: how many matches there were.
+    """
+
+    outcome: str
+    horizontal_range: float
+    spread: float
+    sigma: float
+    n_matches: int
+
+    def position(self, direction_upper: np.ndarray) -> np.ndarray:
+        """Place `(3,)` in the upper camera's frame, metres: this range, in the direction of the box centre.
+
+        X = rho (cos a, sin a, tan e), where a and e are the direction's; nan unless the outcome is "ok".
+        Raises `PanoramaError` for a direction that is none.
+        """
+        azimuth, elevation = azimuth_elevation(direction_upper)
+        return self.horizontal_range / np.cos(elevation)[..., None] * direction_from_angles(azimuth, elevation)
+
+    def distance(self, direction_upper: np.ndarray) -> float:
+        """Distance d in metres along the direction of the box centre: rho / cos e."""
+        return float(np.linalg.norm(self.position(direction_upper)))
+
+
+def horizontal_ranges(
+    keypoints_upper: np.ndarray, keypoints_lower: np.ndarray, width: int, height: int, baseline: float
+) -> np.ndarray:
+    """Horizontal ranges `(k,)` in metres of matched features `(k, 2)`: rho = baseline / (tan e_l - tan e_u).
+
+    Edge coordinates, pixels. A match whose disparity is not positive gives infinity. Raises `RigError` for a baseline
+    that is not positive, `PanoramaError` for keypoints of two numbers or outside the image. Source: paper 2, section
+    2.4.
+    """
+    slope = _slopes(keypoints_upper, keypoints_lower, width, height)
+    return np.where(slope > 0, StereoRig(baseline).baseline / np.where(slope > 0, slope, 1.0), np.inf)
+
+
+def disparity_distance(match, width: int, height: int, baseline: float) -> DisparityDistance:
+    """The horizontal range of a matched object from the vertical disparities of its features, robustly.
+
+    rho = baseline / median(tan e_l - tan e_u)
+
+    match: an `ObjectMatch`. width, height: of the panoramas, pixels. baseline: metres. The median is taken of the
+    slopes, which the noise of pixels moves evenly to both sides, and not of the ranges, which it does not.
+    Raises `RigError` and `PanoramaError` as `horizontal_ranges` does. Source: paper 2, section 2.4.
+    """
+    baseline = StereoRig(baseline).baseline
+    slope = _slopes(match.keypoints_upper, match.keypoints_lower, width, height)
+    nothing = (float("nan"),) * 3
+    if len(slope) < FEWEST_MATCHES:
+        return DisparityDistance(TOO_FEW_MATCHES, *nothing, len(slope))
+    middle = float(np.median(slope))
+    if middle <= PARALLEL_TOLERANCE:
+        return DisparityDistance(PARALLEL, *nothing, len(slope))
+    deviation = _NORMAL_OVER_MAD * float(np.median(np.abs(slope - middle)))
+    # d rho = rho^2 / baseline d slope, as in the covariance of the triangulation.
+    spread = baseline / middle**2 * deviation
+    return DisparityDistance(OK, baseline / middle, spread, _MEDIAN_OVER_MEAN * spread / len(slope) ** 0.5, len(slope))
+
+
+def _slopes(keypoints_upper, keypoints_lower, width, height) -> np.ndarray:
+    """tan e_l - tan e_u `(k,)` of matched features."""
+    keypoints_upper, keypoints_lower = np.asarray(keypoints_upper), np.asarray(keypoints_lower)
+    if keypoints_upper.shape != keypoints_lower.shape or keypoints_upper.ndim != 2:
+        raise PanoramaError(
+            f"matched keypoints must be two arrays (k, 2) of one length; got {keypoints_upper.shape} and "
+            f"{keypoints_lower.shape}"
+        )
+    _, upper = azimuth_elevation_of_pixel(keypoints_upper, width, height)
+    _, lower = azimuth_elevation_of_pixel(keypoints_lower, width, height)
+    return np.tan(lower) - np.tan(upper)

@@ -1,0 +1,124 @@
+"""A folder of stereo panoramas with the truth beside them: what the room experiment runs on.
+
+poses.json (version 1): seed, width, height, baseline, and for every pair its rig (where it really stood) and, for the
+upper and the lower image, the file and the exact boxes of the objects that can be seen.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from course_lib.spherical_stereo.panorama import StereoRig, check_panorama_pair, read_panorama
+
+VERSION = 1
+POSES_FILE = "poses.json"
+
+
+class StereoRecordingError(ValueError):
+    """A folder of stereo panoramas that cannot be used; the message names the file and what is wrong with it."""
+
+
+@dataclass(frozen=True)
+class TrueObject:
+    """One object on one image, as it really is. Boxes in edge coordinates; visible_fraction of its pixels, 0 to 1."""
+
+    number: int
+    label: str
+    visible_box: tuple[float, float, float, float]
+    unoccluded_box: tuple[float, float, float, float]
+    visible_fraction: float
+
+
+@dataclass(frozen=True)
+class StereoPair:
+    """One pair of panoramas and where it was taken.
+
+    pose: `(3,)` [x, y, heading] of the upper camera, metres and radians, heading in [-pi, pi].
+    upper_objects, lower_objects: what can be seen on each image.
+    """
+
+    name: str
+    pose: np.ndarray
+    upper_file: Path
+    lower_file: Path
+    upper_objects: tuple[TrueObject, ...]
+    lower_objects: tuple[TrueObject, ...]
+
+    def images(self) -> tuple[np.ndarray, np.ndarray]:
+        """The upper and the lower panorama, `(H, W, 3)` uint8 BGR. Raises `PanoramaError` when one cannot be used."""
+        upper, lower = read_panorama(self.upper_file), read_panorama(self.lower_file)
+        check_panorama_pair(upper, lower)
+        return upper, lower
+
+
+@dataclass(frozen=True)
+class StereoRecording:
+    """Pairs of panoramas taken with one rig. width, height: of every panorama, pixels. seed: of the data."""
+
+    folder: Path
+    rig: StereoRig
+    width: int
+    height: int
+    seed: int | None
+    pairs: tuple[StereoPair, ...]
+
+
+def read_stereo_recording(folder: str | Path) -> StereoRecording:
+    """The recording of a folder; images are read only when a pair is asked for them.
+
+    Raises `StereoRecordingError` when poses.json or an image it names is missing, or a field is missing or of another
+    kind than expected.
+    """
+    folder = Path(folder)
+    path = folder / POSES_FILE
+    try:
+        content = json.loads(path.read_text())
+    except OSError as error:
+        raise StereoRecordingError(
+            f"cannot read {path}: {error.strerror}; expected a folder with {POSES_FILE}"
+        ) from None
+    except json.JSONDecodeError as error:
+        raise StereoRecordingError(f"{path} is not JSON: {error}") from None
+    version = content.get("version") if isinstance(content, dict) else None
+    if version != VERSION:
+        raise StereoRecordingError(f"{path} has version {version!r}; this program reads version {VERSION}")
+    try:
+        pairs = tuple(_pair(folder, entry) for entry in content["pairs"])
+        heights = {entry["rig"]["upper_height"] for entry in content["pairs"]}
+        rig = StereoRig(float(content["baseline"]), float(min(heights, default=np.nan)))
+        width, height = int(content["width"]), int(content["height"])
+    except (KeyError, TypeError, IndexError) as error:
+        raise StereoRecordingError(f"{path}: a field is missing or of the wrong kind ({error!r})") from None
+    if len(heights) != 1:
+        raise StereoRecordingError(f"{path}: pairs with upper cameras at {sorted(heights)} m; expected one height")
+    missing = [file.name for pair in pairs for file in (pair.upper_file, pair.lower_file) if not file.is_file()]
+    if missing:
+        raise StereoRecordingError(f"{folder} lacks {len(missing)} images that {POSES_FILE} names, {missing[0]} first")
+    return StereoRecording(folder, rig, width, height, content.get("seed"), pairs)
+
+
+def _pair(folder: Path, entry: dict) -> StereoPair:
+    rig = entry["rig"]
+    return StereoPair(
+        str(entry["name"]),
+        np.array([rig["x"], rig["y"], rig["heading"]], float),
+        folder / entry["upper"]["file"],
+        folder / entry["lower"]["file"],
+        tuple(map(true_object, entry["upper"]["objects"])),
+        tuple(map(true_object, entry["lower"]["objects"])),
+    )
+
+
+def true_object(entry: dict) -> TrueObject:
+    """One object from its entry in poses.json or boxes.json."""
+    return TrueObject(
+        int(entry["object"]),
+        str(entry["label"]),
+        tuple(float(value) for value in entry["visible_box"]),
+        tuple(float(value) for value in entry["unoccluded_box"]),
+        float(entry["visible_fraction"]),
+    )

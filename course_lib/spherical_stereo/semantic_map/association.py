@@ -1,0 +1,299 @@
+"""Which observed object is which on the map: the penalty of eq. (1) and the paper's greedy search (section 2.5).
+
+The distances of eq. (1) are to a centroid: x_G.camera of the *observed* objects on one side, x_G.map of *all* objects
+of the map on the other. They are the same place only when everything on the map is seen; every unseen object, and every
+false detection, moves them apart, and the distance term is then wrong for every pair. So the term needs no pose, which
+is its use, and is blunt, which is its price.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+
+DISTANCE_TERMS = ("absolute", "as_printed")
+LEAST_DISTANCE = 0.1
+"""Metres: the least |dx_m| that eq. (1) divides by. An object at the map's centroid would otherwise cost infinitely
+much, or 0/0. A decimetre is about what the centroid of a piece of furniture can be told to."""
+TIE = 1e-9
+"""Penalties nearer than this are equal: rounding must not choose between two objects that are alike."""
+
+
+class AssociationError(ValueError):
+    """Observations, weights or options that no penalty can be computed from."""
+
+
+class Observation(NamedTuple):
+    """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame."""
+
+    label: str
+    """Class; "couch" and "sofa" are one (`labels`)."""
+    x: float
+    """Centroid, body frame (x forward), metres."""
+    y: float
+    """Centroid, body frame (y left), metres."""
+    hue: float
+    """Degrees [0, 360); NaN: grey."""
+    saturation: float
+    """Percent [0, 100]."""
+    covariance: np.ndarray | None = None
+    """`(2, 2)` of x and y, square metres; None when nothing is known."""
+
+
+class PenaltyWeights(NamedTuple):
+    """The four weights of eq. (1), "set by hand" in the paper, which gives no numbers.
+
+    The defaults are as plain as can be: one for each of the three comparisons, so that opposite hues cost half, fully
+    different saturations one, and a distance wrong by itself one; and an object weight above all that the other terms
+    can add up to (`least_object_weight`): with a guard of 0.1 m, 100 is enough for objects up to 9.8 m from the
+    observed centroid.
+    """
+
+    p_obj: float = 100.0
+    """Cost of unlike classes."""
+    p_h: float = 1.0
+    """Weight of the hue difference over 360 degrees; on the circle none exceeds 180, so at most half of it counts."""
+    p_s: float = 1.0
+    """Weight of the saturation difference over 100 percent."""
+    p_d: float = 1.0
+    """Weight of the relative difference of the distances to the centroids."""
+
+
+class Penalty(NamedTuple):
+    """Eq. (1) term by term; numbers for one pair, arrays `(n_observations, n_landmarks)` in a table."""
+
+    object: float
+    """p_obj where the classes differ, else 0."""
+    hue: float
+    """p_h dh / 360; 0 where either side is grey."""
+    saturation: float
+    """p_s ds / 100."""
+    distance: float
+    """p_d (|dx_c| - |dx_m|) / |dx_m|, with or without absolute value."""
+    total: float
+    """Their sum."""
+
+
+class AssociationStep(NamedTuple):
+    """One round of the greedy search."""
+
+    observation: int
+    landmark: int
+    penalty: Penalty
+    open_observations: tuple[int, ...]
+    """Those without a partner before this round."""
+    open_landmarks: tuple[int, ...]
+
+
+class Association(NamedTuple):
+    """Result of a matcher: pairs of indices (observation, landmark), and how they came about."""
+
+    pairs: tuple[tuple[int, int], ...]
+    """In the order in which they were chosen."""
+    penalties: tuple[Penalty, ...]
+    """Of the pairs."""
+    same_class: tuple[bool, ...]
+    """Whether a pair's classes agree. One-to-one matching goes on until one side is used up, so at the end it may join
+    a chair to a plant; such a pair is never used for the fit."""
+    unassigned: tuple[int, ...]
+    """Observations without a partner."""
+    table: Penalty
+    """Every observation with every landmark, `(n_observations, n_landmarks)` arrays."""
+    steps: tuple[AssociationStep, ...] = ()
+    """The rounds, for who wants to watch."""
+
+    @property
+    def usable_pairs(self) -> tuple[tuple[int, int], ...]:
+        """The pairs of like classes: those a pose may be fitted to."""
+        return tuple(pair for pair, same in zip(self.pairs, self.same_class, strict=True) if same)
+
+
+def hue_difference(hue_a: np.ndarray | float, hue_b: np.ndarray | float) -> np.ndarray:
+    """Difference of hues on the circle, degrees [0, 180]: 350 and 10 differ by 20. NaN where either side is grey."""
+    apart = np.abs(np.asarray(hue_a, dtype=np.float64) - np.asarray(hue_b, dtype=np.float64)) % 360.0
+    return np.minimum(apart, 360.0 - apart)
+
+
+def penalty(
+    observed: Observation,
+    landmark: Landmark,
+    observed_centroid: np.ndarray,
+    map_centroid: np.ndarray,
+    weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008 (it cannot change)
+    distance_term: str = "absolute",
+) -> Penalty:
+    """How unlike an observed object and one of the map are.
+
+    penalty = p_obj + p_h dh / 360 + p_s ds / 100 + p_d (|dx_c| - |dx_m|) / |dx_m|
+
+    p_obj counts only where the classes differ ("couch" and "sofa" do not). dh: degrees on the circle, at most 180, so
+    its term is at most half of p_h; grey on either side has no hue, and the term is 0. ds: percent.
+    dx_c = x_c - x_G.camera in the body frame, dx_m = x_m - x_G.map in the world, horizontal, metres; the divisor is at
+    least `LEAST_DISTANCE`.
+    distance_term: "absolute" takes the absolute value of the distance term. "as_printed" does not: the term then falls
+    below zero for an object that looks too near the centroid, and the nearer it looks the better it fits.
+    observed_centroid, map_centroid: `(2,)`. The fields of observed and landmark may be arrays that broadcast
+    (`penalty_table` uses that); then so are the terms. Raises `AssociationError` for weights that are negative or not
+    finite, centroids of a wrong shape, another distance_term, no label, or positions, hues and saturations that no
+    observation may have.
+    Source: paper 2, eq. (1).
+    """
+    _check_options(weights, distance_term)
+    observed_centroid, map_centroid = _centroid(observed_centroid, "observed"), _centroid(map_centroid, "map")
+    for name, side in (("observation", observed), ("landmark", landmark)):
+        _check_values(name, side)
+    unlike = _labels(observed) != _labels(landmark)
+    d_hue = hue_difference(observed.hue, landmark.hue)
+    d_saturation = np.abs(np.asarray(observed.saturation) - np.asarray(landmark.saturation))
+    from_centroid_c = np.hypot(observed.x - observed_centroid[0], observed.y - observed_centroid[1])
+    from_centroid_m = np.hypot(landmark.x - map_centroid[0], landmark.y - map_centroid[1])
+    d_distance = (from_centroid_c - from_centroid_m) / np.maximum(from_centroid_m, LEAST_DISTANCE)
+    terms = np.broadcast_arrays(
+        np.where(unlike, weights.p_obj, 0.0),
+        weights.p_h * np.where(np.isnan(d_hue), 0.0, d_hue) / 360.0,
+        weights.p_s * d_saturation / 100.0,
+        weights.p_d * (np.abs(d_distance) if distance_term == "absolute" else d_distance),
+    )
+    return Penalty(*(float(term) if term.ndim == 0 else term.copy() for term in (*terms, sum(terms))))
+
+
+def penalty_table(
+    observations: Sequence[Observation],
+    semantic_map: SemanticMap,
+    weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
+    distance_term: str = "absolute",
+) -> Penalty:
+    """Every term for every observation with every landmark: arrays `(n_observations, n_landmarks)`.
+
+    x_G.camera is the mean of the observations given, x_G.map that of the whole map. Raises `AssociationError` as
+    `penalty` does, and for observations that are not finite. Source: paper 2, section 2.5 ("all combinations").
+    """
+    if len(observations) == 0:
+        _check_options(weights, distance_term)
+        return Penalty(*(np.empty((0, len(semantic_map))) for _ in Penalty._fields))
+    labels, x, y, hue, saturation = zip(*(tuple(one)[:5] for one in observations), strict=True)
+    x, y, hue, saturation = (np.array(values, dtype=np.float64)[:, None] for values in (x, y, hue, saturation))
+    for number, one in enumerate(observations):
+        _check_values(f"observation {number}", one)
+    rows = Observation(np.array(labels, dtype=object)[:, None], x, y, hue, saturation)
+    centroid = np.array([x.mean(), y.mean()])
+    return penalty(rows, _columns(semantic_map), centroid, semantic_map.centroid, weights, distance_term)
+
+
+def least_object_weight(
+    observations: Sequence[Observation],
+    semantic_map: SemanticMap,
+    weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
+    distance_term: str = "absolute",
+) -> float:
+    """The p_obj above which no pair of unlike classes is cheaper than one of like classes, for these observations.
+
+    p_obj > max over like pairs - min over unlike pairs, of the sum of the other three terms.
+
+    The distance term has no upper limit (an observation far out, an object of the map near its centroid), so no p_obj
+    is large enough for all worlds; the limit for |dx_c| <= D is p_h / 2 + p_s + p_d D / `LEAST_DISTANCE`, and p_d more
+    with the distance term as printed, which can fall to -p_d.
+    """
+    table = penalty_table(observations, semantic_map, weights, distance_term)
+    others = table.hue + table.saturation + table.distance
+    like = _like_classes(observations, semantic_map)
+    if not like.any() or like.all():
+        return 0.0
+    return max(0.0, float(others[like].max() - others[~like].min()))
+
+
+def associate_greedy(
+    observations: Sequence[Observation],
+    semantic_map: SemanticMap,
+    weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
+    distance_term: str = "absolute",
+) -> Association:
+    """The paper's matcher: the cheapest of all open combinations is a pair; repeat until one-to-one.
+
+    It ends when either side is used up, and never goes back on a choice. Among equal penalties (within `TIE`) the
+    first observation, then the first landmark is taken: a rule, so that one input has one result, not knowledge.
+    No observations give an association without pairs. Raises `AssociationError` as `penalty_table` does.
+    Source: paper 2, section 2.5.
+    """
+    table = penalty_table(observations, semantic_map, weights, distance_term)
+    open_cost = table.total.copy()
+    steps = []
+    for _ in range(min(open_cost.shape)):
+        chosen = np.argmax(open_cost <= open_cost.min() + TIE)  # the first True, row by row
+        i, j = (int(index) for index in np.unravel_index(chosen, open_cost.shape))
+        still_open = np.isfinite(open_cost)
+        one = Penalty(*(float(term[i, j]) for term in table))
+        open_observations, open_landmarks = (
+            tuple(int(index) for index in np.flatnonzero(still_open.any(axis=axis))) for axis in (1, 0)
+        )
+        steps.append(AssociationStep(i, j, one, open_observations, open_landmarks))
+        open_cost[i, :] = open_cost[:, j] = np.inf
+    pairs = tuple((step.observation, step.landmark) for step in steps)
+    like = _like_classes(observations, semantic_map)
+    return Association(
+        pairs,
+        tuple(step.penalty for step in steps),
+        tuple(bool(like[i, j]) for i, j in pairs),
+        tuple(sorted(set(range(len(observations))) - {i for i, _ in pairs})),
+        table,
+        tuple(steps),
+    )
+
+
+ASSOCIATIONS: dict[str, Callable[..., Association]] = {"greedy": associate_greedy}
+"""Matchers by name; all are called as `associate_greedy` is."""
+
+
+def _like_classes(observations: Sequence[Observation], semantic_map: SemanticMap) -> np.ndarray:
+    seen, mapped = np.array([canonical_label(one.label) for one in observations]), np.array(semantic_map.labels)
+    return seen.reshape(-1, 1) == mapped[None]
+
+
+def _columns(semantic_map: SemanticMap) -> Observation:
+    """The landmarks as one record of `(1, n_landmarks)` arrays; `Landmark` itself holds single numbers only."""
+    x, y = semantic_map.positions.T[:, None]
+    return Observation(
+        np.array(semantic_map.labels)[None], x, y, semantic_map.hues[None], semantic_map.saturations[None]
+    )
+
+
+def _check_options(weights: PenaltyWeights, distance_term: str) -> None:
+    if distance_term not in DISTANCE_TERMS:
+        raise AssociationError(f"distance_term must be one of {DISTANCE_TERMS}; got {distance_term!r}")
+    for name, value in zip(PenaltyWeights._fields, weights, strict=True):
+        if not (np.isfinite(value) and value >= 0):
+            raise AssociationError(f"{name} must be finite and not negative; got {value!r}")
+
+
+def _centroid(centroid: np.ndarray, name: str) -> np.ndarray:
+    array = np.asarray(centroid, dtype=np.float64)
+    if array.shape != (2,) or not np.isfinite(array).all():
+        raise AssociationError(f"the {name} centroid must be two finite numbers [x, y] in metres; got {centroid!r}")
+    return array
+
+
+def _labels(side: Observation | Landmark) -> np.ndarray:
+    """Canonical labels, an array of the shape of `side.label`."""
+    try:
+        return np.vectorize(canonical_label, otypes=[object])(side.label)
+    except ValueError as error:
+        raise AssociationError(str(error)) from None
+
+
+def _check_values(name: str, side: Observation | Landmark) -> None:
+    """Raises `AssociationError` for values that neither an observation nor a landmark may have; numbers or arrays."""
+    hue, saturation = np.asarray(side.hue, dtype=np.float64), np.asarray(side.saturation, dtype=np.float64)
+    right = {
+        "x and y must be finite metres": np.isfinite(side.x).all() and np.isfinite(side.y).all(),
+        "hue must lie in [0, 360) degrees, or be NaN for grey": (np.isnan(hue) | ((hue >= 0) & (hue < 360))).all(),
+        "saturation must lie in [0, 100] percent": ((saturation >= 0) & (saturation <= 100)).all(),
+    }
+    for rule, holds in right.items():
+        if not holds:
+            given = tuple(getattr(side, field) for field in Observation._fields[:5])
+            raise AssociationError(f"{name}: {rule}; got {given}")

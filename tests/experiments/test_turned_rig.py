@@ -1,0 +1,109 @@
+"""Turning the rig: when do two poses agree, how far apart are they, and what is said about many of them."""
+
+import numpy as np
+import pytest
+
+from course_lib.experiments.turned_rig import RolledPair, compare, turn_summary, weigh_by_covariance
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.panorama import StereoRig
+from course_lib.spherical_stereo.pose.localization import UNABLE, Localization
+from course_lib.spherical_stereo.semantic_map.association import Observation
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+
+WIDTH, COLUMNS = 1280, 97
+ANGLE = 2 * np.pi * COLUMNS / WIDTH
+MAP = SemanticMap(
+    (
+        Landmark("sofa", 4.0, 0.0, 20.0, 60.0),
+        Landmark("table", 1.0, 3.0, 120.0, 60.0),
+        Landmark("chair", -2.0, 1.0, 240.0, 60.0),
+    )
+)
+
+
+def localized(turn=0.0, shift=(0.0, 0.0), labels=("sofa", "table", "chair")):
+    """The pose from the map's objects as a rig at the map's origin, turned by `turn` to the left, would see them."""
+    cosine, sine = np.cos(turn), np.sin(turn)
+    seen = [
+        Observation(
+            one.label,
+            cosine * (one.x - shift[0]) + sine * (one.y - shift[1]),
+            -sine * (one.x - shift[0]) + cosine * (one.y - shift[1]),
+            one.hue,
+            one.saturation,
+        )
+        for one in MAP.landmarks
+        if one.label in labels
+    ]
+    return SemanticLocalizer(StereoRig(0.3, 1.4), MAP).localize_observations(seen)
+
+
+def pair(rolled, straight=None):
+    return RolledPair(COLUMNS, WIDTH, straight or localized(), rolled)
+
+
+def test_a_rig_that_only_turns_stays_where_it_is():
+    turn = compare(pair(localized(ANGLE)))
+    assert turn.agree
+    assert turn.moved == pytest.approx(0.0, abs=1e-9)
+    assert turn.turned == pytest.approx(0.0, abs=1e-9)
+
+
+def test_what_moves_and_turns_besides_is_measured():
+    turn = compare(pair(localized(ANGLE - 0.02, (0.03, 0.04))))
+    assert turn.agree
+    assert turn.moved == pytest.approx(0.05)
+    assert turn.turned == pytest.approx(0.02)
+
+
+def test_a_turn_the_other_way_does_not_agree():
+    assert not compare(pair(localized(-ANGLE))).agree
+
+
+def test_an_object_more_or_less_does_not_agree():
+    assert not compare(pair(localized(ANGLE, labels=("sofa", "table")))).agree
+
+
+def test_without_a_pose_nothing_agrees():
+    turn = compare(pair(Localization(None, UNABLE)))
+    assert not turn.agree
+    assert np.isnan(turn.moved)
+
+
+def test_the_summary_is_of_those_that_agree():
+    found = turn_summary(
+        [
+            pair(localized(ANGLE - 0.01, (0.0, 0.02))),
+            pair(localized(ANGLE, (0.105, 0.0))),
+            pair(localized(-ANGLE, (3.0, 0.0))),
+        ]
+    )
+    assert (found["n"], found["associations_agree"], found["within_0.10_m"]) == (3, 2, 1)
+    assert found["columns"] == [COLUMNS]
+    assert found["greatest_moved_m"] == pytest.approx(0.105)
+    assert found["greatest_turned_deg"] == pytest.approx(np.rad2deg(0.01))
+
+
+def test_a_summary_of_nothing_that_agrees_has_no_numbers():
+    found = turn_summary([pair(Localization(None, UNABLE))])
+    assert found["associations_agree"] == 0
+    assert found["median_moved_m"] is None
+
+
+def test_weighted_by_covariance_a_far_object_that_moves_hardly_moves_the_pose():
+    """The sofa, of which the covariance says that it is uncertain, is seen half a metre farther away."""
+    sure, unsure = 0.01 * np.eye(2), np.eye(2)
+    seen = [
+        Observation(one.label, one.x, one.y, one.hue, one.saturation, unsure if one.label == "sofa" else sure)
+        for one in MAP.landmarks
+    ]
+    moved = [one._replace(x=one.x + 0.5) if one.label == "sofa" else one for one in seen]
+    localizer = SemanticLocalizer(StereoRig(0.3, 1.4), MAP)
+    pairs = [
+        RolledPair(0, WIDTH, localizer.localize_observations(seen), localizer.localize_observations(moved)),
+        RolledPair(0, WIDTH, localizer.localize_observations(seen), Localization(None, UNABLE)),
+    ]
+    alike, weighted = compare(pairs[0]), compare(weigh_by_covariance(pairs, localizer)[0])
+    assert alike.agree
+    assert weighted.agree
+    assert weighted.moved < 0.2 * alike.moved

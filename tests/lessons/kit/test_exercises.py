@@ -1,0 +1,177 @@
+"""`check` on an exercise made for the test: what it says of every kind of answer, and what it never says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from course_lib.lessons.kit.exercises import (
+    Exercise,
+    Mistake,
+    UnknownExerciseError,
+    check,
+    find_exercise,
+    is_stub,
+    judge,
+    lesson_numbers,
+)
+
+
+def double(x):
+    return 2 * x
+
+
+DOUBLE = Exercise(
+    number="99.1",
+    reference=double,
+    inputs=lambda rng: (rng.normal(size=(2, 3)),),
+    mistakes=(
+        Mistake(lambda x: x, "You return what you were given."),
+        Mistake(lambda x: x**2, "You square."),
+        Mistake(lambda x: -2 * x, "Mind the sign."),
+    ),
+)
+PAIR = Exercise("99.2", lambda x: (x.min(), x.max()), lambda rng: (rng.normal(size=4),), DOUBLE.mistakes)
+
+
+def stub(x):
+    """A task."""
+    ...
+
+
+def stub_without_docstring(x): ...
+
+
+def says(function, exercise=DOUBLE) -> str:
+    return judge(exercise, function).message
+
+
+def test_a_stub_is_not_attempted():
+    assert judge(DOUBLE, stub).status == "not attempted"
+    assert judge(DOUBLE, stub_without_docstring).status == "not attempted"
+    assert judge(DOUBLE, lambda x: ...).status == "not attempted"
+
+
+def test_a_function_that_does_something_is_no_stub():
+    def forgot_return(x):
+        y = 2 * x  # noqa: F841
+
+    assert is_stub(stub)
+    assert not is_stub(forgot_return)
+    assert not is_stub(lambda x: x)
+    assert not is_stub(np.sin)
+    assert "returns None" in says(forgot_return)
+
+
+def test_another_way_to_the_same_values_is_right():
+    assert judge(DOUBLE, lambda x: x + x).status == "right"
+    assert judge(DOUBLE, lambda x: (x + x).tolist()).status == "right"
+    assert judge(DOUBLE, lambda x: (x * 2).astype(np.float32) * 1.0).status == "right"
+
+
+def test_values_slightly_off_are_wrong():
+    assert judge(DOUBLE, lambda x: 2.0001 * x).status == "wrong"
+
+
+def test_right_on_some_inputs_only_is_wrong():
+    verdict = judge(DOUBLE, lambda x: 2 * x if x.sum() > 0 else x + 1)
+    assert verdict.status == "wrong"
+    assert "Right on some inputs and wrong on others (" in verdict.message
+    assert "which case have you left out?" in verdict.message
+
+
+def test_right_on_some_inputs_asks_for_unused_arguments_where_there_are_several():
+    product = Exercise("99.3", lambda a, b: a * b, lambda rng: (rng.normal(), rng.integers(1, 3)), mistakes=())
+    product_says = judge(product, lambda a, b: 2 * a).message
+    assert "Right on some inputs and wrong on others (" in product_says
+    assert "have you used every argument?" in product_says
+
+
+def test_wrong_on_every_input_asks_for_a_small_case():
+    assert "Work one small case by hand" in says(lambda x: 2.5 * x)
+
+
+def test_an_infinity_is_blamed_on_a_division_only_where_none_is_right():
+    hole = Exercise("99.4", lambda x: np.where(x < 0, np.inf, x), lambda rng: (rng.normal(size=9),), DOUBLE.mistakes)
+    assert "division by zero" in says(lambda x: x * np.inf)
+    assert "inf where a finite number is expected" in says(lambda x: np.where(x < 0.5, np.inf, x), hole)
+    assert "a finite number where inf is expected" in says(lambda x: np.abs(x), hole)
+
+
+def test_each_mistake_gets_its_hint():
+    for mistake in DOUBLE.mistakes:
+        assert mistake.hint in says(mistake.function)
+
+
+def test_an_error_names_itself_and_the_students_line():
+    def fails(x):
+        y = x + 1
+        return y[7]
+
+    assert "IndexError in its line 3" in says(fails)
+    assert "TypeError" in says(lambda: 1)
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (lambda x: x[0], "must have shape (2, 3); yours has (3,)"),
+        (lambda x: 1.0, "yours has ()"),
+        (lambda x: "two", "returns a str"),
+        (lambda x: [[1, 2], [3]], "returns a list"),
+        (lambda x: 2j * x, "returns a ndarray"),
+        (lambda x: x * np.nan, "NaN"),
+        (lambda x: x * np.inf, "infinity"),
+        (lambda x: None if x.sum() > 0 else 2 * x, "returns None"),
+        (5, "without calling it; this is a int"),
+    ],
+)
+def test_answers_of_a_wrong_kind_get_their_own_message(function, words):
+    with np.errstate(invalid="ignore"):
+        assert words in says(function)
+
+
+def test_changing_the_input_is_noticed():
+    def in_place(x):
+        x *= 2
+        return x
+
+    assert "changes the array" in says(in_place)
+
+
+def test_several_values_are_compared_one_by_one():
+    assert judge(PAIR, lambda x: (x.min(), x.max())).status == "right"
+    assert judge(PAIR, lambda x: [x.min(), x.max()]).status == "right"
+    assert judge(PAIR, lambda x: np.array([x.min(), x.max()])).status == "right"
+    assert judge(PAIR, lambda x: (x.max(), x.min())).status == "wrong"
+    assert "in another order" in says(lambda x: (x.max(), x.min()), PAIR)
+    assert "Return 2 values, separated by commas; yours returns a float64." in says(lambda x: x.min(), PAIR)
+    assert "returns a tuple of 3." in says(lambda x: (x.min(), x.max(), 0), PAIR)
+    assert "returns a ndarray of 1." in says(lambda x: np.array([x.min()]), PAIR)
+    assert "returns a ndarray." in says(lambda x: np.array(x.min()), PAIR)
+
+
+def test_check_prints_one_line_and_shows_neither_inputs_nor_reference(capsys):
+    exercise = find_exercise("03.1")
+    rng = np.random.default_rng(0)
+    given = exercise.inputs(rng)
+    for function in (stub, exercise.reference, exercise.mistakes[0].function, lambda b, near, far: b + 1):
+        check("03.1", function)
+        printed = capsys.readouterr().out
+        assert printed.count("\n") == 1
+        assert printed.startswith("03.1: ")
+        for number in [*given[0].ravel(), *exercise.reference(*given).ravel()]:
+            if 0 < number < 1:
+                assert f"{number:.4f}" not in printed
+
+
+def test_an_unknown_number_names_those_that_there_are():
+    assert "03" in lesson_numbers()
+    for number in ("03.9", "77.1", "", 3.1):
+        with pytest.raises(UnknownExerciseError, match=r"there are .*03\.1"):
+            check(number, stub)
+
+
+def test_inputs_of_one_seed_are_always_the_same():
+    first, second = (DOUBLE.inputs(np.random.default_rng(5))[0] for _ in range(2))
+    assert np.array_equal(first, second)

@@ -1,0 +1,135 @@
+"""The panel itself: what its controls do, what it shows and stores, and that no error is lost."""
+
+from __future__ import annotations
+
+import ipywidgets
+import pytest
+
+from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
+from course_lib.plots import figures
+from course_lib.plots.figures import Picture
+
+FIGURE, _AXES = figures.new_figure(size=(1, 1))
+PNG = figures.png_bytes(FIGURE)
+VIEW = "application/vnd.jupyter.widget-view+json"
+
+
+def draw(x: float, kind: str, on: bool) -> Drawing:
+    if x > 3:
+        raise ValueError("x is too large")
+    return Drawing(PNG, f"A test picture with x {x:g}, {kind}, {on}", f"x = {x:g} <m>")
+
+
+def make(**options) -> Panel:
+    controls = [Slider("x", "x [m]", 0, 4, 1, 0.5), Choice("kind", "kind", ("a", "b"), "a"), Switch("on", "on")]
+    return Panel("test", controls, draw, **options)
+
+
+def all_widgets(widget) -> list:
+    return [widget] + [w for child in getattr(widget, "children", ()) for w in all_widgets(child)]
+
+
+def widget_of(panel: Panel, kind: type):
+    return next(w for w in all_widgets(panel.box) if type(w) is kind)
+
+
+def test_a_slider_and_its_number_box_move_together():
+    panel = make()
+    slider, box = widget_of(panel, ipywidgets.FloatSlider), widget_of(panel, ipywidgets.BoundedFloatText)
+    slider.value = 2.5
+    assert box.value == 2.5
+    box.value = 0.5
+    assert slider.value == 0.5
+    assert panel.values()["x"] == 0.5
+
+
+def test_what_a_browser_adds_to_a_number_is_dropped_and_draws_once():
+    calls = []
+    panel = Panel("test", [Slider("x", "x", 0.01, 1, 0.2, 0.05)], lambda **v: calls.append(v["x"]) or _any())
+    calls.clear()
+    widget_of(panel, ipywidgets.FloatSlider).value = 0.15000000000000002
+    assert calls == [0.15]
+    assert widget_of(panel, ipywidgets.BoundedFloatText).value == 0.15
+    widget_of(panel, ipywidgets.BoundedFloatText).value = 0.61
+    assert calls == [0.15, 0.61]
+    assert widget_of(panel, ipywidgets.FloatSlider).value == 0.61
+
+
+def test_a_moved_slider_redraws_picture_and_numbers():
+    panel = make()
+    slider = widget_of(panel, ipywidgets.FloatSlider)
+    slider.value = 2.0
+    shown = [w.value for w in all_widgets(panel.box) if isinstance(w, ipywidgets.HTML)]
+    assert 'alt="A test picture with x 2, a, False"' in shown[0]
+    assert shown[1] == "<pre>x = 2 &lt;m&gt;</pre>"
+
+
+def test_several_controls_are_set_with_one_redraw():
+    calls = []
+    panel = Panel("test", [Slider("x", "x", 0, 4, 1, 1), Switch("on", "on")], lambda **v: calls.append(v) or _any())
+    calls.clear()
+    panel.set(x=2, on=True)
+    assert calls == [{"x": 2, "on": True}]
+
+
+def _any() -> Drawing:
+    return Drawing(PNG, "Some picture for a test", "no numbers")
+
+
+def test_reset_and_other_buttons_can_be_called_and_clicked():
+    panel = make(actions={"Double": lambda values: {"x": 2 * values["x"]}})
+    panel.press("Double")
+    assert panel.values()["x"] == 2
+    panel.set(kind="b", on=True)
+    panel.press("Reset")
+    assert panel.values() == panel.defaults() == {"x": 1, "kind": "a", "on": False}
+    button = next(w for w in all_widgets(panel.box) if getattr(w, "description", "") == "Double")
+    button.click()
+    assert panel.values()["x"] == 2
+
+
+def test_an_error_is_raised_shown_and_the_old_picture_stays():
+    panel = make()
+    picture, summary = (w for w in all_widgets(panel.box) if isinstance(w, ipywidgets.HTML))
+    old = picture.value
+    with pytest.raises(ValueError, match="too large"):
+        panel.set(x=4)
+    assert picture.value == old
+    assert "This panel failed" in summary.value
+    assert isinstance(panel.error, ValueError)
+    panel.set(x=2)
+    assert panel.error is None
+    assert "failed" not in summary.value
+
+
+def test_the_bundle_carries_the_defaults_as_a_still_whatever_the_controls_say():
+    panel = make()
+    panel.set(x=3)
+    bundle = panel._repr_mimebundle_()
+    assert set(bundle) == {"text/plain", "text/html", VIEW}
+    assert bundle["text/plain"] == "Panel 'test': x [m], kind, on"
+    assert "A test picture with x 1, a, False" in bundle["text/html"]
+    assert bundle[VIEW]["model_id"] == panel.box.model_id
+
+
+def test_slow_panels_redraw_on_release():
+    assert widget_of(make(), ipywidgets.FloatSlider).continuous_update is True
+    assert widget_of(make(continuous=False), ipywidgets.FloatSlider).continuous_update is False
+
+
+def test_only_plain_widgets_are_used():
+    allowed = {"VBox", "HBox", "FloatSlider", "BoundedFloatText", "Dropdown", "Checkbox", "Button", "HTML"}
+    assert {type(w).__name__ for w in all_widgets(make().box)} <= allowed
+
+
+def test_controls_need_names_of_their_own():
+    with pytest.raises(ValueError, match="different names"):
+        Panel("test", [Switch("a", "one"), Switch("a", "two")], lambda a: _any())
+    with pytest.raises(ValueError, match="different names"):
+        Panel("test", [], lambda: _any())
+
+
+def test_a_picture_without_alternative_text_is_refused():
+    with pytest.raises(figures.FigureError):
+        Panel("test", [Switch("a", "a")], lambda a: Drawing(PNG, "", "nothing"))
+    assert Picture(PNG, "four words will do").alt

@@ -1,0 +1,109 @@
+"""Every control of every panel at its least, default and greatest value; buttons; and how long a redraw takes."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import re
+import statistics
+import time
+from pathlib import Path
+
+import cv2
+import nbformat
+import numpy as np
+import pytest
+
+import course_lib.lessons
+from course_lib.lessons.kit.panel import Panel, Slider
+from course_lib.lessons.kit.paths import notebook_paths
+
+MAX_SECONDS = 0.15
+
+
+def panel_makers() -> dict:
+    """Title -> function that makes the panel, of all lesson modules."""
+    folder = Path(course_lib.lessons.__file__).parent
+    names = sorted(m.name for m in pkgutil.iter_modules([str(folder)]) if re.fullmatch(r"lesson_\d\d", m.name))
+    modules = [importlib.import_module(f"course_lib.lessons.{name}") for name in names]
+    return {title: maker for module in modules for title, maker in getattr(module, "PANELS", {}).items()}
+
+
+MAKERS = panel_makers()
+
+
+@pytest.fixture(scope="module", params=list(MAKERS), ids=lambda title: title.replace(" ", "-"))
+def panel(request) -> Panel:
+    return MAKERS[request.param]()
+
+
+def is_picture(png: bytes) -> bool:
+    return cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR) is not None
+
+
+def test_every_panel_in_a_notebook_is_registered_and_the_other_way_round():
+    shown = set()
+    for path in notebook_paths():
+        for cell in nbformat.read(path, as_version=4).cells:
+            for output in cell.get("outputs", []):
+                text = output.get("data", {}).get("text/plain", "")
+                shown.update(re.findall(r"^Panel '([^']+)'", text))
+    assert shown == set(MAKERS)
+
+
+def test_a_panel_bears_its_registered_title(panel):
+    assert panel.title in MAKERS
+
+
+def test_every_control_works_at_its_least_default_and_greatest_value(panel):
+    for name, control in panel.controls.items():
+        for value in control.test_values():
+            drawing = panel.draw(**(panel.defaults() | {name: value}))
+            assert is_picture(drawing.png), f"{name} = {value}"
+            assert len(drawing.alt.split()) >= 4
+            assert drawing.summary.strip()
+            panel.set(**{name: value})
+            assert panel.values()[name] == value, f"{name} cannot be set to {value}"
+        panel.set(**panel.defaults())
+
+
+def test_all_controls_at_their_ends_together(panel):
+    for end in (0, -1):
+        values = {name: control.test_values()[end] for name, control in panel.controls.items()}
+        assert is_picture(panel.draw(**values).png)
+
+
+def test_every_control_changes_what_is_shown(panel):
+    for name, control in panel.controls.items():
+        shown = {
+            (d.png, d.summary) for d in (panel.draw(**(panel.defaults() | {name: v})) for v in control.test_values())
+        }
+        assert len(shown) > 1, f"{name} changes nothing"
+
+
+def test_every_button_does_its_work(panel):
+    for label in panel.actions:
+        panel.press(label)
+        assert panel.error is None
+    panel.press("Reset")
+    assert panel.values() == panel.defaults()
+
+
+def test_the_same_values_give_the_same_picture(panel):
+    first, second = panel.draw(**panel.defaults()), panel.draw(**panel.defaults())
+    assert first == second
+
+
+def test_a_redraw_takes_at_most_150_ms(panel):
+    if not panel.continuous:
+        pytest.skip("redraws on release of the slider")
+    seconds = []
+    for name, control in panel.controls.items():
+        if isinstance(control, Slider):
+            for share in np.linspace(0.1, 0.9, 7):
+                value = control.least + round(share * (control.greatest - control.least) / control.step) * control.step
+                started = time.perf_counter()
+                panel.set(**{name: value})
+                seconds.append(time.perf_counter() - started)
+    panel.press("Reset")
+    assert statistics.median(seconds or [0.0]) <= MAX_SECONDS

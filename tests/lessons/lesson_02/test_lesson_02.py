@@ -1,0 +1,93 @@
+"""What lesson 02 says about its room's maps holds: holes, noise, registration, voxels, the door of another day."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.lessons.kit.box_world import Box, BoxWorld
+from course_lib.lessons.lesson_02 import camera_view, cut, row, shipped_numbers, small_room, true_view
+from course_lib.lessons.lesson_02.small_room import (
+    STATIONS,
+    MapQuality,
+    distances,
+    gaps,
+    quality,
+    room,
+    room_map,
+    scans,
+    seen_places,
+)
+
+
+def test_a_cut_through_a_box_is_its_outline():
+    mesh = BoxWorld([Box((1.0, 2.0, 0.0), (2.0, 4.0, 3.0), 0.5)]).mesh()
+    segments = cut(mesh.vertices, mesh.faces, 1.2)
+    assert np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1).sum() == pytest.approx(6.0)
+
+
+def test_distances_are_zero_on_the_room_and_as_large_as_a_shift():
+    mesh = room().mesh()
+    assert distances(mesh, n=500).max() < 1e-6
+    floor = SceneMap(np.array([[1.0, 1, 0.03], [2, 1, 0.03], [1, 2, 0.03]]), np.array([[0, 1, 2]]))
+    assert distances(floor, n=50) == pytest.approx(np.full(50, 0.03))
+
+
+def test_the_room_itself_has_no_holes_and_eyes_see_surfaces_of_it():
+    assert gaps(room().mesh()).max() < 1e-4
+    places = seen_places()
+    assert places.shape == (3000, 3)
+    assert (np.ptp(places, axis=0) > [4.9, 3.9, 2.4]).all()
+
+
+def test_stations_stand_in_the_open():
+    for x, y in STATIONS:
+        inside = (room().low < [x, y, 1.6]).all(axis=1) & (room().high > [x, y, 1.6]).all(axis=1)
+        assert not inside.any()
+
+
+def test_one_station_leaves_holes_that_three_close():
+    one, three = quality(room_map(1)), quality(room_map(3))
+    assert one.holes > 0.10
+    assert three.holes < 0.01
+    assert np.isinf(camera_view(room_map(1))).mean() > np.isinf(camera_view(room_map(3))).mean() + 0.02
+
+
+def test_noise_averages_out_and_registration_does_not():
+    clean, noisy, shifted = (quality(room_map(3, *errors)).median for errors in ((1, 0), (20, 0), (1, 20)))
+    assert clean < 0.004
+    assert clean < noisy < 0.010
+    assert shifted > 1.2 * noisy
+
+
+def test_half_the_voxel_gives_about_four_times_the_triangles():
+    assert 3.5 < len(room_map(3, voxel=0.1)) / len(room_map(3, voxel=0.2)) < 5.0
+
+
+def test_decimation_to_a_hundredth_keeps_the_walls():
+    assert len(room_map(3, keep=0.01)) < 0.011 * len(room_map(3))
+    assert quality(room_map(3, keep=0.01)).median < 0.005
+
+
+def test_the_door_of_another_day_is_most_of_what_differs():
+    shut, opened = (np.abs(camera_view(room_map(3, door_open=d)) - true_view(True)) > 0.1 for d in (False, True))
+    assert shut.mean() > opened.mean() + 0.04
+
+
+def test_the_same_survey_comes_out_again():
+    before = scans(1)[0].ranges
+    small_room._scans.cache_clear()
+    np.testing.assert_array_equal(scans(1)[0].ranges, before)
+
+
+def test_a_row_tells_holes_and_distances_in_round_numbers():
+    text = row(MapQuality(30295, 0.0025, 0.0173, 0.158))
+    assert text == "about 30,000 triangles; map to room: median < 5 mm, 90 % below 17 mm; holes 16 %"
+    assert row(MapQuality(300, 0.02, 0.03, 0.003)).endswith("holes below 1 %")
+
+
+def test_the_shipped_numbers_are_those_of_the_papers_order():
+    made = shipped_numbers()
+    assert made["registration"]["mean_point_distance_m"] == pytest.approx(0.010, abs=0.004)
+    assert made["distance_to_surveyed_world"]["median_m"] < made["registration"]["mean_point_distance_m"]

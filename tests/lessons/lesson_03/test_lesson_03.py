@@ -1,0 +1,58 @@
+"""What lesson 03 says about its panel and its z-buffer holds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.lessons.lesson_03 import buffer_step, camera_panel, corridor, slanted_wall_error
+
+
+def corridor_views(states: list[list[float]], near: float = 0.1, backend: str = "vtk") -> np.ndarray:
+    with DepthRenderer(corridor(), DepthCamera.sr4000(near=near), backend) as renderer:
+        return renderer.render(np.array(states, dtype=float))
+
+
+def test_a_side_wall_does_not_tell_x_but_the_open_end_does():
+    left = np.pi / 2
+    views = corridor_views([[x, 0, 1.2, 0, 0, left] for x in (0.5, 3.0, 3.1)])
+    assert np.isinf(views[0]).mean() > 0.05
+    np.testing.assert_allclose(views[1], 1.5, atol=0.001)
+    np.testing.assert_allclose(views[1], views[2], atol=0.001)
+
+
+def test_the_crate_grows_more_on_the_screen_than_the_pillar_and_the_wall():
+    spans = {"crate": ([-0.8, -0.3], 4.0), "pillar": ([0.5, 0.8], 5.0), "wall": ([-1.5, 1.5], 8.0)}
+    camera, wider = DepthCamera.sr4000(), {}
+    for name, (y, front) in spans.items():
+        assert np.isclose(corridor().vertices[:, 0], front).any()
+        before, after = (np.array([[-y[0], 0, front - x], [-y[1], 0, front - x]]) for x in (0.5, 0.6))
+        wider[name] = np.ptp(camera.project(after)[0]) / np.ptp(camera.project(before)[0])
+    assert wider["crate"] > wider["pillar"] > wider["wall"] > 1
+
+
+def test_a_near_plane_cuts_the_pillar_away_for_the_z_buffer_and_for_ray_casting_alike():
+    state = [[4.7, 0.6, 1.2, 0, 0, 0]]
+    assert corridor_views(state)[0, 72, 88] == pytest.approx(0.3, abs=0.001)
+    for backend in ("vtk", "ray"):
+        assert corridor_views(state, 1.0, backend)[0, 72, 88] == pytest.approx(3.3, abs=0.001)
+    panel = camera_panel()
+    summary = panel.draw(**(panel.defaults() | {"x": 4.7, "y": 0.6, "near": "1"})).summary
+    assert "more than 1 mm off: 0%" in summary
+
+
+def test_the_bright_line_at_the_start_is_crate_against_wall():
+    state = [[0.5, 0, 1.2, 0, 0, 0]]
+    images = np.stack([corridor_views(state)[0], corridor_views(state, backend="ray")[0]])
+    off = np.abs(images[0] - images[1]) > 0.001
+    assert off.mean() < 0.005
+    nearer, farther = images[:, off].min(axis=0), images[:, off].max(axis=0)
+    assert ((nearer < 4.6) & (nearer < farther)).all()
+
+
+def test_a_step_of_the_buffer_with_near_a_tenth_of_a_millimetre_is_centimetres_and_far_hardly_matters():
+    assert buffer_step(7.5, 0.0001, 30.0) == pytest.approx(0.0335, abs=0.0005)
+    assert slanted_wall_error(0.0001).max() > 0.03
+    assert buffer_step(7.5, 0.1, 11.0) == pytest.approx(buffer_step(7.5, 0.1, 30.0), rel=0.01)

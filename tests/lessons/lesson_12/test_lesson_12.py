@@ -1,0 +1,148 @@
+"""What lesson 12 says of seams, thresholds and colours holds, whatever network is shipped."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from course_lib.lessons.kit.exercises import find_exercise, judge
+from course_lib.lessons.lesson_11 import the_image
+from course_lib.lessons.lesson_12 import (
+    CUTS,
+    SOFA,
+    Found,
+    best_overlap,
+    chosen_threshold,
+    colours_against_map,
+    cut_counts,
+    cut_sofa,
+    cut_table,
+    detector,
+    pieces_of_sofa,
+    true_object,
+)
+from course_lib.lessons.lesson_12.seam_figures import crop_of, hues_and_saturations, outline, part_of, seam_panel
+from course_lib.spherical_stereo.detection.boxes import box_iou
+from course_lib.spherical_stereo.detection.colour import central_half, mean_hue_saturation
+
+WIDTH = 1280
+
+
+def test_the_seam_cuts_the_sofa_where_the_slider_says():
+    wanted, _ = mean_hue_saturation(the_image(), true_object(SOFA).visible_box)
+    for percent in (0, 50, 100):
+        cut = cut_sofa(percent)
+        assert (WIDTH - cut.sofa[0]) % WIDTH / (cut.sofa[2] - cut.sofa[0]) == pytest.approx(percent / 100, abs=0.01)
+        hue, _ = mean_hue_saturation(cut.image, tuple(cut.sofa))
+        assert hue == pytest.approx(wanted, abs=1)
+
+
+def test_the_extension_finds_the_whole_sofa_more_often_than_the_plain_image():
+    cuts = {percent: cut_sofa(percent) for percent in CUTS[2:9:2]}
+    without, with_it = (cut_counts(cuts, 0.3, extension)["once and whole"] for extension in (False, True))
+    assert with_it > without
+    assert sum(cut_counts(cuts, 0.3, True).values()) == len(cuts)
+    assert len(cut_table(cuts, 0.3).splitlines()) == 1 + len(cuts)
+
+
+def test_the_panels_objects_are_those_of_the_detector():
+    cut = cut_sofa(50)
+    objects, found = cut.objects(True, detector().score_threshold), detector().detect(cut.image)
+    assert len(objects.boxes) == len(found)
+    assert objects.labels == [one.label for one in found]
+    assert objects.boxes == pytest.approx(np.array([one.box for one in found]), abs=0.5)
+
+
+def test_a_higher_threshold_keeps_fewer():
+    plain = cut_sofa(50).plain
+    counts = [len(plain.above(threshold).boxes) for threshold in (0.1, 0.5, 0.9)]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > counts[-1]
+
+
+def test_pieces_are_told_on_the_circle_and_by_class():
+    sofa = np.array([1200.0, 300, 1360, 400])
+    boxes = np.array([[0, 300, 80, 400], [1200, 300, 1280, 400], [1200, 300, 1360, 400], [400, 300, 480, 400]], float)
+    index = {label: number for number, label in enumerate(detector().labels)}
+    found = Found(boxes, np.full(4, 0.9), np.array([index["sofa"], index["sofa"], index["chair"], index["sofa"]]))
+    assert pieces_of_sofa(found, sofa, WIDTH).tolist() == [0, 1]
+    assert best_overlap(found, sofa, WIDTH) == pytest.approx(0.5)
+    nothing = Found(np.zeros((0, 4)), np.zeros(0), np.zeros(0, int))
+    assert len(pieces_of_sofa(nothing, sofa, WIDTH)) == 0
+    assert best_overlap(nothing, sofa, WIDTH) == 0
+
+
+def test_the_chosen_threshold_is_that_of_the_detector():
+    assert chosen_threshold() == detector().score_threshold
+
+
+def test_half_hidden_objects_differ_more_in_hue():
+    colours = colours_against_map()
+    gap = colours.hue_difference
+    free, hidden = np.nanmedian(gap[colours.visible > 0.95]), np.nanmedian(gap[colours.visible < 0.6])
+    assert free < 10 < hidden
+
+
+def test_the_sofa_behind_the_table_has_the_wrong_hue():
+    hues = [mean_hue_saturation(the_image(), true_object(number).visible_box)[0] for number in (0, 1, 2)]
+    assert abs(hues[0] - hues[2]) < 10
+    assert abs(hues[1] - hues[0]) > 30
+    assert true_object(1).visible_fraction < 0.6
+
+
+def test_the_part_of_a_half_is_the_librarys_central_half():
+    box = (1200.0, 300.0, 1380.0, 420.0)
+    assert part_of(box, 0.5) == pytest.approx(central_half(box))
+    assert part_of(part_of(box, 0.5), 2.0) == pytest.approx(box)
+
+
+def test_hues_of_a_part_are_those_that_the_library_averages():
+    box = true_object(SOFA).visible_box
+    hues, saturations = hues_and_saturations(the_image(), part_of(box, 0.5))
+    angle = np.radians(hues)
+    mean = np.degrees(np.arctan2((saturations * np.sin(angle)).sum(), (saturations * np.cos(angle)).sum())) % 360
+    hue, saturation = mean_hue_saturation(the_image(), box)
+    assert mean == pytest.approx(hue, abs=0.5)
+    assert 100 * saturations.mean() == pytest.approx(saturation, abs=0.1)
+
+
+def test_a_crop_goes_around_the_seam_and_says_where_it_is():
+    image = np.zeros((640, 1280, 3), np.uint8)
+    image[:, :40], image[:, -40:] = (255, 0, 0), (0, 0, 255)
+    crop, scale, corner = crop_of(image, (1240.0, 300.0, 1320.0, 380.0), 100)
+    assert scale == pytest.approx(1.0)
+    assert corner == pytest.approx([1230, 290])
+    assert crop[50, 30].tolist() == [255, 0, 0], "red, left of the seam, in RGB"
+    assert crop[50, 70].tolist() == [0, 0, 255]
+    assert outline((1, 2, 3, 4))[0].tolist() == outline((1, 2, 3, 4))[-1].tolist()
+
+
+def test_the_extension_switch_changes_what_the_panel_says_of_the_sofa():
+    panel = seam_panel({50: cut_sofa(50)}, pieces_of_sofa, best_overlap)
+    off, on = (panel.draw(**(panel.defaults() | {"extension": e, "threshold": 0.3})).summary for e in (False, True))
+    overlap = [float(text.split("(IoU) ")[1].split(";")[0]) for text in (off, on)]
+    assert overlap[1] > overlap[0]
+
+
+def by_one_turn(a, b, width):
+    """Move the box that lies left by a turn where the two are far apart."""
+    if b[0] - a[0] > width / 2:
+        a = a + np.array([width, 0, width, 0])
+    elif a[0] - b[0] > width / 2:
+        b = b + np.array([width, 0, width, 0])
+    return box_iou(a[None], b[None], 100 * width)[0, 0]
+
+
+@pytest.mark.parametrize(
+    ("number", "answer"),
+    [
+        ("12.1", by_one_turn),
+        ("12.1", lambda a, b, w: box_iou(a[None], b[None], w).item()),
+        ("12.2", lambda boxes, w: np.floor((boxes[:, [0, 2]].mean(axis=1) - w / 8) / w) == 0),
+        ("12.3", lambda h, s: np.degrees(np.angle((s * np.exp(1j * np.radians(h))).sum())) % 360),
+        ("12.3", lambda h, s: np.degrees(np.arctan2(-s @ np.sin(h / 180 * np.pi), -s @ np.cos(h / 180 * np.pi))) + 180),
+    ],
+    ids=lambda given: given if isinstance(given, str) else "",
+)
+def test_another_way_to_the_right_values_passes(number, answer):
+    assert {judge(find_exercise(number), answer, seed).status for seed in range(8)} == {"right"}

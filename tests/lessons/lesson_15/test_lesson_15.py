@@ -1,0 +1,152 @@
+"""What lesson 15 says about the penalty, the repeated minimum and the sofas holds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import linear_sum_assignment
+
+from course_lib.lessons.kit.exercises import find_exercise, judge
+from course_lib.lessons.lesson_15 import (
+    SOFAS,
+    fitted_pose,
+    hidden_score,
+    pose_error,
+    room_map,
+    room_scenes,
+    score,
+    weights_panel,
+)
+from course_lib.lessons.lesson_15.penalty_panel import match, next_best
+from course_lib.spherical_stereo.semantic_map.association import (
+    PenaltyWeights,
+    associate_greedy,
+    hue_difference,
+    least_object_weight,
+    penalty_table,
+)
+
+
+def test_no_observation_is_told_by_its_place_in_the_list():
+    for scene in room_scenes().values():
+        assert list(scene.true_landmarks) != sorted(scene.true_landmarks)
+        assert [one.label for one in scene.observations] == [room_map().labels[j] for j in scene.true_landmarks]
+
+
+def test_all_four_terms_get_nineteen_poses_right_and_no_term_alone_half_of_them():
+    assert score(PenaltyWeights()).poses_right == 19
+    for weights in ((100, 0, 0, 0), (100, 1, 0, 0), (100, 0, 1, 0), (100, 0, 0, 1)):
+        assert score(PenaltyWeights(*weights)).poses_right < 10
+
+
+def test_hue_settles_everything_but_the_sofas():
+    found = score(PenaltyWeights(100, 1, 0, 0))
+    assert found.pairs_right - found.sofas_right == found.pairs - found.sofas
+    assert found.sofas_right < found.sofas / 2
+
+
+def test_the_light_changes_the_sofas_hue_by_more_than_they_differ():
+    own = [
+        float(hue_difference(one.hue, room_map().hues[j]))
+        for scene in room_scenes().values()
+        for one, j in zip(scene.observations, scene.true_landmarks, strict=True)
+        if j in SOFAS
+    ]
+    assert np.median(own) > np.ptp(room_map().hues[list(SOFAS)])
+
+
+def test_as_printed_no_pose_is_right():
+    assert score(PenaltyWeights(), "as_printed").poses_right == 0
+
+
+def test_a_class_weight_of_three_is_enough_for_weights_of_one():
+    assert max(least_object_weight(scene.observations, room_map()) for scene in room_scenes().values()) < 3
+
+
+def test_in_06_a_two_sofas_are_swapped_by_next_to_nothing_and_the_pose_hardly_moves():
+    scene = room_scenes()["06_a"]
+    pairs = associate_greedy(scene.observations, room_map()).pairs
+    wrong = {(scene.true_landmarks[i], j) for i, j in pairs if scene.true_landmarks[i] != j}
+    assert wrong == {(0, 1), (1, 0)}
+    total = penalty_table(scene.observations, room_map()).total
+    a, b = scene.true_landmarks.index(0), scene.true_landmarks.index(1)
+    assert abs(total[a, 0] + total[b, 1] - total[a, 1] - total[b, 0]) < 0.005
+    assert pose_error(scene, pairs)[0] < 0.2
+
+
+def test_the_least_sum_makes_the_same_mistakes_as_the_greedy_search():
+    for scene in room_scenes().values():
+        found = associate_greedy(scene.observations, room_map())
+        rows, columns = linear_sum_assignment(found.table.total)
+        assert set(found.pairs) == set(zip(rows.tolist(), columns.tolist(), strict=True))
+
+
+def test_hidden_objects_make_sofas_wrong():
+    rng = np.random.default_rng(3)
+    all_seen, two_hidden = hidden_score(0, 1, rng), hidden_score(2, 5, rng)
+    assert all_seen.share_right == 0.95
+    assert 0.5 < two_hidden.share_right < 0.8
+    assert two_hidden.wrong_sofas > 0.9 * two_hidden.wrong
+
+
+def test_one_pair_gives_no_pose():
+    scene = room_scenes()["03_b"]
+    assert fitted_pose(list(scene.observations), ((0, 0),)) is None
+
+
+def test_the_next_best_is_never_cheaper_than_what_was_chosen():
+    for scene in room_scenes().values():
+        found = match(scene, room_map(), PenaltyWeights(), "as_printed", 2)
+        chosen = np.array([one.total for one in found.association.penalties])
+        second = next_best(found)
+        assert (second[np.isfinite(second)] >= chosen[np.isfinite(second)]).all()
+
+
+def test_hiding_leaves_the_near_objects():
+    scene = room_scenes()["03_b"]
+    found = match(scene, room_map(), PenaltyWeights(), "absolute", 8)
+    ranges = np.array([np.hypot(one.x, one.y) for one in scene.observations])
+    assert len(found.kept) == len(ranges) - 8
+    assert ranges[list(found.kept)].max() <= np.delete(ranges, found.kept).min()
+
+
+def test_the_buttons_of_the_panel_step_through_the_rounds():
+    panel = weights_panel()
+    panel.press("From the start")
+    assert panel.values()["done_rounds"] == 0
+    panel.press("Next round")
+    panel.press("Next round")
+    panel.press("Back")
+    assert panel.values()["done_rounds"] == 1
+    assert panel.draw(**panel.values()).summary.startswith("1 of 13 rounds: 1 pairs right")
+
+
+def by_angles(seen, on_map, p_h):
+    turn = np.deg2rad(seen - on_map)
+    return np.nan_to_num(p_h * np.arccos(np.clip(np.cos(turn), -1, 1)) / (2 * np.pi))
+
+
+def by_loops(x_c, x_m, p_d):
+    centre_c, centre_m = sum(x_c) / len(x_c), sum(x_m) / len(x_m)
+    return [
+        [
+            p_d * abs(np.hypot(*(c - centre_c)) - np.hypot(*(m - centre_m))) / max(np.hypot(*(m - centre_m)), 0.1)
+            for m in x_m
+        ]
+        for c in x_c
+    ]
+
+
+def by_sorting(cost):
+    columns, taken = [-1] * len(cost), set()
+    for flat in np.argsort(cost, axis=None):
+        i, j = divmod(int(flat), cost.shape[1])
+        if columns[i] < 0 and j not in taken:
+            columns[i] = j
+            taken.add(j)
+    return columns
+
+
+@pytest.mark.parametrize(("number", "answer"), [("15.1", by_angles), ("15.2", by_loops), ("15.3", by_sorting)])
+def test_another_way_to_the_right_values_passes(number, answer):
+    assert all(judge(find_exercise(number), answer, seed).status == "right" for seed in range(8))

@@ -1,0 +1,171 @@
+"""Lesson 20: a reader's folders are read, misreadings show, and the stand-in is the same with and without real data."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import cv2
+import nbformat
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.sequence import read_sequence, write_sequence
+from course_lib.lessons.kit.paths import REPOSITORY
+from course_lib.lessons.lesson_20 import READINGS, Checker, MissingMapError, Recording, at_most, misread_run, recording
+from course_lib.lessons.lesson_20.own_panoramas import (
+    MissingBaselineError,
+    MissingPanoramaError,
+    distances_table,
+    fit_text,
+    measured_objects,
+    panorama_pair,
+)
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.matching.object_matching import match_objects
+from course_lib.spherical_stereo.panorama import StereoRig
+
+RIGHT = "as the formats say"
+REAL_BOXES = REPOSITORY / "tests" / "spherical_stereo" / "panorama_room_boxes.json"
+
+
+@pytest.fixture(scope="module")
+def stand_in() -> Recording:
+    return recording()
+
+
+@pytest.fixture(scope="module")
+def checker(stand_in) -> Checker:
+    return Checker(stand_in)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return panorama_pair()
+
+
+def own_folder(stand_in: Recording, folder: Path) -> Path:
+    """A reader's folder: the stand-in's first three frames, and the corridor's simpler map."""
+    sequence = stand_in.sequence
+    depths = [sequence.depth(index) for index in range(3)]
+    write_sequence(folder, sequence.intrinsics, sequence.frames[:3], depths, sequence.camera_to_world[:3])
+    shutil.copy(REPOSITORY / "data" / "corridor" / "planar_map.ply", folder / "map.ply")
+    return folder
+
+
+def test_read_as_the_formats_say_the_stand_in_agrees_with_its_map(checker):
+    compared = checker(8)
+    assert compared.median < 0.03
+    assert compared.hits > 0.9
+
+
+@pytest.mark.parametrize("reading", [name for name in READINGS if name != RIGHT])
+@pytest.mark.parametrize("frame", [0, 20])
+def test_every_misreading_shows_at_the_given_poses(checker, reading, frame):
+    right, wrong = checker(frame), checker(frame, reading)
+    assert wrong.hits < 0.5 or wrong.median > 3 * right.median
+
+
+def test_a_camera_that_was_moved_disagrees_more(checker):
+    assert checker(8, shift=0.2).median > 1.5 * checker(8).median
+
+
+def test_a_readers_folder_is_read_with_its_own_map(stand_in, tmp_path):
+    mine = recording(own_folder(stand_in, tmp_path))
+    assert len(mine.sequence) == 3
+    assert len(mine.scene_map.faces) < len(stand_in.scene_map.faces)
+    assert mine.name == tmp_path.name
+
+
+def test_a_folder_without_a_map_is_named(stand_in, tmp_path):
+    (own_folder(stand_in, tmp_path) / "map.ply").unlink()
+    with pytest.raises(MissingMapError, match=r"map\.ply"):
+        recording(tmp_path)
+
+
+def test_a_folder_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        recording(tmp_path / "nowhere")
+
+
+def test_a_wrong_unit_gives_poses_and_a_low_score(stand_in):
+    options = {"sigma": [0.05] * 3 + [0.03] * 3, "n_particles": 15, "seed": 1, "noise": "tangent"}
+    right = misread_run(stand_in, RIGHT, frames=2, **options)
+    wrong = misread_run(stand_in, "depth: 5000 units a metre", frames=2, **options)
+    assert np.isfinite(wrong.camera_to_world).all()
+    assert wrong.scores.max() < 0.5 * right.scores.min()
+
+
+def test_numbers_are_printed_against_round_bounds():
+    assert at_most(0.0131) == "at most 0.02 m"
+    assert at_most(0.02) == "at most 0.02 m"
+    assert at_most(77.0, "pixels") == "above 10 pixels"
+    assert at_most(np.nan) == "no number"
+
+
+def test_a_readers_pair_is_read_and_what_is_missing_is_named(pair, tmp_path):
+    with pytest.raises(MissingPanoramaError, match="upper"):
+        panorama_pair(tmp_path, 0.3)
+    cv2.imwrite(str(tmp_path / "upper.jpg"), pair.upper)
+    cv2.imwrite(str(tmp_path / "lower.png"), pair.lower)
+    with pytest.raises(MissingBaselineError, match="above the lower"):
+        panorama_pair(tmp_path)
+    mine = panorama_pair(tmp_path, 0.25)
+    assert mine.rig == StereoRig(0.25)
+    assert (list(mine.upper_detections), mine.semantic_map) == ([], None)
+    assert np.array_equal(mine.lower, pair.lower)
+    pair.semantic_map.save(tmp_path / "map.csv")
+    assert len(panorama_pair(tmp_path, 0.25).semantic_map) == len(pair.semantic_map)
+
+
+def test_a_wrong_baseline_shows_in_the_residuals_and_nowhere_else(pair):
+    matches = [
+        (i, j)
+        for i, above in enumerate(pair.upper_detections)
+        for j, below in enumerate(pair.lower_detections)
+        if above.label == below.label and abs(np.mean(above.box[::2]) - np.mean(below.box[::2])) < 10
+    ]
+    found = {
+        baseline: SemanticLocalizer(StereoRig(baseline), pair.semantic_map).localize_detections(
+            pair.upper_detections, pair.lower_detections, matches
+        )
+        for baseline in (0.3, 0.2)
+    }
+    residuals = {key: np.median(np.linalg.norm(one.residuals, axis=1)) for key, one in found.items()}
+    assert all(one.status == "ok" for one in found.values())
+    assert residuals[0.2] > 3 * residuals[0.3]
+    assert "position wrong by" in fit_text(found[0.2], pair.true_pose)
+    assert "pose (" in fit_text(found[0.3], None)
+
+
+def test_no_boxes_give_no_distances_but_a_sentence(pair):
+    assert distances_table(measured_objects(pair, [])).startswith("0 objects")
+
+
+def test_the_stored_lesson_is_that_of_the_stand_in():
+    """Its outputs must come out the same whether or not real data lies beside the project."""
+    notebook = nbformat.read(REPOSITORY / "notebooks" / "20_your_own_data.ipynb", as_version=4)
+    (cell,) = [cell for cell in notebook.cells if cell.id == "20-mine"]
+    chosen: dict = {}
+    exec(cell.source, chosen)
+    assert all(value is None for name, value in chosen.items() if name.startswith("MY_"))
+    assert all("shared/real" not in cell.source for cell in notebook.cells)
+
+
+def test_the_real_recording_agrees_with_its_map(kitchen_folder):
+    kitchen = recording(kitchen_folder)
+    assert read_sequence(kitchen_folder).up is None
+    check = Checker(kitchen)
+    assert check(20).median < 0.03
+    assert all(check(20, name).hits < 0.5 or check(20, name).median > 0.04 for name in READINGS if name != RIGHT)
+
+
+def test_the_real_pair_is_measured():
+    folder = REPOSITORY.parent / "shared" / "real" / "panorama_room"
+    if not folder.is_dir():
+        pytest.skip(f"the real pair is not here ({folder}); it is not part of the repository")
+    mine = panorama_pair(folder, 0.2, REAL_BOXES)
+    matches = match_objects(mine.upper, mine.upper_detections, mine.lower, mine.lower_detections, mine.rig)
+    ranges = [one.disparity.horizontal_range_m for one in measured_objects(mine, matches)]
+    assert len(ranges) >= 14
+    assert 1.0 < np.median(ranges) < 4.0

@@ -1,0 +1,86 @@
+"""The trajectories: steps, turns, heights, distance from the clutter, and the surveyed line on the floor."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from course_lib.simulation.corridor.recorded_runs import (
+    FloorSurveyModel,
+    HandModel,
+    WagonModel,
+    hand_run,
+    steps_and_turns,
+    survey_floor_line,
+    wagon_run,
+)
+from course_lib.simulation.corridor.world import make_corridor
+
+SEEDS = (0, 1, 2, 3)
+
+
+@pytest.fixture(scope="module")
+def boxes():
+    return make_corridor(np.random.default_rng(4)).clutter_boxes
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_wagon_takes_steps_of_at_most_a_decimetre(boxes, seed):
+    states, times = wagon_run(WagonModel(), boxes, np.random.default_rng(seed))
+    step, turn = steps_and_turns(states)
+    assert len(states) == len(times) >= 300
+    assert step.max() <= 0.1
+    assert step.mean() > 0.08
+    assert np.rad2deg(turn.max()) < 3.0
+    assert np.diff(times) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_wagon_keeps_its_height_and_stays_level_but_for_jitter(boxes, seed):
+    states, _ = wagon_run(WagonModel(), boxes, np.random.default_rng(seed))
+    assert 0.0002 < np.abs(states[:, 2] - 1.0).max() <= 0.002 + 1e-9
+    assert 0.02 < np.rad2deg(np.abs(states[:, 3:5])).max() <= 0.2 + 1e-9
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_wagon_keeps_clear_of_clutter_and_still_wanders(boxes, seed):
+    states, _ = wagon_run(WagonModel(), boxes, np.random.default_rng(seed))
+    for low, high in boxes:
+        gap = np.maximum(np.maximum(low - states[:, :2], states[:, :2] - high), 0)
+        assert np.hypot(*gap.T).min() > 0.33
+    assert np.ptp(states[:, 1]) > 0.2
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_hand_moves_in_all_six_degrees_within_the_limits(boxes, seed):
+    model = HandModel()
+    states, times = hand_run(model, boxes, np.random.default_rng(seed))
+    step, turn = steps_and_turns(states)
+    assert len(states) == len(times) >= 150
+    assert step.max() <= 0.1
+    assert np.rad2deg(turn.max()) <= 5.0
+    assert 1.15 < states[:, 2].min() < states[:, 2].max() < 1.65
+    assert np.ptp(states[:, 2]) > 0.1
+    assert (np.rad2deg(np.ptp(states[:, 3:], axis=0)) > 10).all()
+    assert np.rad2deg(np.abs(states[:, 3:5])).max() < 20
+
+
+def test_a_hand_that_cannot_keep_its_limits_is_named(boxes):
+    with pytest.raises(ValueError, match="shorter mean_step"):
+        hand_run(dataclasses.replace(HandModel(), greatest_turn_deg=0.1), boxes, np.random.default_rng(0))
+
+
+def test_clutter_across_the_whole_corridor_is_named():
+    wall = np.array([[[5.0, -1.2], [5.5, 0.1]], [[5.0, 0.2], [5.5, 1.2]]])
+    with pytest.raises(ValueError, match="no way past the clutter"):
+        wagon_run(WagonModel(), wall, np.random.default_rng(0))
+
+
+def test_the_floor_line_is_dense_and_millimetres_from_the_path(boxes):
+    states, _ = wagon_run(WagonModel(), boxes, np.random.default_rng(0))
+    line = survey_floor_line(states, FloorSurveyModel(), np.random.default_rng(1))
+    path_length = np.linalg.norm(np.diff(states[:, :2], axis=0), axis=1).sum()
+    assert len(line) == pytest.approx(path_length / 0.01, rel=0.01)
+    nearest = np.min(np.linalg.norm(states[::20, None, :2] - line[None, :, :2], axis=2), axis=1)
+    assert nearest.max() < 0.02
+    assert np.abs(line[:, 2]).max() < 0.03

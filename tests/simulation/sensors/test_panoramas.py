@@ -1,0 +1,175 @@
+"""Panoramas of rooms: where things appear on them, how large, in which colour, and what the camera does to them."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import cv2
+import numpy as np
+import pytest
+
+from course_lib.simulation.room.object_boxes import box_around, object_boxes
+from course_lib.simulation.room.random_room import make_room
+from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
+from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
+from course_lib.simulation.sensors.panorama_rig import RigModel, RigPose, stand_up
+from course_lib.spherical_stereo.panorama import direction_to_pixel
+from tests.simulation.plain_room import plain_object, plain_room
+
+WIDTH = 640
+AHEAD = plain_object("chair", 2.0, 0.0, 0.5, 1.0, (255, 0, 0))
+LEFT = plain_object("table", 0.0, 2.0, 0.5, 1.0, (0, 255, 0))
+BEHIND = plain_object("sofa", -2.0, 0.0, 0.5, 1.0, (0, 0, 255))
+HIDDEN = plain_object("cabinet", 2.7, 0.4, 0.3, 0.9, (255, 255, 0))
+EYE = np.array([0.0, 0.0, 1.2, 0.0, 0.0, 0.0])
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    with PanoramaRenderer(plain_room(AHEAD, LEFT, BEHIND, HIDDEN), WIDTH) as renderer:
+        yield renderer
+
+
+def test_ahead_is_the_centre_left_is_a_quarter_behind_is_the_seam(renderer):
+    image = renderer.render(EYE)
+    row = int(WIDTH / 2 * (0.5 + np.arctan(0.7 / 1.75) / np.pi))
+    assert image.shape == (WIDTH // 2, WIDTH, 3)
+    assert np.argmax(image[row, WIDTH // 2]) == 2, "red ahead, BGR"
+    assert np.argmax(image[row, WIDTH // 4]) == 1, "green on the left"
+    assert np.argmax(image[row, 0]) == 0, "blue behind, on both edges"
+    assert np.argmax(image[row, -1]) == 0
+
+
+def test_row_zero_is_straight_up(renderer):
+    numbers = renderer.render_objects(EYE)
+    assert np.all(numbers[: WIDTH // 2] == BACKGROUND), "every object stands below the camera's horizon"
+    assert np.any(numbers[WIDTH // 2 :] != BACKGROUND)
+
+
+def corners_on_image(thing, state, width):
+    points = thing.vertices() - state[:3]
+    turn = state[5]
+    rotation = np.array([[np.cos(turn), np.sin(turn), 0], [-np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+    return direction_to_pixel(points @ rotation.T, width, width // 2)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.3, -1.1, 2.9])
+def test_a_box_is_where_its_corners_project(renderer, yaw):
+    state = EYE.copy()
+    state[5] = yaw
+    found = {box.number: box for box in object_boxes(renderer, state)}
+    for number, thing in ((0, AHEAD), (1, LEFT), (2, BEHIND)):
+        u = corners_on_image(thing, state, WIDTH)[:, 0]
+        u_min, v_min, u_max, v_max = found[number].unoccluded_box
+        away = (u - u_min + WIDTH / 2) % WIDTH - WIDTH / 2
+        assert away.min() == pytest.approx(0.0, abs=0.6)
+        assert away.max() == pytest.approx(u_max - u_min, abs=1.1)
+        # The bottom edge bulges between its corners: its middle is nearest, 1.75 m away.
+        assert v_max == pytest.approx(WIDTH / 2 * (0.5 + np.arctan2(1.2, 1.75) / np.pi), abs=0.6)
+        assert v_min == pytest.approx(corners_on_image(thing, state, WIDTH)[:, 1].min(), abs=0.6)
+
+
+def test_a_box_across_the_seam_passes_the_width(renderer):
+    behind = next(box for box in object_boxes(renderer, EYE) if box.number == 2)
+    assert 0 <= behind.visible_box[0] < WIDTH < behind.visible_box[2]
+
+
+def test_a_hidden_object_knows_how_much_of_it_is_seen(renderer):
+    boxes = {box.number: box for box in object_boxes(renderer, EYE)}
+    assert boxes[0].visible_fraction == 1.0
+    assert 0.0 < boxes[3].visible_fraction < 0.6
+    seen, whole = boxes[3].visible_box, boxes[3].unoccluded_box
+    assert whole[0] <= seen[0]
+    assert whole[1] <= seen[1]
+    assert whole[2] >= seen[2]
+    assert whole[3] >= seen[3]
+    assert np.any(renderer.render_objects(EYE) == 0), "after the boxes everything is drawn again"
+
+
+def test_a_turned_camera_sees_the_same_rolled_by_columns(renderer):
+    shift = 37
+    turned = EYE.copy()
+    turned[5] = 2 * np.pi * shift / WIDTH
+    rolled = np.roll(renderer.render(EYE), shift, axis=1)
+    # The cube's faces meet elsewhere after a turn, which moves edges by a part of a pixel.
+    assert np.mean(np.abs(rolled - renderer.render(turned)) < 3) > 0.97
+
+
+def test_an_empty_mask_has_no_box():
+    with pytest.raises(ValueError, match="no pixel"):
+        box_around(np.zeros((4, 8), bool))
+
+
+def test_odd_or_huge_panoramas_are_refused():
+    with pytest.raises(ValueError, match="even width"):
+        PanoramaRenderer(plain_room(AHEAD), 641)
+
+
+def test_the_lower_camera_sees_the_same_azimuth_at_a_higher_elevation():
+    rig = RigPose(0.2, -0.1, 0.4, 1.32, 0.3)
+    upper, lower = rig.camera_states()
+    np.testing.assert_allclose(upper[:3] - lower[:3], [0, 0, 0.3], atol=1e-12)
+    with PanoramaRenderer(plain_room(LEFT), WIDTH) as renderer:
+        above, below = (object_boxes(renderer, state)[0].visible_box for state in (upper, lower))
+    assert above[0] == pytest.approx(below[0], abs=0.6)
+    assert above[2] == pytest.approx(below[2], abs=0.6)
+    assert below[3] < above[3] - 5, "seen from lower down, the foot of the table is nearer to the horizon"
+
+
+def test_rig_tilts_stay_within_their_limits_and_are_shared():
+    model, rng = RigModel(), np.random.default_rng(3)
+    rigs = [stand_up(1.0, 2.0, 0.5, 1.44, 0.3, model, rng) for _ in range(200)]
+    tilts = np.rad2deg([np.hypot(*rig.tilt) for rig in rigs])
+    relative = np.rad2deg([np.hypot(*rig.relative_tilt) for rig in rigs])
+    assert 0.8 < tilts.max() <= model.tilt_deg
+    assert 0.03 < relative.max() <= model.relative_tilt_deg
+    for rig in rigs[:20]:
+        upper, lower = rig.camera_states()
+        assert np.linalg.norm(upper[:3] - lower[:3]) == pytest.approx(0.3)
+        assert np.rad2deg(np.abs(upper[3:5] - lower[3:5])).max() <= model.relative_tilt_deg + 1e-3
+
+
+def test_photographs_from_one_place_differ_and_one_seed_gives_one_photograph():
+    light = np.full((64, 128, 3), 120.0, np.float32)
+    model = PanoramaCameraModel()
+    first, again, other = (photograph(light, model, np.random.default_rng(seed)) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first, again)
+    assert abs(first.mean() - other.mean()) > 0.5, "exposures differ"
+    assert first.dtype == np.uint8
+    assert first.shape == light.shape
+
+
+def test_noise_grows_with_brightness_as_the_model_says():
+    model = PanoramaCameraModel(exposure_stops=0.0, white_balance=0.0)
+    for level in (20.0, 180.0):
+        image = photograph(np.full((128, 256, 3), level, np.float32), model, np.random.default_rng(5))
+        expected = np.sqrt(model.shot_noise * level + model.read_noise**2)
+        assert image.astype(float).std() == pytest.approx(expected, rel=0.05)
+
+
+def test_the_blur_goes_across_the_seam():
+    light = np.zeros((64, 128, 3), np.float32)
+    light[:, 0] = 200.0
+    model = PanoramaCameraModel(exposure_stops=0.0, white_balance=0.0, blur=(8.0, 8.0))
+    image = photograph(light, model, np.random.default_rng(0)).astype(float)
+    assert image[:, -1].mean() > 20.0
+
+
+def test_a_photograph_is_written_or_the_error_names_it(tmp_path):
+    image = np.full((64, 128, 3), 90, np.uint8)
+    model, rng = PanoramaCameraModel(), np.random.default_rng(0)
+    write_photograph(tmp_path / "a.jpg", image, model, rng)
+    assert cv2.imread(str(tmp_path / "a.jpg")).shape == image.shape
+    with pytest.raises(OSError, match="missing"):
+        write_photograph(tmp_path / "missing" / "a.jpg", image, model, rng)
+
+
+def test_a_view_that_once_never_ended_is_drawn():
+    """A sofa seen so that the derivatives of its texture degenerate: see `_texture` in the renderer."""
+    room_rng, _ = np.random.default_rng(3080).spawn(2)
+    room = make_room(room_rng)
+    sofa = dataclasses.replace(room, objects=tuple(thing for thing in room.objects if thing.label == "sofa"), shell=())
+    state = np.array([2.78853765, 3.74055314, 1.47224283, 0.00720977, 0.01060839, 0.13424486])
+    with PanoramaRenderer(sofa, 1280, number_scale=1) as renderer:
+        assert np.isfinite(renderer.render(state)).all()
+        assert len(object_boxes(renderer, state)) >= 1

@@ -1,0 +1,113 @@
+"""Hue and saturation: means on the circle, over the central half of a box, and none for grey."""
+
+import math
+
+import cv2
+import numpy as np
+import pytest
+
+from course_lib.spherical_stereo.detection.colour import ColourError, central_half, mean_hue_saturation
+
+
+def bgr(hue, saturation_percent, value=0.8):
+    """A BGR colour of 8 bits."""
+    hsv = np.array([[[hue, saturation_percent / 100, value]]], dtype=np.float32)
+    return np.rint(255 * cv2.cvtColor(hsv, cv2.COLOR_HSV2BGR)[0, 0]).astype(np.uint8)
+
+
+def plain(*colours, height=40, width=80):
+    """An image of vertical bands of equal width."""
+    bands = np.array(colours)[np.arange(width) * len(colours) // width]
+    return np.repeat(bands[None], height, axis=0).astype(np.uint8)
+
+
+@pytest.mark.parametrize("hue", [0, 45, 123, 210, 359])
+def test_a_plain_surface_has_its_own_hue_and_saturation(hue):
+    found, saturation = mean_hue_saturation(plain(bgr(hue, 60)))
+    assert abs((found - hue + 180) % 360 - 180) < 1.5
+    assert saturation == pytest.approx(60, abs=0.7)
+
+
+def test_hues_either_side_of_red_average_to_red():
+    hue, _ = mean_hue_saturation(plain(bgr(350, 80), bgr(10, 80)))
+    assert abs((hue + 180) % 360 - 180) < 0.5
+
+
+def test_a_pale_half_pulls_the_hue_less_than_a_vivid_half():
+    hue, saturation = mean_hue_saturation(plain(bgr(0, 90), bgr(60, 30)))
+    assert hue == pytest.approx(math.degrees(math.atan2(0.3 * math.sin(math.pi / 3), 0.9 + 0.3 * 0.5)), abs=0.8)
+    assert saturation == pytest.approx(60, abs=0.7)
+
+
+@pytest.mark.parametrize("colour", [bgr(30, 0), bgr(30, 5), bgr(200, 8), (0, 0, 0), (255, 255, 255)])
+def test_grey_has_no_hue(colour):
+    hue, saturation = mean_hue_saturation(plain(colour))
+    assert math.isnan(hue)
+    assert 0 <= saturation < 10
+
+
+def test_hues_of_all_directions_have_no_mean():
+    hue, saturation = mean_hue_saturation(plain(*(bgr(h, 70) for h in range(0, 360, 45))))
+    assert math.isnan(hue)
+    assert saturation == pytest.approx(70, abs=1)
+
+
+def test_noise_in_the_dark_has_no_say_in_the_hue():
+    """The saturation of (3, 0, 0) is 100 %: weighted by it alone, near-black pixels would decide."""
+    hue, _ = mean_hue_saturation(plain(bgr(120, 60), (3, 0, 0), (9, 0, 0)))
+    assert hue == pytest.approx(120, abs=1)
+
+
+def test_the_central_half_has_the_same_centre_and_half_the_sides():
+    assert central_half((10, 20, 50, 30)) == (20, 22.5, 40, 27.5)
+
+
+def test_only_the_central_half_of_the_box_counts():
+    image = plain(bgr(0, 80))
+    image[10:30, 20:60] = bgr(240, 80)
+    hue, _ = mean_hue_saturation(image, box=(0, 0, 80, 40))
+    assert hue == pytest.approx(240, abs=1)
+
+
+def test_a_box_across_the_seam_is_measured_as_if_the_panorama_were_turned(rng):
+    image = rng.integers(0, 256, (40, 80, 3), dtype=np.uint8)
+    image[:, 30:70, 2] //= 8
+    expected = mean_hue_saturation(image, box=(30, 5, 70, 35))
+    turned = np.roll(image, 40, axis=1)
+    assert mean_hue_saturation(turned, box=(70, 5, 110, 35)) == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_mask_selects_pixels_and_meets_the_box():
+    image = plain(bgr(0, 80), bgr(120, 80), bgr(240, 80), bgr(60, 80))
+    mask = np.zeros((40, 80), dtype=bool)
+    mask[:, 20:40] = True
+    assert mean_hue_saturation(image, mask=mask)[0] == pytest.approx(120, abs=1)
+    mask[:, 40:60] = True
+    assert mean_hue_saturation(image, box=(20, 0, 100, 40), mask=mask)[0] == pytest.approx(240, abs=1)
+
+
+def test_a_box_of_less_than_a_pixel_takes_the_pixel_that_it_lies_on():
+    image = plain(bgr(0, 80), bgr(120, 80))
+    assert mean_hue_saturation(image, box=(50.1, 5.1, 50.4, 5.3))[0] == pytest.approx(120, abs=1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"mask": np.zeros((40, 80), dtype=bool)}, "no pixel is left"),
+        ({"mask": np.ones((2, 2), dtype=bool)}, r"mask must have the image's shape \(40, 80\)"),
+        ({"box": (5, 5, 5, 9)}, "u_min < u_max"),
+        ({"box": (5, 5, float("nan"), 9)}, "finite"),
+        ({"box": (5, 50, 9, 90)}, "no pixel is left"),
+    ],
+)
+def test_no_colour_is_made_up_where_there_is_none(arguments, message):
+    with pytest.raises(ColourError, match=message):
+        mean_hue_saturation(plain((1, 2, 3)), **arguments)
+
+
+def test_what_is_no_colour_image_is_refused():
+    with pytest.raises(ColourError, match=r"\(H, W, 3\) uint8"):
+        mean_hue_saturation(np.zeros((4, 8), dtype=np.uint8))
+    with pytest.raises(ColourError, match="float64"):
+        mean_hue_saturation(np.zeros((4, 8, 3)))

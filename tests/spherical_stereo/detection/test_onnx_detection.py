@@ -1,0 +1,75 @@
+"""ONNX networks: the three layouts of outputs give the same boxes as Darknet, and a wrong one is named."""
+
+import numpy as np
+import pytest
+
+from course_lib.spherical_stereo.detection.detector import YoloDetector
+from course_lib.spherical_stereo.detection.onnx_network import LAYOUTS, OnnxError, decode_onnx
+from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, panorama, write_darknet
+from tests.spherical_stereo.detection.onnx_files import blob_onnx
+
+
+@pytest.fixture
+def names(tmp_path):
+    return write_darknet(tmp_path / "names")[2]
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_every_layout_finds_the_objects_of_a_panorama_once(layout, names, tmp_path, rng):
+    path = tmp_path / "blobs.onnx"
+    path.write_bytes(blob_onnx(layout))
+    detector = YoloDetector.from_onnx(path, names, layout=layout, input_size=INPUT_SIZE)
+    image = panorama(rng, (100, 50, RED), (245, 20, GREEN))
+    boxes = {d.label: d.box for d in detector.detect(image)}
+    assert boxes["sofa"] == pytest.approx((100, 50, 132, 74), abs=1)
+    assert boxes["television"] == pytest.approx((245, 20, 277, 44), abs=1)
+    assert len(boxes) == 2
+
+
+def test_objectness_multiplies_the_class_score_in_the_yolov5_layout():
+    rows = np.array([[[50, 40, 20, 10, 0.5, 0.9, 0.1]]])
+    boxes, scores = decode_onnx([rows], "yolov5", 2, (100, 80))
+    assert boxes.tolist() == [[40, 35, 60, 45]]
+    assert scores == pytest.approx(np.array([[0.45, 0.05]]))
+
+
+def test_rows_lie_in_columns_in_the_yolov8_layout():
+    columns = np.array([[[50, 10], [40, 10], [20, 4], [10, 2], [0.9, 0.2], [0.1, 0.7]]])
+    boxes, scores = decode_onnx([columns], "yolov8", 2, (100, 80))
+    assert boxes.tolist() == [[40, 35, 60, 45], [8, 9, 12, 11]]
+    assert scores.tolist() == [[0.9, 0.1], [0.2, 0.7]]
+
+
+def test_boxes_are_shares_of_the_input_in_the_yolov4_layout_whatever_the_order_of_outputs():
+    boxes = np.array([[[[0.1, 0.25, 0.5, 0.75]]]])
+    confidences = np.array([[[0.3, 0.6]]])
+    for outputs in ([boxes, confidences], [confidences, boxes]):
+        found, scores = decode_onnx(outputs, "yolov4", 2, (100, 80))
+        assert found == pytest.approx(np.array([[10, 20, 50, 60]]))
+        assert scores.tolist() == [[0.3, 0.6]]
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_outputs_of_another_layout_are_refused_with_their_shapes(layout):
+    with pytest.raises(OnnxError, match=r"the file gives \[\(1, 9, 8\)\]"):
+        decode_onnx([np.zeros((1, 9, 8))], layout, 2, (100, 80))
+
+
+def test_an_unknown_layout_is_refused():
+    with pytest.raises(OnnxError, match="known are yolov5, yolov8, yolov4"):
+        decode_onnx([], "yolov9", 2, (100, 80))
+
+
+def test_files_and_sizes_that_do_not_fit_are_named(names, tmp_path):
+    with pytest.raises(OnnxError, match="is missing"):
+        YoloDetector.from_onnx(tmp_path / "none.onnx", names, layout="yolov8", input_size=INPUT_SIZE)
+    broken = tmp_path / "broken.onnx"
+    broken.write_bytes(b"this is no network")
+    with pytest.raises(OnnxError, match="cannot read"):
+        YoloDetector.from_onnx(broken, names, layout="yolov8", input_size=INPUT_SIZE)
+    path = tmp_path / "blobs.onnx"
+    path.write_bytes(blob_onnx("yolov8"))
+    with pytest.raises(OnnxError, match="at an input of 200 x 128"):
+        YoloDetector.from_onnx(path, names, layout="yolov8", input_size=(200, 128))
+    with pytest.raises(OnnxError, match="layout yolov5"):
+        YoloDetector.from_onnx(path, names, layout="yolov5", input_size=INPUT_SIZE)

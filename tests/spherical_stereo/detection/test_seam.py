@@ -1,0 +1,165 @@
+"""The seam: whatever an object's place and width, it is counted once, with the box it would have without a seam."""
+
+import numpy as np
+import pytest
+
+from course_lib.spherical_stereo.detection.boxes import box_iou
+from course_lib.spherical_stereo.detection.seam import (
+    MARGIN,
+    appended_columns,
+    centres_in_range,
+    extend_seam,
+    join_cut_pairs,
+    select_on_circle,
+    valid_range,
+)
+
+WIDTH, HEIGHT, IOU = 640, 320, 0.45
+
+
+def ideal_detections(u_min, object_width, rng=None, jitter=0.0):
+    """What a perfect network sees of one object on the extended image: every copy, cut by the image's ends."""
+    end = WIDTH + appended_columns(WIDTH)
+    copies = []
+    for turn in (-WIDTH, 0, WIDTH):
+        left, right = max(u_min + turn, 0), min(u_min + object_width + turn, end)
+        if right - left >= 8:  # a sliver is no detection
+            copies.append([left, 100, right, 180])
+    boxes = np.array(copies, dtype=np.float64)
+    if jitter:
+        boxes += rng.uniform(-jitter, jitter, boxes.shape)
+        boxes[:, [0, 2]] = np.clip(boxes[:, [0, 2]], 0, end)
+    scores = np.linspace(0.7, 0.9, len(boxes)) if rng is None else rng.uniform(0.5, 1, len(boxes))
+    return boxes, scores, np.zeros(len(boxes), dtype=int)
+
+
+def test_the_left_quarter_is_appended_at_the_right(rng):
+    image = rng.integers(0, 256, (64, 128, 3), dtype=np.uint8)
+    extended = extend_seam(image)
+    assert extended.shape == (64, 160, 3)
+    assert (extended[:, :128] == image).all()
+    assert (extended[:, 128:] == image[:, :32]).all()
+
+
+def test_the_valid_range_is_one_turn_and_leaves_an_eighth_at_both_ends():
+    assert valid_range(WIDTH) == (WIDTH / 8, WIDTH / 8 + WIDTH)
+
+
+def test_every_object_up_to_a_quarter_wide_is_whole_in_its_valid_copy():
+    quarter = appended_columns(WIDTH)
+    for u_min in range(WIDTH):
+        for object_width in (10, 77, quarter):
+            copies = [[u_min + turn, 0, u_min + object_width + turn, 10] for turn in (-WIDTH, 0, WIDTH)]
+            valid = np.array(copies, dtype=float)[centres_in_range(np.array(copies, dtype=float), WIDTH)]
+            assert len(valid) == 1
+            assert valid[0, 0] >= 0
+            assert valid[0, 2] <= WIDTH + quarter
+
+
+@pytest.mark.parametrize("object_width", [20, 100, 160, 175, 200, 320, 480, 630])
+def test_an_object_of_any_width_at_any_column_is_counted_once_and_whole(object_width):
+    for u_min in range(0, WIDTH, 7):
+        boxes, scores, _ = select_on_circle(*ideal_detections(u_min, object_width), WIDTH, IOU)
+        assert len(boxes) == len(scores) == 1, f"at column {u_min}"
+        assert boxes[0] == pytest.approx([u_min, 100, u_min + object_width, 180], abs=1e-9), f"at column {u_min}"
+
+
+@pytest.mark.parametrize("object_width", [30, 120, 160, 240, 400])
+def test_jitter_of_a_few_pixels_neither_doubles_nor_loses_an_object(object_width, rng):
+    for u_min in np.repeat(np.arange(0, WIDTH, 9), 2):
+        boxes, _, _ = select_on_circle(*ideal_detections(u_min, object_width, rng, jitter=4), WIDTH, IOU)
+        assert len(boxes) == 1, f"at column {u_min}"
+        assert 0 <= boxes[0, 0] < WIDTH
+        true = np.array([[u_min, 100, u_min + object_width, 180]], dtype=float)
+        assert box_iou(boxes, true, WIDTH)[0, 0] > (0.6 if object_width < 40 else 0.75)
+
+
+def test_the_bare_range_without_margin_would_lose_an_object_that_jitters():
+    """Why there is a margin: centres at W/8 - 1 in one copy and at W/8 + W + 1 in the other are both outside."""
+    start, stop = valid_range(WIDTH)
+    boxes = np.array([[start - 21, 100, start + 19, 180], [stop - 19, 100, stop + 21, 180]])
+    assert not centres_in_range(boxes, WIDTH).any()
+    assert centres_in_range(boxes, WIDTH, MARGIN * WIDTH).all()
+    assert len(select_on_circle(boxes, np.array([0.6, 0.9]), np.zeros(2, int), WIDTH, IOU)[0]) == 1
+
+
+def test_two_objects_side_by_side_at_the_border_of_the_range_both_stay():
+    start, _ = valid_range(WIDTH)
+    one, two = ideal_detections(start - 42, 40), ideal_detections(start + 2, 40)
+    boxes, _, _ = select_on_circle(*(np.concatenate(parts) for parts in zip(one, two, strict=True)), WIDTH, IOU)
+    assert sorted(boxes[:, 0]) == pytest.approx([start - 42, start + 2])
+
+
+def test_objects_of_two_classes_at_one_place_both_stay_unless_their_boxes_coincide():
+    boxes = np.array([[200.0, 100, 260, 180], [215, 100, 275, 180]])
+    scores, classes = np.array([0.8, 0.7]), np.array([0, 1])
+    assert len(select_on_circle(boxes, scores, classes, WIDTH, IOU)[0]) == 2
+    boxes[1] = [202, 101, 261, 180]
+    assert select_on_circle(boxes, scores, classes, WIDTH, IOU)[2].tolist() == [0]
+
+
+def test_the_box_of_a_whole_copy_and_the_score_of_a_surer_cut_one_stay():
+    start, _ = valid_range(WIDTH)
+    whole, cut = [start - 10 - 78 + WIDTH, 100, start - 10 + 78 + WIDTH, 180], [0, 100, start - 10 + 78, 180]
+    boxes, scores, _ = select_on_circle(np.array([cut, whole]), np.array([0.9, 0.6]), np.zeros(2, int), WIDTH, IOU)
+    assert boxes.tolist() == [whole]
+    assert scores.tolist() == [0.9]
+
+
+def copies_at_the_border(inside_score, margin_score):
+    """An object at the range's end: one copy just inside it, one just before its start, a turn apart."""
+    start, stop = valid_range(WIDTH)
+    boxes = np.array([[stop - 22, 100, stop + 18, 180], [start - 22, 100, start + 18, 180]])
+    return boxes, np.array([inside_score, margin_score])
+
+
+def test_a_faint_copy_in_the_range_does_not_hide_a_clear_one_in_the_margin():
+    boxes, scores = copies_at_the_border(0.06, 0.95)
+    boxes[1] += 1
+    found, found_scores, _ = select_on_circle(boxes, scores, np.zeros(2, int), WIDTH, IOU)
+    assert found.tolist() == [[boxes[0, 0] - WIDTH, 100, boxes[0, 2] - WIDTH, 180]]
+    assert found_scores.tolist() == [0.95]
+
+
+def test_the_class_comes_with_the_score():
+    boxes, scores = copies_at_the_border(0.06, 0.95)
+    _, found_scores, classes = select_on_circle(boxes, scores, np.array([2, 5]), WIDTH, IOU)
+    assert (found_scores.tolist(), classes.tolist()) == ([0.95], [5])
+
+
+def test_a_suppressed_box_gives_its_score_to_the_one_that_replaced_it_only():
+    """Three boxes in a row: the middle one goes with the left, whose rank is greater, and not with the right."""
+    start, stop = valid_range(WIDTH)
+    left, right = [stop - 30, 100, stop + 10, 180], [start - 10, 100, start + 30, 180]
+    middle = [start - 20.5, 100, start + 19.5, 180]  # in the margin, and overlaps both
+    scores = np.array([0.5, 0.4, 0.9])
+    boxes, found_scores, _ = select_on_circle(np.array([left, right, middle]), scores, np.zeros(3, int), WIDTH, IOU)
+    assert boxes[:, 0].tolist() == [start - 30, start - 10]
+    assert found_scores.tolist() == [0.9, 0.4]
+
+
+def test_a_low_threshold_holds_the_result_of_a_higher_one():
+    boxes, scores = copies_at_the_border(0.06, 0.95)
+    elsewhere = [[300.0, 100, 360, 180], [305.0, 100, 362, 180], [200.0, 100, 240, 180]]
+    boxes, scores = np.concatenate([boxes, elsewhere]), np.concatenate([scores, [0.8, 0.3, 0.2]])
+    for threshold in (0.1, 0.25, 0.5, 0.9):
+        found, found_scores, _ = select_on_circle(boxes, scores, np.zeros(5, int), WIDTH, IOU)
+        above = scores >= threshold
+        alone, alone_scores, _ = select_on_circle(boxes[above], scores[above], np.zeros(above.sum(), int), WIDTH, IOU)
+        assert found[found_scores >= threshold].tolist() == alone.tolist()
+        assert found_scores[found_scores >= threshold].tolist() == alone_scores.tolist()
+
+
+def test_halves_of_two_objects_are_not_joined():
+    quarter = appended_columns(WIDTH)
+    high = [0.0, 20, quarter + 40, 60]
+    low = [WIDTH - 50.0, 200, WIDTH + quarter, 300]
+    for boxes, classes in (([high, low], [0, 0]), ([high, [*low[:1], 20, low[2], 60]], [0, 1])):
+        joined, _, _ = join_cut_pairs(np.array(boxes), np.array([0.9, 0.8]), np.array(classes), WIDTH)
+        assert len(joined) == 2
+
+
+def test_no_detections_stay_none():
+    nothing = np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int)
+    boxes, scores, classes = select_on_circle(*nothing, WIDTH, IOU)
+    assert (len(boxes), len(scores), len(classes)) == (0, 0, 0)

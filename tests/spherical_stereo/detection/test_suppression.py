@@ -1,0 +1,76 @@
+"""Suppression: of boxes that show one object the best stays, and objects that merely overlap all stay."""
+
+import numpy as np
+import pytest
+
+from course_lib.spherical_stereo.detection.suppression import VOTE_SCORE, suppress, suppress_in_image, vote_on_boxes
+
+BOX = np.array([100.0, 50, 200, 150])
+
+
+def shifted(*offsets):
+    return np.array([BOX + np.array([offset, 0, offset, 0]) for offset in offsets])
+
+
+def test_the_best_of_overlapping_boxes_stays():
+    kept = suppress_in_image(shifted(0, 5, -5), np.array([0.6, 0.9, 0.7]), np.zeros(3, int), 0.45)
+    assert kept.tolist() == [1]
+
+
+def test_boxes_that_overlap_less_than_the_limit_all_stay_the_best_first():
+    kept = suppress_in_image(shifted(0, 60, 120), np.array([0.6, 0.9, 0.7]), np.zeros(3, int), 0.45)
+    assert kept.tolist() == [1, 2, 0]
+
+
+def test_a_suppressed_box_suppresses_nothing():
+    """A chain: the second goes because of the first; the third overlaps only the second and stays."""
+    kept = suppress_in_image(shifted(0, 30, 60), np.array([0.9, 0.8, 0.7]), np.zeros(3, int), 0.45)
+    assert kept.tolist() == [0, 2]
+
+
+def test_across_classes_only_boxes_that_nearly_coincide_are_one_object():
+    scores, classes = np.array([0.9, 0.8]), np.array([0, 1])
+    assert suppress_in_image(shifted(0, 25), scores, classes, 0.45).tolist() == [0, 1]
+    assert suppress_in_image(shifted(0, 4), scores, classes, 0.45).tolist() == [0]
+
+
+def test_a_plain_image_has_no_seam():
+    """Boxes at its two ends are two objects, however they would meet on a circle."""
+    boxes = np.array([[0.0, 0, 50, 50], [590, 0, 640, 50]])
+    assert len(suppress_in_image(boxes, np.array([0.9, 0.8]), np.zeros(2, int), 0.01)) == 2
+
+
+def test_nothing_stays_nothing():
+    assert len(suppress_in_image(np.zeros((0, 4)), np.zeros(0), np.zeros(0, int), 0.45)) == 0
+    assert len(suppress(np.zeros((0, 0)), np.zeros(0), 0.5)) == 0
+
+
+def test_equal_ranks_keep_the_first():
+    assert suppress(np.ones((3, 3)), np.array([1.0, 1.0, 1.0]), 0.5).tolist() == [0]
+
+
+def test_boxes_that_nearly_coincide_vote_weighted_by_their_scores():
+    boxes = np.array([[0, 0, 100, 100], [4, 0, 104, 100], [300, 0, 400, 100]], float)
+    voted = vote_on_boxes(boxes, np.array([0.6, 0.2, 0.9]), np.array([1, 1, 1]), np.array([0, 2]))
+    np.testing.assert_allclose(voted, [[1, 0, 101, 100], [300, 0, 400, 100]])
+
+
+@pytest.mark.parametrize(
+    ("box", "score", "kind"),
+    [((60, 0, 160, 100), 0.5, 1), ((4, 0, 104, 100), 0.5, 2), ((4, 0, 104, 100), 0.5 * VOTE_SCORE, 1)],
+    ids=["far away", "another class", "hardly sure"],
+)
+def test_others_have_no_vote(box, score, kind):
+    boxes = np.array([(0, 0, 100, 100), box], float)
+    voted = vote_on_boxes(boxes, np.array([0.6, score]), np.array([1, kind]), np.array([0]))
+    np.testing.assert_allclose(voted, boxes[:1])
+
+
+def test_a_box_votes_for_itself_whatever_its_score():
+    boxes = np.array([[0, 0, 100, 100]], float)
+    np.testing.assert_array_equal(vote_on_boxes(boxes, np.zeros(1), np.zeros(1, int), np.array([0])), boxes)
+
+
+def test_no_boxes_have_no_votes():
+    none = np.zeros(0, int)
+    assert vote_on_boxes(np.zeros((0, 4)), np.zeros(0), none, none).shape == (0, 4)

@@ -1,0 +1,129 @@
+"""AKAZE on panoramas, epipolar pairs and nearest descriptors."""
+
+import numpy as np
+import pytest
+
+from course_lib.spherical_stereo.matching.epipolar import (
+    EpipolarPairs,
+    best_pairs,
+    epipolar_pairs,
+    epipolar_residual,
+    hamming,
+)
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, inside_box
+from course_lib.spherical_stereo.panorama import GreyImageError, PanoramaError
+from tests.spherical_stereo.stereo_scene import scene
+from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
+
+
+@pytest.fixture(scope="module")
+def image():
+    return scene()[1]
+
+
+@pytest.fixture(scope="module")
+def features(image):
+    return detect_features(image)
+
+
+def test_features_on_the_seam_are_found_as_well_as_elsewhere(image, features):
+    """Half the image away, what was at the seam is in the middle: as many features, at the same places."""
+    turned = detect_features(np.roll(image, WIDTH // 2, axis=1))
+    near_seam = features.keypoints[(features.keypoints[:, 0] < 20) | (features.keypoints[:, 0] > WIDTH - 20)]
+    in_the_middle = turned.keypoints[np.abs(turned.keypoints[:, 0] - WIDTH / 2) < 20]
+    assert len(near_seam) > 10
+    assert len(in_the_middle) == pytest.approx(len(near_seam), rel=0.1)
+    moved = np.column_stack([(near_seam[:, 0] + WIDTH / 2) % WIDTH, near_seam[:, 1]])
+    nearest = np.linalg.norm(moved[:, None] - turned.keypoints[None], axis=-1).min(axis=1)
+    assert np.mean(nearest < 0.5) > 0.9
+
+
+def test_no_feature_is_found_twice(features):
+    assert len(np.unique(features.keypoints.round(3), axis=0)) > 0.98 * len(features)
+    assert features.keypoints.min() >= 0
+    assert features.keypoints[:, 0].max() < WIDTH
+    assert features.keypoints[:, 1].max() <= HEIGHT
+
+
+def test_keypoints_are_in_edge_coordinates():
+    """A bright square over columns 100 to 119 and rows 60 to 79 has its centre at (110, 70)."""
+    image = np.full((HEIGHT, WIDTH, 3), (50, 60, 70), np.uint8)
+    image[60:80, 100:120] = 200
+    keypoints = detect_features(image).keypoints
+    assert len(keypoints) >= 4
+    np.testing.assert_allclose(keypoints.mean(axis=0), [110, 70], atol=0.3)
+
+
+def test_a_lower_threshold_finds_more(image, features):
+    assert len(detect_features(image, threshold=2e-3)) < len(features)
+
+
+def test_an_image_without_structure_has_no_features():
+    features = detect_features(np.full((HEIGHT, WIDTH, 3), (80, 90, 100), np.uint8))
+    assert len(features) == 0
+    assert features.descriptors.shape == (0, 61)
+
+
+def test_what_is_no_panorama_or_no_threshold_is_refused(image):
+    with pytest.raises(GreyImageError):
+        detect_features(image[..., 0])
+    for threshold, octaves in ((0, 3), (-1, 3), (1e-3, 0), (1e-3, 1.5)):
+        with pytest.raises(PanoramaError, match="threshold"):
+            detect_features(image, threshold, octaves)
+
+
+def test_a_box_across_the_seam_holds_points_on_both_sides_of_it():
+    points = np.array([[505.0, 50], [3, 50], [20, 50], [490, 50], [3, 5], [500, 60]])
+    box = (500.0, 10.0, 522.0, 60.0)
+    assert inside_box(points, box, WIDTH).tolist() == [True, True, False, False, False, False]
+
+
+def random_features(rng, n):
+    return PanoramaFeatures(
+        rng.uniform(0, [WIDTH, HEIGHT], (n, 2)), rng.integers(0, 256, (n, 61), dtype=np.uint8), WIDTH, HEIGHT
+    )
+
+
+def test_epipolar_pairs_are_all_that_looking_at_every_pair_finds(rng):
+    upper, lower = random_features(rng, 150), random_features(rng, 170)
+    (azimuth_u, elevation_u), (azimuth_l, elevation_l) = upper.angles(), lower.angles()
+    residual = epipolar_residual(azimuth_u[:, None], elevation_u[:, None], azimuth_l, elevation_l)
+    bits_u, bits_l = np.unpackbits(upper.descriptors, axis=1), np.unpackbits(lower.descriptors, axis=1)
+    distance = (bits_u[:, None] != bits_l[None]).sum(axis=-1)
+    expected = {(int(i), int(j)) for i, j in np.argwhere((residual <= 0.05) & (distance <= 245))}
+    pairs = epipolar_pairs(upper, lower, tolerance=0.05, max_hamming=245)
+    assert len(expected) > 100
+    assert set(zip(pairs.upper.tolist(), pairs.lower.tolist(), strict=True)) == expected
+    np.testing.assert_array_equal(pairs.distance, distance[pairs.upper, pairs.lower])
+
+
+def test_hamming_counts_the_bits_that_differ(rng):
+    a, b = (rng.integers(0, 256, (6, 61), dtype=np.uint8) for _ in range(2))
+    expected = (np.unpackbits(a, axis=1) != np.unpackbits(b[::-1], axis=1)).sum(axis=1)
+    np.testing.assert_array_equal(hamming(a, b, np.arange(6), np.arange(6)[::-1]), expected)
+
+
+def test_the_tolerance_must_be_an_angle(rng):
+    features = random_features(rng, 5)
+    for tolerance in (0, -0.1, 2.0, np.nan):
+        with pytest.raises(PanoramaError, match="tolerance"):
+            epipolar_pairs(features, features, tolerance)
+
+
+def test_opposite_directions_do_not_obey_the_epipolar_constraint():
+    """They span one plane with the baseline, but lie in its other half."""
+    assert epipolar_residual(0.0, -0.2, np.pi, -0.1) == pytest.approx(np.pi / 2 - 0.1)
+    assert epipolar_residual(0.7, -0.2, 0.7, -0.1) == pytest.approx(0, abs=1e-12)
+
+
+def pairs_of(*triples):
+    upper, lower, distance = np.array(triples).T
+    return EpipolarPairs(upper, lower, distance, distance * 0.0, distance * 0.0)
+
+
+def test_best_pairs_are_mutual_and_clear():
+    pairs = pairs_of((0, 0, 10), (0, 1, 50), (1, 1, 40), (1, 0, 30), (2, 2, 20), (2, 3, 22), (3, 4, 9), (4, 4, 9))
+    kept = best_pairs(pairs, ratio=0.8)
+    # 1 prefers 0, which prefers 0; 2 has two that are nearly alike; 3 and 4 want the same one equally.
+    assert list(zip(kept.upper.tolist(), kept.lower.tolist(), strict=True)) == [(0, 0)]
+    assert len(best_pairs(pairs_of((2, 2, 20), (2, 3, 22)), ratio=1.0)) == 1

@@ -1,0 +1,239 @@
+"""Matching objects of two panoramas: the right partners, one-to-one, and reasons where there is none."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from course_lib.spherical_stereo.detection.boxes import BoxError
+from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE, epipolar_residual
+from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError, check_not_swapped, match_features
+from course_lib.spherical_stereo.matching.features import detect_features, inside_box
+from course_lib.spherical_stereo.matching.object_matching import (
+    CLASS_NOT_IN_OTHER,
+    NO_MATCHES,
+    PARTNER_TAKEN,
+    TIE,
+    Unmatched,
+    match_detections,
+    match_objects,
+    pair_by_most_matches,
+    stereo_matching,
+)
+from course_lib.spherical_stereo.panorama import ImageSizeError, StereoRig, azimuth_elevation_of_pixel
+from tests.spherical_stereo.stereo_scene import scene
+from tests.spherical_stereo.vertical_pair import BASELINE, HEIGHT, WIDTH, Seen, rolled
+
+RIG = StereoRig(BASELINE, 1.32)
+LAST = 7  # the lower detections are in reverse order: partner of i is LAST - i
+IN_THE_AIR = Seen("chair", (200.0, 10.0, 230.0, 30.0))  # where the scene has nothing at all
+
+
+@pytest.fixture(scope="module")
+def features():
+    _, upper, lower, _, _ = scene()
+    return detect_features(upper), detect_features(lower)
+
+
+def match_scene(features, upper=None, lower=None):
+    """The scene's matching, with its own detections unless others are given."""
+    *_, own_upper, own_lower = scene()
+    return match_detections(
+        features[0], own_upper if upper is None else upper, features[1], own_lower if lower is None else lower, RIG
+    )
+
+
+def partners(matches):
+    return {(m.upper, m.lower) for m in matches}
+
+
+def test_every_object_finds_itself_in_the_other_image():
+    """Look-alikes, a repeated texture, a half-hidden chair and a table across the seam among them."""
+    _, upper, lower, upper_detections, lower_detections = scene()
+    matching = stereo_matching(upper, upper_detections, lower, lower_detections, RIG)
+    assert partners(matching.matches) == {(i, LAST - i) for i in range(8)}
+    assert matching.unmatched == []
+    assert [m.label for m in matching.matches] == [upper_detections[m.upper].label for m in matching.matches]
+    counts = [m.n_matches for m in matching.matches]
+    assert counts == sorted(counts, reverse=True)
+
+
+def test_match_objects_gives_the_matches_of_stereo_matching(features):
+    _, upper, lower, upper_detections, lower_detections = scene()
+    matches = match_objects(upper, upper_detections, lower, lower_detections, RIG)
+    expected = match_scene(features).matches
+    assert [(m.upper, m.lower, m.n_matches) for m in matches] == [(m.upper, m.lower, m.n_matches) for m in expected]
+
+
+def test_matched_features_lie_in_their_boxes_and_obey_the_epipolar_constraint(features):
+    *_, upper_detections, lower_detections = scene()
+    for match in match_scene(features).matches:
+        assert match.keypoints_upper.shape == match.keypoints_lower.shape == (match.n_matches, 2)
+        assert inside_box(match.keypoints_upper, upper_detections[match.upper].box, WIDTH).all()
+        assert inside_box(match.keypoints_lower, lower_detections[match.lower].box, WIDTH).all()
+        azimuth_u, elevation_u = azimuth_elevation_of_pixel(match.keypoints_upper, WIDTH, HEIGHT)
+        azimuth_l, elevation_l = azimuth_elevation_of_pixel(match.keypoints_lower, WIDTH, HEIGHT)
+        assert epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l).max() <= EPIPOLAR_TOLERANCE
+        assert (elevation_l > elevation_u).all(), "the lower camera sees every point higher"
+        assert len(np.unique(match.keypoints_lower, axis=0)) == match.n_matches, "features are matched one-to-one"
+
+
+@pytest.mark.parametrize("k", [1, 97, 256, 300, 511])
+def test_rolling_both_images_and_all_boxes_changes_no_pair(k):
+    """Whatever lies across the seam then."""
+    _, upper, lower, upper_detections, lower_detections = scene()
+    matches = match_objects(
+        np.roll(upper, k, axis=1),
+        rolled(upper_detections, k),
+        np.roll(lower, k, axis=1),
+        rolled(lower_detections, k),
+        RIG,
+    )
+    assert partners(matches) == {(i, LAST - i) for i in range(8)}
+
+
+def test_the_order_of_the_detections_changes_no_pair(features, rng):
+    *_, upper_detections, lower_detections = scene()
+    order = rng.permutation(8)
+    matching = match_scene(features, [upper_detections[i] for i in order], lower_detections)
+    assert {(int(order[m.upper]), m.lower) for m in matching.matches} == {(i, LAST - i) for i in range(8)}
+
+
+def test_two_equal_boxes_are_a_tie_and_not_a_guess(features):
+    *_, upper_detections, lower_detections = scene()
+    matching = match_scene(features, upper_detections, [*lower_detections, lower_detections[0]])
+    assert partners(matching.matches) == {(i, LAST - i) for i in range(7)}
+    assert matching.unmatched == [Unmatched("upper", 7, TIE), Unmatched("lower", 0, TIE), Unmatched("lower", 8, TIE)]
+
+
+def test_two_names_of_one_class_are_matched(features):
+    *_, upper_detections, _ = scene()
+    renamed = [Seen({"sofa": "Couch", "table": "dining_table"}.get(d.label, d.label), d.box) for d in upper_detections]
+    matching = match_scene(features, upper=renamed)
+    assert partners(matching.matches) == {(i, LAST - i) for i in range(8)}
+    assert {m.label for m in matching.matches} == {"chair", "table", "sofa", "cabinet"}
+
+
+def test_a_box_without_features_has_no_matches_and_says_so(features):
+    *_, upper_detections, lower_detections = scene()
+    matching = match_scene(features, [*upper_detections, IN_THE_AIR], lower_detections)
+    assert matching.unmatched == [Unmatched("upper", 8, NO_MATCHES)]
+    assert len(matching.matches) == 8
+
+
+def test_a_class_that_the_other_image_lacks_says_so(features):
+    *_, upper_detections, lower_detections = scene()
+    without_cabinet = [d for d in lower_detections if d.label != "cabinet"]
+    matching = match_scene(features, upper_detections, without_cabinet)
+    assert matching.unmatched == [Unmatched("upper", 7, CLASS_NOT_IN_OTHER)]
+
+
+def test_a_second_box_on_a_matched_object_finds_its_partner_taken(features):
+    *_, upper_detections, lower_detections = scene()
+    u_min, v_min, u_max, v_max = upper_detections[7].box
+    half = Seen("cabinet", (u_min, v_min, u_max, (v_min + v_max) / 2))
+    matching = match_scene(features, [*upper_detections, half], lower_detections)
+    assert matching.unmatched == [Unmatched("upper", 8, PARTNER_TAKEN)]
+
+
+def test_objects_of_unlike_classes_are_never_paired(features):
+    *_, upper_detections, lower_detections = scene()
+    renamed = [Seen("sofa", d.box) if d.label == "table" else Seen("table", d.box) for d in lower_detections]
+    matching = match_scene(features, upper_detections, renamed)
+    for match in matching.matches:
+        assert upper_detections[match.upper].label == renamed[match.lower].label == match.label
+    assert partners(matching.matches).isdisjoint({(i, LAST - i) for i in range(8)})
+
+
+@pytest.mark.parametrize(("n_upper", "n_lower"), [(0, 0), (0, 8), (8, 0)])
+def test_no_detections_give_no_matches_and_no_error(n_upper, n_lower):
+    _, upper, lower, upper_detections, lower_detections = scene()
+    matching = stereo_matching(upper, upper_detections[:n_upper], lower, lower_detections[:n_lower], RIG)
+    assert matching.matches == []
+    assert {item.reason for item in matching.unmatched} <= {CLASS_NOT_IN_OTHER}
+    assert len(matching.unmatched) == n_upper + n_lower
+
+
+def test_one_detection_in_each_image_is_matched(features):
+    *_, upper_detections, lower_detections = scene()
+    assert partners(match_scene(features, upper_detections[:1], lower_detections[-1:]).matches) == {(0, 0)}
+
+
+def test_swapped_images_are_told_from_the_sign_of_the_disparity():
+    _, upper, lower, upper_detections, lower_detections = scene()
+    with pytest.raises(SwappedImagesError, match="swapped"):
+        match_objects(lower, lower_detections, upper, upper_detections, RIG)
+    with pytest.raises(SwappedImagesError, match="Swap the two images"):
+        match_features(lower, upper, RIG)
+
+
+def test_one_image_given_twice_is_neither_swapped_nor_matched():
+    _, upper, _, upper_detections, _ = scene()
+    matching = stereo_matching(upper, upper_detections, upper, upper_detections, RIG)
+    assert matching.matches == []
+    assert {item.reason for item in matching.unmatched} == {NO_MATCHES}
+
+
+def test_disparities_of_either_sign_do_not_count_as_swapped(rng):
+    check_not_swapped(rng.normal(0, 0.05, 1000))
+    check_not_swapped(np.zeros(0))
+    check_not_swapped(np.full(4, -0.1))  # four coins may well all show tails
+    with pytest.raises(SwappedImagesError):
+        check_not_swapped(np.full(40, -0.1))
+
+
+def test_images_of_unlike_size_and_boxes_that_are_none_are_refused():
+    _, upper, lower, upper_detections, lower_detections = scene()
+    with pytest.raises(ImageSizeError):
+        match_objects(upper, upper_detections, lower[::2, ::2].copy(), lower_detections, RIG)
+    with pytest.raises(BoxError, match="upper"):
+        match_objects(upper, [Seen("chair", (5.0, 5.0, 4.0, 9.0))], lower, lower_detections, RIG)
+
+
+def test_whole_panoramas_match_mostly_at_equal_azimuth():
+    """The search knows nothing of the constraint, so the share that obeys it is a finding."""
+    _, upper, lower, _, _ = scene()
+    matches = match_features(upper, lower, RIG)
+    assert len(matches) > 100
+    assert matches.epipolar_share > 0.9
+    assert np.median(matches.vertical_disparity[matches.epipolar]) > 0.03
+    assert np.median(np.abs(matches.azimuth_difference)) < 0.5 * 2 * np.pi / WIDTH
+    assert not match_features(upper, np.roll(lower, 100, axis=1), RIG).epipolar_share > 0.1
+
+
+def test_panoramas_without_any_feature_match_nothing():
+    plain = np.full((HEIGHT, WIDTH, 3), (80, 90, 100), np.uint8)
+    assert len(match_features(plain, plain, RIG)) == 0
+    assert np.isnan(match_features(plain, plain, RIG).epipolar_share)
+
+
+COUNTS = [
+    ([[5, 2], [3, 4]], [(0, 0), (1, 1)], set(), set()),
+    ([[5, 9], [3, 4]], [(0, 1), (1, 0)], set(), set()),
+    ([[4, 0], [0, 4]], [(0, 0), (1, 1)], set(), set()),  # equal, but no row or column in common
+    ([[4, 4]], [], {0}, {0, 1}),
+    ([[4], [4]], [], {0, 1}, {0}),
+    ([[4, 4, 0], [0, 3, 1]], [(1, 2)], {0}, {0, 1}),
+    ([[6, 4, 4], [7, 0, 0]], [(1, 0)], {0}, {1, 2}),
+    ([[0, 0], [0, 0]], [], set(), set()),
+    (np.zeros((0, 3)), [], set(), set()),
+]
+
+
+@pytest.mark.parametrize(("counts", "pairs", "rows", "columns"), COUNTS)
+def test_the_largest_count_makes_a_pair_and_equal_ones_a_tie(counts, pairs, rows, columns):
+    found = pair_by_most_matches(np.array(counts))
+    assert (sorted(found[0]), found[1], found[2]) == (pairs, rows, columns)
+
+
+@settings(max_examples=60, deadline=None)
+@given(counts=arrays(int, st.tuples(st.integers(0, 5), st.integers(0, 5)), elements=st.integers(0, 4)))
+def test_pairing_is_one_to_one_and_treats_both_images_alike(counts):
+    pairs, rows, columns = pair_by_most_matches(counts)
+    assert len({i for i, _ in pairs}) == len({j for _, j in pairs}) == len(pairs)
+    assert all(counts[i, j] > 0 for i, j in pairs)
+    assert rows.isdisjoint(i for i, _ in pairs)
+    assert columns.isdisjoint(j for _, j in pairs)
+    turned, turned_rows, turned_columns = pair_by_most_matches(counts.T)
+    assert (sorted((j, i) for i, j in turned), turned_columns, turned_rows) == (sorted(pairs), rows, columns)

@@ -1,0 +1,258 @@
+"""The rigid fit: agrees with scikit-image, turns with its points, and names what has no answer."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from skimage.transform import EuclideanTransform
+
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.pose.rigid_fit import (
+    CoincidentPoints,
+    MirroredPoints,
+    NotFinite,
+    Pose2D,
+    RigidFitError,
+    TooFewPairs,
+    UndeterminedRotation,
+    fit_covariance,
+    fit_rigid_2d,
+    rotation_2d,
+)
+
+TRIANGLE = np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]])
+
+angles = st.floats(-np.pi, np.pi - 1e-9)
+metres = st.floats(-20, 20)
+points = st.integers(2, 12).flatmap(lambda n: arrays(np.float64, (n, 2), elements=st.floats(-5, 5)))
+
+
+def spread(array):
+    return np.sqrt(((array - array.mean(axis=0)) ** 2).sum(axis=1).mean())
+
+
+def noisy(source, pose, sigma, seed=0):
+    return pose.apply(source) + sigma * np.random.default_rng(seed).standard_normal(source.shape)
+
+
+@given(points, metres, metres, angles)
+def test_exact_points_give_the_exact_pose(source, x, y, theta):
+    assume(spread(source) > 0.1)
+    fitted = fit_rigid_2d(source, Pose2D(x, y, theta).apply(source))
+    assert fitted[:2] == pytest.approx((x, y), abs=1e-9)
+    assert wrap_angle(fitted.theta - theta) == pytest.approx(0, abs=1e-10)
+
+
+@given(points, angles, st.integers(0, 10_000))
+def test_noisy_points_give_the_pose_that_scikit_image_gives(source, theta, seed):
+    assume(spread(source) > 1.0)
+    target = noisy(source, Pose2D(1.0, -2.0, theta), 0.05, seed)
+    reference = EuclideanTransform.from_estimate(source, target)
+    fitted = fit_rigid_2d(source, target)
+    assert fitted[:2] == pytest.approx(reference.translation, abs=1e-9)
+    assert wrap_angle(fitted.theta - reference.rotation) == pytest.approx(0, abs=1e-9)
+
+
+@given(points, angles, angles, st.integers(0, 10_000))
+def test_turning_the_body_by_an_angle_takes_that_angle_from_the_heading(source, theta, turn, seed):
+    assume(spread(source) > 1.0)
+    target = noisy(source, Pose2D(0.5, 2.0, theta), 0.05, seed)
+    before, after = fit_rigid_2d(source, target), fit_rigid_2d(source @ rotation_2d(turn).T, target)
+    assert after[:2] == pytest.approx(before[:2], abs=1e-9)
+    assert wrap_angle(after.theta - (before.theta - turn)) == pytest.approx(0, abs=1e-9)
+
+
+@given(angles, st.integers(0, 10_000))
+def test_turning_body_and_covariances_together_keeps_the_weighted_position(turn, seed):
+    rng = np.random.default_rng(seed)
+    source = rng.uniform(-3, 3, (6, 2))
+    target = noisy(source, Pose2D(1.0, 2.0, 0.3), 0.1, seed)
+    factors = rng.standard_normal((6, 2, 2)) * 0.2
+    covariances = factors @ np.swapaxes(factors, 1, 2) + 0.01 * np.eye(2)
+    rotation = rotation_2d(turn)
+    before = fit_rigid_2d(source, target, covariances=covariances)
+    after = fit_rigid_2d(source @ rotation.T, target, covariances=rotation @ covariances @ rotation.T)
+    assert after[:2] == pytest.approx(before[:2], abs=1e-8)
+    assert wrap_angle(after.theta - before.theta + turn) == pytest.approx(0, abs=1e-8)
+
+
+def test_no_neighbouring_pose_fits_better():
+    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
+    best = fit_rigid_2d(TRIANGLE, target)
+
+    def cost(pose):
+        return ((pose.apply(TRIANGLE) - target) ** 2).sum()
+
+    for step in np.vstack([np.eye(3), -np.eye(3)]) * 1e-3:
+        assert cost(Pose2D(*(np.array(best) + step))) > cost(best)
+
+
+def test_a_pair_of_weight_zero_counts_as_if_it_were_not_there():
+    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
+    far_off = np.vstack([target, [50.0, 50.0]])
+    with_zero = fit_rigid_2d(np.vstack([TRIANGLE, [1.0, 1.0]]), far_off, weights=[1, 1, 1, 0])
+    assert with_zero == pytest.approx(fit_rigid_2d(TRIANGLE, target), abs=1e-12)
+
+
+def test_a_weight_of_two_counts_as_the_same_pair_twice():
+    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
+    twice = fit_rigid_2d(np.vstack([TRIANGLE, TRIANGLE[2]]), np.vstack([target, target[2]]))
+    assert fit_rigid_2d(TRIANGLE, target, weights=[1, 1, 2]) == pytest.approx(twice, abs=1e-12)
+
+
+def test_equal_round_covariances_change_nothing():
+    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
+    plain = fit_rigid_2d(TRIANGLE, target)
+    assert fit_rigid_2d(TRIANGLE, target, covariances=[0.04 * np.eye(2)] * 3) == pytest.approx(plain, abs=1e-9)
+
+
+def test_a_heading_at_the_wrap_is_found():
+    fitted = fit_rigid_2d(TRIANGLE, Pose2D(0.0, 0.0, -np.pi).apply(TRIANGLE))
+    assert abs(fitted.theta) == pytest.approx(np.pi)
+    assert -np.pi <= fitted.theta < np.pi
+
+
+def ranges_with_noise(rng):
+    """Points around the body of uncertain range, growing with its square as in stereo, and of certain azimuth."""
+    points = rng.uniform(1, 4, (8, 1)) * np.stack([np.cos(a := rng.uniform(-np.pi, np.pi, 8)), np.sin(a)], axis=1)
+    along = points / np.linalg.norm(points, axis=1)[:, None]
+    across = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+    sigma = 0.03 * (points**2).sum(axis=1)[:, None]
+    covariances = (
+        sigma[:, :, None] ** 2 * along[:, :, None] * along[:, None] + 0.02**2 * across[:, :, None] * across[:, None]
+    )
+    observed = points + along * sigma * rng.standard_normal((8, 1)) + across * 0.02 * rng.standard_normal((8, 1))
+    return points, observed, covariances
+
+
+def test_knowing_which_points_are_uncertain_makes_the_position_better():
+    rng, pose, plain, weighted = np.random.default_rng(5), Pose2D(1.0, -1.0, 2.0), [], []
+    for _ in range(200):
+        points, observed, covariances = ranges_with_noise(rng)
+        target = pose.apply(points)
+        plain.append(fit_rigid_2d(observed, target)[:2])
+        weighted.append(fit_rigid_2d(observed, target, covariances=covariances)[:2])
+    error = [np.sqrt(((np.array(each) - pose[:2]) ** 2).sum(axis=1).mean()) for each in (plain, weighted)]
+    assert error[1] < 0.7 * error[0]
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+def test_the_covariance_is_the_spread_that_repeated_fits_show(weighted):
+    rng, pose, errors, claimed = np.random.default_rng(6), Pose2D(1.0, -1.0, 2.0), [], []
+    for _ in range(500):
+        points, observed, covariances = ranges_with_noise(rng)
+        target, used = pose.apply(points), covariances if weighted else None
+        fitted = fit_rigid_2d(observed, target, covariances=used)
+        claim = fit_covariance(fitted, observed, target, covariances=used, noise=covariances)
+        error = np.array(fitted) - pose
+        errors.append(error @ np.linalg.solve(claim, error))
+        claimed.append(claim)
+    # Squared errors in units of the claimed covariance have mean 3, one for each component.
+    assert np.mean(errors) == pytest.approx(3.0, rel=0.2)
+    assert np.linalg.eigvalsh(claimed).min() > 0
+
+
+def test_without_covariances_the_residuals_say_how_uncertain_the_pose_is():
+    rng, pose = np.random.default_rng(7), Pose2D(0.3, 0.4, -1.0)
+    points, claimed, errors = rng.uniform(-3, 3, (10, 2)), [], []
+    for _ in range(500):
+        target = pose.apply(points) + 0.1 * rng.standard_normal((10, 2))
+        fitted = fit_rigid_2d(points, target)
+        claimed.append(fit_covariance(fitted, points, target))
+        errors.append(np.array(fitted) - pose)
+    ratio = np.mean(np.square(errors), axis=0) / np.mean(claimed, axis=0).diagonal()
+    assert ratio == pytest.approx([1, 1, 1], rel=0.2)
+
+
+@pytest.mark.parametrize("n", [0, 1])
+def test_fewer_than_two_pairs_are_too_few(n):
+    with pytest.raises(TooFewPairs, match=f"at least two pairs of points; got {n}"):
+        fit_rigid_2d(np.zeros((n, 2)), np.zeros((n, 2)))
+
+
+def test_two_pairs_of_which_one_counts_nothing_are_too_few():
+    with pytest.raises(TooFewPairs):
+        fit_rigid_2d(TRIANGLE[:2], TRIANGLE[:2], weights=[1, 0])
+
+
+@pytest.mark.parametrize("side", ["source", "target"])
+def test_points_at_one_place_have_no_heading(side):
+    one_place = np.tile([2.0, 1.0], (3, 1))
+    with pytest.raises(CoincidentPoints, match=f"3 {side} points"):
+        fit_rigid_2d(*((one_place, TRIANGLE) if side == "source" else (TRIANGLE, one_place)))
+
+
+@given(angles, metres, metres)
+def test_a_mirror_image_is_named(theta, x, y):
+    with pytest.raises(MirroredPoints, match="mirror image"):
+        fit_rigid_2d(TRIANGLE * [1, -1], Pose2D(x, y, theta).apply(TRIANGLE))
+
+
+def test_a_mirror_image_with_noise_is_named():
+    square = np.array([[0, 0], [4, 0], [4, 3], [0, 3], [1, 2.0]])
+    with pytest.raises(MirroredPoints):
+        fit_rigid_2d(square * [1, -1], noisy(square, Pose2D(1, 2, 3), 0.1))
+
+
+def test_an_equilateral_triangle_with_two_corners_exchanged_is_a_mirror_image():
+    corners = np.array([[np.cos(a), np.sin(a)] for a in np.radians([90, 210, 330])])
+    with pytest.raises(MirroredPoints):
+        fit_rigid_2d(corners, corners[[0, 2, 1]])
+
+
+@given(st.integers(2, 8), angles, st.integers(0, 1000))
+def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
+    line = np.stack([np.linspace(0, 4, n), np.zeros(n)], axis=1)
+    pose = Pose2D(1.0, 1.0, theta)
+    fitted = fit_rigid_2d(line + 0.05 * np.random.default_rng(seed).standard_normal(line.shape), pose.apply(line))
+    assert fitted[:2] == pytest.approx(pose[:2], abs=0.5)
+
+
+def test_pairs_that_fit_every_heading_alike_are_named():
+    # Two of the four stand still and two change places, so that neither turn nor reflection gains anything.
+    source = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    target = np.array([[1.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [-1.0, 0.0]])
+    with pytest.raises(UndeterminedRotation):
+        fit_rigid_2d(source, target)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_numbers_that_are_none_are_named(bad):
+    broken = TRIANGLE.copy()
+    broken[1, 0] = bad
+    with pytest.raises(NotFinite, match=r"source must be finite.*entry 1"):
+        fit_rigid_2d(broken, TRIANGLE)
+    with pytest.raises(NotFinite, match="target"):
+        fit_rigid_2d(TRIANGLE, broken)
+    with pytest.raises(NotFinite, match="weights"):
+        fit_rigid_2d(TRIANGLE, TRIANGLE, weights=[1, bad, 1])
+    with pytest.raises(NotFinite, match="covariances"):
+        fit_rigid_2d(TRIANGLE, TRIANGLE, covariances=np.full((3, 2, 2), bad))
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"target": TRIANGLE[:2]}, "shape"),
+        ({"target": np.zeros((3, 3))}, "shape"),
+        ({"weights": [1, 1]}, "one a pair"),
+        ({"weights": [1, -1, 1]}, "not be negative"),
+        ({"covariances": np.eye(2)}, r"one \(2, 2\) matrix a pair"),
+        ({"covariances": [np.zeros((2, 2))] * 3}, "positive eigenvalues"),
+        ({"covariances": [[[1, 0.5], [0, 1]]] * 3}, "symmetric"),
+    ],
+)
+def test_arguments_that_do_not_fit_are_named(changes, says):
+    with pytest.raises(RigidFitError, match=says):
+        fit_rigid_2d(**{"source": TRIANGLE, "target": TRIANGLE, **changes})
+
+
+def test_a_pair_of_weight_zero_does_not_count_in_the_covariance_either():
+    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
+    noise = np.array([0.01 * np.eye(2), np.diag([0.04, 0.01]), 0.02 * np.eye(2)])
+    pose = fit_rigid_2d(TRIANGLE, target)
+    alone = fit_covariance(pose, TRIANGLE, target, noise=noise)
+    more = [np.vstack([points, [9.0, 9.0]]) for points in (TRIANGLE, target)]
+    with_zero = fit_covariance(pose, *more, weights=[1, 1, 1, 0], noise=np.vstack([noise, [np.eye(2)]]))
+    assert with_zero == pytest.approx(alone, abs=1e-12)

@@ -1,0 +1,199 @@
+"""Triangulation: against rays that meet, against noise drawn by hand, and where there is no distance."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
+from course_lib.spherical_stereo.panorama import (
+    PanoramaError,
+    RigError,
+    azimuth_elevation,
+    direction_from_angles,
+    direction_to_pixel,
+    pixel_to_direction,
+)
+from course_lib.spherical_stereo.ranging.triangulation import (
+    AZIMUTH_GAP_TOLERANCE,
+    PARALLEL_TOLERANCE,
+    AzimuthGap,
+    DivergingDirections,
+    ParallelDirections,
+    TriangulationError,
+    object_position,
+    triangulate,
+    triangulation_covariance,
+    triangulation_outcome,
+)
+
+BASELINE = 0.3
+QUICK = settings(max_examples=60, deadline=None)
+points = st.tuples(st.floats(0.4, 20), st.floats(-np.pi, np.pi), st.floats(-3, 2)).map(
+    lambda p: np.array([p[0] * np.cos(p[1]), p[0] * np.sin(p[1]), p[2]])
+)
+
+
+def seen(point, baseline=BASELINE):
+    """Unit directions from the upper camera (the origin) and from the lower one."""
+    lower = np.add(point, [0, 0, baseline])
+    return point / np.linalg.norm(point, axis=-1, keepdims=True), lower / np.linalg.norm(lower, axis=-1, keepdims=True)
+
+
+def midpoint_of_rays(upper, lower, baseline):
+    """Least-squares meeting point of two rays: min over (s, t) of |s upper - (t lower + lower camera)|."""
+    (s, t), *_ = np.linalg.lstsq(np.stack([upper, -lower], axis=1), np.array([0, 0, -baseline]), rcond=None)
+    return 0.5 * (s * upper + t * lower + [0, 0, -baseline])
+
+
+@QUICK
+@given(point=points, baseline=st.floats(0.05, 1.0))
+def test_a_point_comes_back_from_the_two_directions_that_see_it(point, baseline):
+    upper, lower = seen(point, baseline)
+    assume(triangulation_outcome(upper, lower) == "ok")
+    assert triangulate(upper, lower, baseline) == pytest.approx(np.linalg.norm(point), rel=1e-9)
+    np.testing.assert_allclose(object_position(upper, lower, baseline), point, rtol=1e-8, atol=1e-8)
+
+
+@QUICK
+@given(point=points)
+def test_where_the_rays_meet_the_distance_is_that_of_their_least_squares_point(point):
+    upper, lower = seen(point)
+    expected = midpoint_of_rays(upper, lower, BASELINE)
+    np.testing.assert_allclose(object_position(upper, lower, BASELINE), expected, rtol=1e-6, atol=1e-6)
+
+
+def test_skew_rays_give_the_distance_of_their_elevations(rng):
+    """Azimuth says nothing about distance when the baseline is vertical: a gap in azimuth leaves d as it is."""
+    upper, lower = seen(np.array([2.0, 1.0, -0.8]))
+    azimuth, elevation = azimuth_elevation(lower)
+    for gap in rng.uniform(-0.08, 0.08, 5):
+        turned = direction_from_angles(azimuth + gap, elevation)
+        assert triangulate(upper, turned, BASELINE) == pytest.approx(triangulate(upper, lower, BASELINE), rel=1e-12)
+
+
+@QUICK
+@given(point=points, turn=st.floats(-7, 7))
+def test_a_turn_about_the_vertical_leaves_the_distance(point, turn):
+    turned = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]) @ point
+    d = triangulate(*seen(point), BASELINE)
+    assert triangulate(*seen(turned), BASELINE) == pytest.approx(d, rel=1e-9)
+
+
+def test_distances_broadcast_over_leading_axes(rng):
+    point = rng.uniform(1, 3, (4, 5, 3))
+    upper, lower = seen(point)
+    d = triangulate(upper, lower, BASELINE)
+    assert d.shape == (4, 5)
+    np.testing.assert_allclose(d, np.linalg.norm(point, axis=-1))
+    assert triangulation_covariance(upper, lower, BASELINE, 0.001, 0.001).shape == (4, 5, 3, 3)
+
+
+def test_a_pixel_pair_by_hand():
+    """Level with the upper camera, 3 m away: the lower camera sees it atan(0.1) higher."""
+    upper = pixel_to_direction(np.array([640.0, 320.0]), 1280, 640)
+    lower = direction_from_angles(0.0, np.arctan(0.1))
+    assert triangulate(upper, lower, BASELINE) == pytest.approx(3.0)
+    assert direction_to_pixel(lower, 1280, 640)[1] == pytest.approx(320 - 640 * np.arctan(0.1) / np.pi)
+
+
+OUTCOMES = [
+    ((0.3, -0.2), (0.3, -0.2), "parallel", ParallelDirections),
+    ((0.3, -0.2), (0.3, -0.2 + 0.9 * PARALLEL_TOLERANCE), "parallel", ParallelDirections),
+    ((0.3, -0.2), (0.3, -0.2 - 0.9 * PARALLEL_TOLERANCE), "parallel", ParallelDirections),
+    ((0.0, -np.pi / 2), (0.0, -1.5), "parallel", ParallelDirections),
+    ((0.0, 1.2), (0.0, np.pi / 2), "parallel", ParallelDirections),
+    ((0.3, -0.2), (0.3, -0.25), "diverging", DivergingDirections),
+    ((0.0, -0.2), (0.15, -0.1), "azimuth gap", AzimuthGap),
+    ((3.1, -0.2), (-0.04, -0.1), "azimuth gap", AzimuthGap),
+    ((3.13, -0.2), (-3.13, -0.1), "ok", None),  # across the seam
+]
+
+
+@pytest.mark.parametrize(("upper", "lower", "name", "error"), OUTCOMES)
+def test_directions_without_a_distance_have_a_named_outcome(upper, lower, name, error):
+    upper, lower = direction_from_angles(*upper), direction_from_angles(*lower)
+    assert triangulation_outcome(upper, lower) == name
+    if error is None:
+        assert np.isfinite(triangulate(upper, lower, BASELINE))
+    else:
+        with pytest.raises(error) as caught:
+            triangulate(upper, lower, BASELINE)
+        assert isinstance(caught.value, TriangulationError)
+
+
+def test_outcomes_of_many_directions_come_as_an_array():
+    upper = direction_from_angles(np.array([u[0] for u, *_ in OUTCOMES]), np.array([u[1] for u, *_ in OUTCOMES]))
+    lower = direction_from_angles(np.array([o[1][0] for o in OUTCOMES]), np.array([o[1][1] for o in OUTCOMES]))
+    assert list(triangulation_outcome(upper, lower)) == [name for *_, name, _ in OUTCOMES]
+    with pytest.raises(AzimuthGap, match="element 6"):
+        triangulate(upper, lower, BASELINE)
+
+
+@QUICK
+@given(upper=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)), lower=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)))
+def test_a_distance_is_never_a_huge_number(upper, lower):
+    """Whatever the directions, the outcome is named or the distance is below baseline / tolerance."""
+    upper, lower = direction_from_angles(*upper), direction_from_angles(*lower)
+    if triangulation_outcome(upper, lower) == "ok":
+        assert 0 < triangulate(upper, lower, BASELINE) < 1.01 * BASELINE / PARALLEL_TOLERANCE
+
+
+@QUICK
+@given(point=points, gap=st.floats(-np.pi, np.pi))
+def test_the_azimuth_gap_is_measured_on_the_sphere(point, gap):
+    """A direction turned by `gap` is asin(cos e sin |gap|) from the other's half-circle: less, the steeper it looks."""
+    (azimuth_u, e_u), (azimuth_l, e_l) = (azimuth_elevation(d) for d in seen(point))
+    residual = epipolar_residual(azimuth_u, e_u, azimuth_l + gap, e_l)
+    flattest = min(abs(e_u), abs(e_l))
+    expected = np.arcsin(np.cos(flattest) * np.sin(abs(gap))) if abs(gap) <= np.pi / 2 else np.pi / 2 - flattest
+    assert residual == pytest.approx(expected, abs=1e-6)
+    assert AZIMUTH_GAP_TOLERANCE < np.pi / 2
+
+
+def test_the_covariance_is_that_of_noise_drawn_by_hand(rng):
+    sigma_azimuth, sigma_elevation = 2 * np.pi / 1280, 0.3 * np.pi / 640
+    for point in ([2.5, 1.0, -0.8], [-1.5, 0.3, -1.2], [0.2, -3.5, 0.4]):
+        (azimuth, e_u), (_, e_l) = (azimuth_elevation(d) for d in seen(np.array(point)))
+        noise = rng.normal(size=(3, 60_000)) * np.array([[sigma_azimuth], [sigma_elevation], [sigma_elevation]])
+        upper = direction_from_angles(azimuth + noise[0], e_u + noise[1])
+        drawn = object_position(upper, direction_from_angles(azimuth, e_l + noise[2]), BASELINE)
+        predicted = triangulation_covariance(*seen(np.array(point)), BASELINE, sigma_azimuth, sigma_elevation)
+        np.testing.assert_allclose(np.cov(drawn.T), predicted, atol=0.05 * np.abs(predicted).max())
+
+
+def test_the_deviation_along_the_ray_grows_with_distance_squared_over_baseline():
+    def along(distance, baseline):
+        direction = direction_from_angles(0.4, -0.1)
+        covariance = triangulation_covariance(*seen(distance * direction, baseline), baseline, 0.001, 0.001)
+        return np.sqrt(direction @ covariance @ direction)
+
+    # Far away against the baseline, where the law holds: twice as far is four times as uncertain.
+    assert along(12, BASELINE) / along(6, BASELINE) == pytest.approx(4, rel=0.05)
+    assert along(8, 0.15) / along(8, 0.30) == pytest.approx(2, rel=0.05)
+
+
+def test_the_deviation_across_the_ray_is_distance_times_the_noise_of_the_azimuth():
+    covariance = triangulation_covariance(*seen(np.array([4.0, 0, 0])), BASELINE, 0.002, 0.001)
+    assert np.sqrt(covariance[1, 1]) == pytest.approx(4 * 0.002)
+    assert covariance[0, 1] == pytest.approx(0, abs=1e-15)
+
+
+def test_a_covariance_is_symmetric_and_not_negative(rng):
+    covariance = triangulation_covariance(*seen(rng.uniform(1, 3, (50, 3))), BASELINE, 0.002, rng.uniform(0, 0.003, 50))
+    np.testing.assert_allclose(covariance, np.swapaxes(covariance, -1, -2), atol=1e-15)
+    assert np.linalg.eigvalsh(covariance).min() > -1e-12
+
+
+@pytest.mark.parametrize("baseline", [0.0, -0.3, np.nan])
+def test_a_baseline_that_is_not_positive_is_refused(baseline):
+    with pytest.raises(RigError):
+        triangulate(*seen(np.array([2.0, 0, 0])), baseline)
+
+
+def test_noise_that_is_none_and_directions_that_are_none_are_refused():
+    upper, lower = seen(np.array([2.0, 0, 0]))
+    with pytest.raises(PanoramaError, match="sigma_elevation"):
+        triangulation_covariance(upper, lower, BASELINE, 0.001, -0.001)
+    with pytest.raises(PanoramaError, match="direction"):
+        triangulate(np.full(3, np.nan), lower, BASELINE)

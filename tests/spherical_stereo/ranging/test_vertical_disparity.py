@@ -1,0 +1,135 @@
+"""Distances from the vertical disparity of matched features."""
+
+import numpy as np
+import pytest
+
+from course_lib.spherical_stereo.matching.features import detect_features
+from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_detections
+from course_lib.spherical_stereo.panorama import (
+    PanoramaError,
+    RigError,
+    StereoRig,
+    direction_from_angles,
+    direction_to_pixel,
+)
+from course_lib.spherical_stereo.ranging.object_distances import measure_box_centres, measure_objects
+from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance, horizontal_ranges
+from tests.spherical_stereo.stereo_scene import scene
+from tests.spherical_stereo.vertical_pair import BASELINE, HEIGHT, WIDTH
+
+SIZE = (1280, 640)
+
+
+def match_of(points, baseline=BASELINE, noise=0.0, rng=None):
+    """An `ObjectMatch` of exact keypoints of points `(k, 3)` in the upper camera's frame, with noise in rows."""
+    points = np.asarray(points, float)
+    upper, lower = direction_to_pixel(points, *SIZE), direction_to_pixel(np.add(points, [0, 0, baseline]), *SIZE)
+    if noise:
+        lower[:, 1] += rng.normal(0, noise, len(points))
+    return ObjectMatch(0, 0, "chair", upper, lower)
+
+
+def face(rng, n, distance, width=1.0):
+    """Points on an upright square that faces the rig."""
+    return np.column_stack([np.full(n, distance), rng.uniform(-width / 2, width / 2, n), rng.uniform(-1, 0, n)])
+
+
+def test_every_match_gives_its_points_own_range(rng):
+    points = rng.uniform([1, -3, -1.2], [4, 3, 0.5], (40, 3))
+    match = match_of(points)
+    ranges = horizontal_ranges(match.keypoints_upper, match.keypoints_lower, *SIZE, BASELINE)
+    np.testing.assert_allclose(ranges, np.hypot(points[:, 0], points[:, 1]), rtol=1e-9)
+
+
+def test_a_small_thing_has_its_range_and_hardly_a_spread(rng):
+    found = disparity_distance(match_of(face(rng, 20, 2.5, width=0.1)), *SIZE, BASELINE)
+    assert found.outcome == "ok"
+    assert found.n_matches == 20
+    assert found.horizontal_range == pytest.approx(2.5, rel=1e-3)
+    assert found.spread < 0.01
+
+
+def test_a_third_of_strangers_from_the_wall_behind_moves_the_range_little(rng):
+    points = np.concatenate([face(rng, 40, 2.0, 0.3), face(rng, 20, 5.0, 0.3)])
+    found = disparity_distance(match_of(points, noise=0.3, rng=rng), *SIZE, BASELINE)
+    assert found.horizontal_range == pytest.approx(2.0, rel=0.08)
+    assert np.mean(horizontal_ranges(*keypoints(points), *SIZE, BASELINE)) > 2.8, "the mean would be off by 40 %"
+
+
+def keypoints(points):
+    match = match_of(points)
+    return match.keypoints_upper, match.keypoints_lower
+
+
+def test_what_is_measured_is_the_visible_surface():
+    """A box 1 m deep whose front is seen at 2 m has its centre at 2.5 m: the missing half depth is not added."""
+    rng = np.random.default_rng(3)
+    found = disparity_distance(match_of(face(rng, 50, 2.0, 0.2)), *SIZE, BASELINE)
+    assert found.horizontal_range == pytest.approx(2.0, rel=0.01)
+
+
+def test_sigma_is_the_deviation_of_the_range_over_repeated_noise(rng):
+    points = face(rng, 30, 3.0, 0.2)
+    found = [disparity_distance(match_of(points, noise=1.0, rng=rng), *SIZE, BASELINE) for _ in range(300)]
+    assert np.std([f.horizontal_range for f in found]) == pytest.approx(np.mean([f.sigma for f in found]), rel=0.2)
+
+
+def test_the_position_keeps_the_range_and_the_direction_of_the_box_centre(rng):
+    found = disparity_distance(match_of(face(rng, 20, 2.5)), *SIZE, BASELINE)
+    direction = direction_from_angles(0.1, -0.3)
+    position = found.position(direction)
+    assert np.hypot(*position[:2]) == pytest.approx(found.horizontal_range)
+    np.testing.assert_allclose(position / np.linalg.norm(position), direction)
+    assert found.distance(direction) == pytest.approx(found.horizontal_range / np.cos(0.3))
+
+
+def test_two_matches_are_too_few(rng):
+    found = disparity_distance(match_of(face(rng, 2, 2.0)), *SIZE, BASELINE)
+    assert found.outcome == "too few matches"
+    assert found.n_matches == 2
+    assert np.isnan([found.horizontal_range, found.spread, found.sigma]).all()
+    assert disparity_distance(match_of(np.zeros((0, 3))), *SIZE, BASELINE).outcome == "too few matches"
+
+
+def test_features_without_disparity_are_parallel_and_not_at_infinity(rng):
+    match = match_of(face(rng, 10, 500.0))
+    assert disparity_distance(match, *SIZE, BASELINE).outcome == "parallel"
+    assert np.isinf(horizontal_ranges(match.keypoints_upper, match.keypoints_upper, *SIZE, BASELINE)).all()
+
+
+def test_bad_input_is_named(rng):
+    match = match_of(face(rng, 5, 2.0))
+    with pytest.raises(RigError):
+        disparity_distance(match, *SIZE, 0.0)
+    with pytest.raises(PanoramaError, match="one length"):
+        horizontal_ranges(match.keypoints_upper, match.keypoints_lower[:3], *SIZE, BASELINE)
+
+
+def test_both_distances_of_rendered_boards_are_right():
+    """A board is flat and faces the rig, so here surface and centre are nearly one."""
+    boards, upper, lower, upper_detections, lower_detections = scene()
+    rig = StereoRig(BASELINE)
+    features = detect_features(upper), detect_features(lower)
+    matching = match_detections(features[0], upper_detections, features[1], lower_detections, rig)
+    measured = measure_objects(matching.matches, upper_detections, lower_detections, (WIDTH, HEIGHT), rig)
+    assert [m.upper for m in measured] == list(range(8))
+    ranges = np.array([board.range for board in boards])
+    from_features = np.array([m.disparity.horizontal_range_m for m in measured])
+    from_boxes = np.array([m.box_centre.horizontal_range_m for m in measured])
+    assert np.median(np.abs(from_features / ranges - 1)) < 0.04
+    # A wide flat board bulges on the sphere, and its box's middle is a little off the board's.
+    assert np.median(np.abs(from_boxes / ranges - 1)) < 0.08
+    for m, board in zip(measured, boards, strict=True):
+        assert np.cos(np.radians(m.azimuth_deg) - board.azimuth) > np.cos(0.01)
+        assert 0 < m.box_centre.horizontal_sigma_m < 1.5
+        assert m.box_centre.distance_m >= m.box_centre.horizontal_range_m
+
+
+def test_box_centres_without_a_distance_keep_the_name_of_their_outcome():
+    rig = StereoRig(BASELINE)
+    directions = direction_from_angles(0.0, -0.3), direction_from_angles(0.0, -0.4)
+    measurement = measure_box_centres(*directions, SIZE, rig, 1.0)
+    assert measurement.outcome == "diverging"
+    assert np.isnan(measurement.distance_m)
+    with pytest.raises(PanoramaError, match="sigma_pixels"):
+        measure_box_centres(*directions[::-1], SIZE, rig, -1.0)

@@ -1,0 +1,303 @@
+"""The penalty of eq. (1), term by term, and the greedy search."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
+from course_lib.spherical_stereo.semantic_map.association import (
+    ASSOCIATIONS,
+    LEAST_DISTANCE,
+    AssociationError,
+    Observation,
+    PenaltyWeights,
+    associate_greedy,
+    hue_difference,
+    least_object_weight,
+    penalty,
+    penalty_table,
+)
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+
+WEIGHTS = PenaltyWeights(p_obj=7.0, p_h=2.0, p_s=3.0, p_d=4.0)
+ORIGIN = np.zeros(2)
+
+
+def seen(label="sofa", x=3.0, y=4.0, hue=20.0, saturation=50.0):
+    return Observation(label, x, y, hue, saturation)
+
+
+def mapped(label="sofa", x=0.0, y=4.0, hue=20.0, saturation=50.0):
+    return Landmark(label, x, y, hue, saturation)
+
+
+def cost(observation, landmark, **options):
+    return penalty(observation, landmark, ORIGIN, ORIGIN, WEIGHTS, **options)
+
+
+def test_every_term_of_equation_1_by_hand():
+    terms = cost(seen("chair", hue=350, saturation=80), mapped(hue=20, saturation=50))
+    assert terms.object == 7.0
+    assert terms.hue == pytest.approx(2.0 * 30 / 360)
+    assert terms.saturation == pytest.approx(3.0 * 30 / 100)
+    assert terms.distance == pytest.approx(4.0 * (5 - 4) / 4)
+    assert terms.total == pytest.approx(sum(terms[:4]))
+
+
+def test_like_classes_cost_nothing():
+    assert cost(seen(), mapped()).object == 0.0
+
+
+def test_two_names_of_one_class_cost_nothing():
+    assert cost(seen("couch"), mapped("sofa")).object == 0.0
+    several = Observation(np.array([["couch"], ["TV"]]), 3.0, 4.0, 20.0, 50.0)
+    landmarks = Observation(np.array([["sofa", "television"]]), 0.0, 4.0, 20.0, 50.0)
+    assert cost(several, landmarks).object.tolist() == [[0.0, 7.0], [7.0, 0.0]]
+
+
+def test_hues_on_both_sides_of_red_are_near():
+    assert hue_difference(350, 10) == pytest.approx(20)
+
+
+@given(st.floats(0, 359.999), st.floats(0, 359.999), st.floats(0, 359.999))
+def test_the_hue_difference_is_symmetric_and_turns_with_the_circle(a, b, turn):
+    apart = hue_difference(a, b)
+    assert 0 <= apart <= 180
+    assert hue_difference(b, a) == pytest.approx(apart)
+    assert hue_difference((a + turn) % 360, (b + turn) % 360) == pytest.approx(apart, abs=1e-9)
+
+
+@given(st.floats(0, 359.999), st.floats(0, 359.999))
+def test_the_hue_term_is_at_most_half_of_its_weight(a, b):
+    assert cost(seen(hue=a), mapped(hue=b)).hue <= WEIGHTS.p_h / 2
+
+
+@pytest.mark.parametrize(("hue_seen", "hue_mapped"), [(math.nan, 200), (200, math.nan), (math.nan, math.nan)])
+def test_grey_on_either_side_has_no_hue_term(hue_seen, hue_mapped):
+    terms = cost(seen(hue=hue_seen), mapped(hue=hue_mapped))
+    assert terms.hue == 0.0
+    assert math.isfinite(terms.total)
+
+
+def test_the_distance_term_as_printed_rewards_objects_that_look_too_near():
+    right, too_near = seen(x=0.0, y=4.0), seen(x=0.0, y=1.0)
+    printed = [cost(one, mapped(), distance_term="as_printed").total for one in (right, too_near)]
+    absolute = [cost(one, mapped()).total for one in (right, too_near)]
+    assert printed[1] < printed[0] == 0.0
+    assert absolute[1] > absolute[0] == 0.0
+
+
+def test_both_distance_terms_agree_on_objects_that_look_too_far():
+    assert cost(seen(), mapped()) == cost(seen(), mapped(), distance_term="as_printed")
+
+
+def test_an_object_at_the_centroid_of_the_map_costs_a_finite_amount():
+    terms = cost(seen(x=0.3, y=0.4), mapped(x=0.0, y=0.0))
+    assert terms.distance == pytest.approx(4.0 * 0.5 / LEAST_DISTANCE)
+    assert cost(seen(x=0.0, y=0.0), mapped(x=0.0, y=0.0)).distance == 0.0
+
+
+def test_distances_are_to_each_sides_own_centroid():
+    terms = penalty(seen(x=13.0, y=4.0), mapped(x=100.0, y=5.0), [10.0, 0.0], [100.0, 0.0], WEIGHTS)
+    assert terms.distance == pytest.approx(0.0, abs=1e-12)
+
+
+ROOM = SemanticMap(
+    [
+        Landmark("sofa", 0.5, 0.5, 210, 55),
+        Landmark("sofa", 5.5, 1.0, 212, 54),
+        Landmark("chair", 3.0, 4.0, 30, 60),
+        Landmark("television", 1.0, 5.5, math.nan, 3),
+        Landmark("potted plant", 5.0, 5.5, 110, 65),
+    ],
+    name="room",
+)
+
+
+def observed_from(semantic_map, chosen, x=2.0, y=3.0, theta=0.6):
+    """Exact observations of the chosen landmarks from a pose."""
+    body = (semantic_map.positions[list(chosen)] - [x, y]) @ rotation_2d(theta)
+    return [
+        Observation(semantic_map.labels[j], *place, semantic_map.hues[j], semantic_map.saturations[j])
+        for j, place in zip(chosen, body, strict=True)
+    ]
+
+
+def test_the_table_holds_the_penalty_of_every_combination():
+    observations = observed_from(ROOM, [3, 0, 2])
+    table = penalty_table(observations, ROOM, WEIGHTS)
+    centroid = np.mean([one[1:3] for one in observations], axis=0)
+    for i, one in enumerate(observations):
+        for j, landmark in enumerate(ROOM.landmarks):
+            alone = penalty(one, landmark, centroid, ROOM.centroid, WEIGHTS)
+            assert [float(term[i, j]) for term in table] == pytest.approx(list(alone))
+
+
+@given(st.floats(-20, 20), st.floats(-20, 20), st.floats(-7, 7), st.permutations(range(5)))
+@settings(max_examples=50)
+def test_a_fully_seen_room_is_matched_from_every_pose(x, y, theta, order):
+    found = associate_greedy(observed_from(ROOM, order, x, y, theta), ROOM)
+    assert sorted(found.pairs) == [(i, j) for i, j in enumerate(order)]
+    assert found.unassigned == ()
+    assert all(found.same_class)
+
+
+def test_pairs_come_in_the_order_of_choice_cheapest_open_combination_first():
+    found = associate_greedy(observed_from(ROOM, [4, 2, 0], x=1.0), ROOM)
+    free_rows, free_columns = {0, 1, 2}, set(range(5))
+    for (i, j), step in zip(found.pairs, found.steps, strict=True):
+        assert (set(step.open_observations), set(step.open_landmarks)) == (free_rows, free_columns)
+        cheapest = min(found.table.total[a, b] for a in free_rows for b in free_columns)
+        assert step.penalty.total == found.table.total[i, j] == cheapest
+        free_rows.remove(i)
+        free_columns.remove(j)
+
+
+def test_unseen_objects_move_the_centroid_and_with_it_every_distance_term():
+    everything, part = observed_from(ROOM, range(5)), observed_from(ROOM, [0, 1])
+    assert penalty_table(everything, ROOM).distance[0, 0] == pytest.approx(0, abs=1e-12)
+    assert penalty_table(part, ROOM).distance[0, 0] > 0.1
+
+
+def test_an_early_choice_is_never_taken_back():
+    # The second observation is the better partner of both landmarks, so the first is left with the dear one.
+    semantic_map = SemanticMap([Landmark("sofa", -1, 0, 0, 50), Landmark("sofa", 1, 0, 0, 90)])
+    observations = [Observation("sofa", -1, 0, 0, 40.0), Observation("sofa", 1, 0, 0, 52.0)]
+    found = associate_greedy(observations, semantic_map)
+    assert found.pairs == ((1, 0), (0, 1))
+    total = found.table.total
+    assert total[1, 0] + total[0, 1] > total[0, 0] + total[1, 1]
+
+
+def test_equal_penalties_go_to_the_first_observation_then_the_first_landmark():
+    semantic_map = SemanticMap([Landmark("sofa", x, 0, 10, 50) for x in (-1, 1)])
+    found = associate_greedy([Observation("sofa", x, 0, 10, 50) for x in (1, -1)], semantic_map)
+    assert found.pairs == ((0, 0), (1, 1))
+
+
+@given(st.floats(-7, 7))
+def test_rounding_does_not_choose_between_objects_that_are_alike(theta):
+    corners = [(1, 1), (1, -1), (-1, -1), (-1, 1)]
+    semantic_map = SemanticMap([Landmark("chair", *corner, 10, 50) for corner in corners])
+    found = associate_greedy(observed_from(semantic_map, [2, 0, 3, 1], theta=theta), semantic_map)
+    assert found.pairs == ((0, 0), (1, 1), (2, 2), (3, 3))
+
+
+def test_more_observations_than_landmarks_leave_some_unassigned():
+    observations = [*observed_from(ROOM, range(5)), seen("chair", x=9.0, y=9.0)]
+    found = associate_greedy(observations, ROOM)
+    assert len(found.pairs) == 5
+    assert len(found.unassigned) == 1
+
+
+def test_a_pair_of_unlike_classes_is_made_at_the_end_but_never_usable():
+    semantic_map = SemanticMap([Landmark("sofa", 0, 0, 10, 50), Landmark("chair", 2, 0, 10, 50)])
+    found = associate_greedy([seen("sofa"), seen("sofa", x=1.0)], semantic_map)
+    assert sorted(found.same_class) == [False, True]
+    assert len(found.pairs) == 2
+    assert found.usable_pairs == (found.pairs[0],)
+
+
+def test_a_couch_is_a_sofa():
+    found = associate_greedy([seen("couch")], SemanticMap([mapped("sofa"), mapped("chair")]))
+    assert found.pairs == ((0, 0),)
+    assert found.same_class == (True,)
+
+
+def random_scene(seed):
+    rng = np.random.default_rng(seed)
+    labels = ["sofa", "chair", "table"]
+
+    def draw(kind, n):
+        return [
+            kind(labels[rng.integers(3)], *rng.uniform(-3, 3, 2), rng.uniform(0, 360), rng.uniform(0, 100))
+            for _ in range(n)
+        ]  # fmt: skip
+
+    return draw(Observation, 7), SemanticMap(draw(Landmark, 9))
+
+
+@pytest.mark.parametrize("distance_term", ["absolute", "as_printed"])
+@pytest.mark.parametrize("seed", range(20))
+def test_above_the_least_object_weight_every_like_pair_is_cheaper_than_every_unlike_one(seed, distance_term):
+    observations, semantic_map = random_scene(seed)
+    bound = least_object_weight(observations, semantic_map, distance_term=distance_term)
+    for p_obj, holds in ((bound * 1.001, True), (bound * 0.999, False)):
+        table = penalty_table(observations, semantic_map, PenaltyWeights(p_obj=p_obj), distance_term)
+        like = table.object == 0
+        assert (table.total[like].max() < table.total[~like].min()) == holds
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_default_object_weight_is_enough_for_a_room_of_six_metres(seed):
+    assert least_object_weight(*random_scene(seed)) < PenaltyWeights().p_obj
+    found = associate_greedy(*random_scene(seed))
+    first_unlike = found.same_class.index(False) if False in found.same_class else len(found.pairs)
+    assert all(found.same_class[:first_unlike])
+    assert not any(found.same_class[first_unlike:])
+
+
+def test_a_room_without_unlike_classes_needs_no_object_weight():
+    assert least_object_weight([seen()], SemanticMap([mapped()])) == 0.0
+
+
+def test_no_observations_give_no_pairs():
+    found = associate_greedy([], ROOM)
+    assert found.pairs == found.unassigned == found.steps == ()
+    assert found.table.total.shape == (0, 5)
+
+
+def test_the_greedy_matcher_is_found_by_name():
+    assert ASSOCIATIONS["greedy"] is associate_greedy
+
+
+@pytest.mark.parametrize(
+    ("observation", "says"),
+    [
+        (seen(x=math.nan), "observation 1: x and y must be finite"),
+        (seen(y=math.inf), "observation 1: x and y must be finite"),
+        (seen(hue=360.0), r"observation 1: hue must lie in \[0, 360\)"),
+        (seen(saturation=math.nan), "observation 1: saturation"),
+        (seen(saturation=-1.0), "observation 1: saturation"),
+    ],
+)
+def test_an_observation_that_is_none_is_named(observation, says):
+    with pytest.raises(AssociationError, match=says):
+        associate_greedy([seen(), observation], ROOM)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"label": " "}, "label"),
+        ({"x": math.inf}, "observation: x and y must be finite"),
+        ({"hue": 360.0}, r"observation: hue must lie in \[0, 360\)"),
+        ({"hue": -1.0}, "observation: hue"),
+        ({"hue": math.inf}, "observation: hue"),
+        ({"saturation": 101.0}, r"observation: saturation must lie in \[0, 100\]"),
+        ({"saturation": math.nan}, "observation: saturation"),
+        ({"hue": np.array([10.0, 400.0])}, "observation: hue"),
+    ],
+)
+def test_the_penalty_refuses_what_the_matcher_refuses(change, says):
+    with pytest.raises(AssociationError, match=says):
+        cost(seen()._replace(**change), mapped())
+
+
+def test_the_penalty_refuses_a_landmark_that_is_none():
+    with pytest.raises(AssociationError, match="landmark: hue"):
+        cost(seen(), seen(hue=400.0))
+
+
+def test_options_that_do_not_exist_are_named():
+    with pytest.raises(AssociationError, match=r"distance_term must be one of.*'squared'"):
+        associate_greedy([], ROOM, distance_term="squared")
+    with pytest.raises(AssociationError, match="p_h must be finite and not negative"):
+        associate_greedy([seen()], ROOM, PenaltyWeights(p_h=-1))
+    with pytest.raises(AssociationError, match="map centroid"):
+        penalty(seen(), mapped(), [0, 0], [0, 0, 0])
+    with pytest.raises(AssociationError, match="must be finite"):
+        penalty(seen(x=math.nan), mapped(), ORIGIN, ORIGIN)

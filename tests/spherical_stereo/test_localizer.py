@@ -1,0 +1,506 @@
+"""From detections to a pose: exact where the input is exact, turning with the rig, and unable with a reason."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.detection.boxes import BoxError
+from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
+from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError
+from course_lib.spherical_stereo.matching.object_matching import ObjectMatch
+from course_lib.spherical_stereo.panorama import (
+    GreyImageError,
+    ImageSizeError,
+    NotPanoramaError,
+    StereoRig,
+    direction_to_pixel,
+)
+from course_lib.spherical_stereo.pose import localization as outcomes
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
+from course_lib.spherical_stereo.ranging.object_places import CENTROID_SIGMA
+from course_lib.spherical_stereo.semantic_map.association import AssociationError, Observation
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+from tests.spherical_stereo import vertical_pair
+
+WIDTH, HEIGHT = 1280, 640
+RIG = StereoRig(0.3, 1.32)
+ROOM = SemanticMap(
+    [
+        Landmark("sofa", 0.5, 0.5, 210, 55),
+        Landmark("sofa", 5.5, 1.0, 30, 54),
+        Landmark("chair", 3.0, 4.0, 30, 60),
+        Landmark("television", 1.0, 5.5, math.nan, 3),
+        Landmark("potted plant", 5.0, 5.5, 110, 65),
+    ]
+)
+HEIGHTS = [0.4, 0.4, 0.45, 1.0, 0.6]
+POSE = Pose2D(2.2, 2.6, 0.8)
+
+poses = st.builds(Pose2D, st.floats(1.5, 4.5), st.floats(1.5, 3.4), st.floats(-3.1, 3.1))
+
+
+def box_around(direction, half_width=20.0, half_height=12.0):
+    """A box on the panorama whose centre is exactly the direction."""
+    u, v = direction_to_pixel(direction, WIDTH, HEIGHT)
+    u_min = (u - half_width) % WIDTH
+    return (u_min, v - half_height, u_min + 2 * half_width, v + half_height)
+
+
+def views(pose, semantic_map=ROOM, heights=HEIGHTS, rig=RIG):
+    """Exact detections of every landmark in both images, and the matches between them."""
+    body = (semantic_map.positions - pose[:2]) @ rotation_2d(pose.theta)
+    sides = []
+    for camera_height in (rig.upper_height, rig.lower_height):
+        directions = np.column_stack([body, np.array(heights) - camera_height])
+        sides.append(
+            [
+                Detection(one.label, 0.9, box_around(direction), one.hue, one.saturation)
+                for one, direction in zip(semantic_map.landmarks, directions, strict=True)
+            ]
+        )
+    return *sides, [(i, i) for i in range(len(semantic_map))]
+
+
+def rolled(detections, columns):
+    """The detections of an image rolled by np.roll(image, columns, axis=1)."""
+    moved = []
+    for one in detections:
+        u_min, v_min, u_max, v_max = one.box
+        start = (u_min + columns) % WIDTH
+        moved.append(
+            Detection(one.label, one.score, (start, v_min, start + u_max - u_min, v_max), one.hue, one.saturation)
+        )
+    return moved
+
+
+def localize(upper, lower, matches, semantic_map=ROOM, **options):
+    return SemanticLocalizer(RIG, semantic_map, **options).localize_detections(upper, lower, matches, (WIDTH, HEIGHT))
+
+
+@given(poses)
+@settings(max_examples=50)
+def test_exact_directions_give_the_exact_pose(pose):
+    found = localize(*views(pose))
+    assert found.status == "ok"
+    assert found.reason is None
+    assert found.pose[:2] == pytest.approx(pose[:2], abs=1e-9)
+    assert wrap_angle(found.pose.theta - pose.theta) == pytest.approx(0, abs=1e-9)
+    assert found.residuals == pytest.approx(np.zeros((5, 2)), abs=1e-9)
+
+
+def shaken(detections, rng):
+    """Detections whose boxes are off by a pixel or so."""
+    return [
+        Detection(one.label, one.score, tuple(np.clip(np.array(one.box) + rng.normal(0, 1.0, 4), 0, None)),
+                  one.hue, one.saturation)
+        for one in detections
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("columns", [1, 7, 320, 639, 640, 641, 1000, 1279, -5, 3 * WIDTH + 100])
+@pytest.mark.parametrize("seed", range(3))
+def test_turning_the_rig_keeps_the_place_and_turns_the_heading_by_exactly_that_angle(columns, seed):
+    rng = np.random.default_rng(seed)
+    upper, lower, matches = views(POSE)
+    upper, lower = shaken(upper, rng), shaken(lower, rng)
+    before, after = localize(upper, lower, matches), localize(rolled(upper, columns), rolled(lower, columns), matches)
+    assert before.residuals.std() > 0.01  # the boxes are off, so the place is one that only these boxes give
+    assert after.pose[:2] == pytest.approx(before.pose[:2], abs=1e-9)
+    turned = wrap_angle(before.pose.theta + 2 * np.pi * columns / WIDTH)
+    assert wrap_angle(after.pose.theta - turned) == pytest.approx(0, abs=1e-9)
+    assert after.covariance == pytest.approx(before.covariance, abs=1e-9)
+
+
+def test_the_rolls_above_carry_every_box_across_the_seam():
+    upper, _, _ = views(POSE)
+    crossing = [0] * len(upper)
+    for columns in range(WIDTH):
+        for i, one in enumerate(rolled(upper, columns)):
+            crossing[i] += one.box[2] > WIDTH
+    assert min(crossing) > 0
+
+
+def test_turning_by_every_tenth_column_never_changes_the_place():
+    upper, lower, matches = views(POSE)
+    places = [localize(rolled(upper, k), rolled(lower, k), matches).pose[:2] for k in range(0, WIDTH, 10)]
+    assert np.ptp(places, axis=0) == pytest.approx([0, 0], abs=1e-9)
+
+
+def with_features(upper, lower, pose, heights=HEIGHTS):
+    """Matches that carry four features each, at the landmark itself and three heights above and below it."""
+    matches = []
+    for i, place in enumerate((ROOM.positions - pose[:2]) @ rotation_2d(pose.theta)):
+        points = np.column_stack([np.tile(place, (4, 1)), heights[i] + np.array([-0.1, 0.0, 0.1, 0.2])])
+        both = [
+            direction_to_pixel(points - [0, 0, camera], WIDTH, HEIGHT)
+            for camera in (RIG.upper_height, RIG.lower_height)
+        ]
+        matches.append(ObjectMatch(i, i, upper[i].label, *both))
+    return upper, lower, matches
+
+
+def test_disparities_of_features_give_the_exact_pose_too():
+    upper, lower, _ = views(POSE)
+    found = localize(*with_features(upper, lower, POSE), distance="disparity")
+    assert found.pose == pytest.approx(POSE, abs=1e-9)
+    assert np.linalg.eigvalsh(found.covariance).min() > 0
+
+
+def test_disparities_do_not_depend_on_the_height_of_the_boxes():
+    upper, lower, matches = with_features(*views(POSE)[:2], POSE)
+    lower = [Detection(d.label, d.score, (*d.box[:3], d.box[3] + 15), d.hue, d.saturation) for d in lower]
+    assert localize(upper, lower, matches, distance="disparity").pose == pytest.approx(POSE, abs=1e-9)
+    assert localize(upper, lower, matches).pose != pytest.approx(POSE, abs=0.05)
+
+
+def test_an_object_with_too_few_features_has_no_place_and_says_so():
+    upper, lower, matches = with_features(*views(POSE)[:2], POSE)
+    matches[1] = ObjectMatch(1, 1, "sofa", matches[1].keypoints_upper[:2], matches[1].keypoints_lower[:2])
+    found = localize(upper, lower, matches, distance="disparity")
+    assert [one.outcome for one in found.objects] == ["ok", "too few matches", "ok", "ok", "ok"]
+    assert found.objects[1].observation is None
+    assert [found.upper_detection_of(i) for i in range(4)] == [0, 2, 3, 4]
+
+
+def test_everything_on_the_way_is_kept():
+    upper, lower, matches = views(POSE)
+    found = localize(upper, lower, matches)
+    assert found.upper_detections == tuple(upper)
+    assert found.lower_detections == tuple(lower)
+    assert found.matches == tuple(matches)
+    assert [one.outcome for one in found.objects] == ["ok"] * 5
+    assert sorted(found.pairs) == sorted(found.used_pairs) == matches
+    assert found.association.table.total.shape == (5, 5)
+    body = (ROOM.positions - POSE[:2]) @ rotation_2d(POSE.theta)
+    assert [one.position[:2] for one in found.objects] == [pytest.approx(each) for each in body]
+    assert found.objects[2].position[2] == pytest.approx(HEIGHTS[2] - RIG.upper_height)
+    assert [one.hue for one in found.observations] == pytest.approx(ROOM.hues.tolist(), nan_ok=True)
+
+
+def test_far_objects_are_less_certain_and_less_certain_along_than_across():
+    found = localize(*views(POSE))
+    ranges = [math.hypot(one.x, one.y) for one in found.observations]
+    spreads = [np.sqrt(np.linalg.eigvalsh(one.covariance)) for one in found.observations]
+    assert np.argsort(ranges).tolist() == np.argsort([spread[1] for spread in spreads]).tolist()
+    assert all(spread[1] > spread[0] for spread in spreads)
+
+
+def test_no_object_is_more_certain_than_its_centroid_can_be_told_from_a_box():
+    near = localize(*views(Pose2D(0.9, 0.9, 0.0)))
+    assert min(np.sqrt(np.linalg.eigvalsh(one.covariance)).min() for one in near.observations) >= CENTROID_SIGMA
+
+
+def test_a_weighted_fit_trusts_near_objects_more():
+    upper, lower, matches = views(POSE)
+    ranges = np.linalg.norm(ROOM.positions - POSE[:2], axis=1)
+    far = int(np.argmax(ranges))
+    box = np.add(lower[far].box, [0, 3, 0, 3])  # three pixels of parallax: far less than all of it
+    lower[far] = Detection(lower[far].label, 0.9, tuple(box), lower[far].hue, lower[far].saturation)
+    plain, weighted = localize(upper, lower, matches), localize(upper, lower, matches, weighted_fit=True)
+    errors = [math.dist(found.pose[:2], POSE[:2]) for found in (plain, weighted)]
+    assert errors[1] < 0.5 * errors[0]
+
+
+def test_an_object_of_a_class_that_the_map_lacks_changes_nothing():
+    upper, lower, matches = views(POSE)
+    before = localize(upper, lower, matches)
+    person = ((100.0, 300.0, 140.0, 400.0), (100.0, 280.0, 140.0, 380.0))
+    upper, lower = (
+        [*side, Detection("person", 0.9, box, 10, 50)] for side, box in zip((upper, lower), person, strict=True)
+    )
+    found = localize(upper, lower, [*matches, (5, 5)])
+    assert found.pose == before.pose
+    assert found.objects[5].outcome == "class not on the map"
+
+
+def test_a_couch_on_the_panorama_is_a_sofa_on_the_map():
+    upper, lower, matches = views(POSE)
+    upper, lower = (
+        [Detection({"sofa": "couch"}.get(d.label, d.label), d.score, d.box, d.hue, d.saturation) for d in side]
+        for side in (upper, lower)
+    )
+    assert localize(upper, lower, matches).pose == pytest.approx(POSE, abs=1e-9)
+
+
+def reason_for(upper, lower, matches, **options):
+    found = localize(upper, lower, matches, **options)
+    assert found.status == "unable"
+    assert found.pose is None
+    assert found.covariance is None
+    assert found.explanation
+    return found.reason
+
+
+def test_no_detections_are_a_reason():
+    upper, lower, _ = views(POSE)
+    assert reason_for([], [], []) == outcomes.NO_DETECTIONS
+    assert reason_for(upper, [], []) == outcomes.NO_DETECTIONS
+    assert reason_for([], lower, []) == outcomes.NO_DETECTIONS
+
+
+def test_one_detection_is_a_reason():
+    upper, lower, _ = views(POSE)
+    assert reason_for(upper[:1], lower[:1], [(0, 0)]) == outcomes.ONE_DETECTION
+    assert reason_for(upper, lower[:1], [(0, 0)]) == outcomes.ONE_DETECTION
+
+
+@pytest.mark.parametrize("matches", [[], [(3, 3)]])
+def test_fewer_than_two_objects_in_both_images_are_a_reason(matches):
+    assert reason_for(*views(POSE)[:2], matches) == outcomes.TOO_FEW_MATCHED
+
+
+def test_only_unmapped_classes_are_a_reason():
+    upper, lower, matches = views(POSE)
+    elsewhere = SemanticMap([Landmark("refrigerator", 1, 1, 30, 20), Landmark("cabinet", 2, 1, 30, 20)])
+    assert reason_for(upper, lower, matches, semantic_map=elsewhere) == outcomes.UNMAPPED_ONLY
+
+
+def test_one_mapped_object_is_too_few():
+    upper, lower, matches = views(POSE)
+    elsewhere = SemanticMap([Landmark("chair", 1, 1, 30, 20), Landmark("cabinet", 2, 1, 30, 20)])
+    assert reason_for(upper, lower, matches, semantic_map=elsewhere) == outcomes.TOO_FEW_PAIRS
+
+
+def test_a_pair_of_unlike_classes_is_never_fitted():
+    # Two sofas are seen and the map has one: the second one is left with the chair.
+    upper, lower, _ = views(POSE)
+    semantic_map = SemanticMap([ROOM.landmarks[0], ROOM.landmarks[2]])
+    found = localize(upper, lower, [(0, 0), (1, 1)], semantic_map=semantic_map)
+    assert len(found.pairs) == 2
+    assert len(found.used_pairs) == 1
+    assert found.reason == outcomes.TOO_FEW_PAIRS
+
+
+def test_upper_and_lower_exchanged_are_a_reason():
+    upper, lower, matches = views(POSE)
+    assert reason_for(lower, upper, matches) == outcomes.SWAPPED
+
+
+def test_one_image_given_twice_has_no_distances():
+    upper, _, matches = views(POSE)
+    found = localize(upper, upper, matches)
+    assert {one.outcome for one in found.objects} == {"parallel"}
+    assert found.reason == outcomes.TOO_FEW_PLACED
+    assert "sofa: parallel" in found.explanation
+
+
+def test_objects_matched_across_a_gap_in_azimuth_are_left_out():
+    upper, lower, matches = views(POSE)
+    lower[0] = rolled([lower[0]], 100)[0]
+    found = localize(upper, lower, matches)
+    assert [one.outcome for one in found.objects] == ["azimuth gap", "ok", "ok", "ok", "ok"]
+    assert found.pose == pytest.approx(POSE, abs=0.3)  # the centroid moved, and four pairs are left
+
+
+def test_two_objects_stacked_at_one_place_are_a_reason():
+    semantic_map = SemanticMap([Landmark("table", 4, 4, 30, 40), Landmark("potted plant", 4, 4, 110, 60)])
+    assert reason_for(*views(POSE, semantic_map, [0.4, 0.9]), semantic_map=semantic_map) == outcomes.COINCIDENT
+
+
+def test_a_map_drawn_mirrored_is_a_reason():
+    mirrored = SemanticMap([Landmark(one.label, one.x, 6.0 - one.y, one.hue, one.saturation) for one in ROOM.landmarks])
+    assert reason_for(*views(POSE), semantic_map=mirrored) == outcomes.MIRRORED
+
+
+def observation(label="chair", x=1.0, y=2.0):
+    return Observation(label, x, y, 30, 50)
+
+
+def test_observations_can_be_given_directly():
+    body = (ROOM.positions - POSE[:2]) @ rotation_2d(POSE.theta)
+    seen = [
+        Observation(one.label, *place, one.hue, one.saturation) for one, place in zip(ROOM.landmarks, body, strict=True)
+    ]
+    found = SemanticLocalizer(RIG, ROOM).localize_observations(seen)
+    assert found.pose == pytest.approx(POSE, abs=1e-9)
+    assert found.covariance is None  # nobody said how certain they are
+    assert found.upper_detection_of(0) is None
+
+
+def test_no_observations_are_a_reason():
+    assert SemanticLocalizer(RIG, ROOM).localize_observations([]).reason == outcomes.TOO_FEW_PAIRS
+
+
+def test_observations_that_are_none_are_named():
+    localizer = SemanticLocalizer(RIG, ROOM)
+    with pytest.raises(AssociationError, match="observation 1"):
+        localizer.localize_observations([observation(), observation(x=math.nan)])
+    with pytest.raises(LocalizerError, match="observation 0 is a person"):
+        localizer.localize_observations([observation("person")])
+
+
+@pytest.mark.parametrize(
+    ("matches", "says"),
+    [
+        ([(0, 9)], "names lower detection 9; there are 5"),
+        ([(-1, 0)], "names upper detection -1"),
+        ([(0, 2)], "joins a sofa to a chair"),
+        ([(0, 0), (0, 1)], "one upper detection twice"),
+        ([(0, 1), (1, 1)], "one lower detection twice"),
+        ([5], "pair of indices; got 5"),
+        ([(0.5, 1)], "whole numbers; got 0.5"),
+    ],
+)
+def test_matches_that_cannot_be_are_named(matches, says):
+    with pytest.raises(LocalizerError, match=says):
+        localize(*views(POSE)[:2], matches)
+
+
+def test_boxes_of_another_image_size_are_named():
+    upper, lower, matches = views(POSE)
+    with pytest.raises(LocalizerError, match=r"not on a panorama of 640 x 320 pixels: give size"):
+        SemanticLocalizer(RIG, ROOM).localize_detections(upper, lower, matches, size=(640, 320))
+    for size in ((640, 640), (0, 0), 1280, "big"):
+        with pytest.raises(LocalizerError, match="size"):
+            SemanticLocalizer(RIG, ROOM).localize_detections(upper, lower, matches, size=size)
+
+
+def test_the_size_of_the_shipped_panoramas_is_taken_when_none_is_given():
+    assert SemanticLocalizer(RIG, ROOM).localize_detections(*views(POSE)).pose == pytest.approx(POSE, abs=1e-9)
+    with pytest.raises(LocalizerError, match="not on a panorama"):
+        SemanticLocalizer(RIG, ROOM, image_size=(640, 320)).localize_detections(*views(POSE))
+
+
+def test_a_box_that_is_none_is_named():
+    upper, lower, matches = views(POSE)
+    upper[0] = SimpleNamespace(label="sofa", box=(10, 20, 5, 30), hue=1, saturation=1)
+    with pytest.raises(BoxError, match="u_min < u_max"):
+        localize(upper, lower, matches)
+
+
+def test_disparity_without_features_is_named():
+    with pytest.raises(LocalizerError, match="needs ObjectMatch with its features"):
+        localize(*views(POSE), distance="disparity")
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"association": "best"}, r"association must be one of \('greedy',.*'best'"),
+        ({"distance": "lidar"}, "distance must be one of"),
+        ({"distance_term": "squared"}, "distance_term must be one of"),
+        ({"image_size": (100, 100)}, "twice as wide as high"),
+        ({"rig": 0.3}, "a StereoRig and a SemanticMap are needed"),
+    ],
+)
+def test_options_that_do_not_exist_are_named(options, says):
+    with pytest.raises(LocalizerError, match=says):
+        SemanticLocalizer(**{"rig": RIG, "semantic_map": ROOM, **options})
+
+
+class NoObjects:
+    """A detector in an empty room."""
+
+    def detect(self, image_bgr):
+        return []
+
+
+IMAGE = np.full((64, 128, 3), (80, 90, 100), np.uint8)
+
+
+def test_images_without_objects_are_unable():
+    assert SemanticLocalizer(RIG, ROOM, NoObjects()).localize(IMAGE, IMAGE).reason == outcomes.NO_DETECTIONS
+
+
+def test_images_that_are_no_panoramas_are_named():
+    localizer = SemanticLocalizer(RIG, ROOM, NoObjects())
+    with pytest.raises(NotPanoramaError):
+        localizer.localize(IMAGE[:, :100], IMAGE[:, :100])
+    with pytest.raises(GreyImageError):
+        localizer.localize(IMAGE[..., 0], IMAGE[..., 0])
+    with pytest.raises(GreyImageError, match=r"^lower image"):
+        localizer.localize(IMAGE, IMAGE[..., [0, 0, 0]])
+    with pytest.raises(ImageSizeError):
+        localizer.localize(IMAGE, IMAGE[:32, :64])
+
+
+def test_images_without_a_detector_are_named():
+    with pytest.raises(LocalizerError, match="no detector"):
+        SemanticLocalizer(RIG, ROOM).localize(IMAGE, IMAGE)
+
+
+BOARDS = [  # label, azimuth, horizontal range, width, bottom, top; the upper camera is the origin
+    ("sofa", 0.2, 1.6, 1.2, -0.9, -0.2),
+    ("sofa", 2.6, 2.2, 1.3, -0.9, -0.2),
+    ("chair", 1.3, 1.4, 0.7, -0.9, -0.1),
+    ("television", -1.2, 2.0, 1.1, -0.3, 0.5),
+    ("potted plant", -2.3, 1.8, 0.8, -0.8, 0.2),
+]
+BOARD_HUES = [210.0, 30.0, 60.0, math.nan, 110.0]
+TRUE_POSE = Pose2D(3.0, 2.5, 0.7)
+
+
+class BoxesGiven:
+    """A detector that knows the boxes of each image."""
+
+    def __init__(self):
+        self.of_image = {}
+
+    def detect(self, image_bgr):
+        return self.of_image[image_bgr.tobytes()]
+
+
+@pytest.fixture(scope="module")
+def photographed():
+    """Two small panoramas of textured boards, a detector that knows their boxes, and the map of the boards."""
+    rng = np.random.default_rng(3)
+    boards = [vertical_pair.Board(*one, vertical_pair.blotches(rng)) for one in BOARDS]
+    walls = vertical_pair.room_walls(vertical_pair.blotches(rng, size=48))
+    detector, images = BoxesGiven(), []
+    for camera in (0.0, -vertical_pair.BASELINE):
+        image = vertical_pair.panorama([*walls, *boards], camera)
+        boxes = [vertical_pair.box_of(board, camera) for board in boards]
+        images.append(image)
+        found = [Detection(b.label, 0.9, box, hue, 50.0) for b, box, hue in zip(boards, boxes, BOARD_HUES, strict=True)]
+        for k in (0, 100, 256, 400):
+            turned = vertical_pair.rolled(found, k)
+            detector.of_image[np.roll(image, k, axis=1).tobytes()] = [
+                Detection(d.label, 0.9, t.box, d.hue, 50.0) for d, t in zip(found, turned, strict=True)
+            ]
+    places = TRUE_POSE.apply([[b.range * math.cos(b.azimuth), b.range * math.sin(b.azimuth)] for b in boards])
+    semantic_map = SemanticMap(
+        [Landmark(b.label, *place, hue, 50.0) for b, place, hue in zip(boards, places, BOARD_HUES, strict=True)]
+    )
+    return SemanticLocalizer(StereoRig(vertical_pair.BASELINE, 1.3), semantic_map, detector), images
+
+
+def heading_error_deg(found, theta):
+    return abs(math.degrees(wrap_angle(found.pose.theta - theta)))
+
+
+def test_two_images_give_the_pose(photographed):
+    localizer, images = photographed
+    found = localizer.localize(*images)
+    assert found.status == "ok"
+    assert len(found.used_pairs) >= 4
+    assert math.dist(found.pose[:2], TRUE_POSE[:2]) < 0.15
+    assert heading_error_deg(found, TRUE_POSE.theta) < 2
+    assert len(found.matches) + sum(one.side == "upper" for one in found.unmatched) == len(BOARDS)
+
+
+@pytest.mark.parametrize("columns", [100, 256, 400])
+def test_rolled_images_give_the_same_place_and_the_turned_heading(photographed, columns):
+    localizer, images = photographed
+    before, after = localizer.localize(*images), localizer.localize(*(np.roll(one, columns, axis=1) for one in images))
+    assert after.used_pairs == before.used_pairs
+    assert math.dist(after.pose[:2], before.pose[:2]) < 0.1
+    assert heading_error_deg(after, before.pose.theta + 2 * math.pi * columns / vertical_pair.WIDTH) < 2
+
+
+def test_the_disparities_of_two_images_give_the_pose(photographed):
+    localizer, images = photographed
+    by_features = SemanticLocalizer(localizer.rig, localizer.semantic_map, localizer.detector, distance="disparity")
+    found = by_features.localize(*images)
+    assert math.dist(found.pose[:2], TRUE_POSE[:2]) < 0.1
+
+
+def test_swapped_images_are_named(photographed):
+    localizer, images = photographed
+    with pytest.raises(SwappedImagesError):
+        localizer.localize(*images[::-1])

@@ -1,0 +1,194 @@
+"""The sphere behind the image: conventions, round trips, and images that are no panoramas."""
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from course_lib.spherical_stereo.panorama import (
+    EmptyImageError,
+    GreyImageError,
+    ImageSizeError,
+    NotPanoramaError,
+    PanoramaError,
+    RigError,
+    StereoRig,
+    UnreadableImageError,
+    azimuth_difference,
+    azimuth_elevation,
+    azimuth_elevation_of_pixel,
+    check_panorama,
+    check_panorama_pair,
+    direction_from_angles,
+    direction_to_pixel,
+    pixel_to_direction,
+    read_panorama,
+)
+
+WIDTH, HEIGHT = 1280, 640
+QUICK = settings(max_examples=60, deadline=None)
+azimuths = st.floats(-np.pi, np.nextafter(np.pi, 0))
+elevations = st.floats(-1.57, 1.57)
+
+
+@pytest.mark.parametrize(
+    ("uv", "direction"),
+    [
+        ((WIDTH / 2, HEIGHT / 2), (1, 0, 0)),  # the centre looks forward
+        ((WIDTH / 4, HEIGHT / 2), (0, 1, 0)),  # left of it is left
+        ((3 * WIDTH / 4, HEIGHT / 2), (0, -1, 0)),
+        ((0, HEIGHT / 2), (-1, 0, 0)),  # the seam is behind, from both sides
+        ((WIDTH, HEIGHT / 2), (-1, 0, 0)),
+        ((WIDTH / 2, 0), (0, 0, 1)),  # row 0 is straight up
+        ((WIDTH / 3, HEIGHT), (0, 0, -1)),
+    ],
+)
+def test_pixels_look_where_the_conventions_say(uv, direction):
+    np.testing.assert_allclose(pixel_to_direction(np.array(uv), WIDTH, HEIGHT), direction, atol=1e-15)
+
+
+@QUICK
+@given(u=st.floats(0, WIDTH, exclude_max=True), v=st.floats(0.01, HEIGHT - 0.01))
+def test_a_pixel_comes_back_from_its_direction(u, v):
+    back = direction_to_pixel(pixel_to_direction(np.array([u, v]), WIDTH, HEIGHT), WIDTH, HEIGHT)
+    assert 0 <= back[0] < WIDTH
+    gap = abs(back[0] - u)
+    assert min(gap, WIDTH - gap) < 1e-6
+    assert back[1] == pytest.approx(v, abs=1e-9)
+
+
+@QUICK
+@given(azimuth=azimuths, elevation=elevations)
+def test_angles_come_back_from_their_direction(azimuth, elevation):
+    direction = direction_from_angles(azimuth, elevation)
+    assert np.linalg.norm(direction) == pytest.approx(1)
+    back_azimuth, back_elevation = azimuth_elevation(direction)
+    assert abs(azimuth_difference(back_azimuth, azimuth)) < 1e-9
+    assert back_elevation == pytest.approx(elevation, abs=1e-9)
+
+
+@QUICK
+@given(k=st.integers(-3 * WIDTH, 3 * WIDTH), u=st.floats(0, WIDTH), v=st.floats(1, HEIGHT - 1))
+def test_rolling_the_image_right_turns_what_it_shows_to_the_right(k, u, v):
+    """np.roll(image, +k) moves a point k columns right: its azimuth falls by 2 pi k / W, the heading rises."""
+    before, _ = azimuth_elevation(pixel_to_direction(np.array([u, v]), WIDTH, HEIGHT))
+    after, _ = azimuth_elevation(pixel_to_direction(np.array([u + k, v]), WIDTH, HEIGHT))
+    assert abs(azimuth_difference(before - after, 2 * np.pi * k / WIDTH)) < 1e-9
+
+
+def test_directions_broadcast_over_leading_axes(rng):
+    uv = rng.uniform(0, HEIGHT, (2, 3, 2))
+    directions = pixel_to_direction(uv, WIDTH, HEIGHT)
+    assert directions.shape == (2, 3, 3)
+    np.testing.assert_allclose(directions[1, 2], pixel_to_direction(uv[1, 2], WIDTH, HEIGHT))
+    assert direction_from_angles(np.zeros((4, 1)), np.zeros(5)).shape == (4, 5, 3)
+
+
+@QUICK
+@given(a=azimuths, b=azimuths)
+def test_an_azimuth_difference_is_the_short_way_round(a, b):
+    difference = azimuth_difference(a, b)
+    assert -np.pi <= difference < np.pi
+    assert np.cos(difference) == pytest.approx(np.cos(a - b), abs=1e-9)
+
+
+@pytest.mark.parametrize("uv", [[1.0], [1.0, 2.0, 3.0], [np.nan, 1.0], [5.0, -0.1], [5.0, HEIGHT + 0.1]])
+def test_a_place_that_is_not_on_the_image_is_refused(uv):
+    with pytest.raises(PanoramaError):
+        azimuth_elevation_of_pixel(np.array(uv), WIDTH, HEIGHT)
+
+
+@pytest.mark.parametrize("direction", [[0, 0, 0], [np.inf, 0, 0], [1, 0]])
+def test_a_direction_that_is_none_is_refused(direction):
+    with pytest.raises(PanoramaError):
+        direction_to_pixel(np.array(direction, float), WIDTH, HEIGHT)
+
+
+@pytest.mark.parametrize("baseline", [0, -0.3, np.nan, np.inf, None, "far"])
+def test_a_rig_needs_a_positive_baseline(baseline):
+    with pytest.raises(RigError, match="baseline"):
+        StereoRig(baseline, 1.32)
+
+
+@pytest.mark.parametrize("height", [0.2, -1, np.inf])
+def test_the_lower_camera_stands_above_the_floor(height):
+    with pytest.raises(RigError, match="upper_height"):
+        StereoRig(0.3, height)
+
+
+def test_the_papers_rig_has_its_lower_camera_at_102_cm():
+    assert StereoRig(0.30, 1.32).lower_height == pytest.approx(1.02)
+    assert np.isnan(StereoRig(0.2).upper_height)
+
+
+@pytest.mark.parametrize(
+    ("image", "error"),
+    [
+        (None, EmptyImageError),
+        (np.zeros((0, 0, 3), np.uint8), EmptyImageError),
+        (np.zeros((8, 16), np.uint8), GreyImageError),
+        (np.zeros((8, 16, 1), np.uint8), GreyImageError),
+        (np.zeros((8, 16, 3), np.uint8), GreyImageError),
+        (np.repeat(np.arange(128, dtype=np.uint8).reshape(8, 16, 1), 3, axis=2), GreyImageError),
+        (np.zeros((8, 15, 3), np.uint8), NotPanoramaError),
+        (np.zeros((8, 16, 4), np.uint8), NotPanoramaError),
+        (np.zeros((8, 16, 3), np.float32), NotPanoramaError),
+        (np.zeros((2, 8, 16, 3), np.uint8), NotPanoramaError),
+        ([[1, 2]], NotPanoramaError),
+    ],
+)
+def test_an_image_that_is_no_panorama_is_named(image, error):
+    with pytest.raises(error, match=r"^left image") as caught:
+        check_panorama(image, "left image")
+    assert isinstance(caught.value, PanoramaError)
+
+
+def coloured(height):
+    image = np.zeros((height, 2 * height, 3), np.uint8)
+    image[..., 2] = 80
+    return image
+
+
+def test_a_panorama_is_returned_as_it_is():
+    image = coloured(8)
+    assert check_panorama(image) is image
+
+
+@pytest.mark.parametrize("channel", range(3))
+def test_one_coloured_pixel_anywhere_makes_a_colour_image(channel):
+    image = np.full((64, 128, 3), 90, np.uint8)
+    image[37, 101, channel] = 91
+    assert check_panorama(image) is image
+
+
+def test_two_panoramas_of_one_rig_have_one_size():
+    assert check_panorama_pair(coloured(8), coloured(8)) == (16, 8)
+    with pytest.raises(ImageSizeError, match="16 x 8"):
+        check_panorama_pair(coloured(8), coloured(4))
+
+
+def test_a_panorama_file_is_read_and_its_alpha_left_out(tmp_path, rng):
+    image = rng.integers(0, 255, (8, 16, 4), dtype=np.uint8)
+    cv2.imwrite(str(tmp_path / "a.png"), image)
+    np.testing.assert_array_equal(read_panorama(tmp_path / "a.png"), image[..., :3])
+
+
+def test_files_that_hold_no_colour_panorama_are_named(tmp_path, rng):
+    (tmp_path / "text.png").write_text("no image")
+    (tmp_path / "nothing.png").write_bytes(b"")
+    grey = rng.integers(0, 255, (8, 16), dtype=np.uint8)
+    cv2.imwrite(str(tmp_path / "grey.png"), grey)
+    cv2.imwrite(str(tmp_path / "grey3.png"), cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR))
+    cv2.imwrite(str(tmp_path / "square.png"), rng.integers(0, 255, (8, 8, 3), dtype=np.uint8))
+    expected = {
+        "missing.png": UnreadableImageError,
+        "text.png": UnreadableImageError,
+        "nothing.png": UnreadableImageError,
+        "grey.png": GreyImageError,
+        "grey3.png": GreyImageError,
+        "square.png": NotPanoramaError,
+    }
+    for name, error in expected.items():
+        with pytest.raises(error, match=name):
+            read_panorama(tmp_path / name)
