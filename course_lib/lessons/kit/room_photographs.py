@@ -6,7 +6,7 @@ import functools
 
 import numpy as np
 
-from course_lib.lessons.kit.paths import data_path
+from course_lib.paths import data_path
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 

@@ -15,7 +15,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import state_from_optical_pose
-from course_lib.lessons.kit.paths import data_path
+from course_lib.paths import data_path
 
 FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
 PAIR = 3  # of the room's experiment 1: most objects in view, nothing special (chosen)

@@ -11,8 +11,8 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.geometry import state_from_optical_pose
-from course_lib.lessons.kit.paths import data_path
 from course_lib.lessons.lesson_04.time_of_flight import MODEL
+from course_lib.paths import data_path
 
 
 @functools.cache

@@ -11,7 +11,7 @@ import numpy as np
 from course_lib.depth_mcl.particle_filter import initial_particles, propagate
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import pose_matrix, state_from_optical_pose
-from course_lib.lessons.kit.paths import data_path
+from course_lib.paths import data_path
 
 _NEAR = 0.10  # m from the wagon within which a particle is called near: the wagon's step (chosen)
 

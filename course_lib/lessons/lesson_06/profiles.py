@@ -16,8 +16,8 @@ from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import state_from_optical_pose
-from course_lib.lessons.kit.paths import data_path
 from course_lib.lessons.lesson_06.gaussian import gaussian_log_likelihood
+from course_lib.paths import data_path
 
 FRAME = 100  # of the wagon's run: two people stand before the camera who are not in the map
 SMALL = (44, 36)  # pixels of the small images: a sixteenth, so that a profile takes milliseconds

@@ -16,8 +16,8 @@ from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import state_from_optical_pose
-from course_lib.lessons.kit.paths import data_path
 from course_lib.lessons.kit.progress_bar import progress
+from course_lib.paths import data_path
 
 STRETCH = range(60, 84)  # frames that are localized live: a good two metres of the run (chosen)
 # Where the panel's table is read off, metres from the true x: finely near it, where the hill is steep, and far back,

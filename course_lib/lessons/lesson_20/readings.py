@@ -17,7 +17,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.corridor import Run, run_sequence, sequence_camera
 from course_lib.geometry import rotation_exp
-from course_lib.lessons.kit.paths import data_path
+from course_lib.paths import data_path
 
 STAND_IN_FRAMES = 24  # of the corridor run that was carried by hand: as many as the panel steps through (chosen)
 BOUNDS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)  # that numbers are printed against

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from course_lib.lessons.kit.paths import REPOSITORY, data_path
 from course_lib.lessons.kit.room_photographs import room_recording, the_image
 from course_lib.lessons.lesson_11.panel import sphere_panel
 from course_lib.lessons.lesson_11.sphere_scene import SCENE, Scene
 from course_lib.lessons.lesson_11.sphere_view import SIZE, SphereView, circle_around, circle_on_panorama
 from course_lib.lessons.lesson_11.views import all_bearings, look_up, object_at_the_seam
 from course_lib.lessons.lesson_11.write_sphere_scene import scene_html, write_scene
+from course_lib.paths import REPOSITORY, data_path
 from course_lib.spherical_stereo.panorama import direction_from_angles, direction_to_pixel, pixel_to_direction
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
