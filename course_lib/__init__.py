@@ -7,6 +7,7 @@ experiments          both papers' tables, as functions of a seed
 simulation           the places that data/ was made from
 detector_training    the network that finds objects (needs PyTorch)
 plots, lessons       figures, and what only the notebooks use
+paths                where the data and the lessons lie
 commands, cli        `python -m course_lib`, normally reached through `python3 course.py`
 """
 

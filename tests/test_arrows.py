@@ -7,16 +7,17 @@ import pytest
 
 PACKAGE = Path(__file__).parents[1] / "course_lib"
 
-# Part of the library -> parts it may import besides itself. commands and cli stand above all of them.
+# Part of the library -> parts it may import besides itself. commands and cli stand above all of them, but for lessons.
 METHODS = {"geometry", "depth_mcl", "spherical_stereo"}
 ALLOWED = {
     "geometry": set(),
+    "paths": set(),
     "depth_mcl": {"geometry"},
     "spherical_stereo": {"geometry"},
     "simulation": METHODS,
     "experiments": METHODS | {"simulation"},
     "plots": METHODS | {"experiments"},
-    "lessons": METHODS | {"experiments", "plots", "simulation"},
+    "lessons": METHODS | {"experiments", "paths", "plots", "simulation"},
     "detector_training": METHODS | {"experiments", "simulation"},
 }
 
@@ -50,7 +51,7 @@ def modules_of(folder, part):
 
 def test_every_folder_of_the_library_has_its_arrows_drawn():
     folders = {path.name for path in PACKAGE.iterdir() if path.is_dir() and list(path.glob("*.py"))}
-    assert folders == (set(ALLOWED) - {"geometry"}) | {"commands"}
+    assert folders == (set(ALLOWED) - {"geometry", "paths"}) | {"commands"}
 
 
 @pytest.mark.parametrize("part", ALLOWED)
@@ -60,6 +61,11 @@ def test_every_part_imports_only_what_the_design_allows(part):
     for path in paths:
         strangers = set(imported_parts(path)) - ALLOWED[part] - {part}
         assert not strangers, f"{path.relative_to(PACKAGE)} imports {strangers}"
+
+
+def test_commands_run_without_what_only_the_notebooks_use():
+    for path in modules_of(PACKAGE, "commands"):
+        assert "lessons" not in set(imported_parts(path)), f"{path.name} imports lessons, and with it IPython"
 
 
 @pytest.mark.parametrize("part", WALK)

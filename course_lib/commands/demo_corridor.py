@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments.corridor import METHODS, path_errors, run_method
-    from course_lib.lessons.kit.paths import data_path
+    from course_lib.paths import data_path
 
     require_seed(arguments.seed)
     require_output_folder(arguments.out)

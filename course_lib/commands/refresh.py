@@ -18,7 +18,7 @@ import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
-from course_lib.lessons.kit.paths import REPOSITORY, notebook_paths
+from course_lib.paths import REPOSITORY, notebook_paths
 
 MAX_BYTES = 400_000
 MAX_SECONDS = 60.0

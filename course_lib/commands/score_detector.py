@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.detector_evaluation import labelled_panoramas, score_detector
-    from course_lib.lessons.kit.paths import data_path
+    from course_lib.paths import data_path
     from course_lib.simulation.room.training_images import labelled_images, make_room_images
     from course_lib.spherical_stereo.recording import read_stereo_recording
 

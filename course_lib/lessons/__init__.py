@@ -1,24 +1,29 @@
-"""What only the notebooks use: figures, panels, exercise checks and each lesson's plumbing.
+"""What only the notebooks use: each lesson's figures, panel and exercises, and what several of them share.
 
-`paths` finds the data, `figures` and `live_figure` draw, `panel` and `progress_bar` are the moving parts, `exercises`
-judges answers. A lesson's methods are never here: they are in `course_lib.depth_mcl`.
+`kit/` holds what several lessons share: `exercises` judges answers, `panel`, `live_figure` and `progress_bar` are the
+moving parts, `display` shows a figure, and `room_photographs`, `panorama_features`, `room_observations` and
+`corridor_views` load what more than one lesson looks at. A lesson's methods are never here: they are in
+`course_lib.depth_mcl` and `course_lib.spherical_stereo`; figures that commands draw too are in `course_lib.plots`.
 
-A new lesson NN is three files:
+A new lesson NN is a notebook and a folder:
 
 * `notebooks/NN_title.ipynb`, its cells with ids "NN-something"; the parts and their order are what
   tests/notebooks/test_shape.py checks. The five cells of an exercise share `metadata.exercise = "NN.1"` and have one of
   the tags task, exercise (the stub), check, hint, solution (with `metadata.jupyter.source_hidden = true`).
-* `lesson_NN.py`: scenes, figures and panels, with `PANELS = {title: function that makes the panel}`. A figure comes
-  from `figures.new_figure` and goes to `show(figure, alt=...)`; a panel's figure is a `LiveFigure`, its `draw` a plain
+* `lessons/lesson_NN/`, of which the notebook imports the package alone:
+  `__init__.py` hands on what the notebook calls as `lesson_NN.something`, and `PANELS`.
+  `figures.py`: a figure comes from `figures.new_figure` and goes to `show(figure, alt=...)`.
+  `panel.py`: `PANELS = {title: function that makes the panel}`; its figure is a `LiveFigure`, its `draw` a plain
   function of the controls' values that returns a `Drawing`.
-* `exercises_NN.py`: `EXERCISES`, each with a reference, an input generator and three mistakes or more with their hints.
+  `exercises.py`: `EXERCISES`, each with a reference, an input generator and three mistakes or more with their hints.
+  What the three share (scenes, data, what is measured) has modules of its own, named after what they hold.
 
-Then `python3 course.py refresh NN` runs the notebook and stores its outputs. The tests find all three by their names.
+Then `python3 course.py refresh NN` runs the notebook and stores its outputs. The tests find all of it by the names.
 """
 
+from course_lib.lessons.kit.display import show
 from course_lib.lessons.kit.exercises import check
-from course_lib.lessons.kit.paths import data_path
 from course_lib.lessons.kit.progress_bar import progress
-from course_lib.plots.figures import show
+from course_lib.paths import data_path
 
 __all__ = ["check", "data_path", "progress", "show"]

@@ -1,4 +1,4 @@
-"""One style for every figure of the lessons, and pictures that carry their alternative text.
+"""One style for every figure that lessons and commands draw, and their pictures as PNG.
 
 Colours are those of Okabe and Ito ("Color Universal Design", 2008), told apart by readers with any common form of
 colour blindness; marker and line style change along with the colour. Depth is coloured with cividis (Nunez, Anderton,
@@ -8,13 +8,9 @@ matplotlib's global state, so no lesson leaves a window or an open figure behind
 
 from __future__ import annotations
 
-import base64
-import html
 import io
-import re
 
 import numpy as np
-from IPython.display import display
 from matplotlib import colormaps, rcParams
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -31,10 +27,6 @@ _DOTS_PER_INCH = 100
 _COLOURS_IN_PNG = 128  # smooth enough for a colour bar, a third of the bytes of full colour
 
 rcParams.update({"font.size": 9, "axes.titlesize": 10, "axes.titlelocation": "left"})
-
-
-class FigureError(ValueError):
-    """A figure that lacks what every figure of the course has: title, labels with units, alternative text."""
 
 
 def line_style(index: int) -> dict:
@@ -71,29 +63,6 @@ def colour_bar(figure: Figure, image: AxesImage, axes: Axes | np.ndarray, label:
     figure.colorbar(image, ax=axes, label=label, shrink=0.85)
 
 
-def show(figure: Figure, alt: str) -> None:
-    """Display a finished figure as one compressed picture with its alternative text.
-
-    Raises `FigureError` where title, axis labels with units (such as "depth Z [m]") or `alt` are missing.
-    """
-    require_labels(figure)
-    display(Picture(png_bytes(figure), alt))
-
-
-def require_labels(figure: Figure) -> None:
-    """Raise `FigureError` unless every axes has a title and labels with units in square brackets."""
-    shared = {"x": figure.get_supxlabel(), "y": figure.get_supylabel()}
-    for axes in figure.axes:
-        labels = {"x": axes.get_xlabel() or shared["x"], "y": axes.get_ylabel() or shared["y"]}
-        if axes.get_label() == "<colorbar>":
-            labels = {"colour bar": axes.get_xlabel() or axes.get_ylabel()}
-        elif not (any(axes.get_title(loc) for loc in ("left", "center", "right")) or figure.get_suptitle()):
-            raise FigureError("this figure has no title: set one with axes.set_title(...)")
-        for name, label in labels.items():
-            if not re.search(r"\[[^\]]+\]", label):
-                raise FigureError(f"the {name} label {label!r} has no unit: write it as 'depth Z [m]' or 'weight [-]'")
-
-
 def png_bytes(figure: Figure) -> bytes:
     """The figure as PNG with a palette of 128 colours: a third of the size of full colour."""
     figure.canvas.draw()
@@ -108,26 +77,3 @@ def compress(rgb: np.ndarray) -> bytes:
     buffer = io.BytesIO()
     reduced.save(buffer, format="PNG", optimize=True)
     return buffer.getvalue()
-
-
-class Picture:
-    """A PNG with alternative text, shown as `<img alt=...>`.
-
-    JupyterLab drops the alternative text of an `image/png` output, so the picture travels as HTML.
-    """
-
-    def __init__(self, png: bytes, alt: str) -> None:
-        if len(alt.split()) < 4:
-            raise FigureError(f"alternative text says what the picture shows, in a sentence; got {alt!r}")
-        self.png, self.alt = png, " ".join(alt.split())
-
-    def html(self) -> str:
-        """The `<img>` element, its bytes inside."""
-        data = base64.b64encode(self.png).decode("ascii")
-        return f'<img alt="{html.escape(self.alt)}" src="data:image/png;base64,{data}" style="max-width: 100%">'
-
-    def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
-        return {"text/plain": repr(self), "text/html": self.html()}
-
-    def __repr__(self) -> str:
-        return f"Picture: {self.alt}"

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from course_lib.commands.lab import lab_command
-from course_lib.lessons.kit.paths import REPOSITORY, notebook_paths
+from course_lib.paths import REPOSITORY, notebook_paths
 
 playwright = pytest.importorskip("playwright.sync_api")
 

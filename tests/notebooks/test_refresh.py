@@ -12,7 +12,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from course_lib.commands import refresh
 from course_lib.commands.refresh import RefreshError
-from course_lib.lessons.kit.paths import REPOSITORY
+from course_lib.paths import REPOSITORY
 
 SANITIZE = REPOSITORY / "tests" / "nbval_sanitize.cfg"
 
@@ -34,8 +34,8 @@ def run_nbval(path) -> subprocess.CompletedProcess:
 
 
 PANEL = """
-from course_lib.lessons import figures
-from course_lib.lessons.panel import Drawing, Panel, Switch
+from course_lib.lessons.kit.panel import Drawing, Panel, Switch
+from course_lib.plots import figures
 png = figures.png_bytes(figures.new_figure(size=(1, 1))[0])
 Panel("test", [Switch("on", "on")], lambda on: Drawing(png, "A small empty picture", "on: 1.25")).show()
 """

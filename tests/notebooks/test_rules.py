@@ -7,7 +7,7 @@ import re
 import statistics
 
 from course_lib.commands.refresh import MAX_BYTES, METADATA, WIDGET_VIEW
-from course_lib.lessons.kit.paths import REPOSITORY
+from course_lib.paths import REPOSITORY
 
 FORBIDDEN_WIDGETS = {"Output", "interact", "interactive", "interactive_output", "interact_manual", "Play"}
 SHOWN_TYPES = {"text/plain", "text/html", "text/markdown", "text/latex"}

@@ -7,7 +7,7 @@ import copy
 import pytest
 
 from course_lib.commands.refresh import MAX_SECONDS, execute
-from course_lib.lessons.kit.paths import notebook_paths
+from course_lib.paths import notebook_paths
 
 resource = pytest.importorskip("resource", reason="processor time of the kernel is known on POSIX systems only")
 

@@ -7,7 +7,6 @@ import re
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.paths import REPOSITORY, notebook_paths
 from course_lib.lessons.kit.series_pictures import (
     CHOSEN,
     MAX_BYTES,
@@ -17,6 +16,7 @@ from course_lib.lessons.kit.series_pictures import (
     stored_picture,
     write_pictures,
 )
+from course_lib.paths import REPOSITORY, notebook_paths
 
 FOLDER = REPOSITORY / "notebooks"
 README = (FOLDER / "README.md").read_text(encoding="utf-8")

@@ -1,1 +1,1 @@
-"""What several lessons share: exercise checks, panels, live figures, progress bars, where the data is."""
+"""What several lessons share: exercise checks, panels, live figures, progress bars, the recordings they look at."""

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
 from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.lessons.kit.paths import data_path
+from course_lib.paths import data_path
 
 
 @functools.cache

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
-from course_lib.plots.figures import require_labels
+from course_lib.lessons.kit.display import require_labels
 
 
 class LiveFigure:

@@ -19,7 +19,8 @@ import ipywidgets as widgets
 import numpy as np
 from IPython.display import display
 
-from course_lib.plots.figures import Picture, compress
+from course_lib.lessons.kit.display import Picture
+from course_lib.plots.figures import compress
 
 
 @dataclass(frozen=True)

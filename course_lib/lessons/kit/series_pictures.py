@@ -15,7 +15,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from course_lib.lessons.kit.paths import REPOSITORY, notebook_paths
+from course_lib.paths import REPOSITORY, notebook_paths
 
 CHOSEN = {
     "00": "00-second-picture",

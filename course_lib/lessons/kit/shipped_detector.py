@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from course_lib.lessons.kit.paths import data_path
+from course_lib.paths import data_path
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 
 

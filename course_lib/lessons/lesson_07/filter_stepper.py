@@ -27,7 +27,7 @@ from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import state_from_optical_pose
-from course_lib.lessons.kit.paths import data_path
+from course_lib.paths import data_path
 from course_lib.plots.corridor_figures import floor_plan
 
 FRAMES = range(60, 84)  # of the wagon's run, the stretch of lesson 08

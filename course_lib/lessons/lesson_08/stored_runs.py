@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.depth_mcl.evaluation import PAPER_TABLE_1
-from course_lib.lessons.kit.paths import data_path
+from course_lib.paths import data_path
 
 
 class StoredRun(NamedTuple):

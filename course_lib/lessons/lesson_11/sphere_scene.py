@@ -1,27 +1,14 @@
-"""The interactive scene of lesson 11: a panorama beside the unit sphere, one point on both, to be dragged on either.
+"""The interactive scene of lesson 11 as its notebook shows it: where it lies, and the titled frame around it.
 
-    python -m course_lib.lessons.lesson_11.sphere_scene
-
-writes notebooks/scenes/11_sphere.html: one file with its picture inside, which needs no network and no kernel. Its
-script computes with the same two formulas as `sphere.pixel_to_direction` and `sphere.direction_to_pixel`.
+`write_sphere_scene` writes it; that module is a command, so nothing imports it.
 """
 
 from __future__ import annotations
 
-import base64
 import html
-from pathlib import Path
-
-from course_lib.lessons.kit.paths import REPOSITORY, data_path
 
 SCENE = "scenes/11_sphere.html"
 """Where the scene lies, from the folder notebooks/."""
-
-PICTURE = "room/experiment_1/05_b_upper.jpg"
-"""A panorama with a sofa across its seam."""
-
-_TEMPLATE = Path(__file__).with_name("sphere_scene.html")
-_PLACEHOLDER = "PANORAMA"
 
 
 class Scene:
@@ -39,22 +26,3 @@ class Scene:
 
     def __repr__(self) -> str:
         return f"Scene: {self.title}"
-
-
-def scene_html() -> str:
-    """The whole scene as text, its panorama inside."""
-    picture = base64.b64encode(data_path(PICTURE).read_bytes()).decode("ascii")
-    before, _, after = _TEMPLATE.read_text(encoding="utf-8").rpartition(_PLACEHOLDER)
-    return before + picture + after
-
-
-def write_scene(path: Path) -> Path:
-    """Write the scene to `path` and return it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(scene_html(), encoding="utf-8")
-    return path
-
-
-if __name__ == "__main__":
-    written = write_scene(REPOSITORY / "notebooks" / SCENE)
-    print(f"{written.relative_to(REPOSITORY)}: {written.stat().st_size / 1000:.0f} kB")

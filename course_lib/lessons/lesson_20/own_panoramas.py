@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.experiments.room import exact_detections
-from course_lib.lessons.kit.paths import data_path
+from course_lib.paths import data_path
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import draw_box, panorama
 from course_lib.spherical_stereo.detection.boxes_file import read_boxes

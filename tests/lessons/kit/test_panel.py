@@ -5,9 +5,9 @@ from __future__ import annotations
 import ipywidgets
 import pytest
 
+from course_lib.lessons.kit.display import FigureError, Picture
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.plots import figures
-from course_lib.plots.figures import Picture
 
 FIGURE, _AXES = figures.new_figure(size=(1, 1))
 PNG = figures.png_bytes(FIGURE)
@@ -130,6 +130,6 @@ def test_controls_need_names_of_their_own():
 
 
 def test_a_picture_without_alternative_text_is_refused():
-    with pytest.raises(figures.FigureError):
+    with pytest.raises(FigureError):
         Panel("test", [Switch("a", "a")], lambda a: Drawing(PNG, "", "nothing"))
     assert Picture(PNG, "four words will do").alt

@@ -16,7 +16,7 @@ import pytest
 
 import course_lib.lessons
 from course_lib.lessons.kit.panel import Panel, Slider
-from course_lib.lessons.kit.paths import notebook_paths
+from course_lib.paths import notebook_paths
 
 MAX_SECONDS = 0.15
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.likelihood import likelihood
-from course_lib.lessons.lesson_00 import moment, moved, pose_panel, wall_reads
+from course_lib.lessons.lesson_00.panel import pose_panel
+from course_lib.lessons.lesson_00.recorded import moment, moved, wall_reads
 
 
 def test_a_wall_reads_its_distance():

@@ -8,7 +8,8 @@ import pytest
 from course_lib.geometry import pose_matrix
 from course_lib.lessons.kit.corridor_views import cut
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from course_lib.lessons.lesson_01 import drive_panel, matrix_text, turn_per_degree
+from course_lib.lessons.lesson_01.panel import drive_panel
+from course_lib.lessons.lesson_01.poses import matrix_text, turn_per_degree
 
 
 def turned(**angles_deg):

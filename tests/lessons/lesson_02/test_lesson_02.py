@@ -7,7 +7,7 @@ import pytest
 
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.lessons.kit.box_world import Box, BoxWorld
-from course_lib.lessons.lesson_02 import camera_view, cut, row, shipped_numbers, small_room, true_view
+from course_lib.lessons.lesson_02 import small_room
 from course_lib.lessons.lesson_02.small_room import (
     STATIONS,
     MapQuality,
@@ -19,6 +19,7 @@ from course_lib.lessons.lesson_02.small_room import (
     scans,
     seen_places,
 )
+from course_lib.lessons.lesson_02.views import camera_view, cut, row, shipped_numbers, true_view
 
 
 def test_a_cut_through_a_box_is_its_outline():

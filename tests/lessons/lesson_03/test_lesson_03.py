@@ -7,7 +7,9 @@ import pytest
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.lessons.lesson_03 import buffer_step, camera_panel, corridor, slanted_wall_error
+from course_lib.lessons.lesson_03.measurements import buffer_step, slanted_wall_error
+from course_lib.lessons.lesson_03.panel import camera_panel
+from course_lib.lessons.lesson_03.scenes import corridor
 
 
 def corridor_views(states: list[list[float]], near: float = 0.1, backend: str = "vtk") -> np.ndarray:

@@ -6,18 +6,9 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.lessons.lesson_04 import (
-    FAULTS,
-    KINDS,
-    MODEL,
-    capture,
-    faults_panel,
-    frames_of,
-    model,
-    returns,
-    sort_errors,
-    wall,
-)
+from course_lib.lessons.lesson_04.panel import faults_panel
+from course_lib.lessons.lesson_04.recorded import KINDS, sort_errors
+from course_lib.lessons.lesson_04.time_of_flight import FAULTS, MODEL, capture, frames_of, model, returns, wall
 
 SMALL = DepthCamera.sr4000().resized(88, 72)
 

@@ -7,7 +7,7 @@ import pytest
 
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from course_lib.lessons.lesson_05 import corner_states, nearest_expected, wagon_states, walk
+from course_lib.lessons.lesson_05.clouds import corner_states, nearest_expected, wagon_states, walk
 
 SIGMA = np.array([0.15, 0.04, 0, 0, 0, np.deg2rad(1.5)])
 

@@ -7,12 +7,12 @@ import pytest
 
 from course_lib.depth_mcl.fallon import depth_log_likelihood
 from course_lib.depth_mcl.likelihood import likelihood, normalize_likelihood, valid_pixels, weights
-from course_lib.lessons.lesson_06 import (
+from course_lib.lessons.lesson_06.panel import likelihood_panel
+from course_lib.lessons.lesson_06.profiles import (
     AXES,
     FORMS,
     behind_a_person,
     cost_of_a_pixel,
-    likelihood_panel,
     peak,
     peak_table,
     profile,

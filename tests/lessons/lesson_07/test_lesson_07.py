@@ -7,7 +7,6 @@ import pytest
 from filterpy.monte_carlo import residual_resample
 
 from course_lib.depth_mcl.particle_filter import resample
-from course_lib.lessons.lesson_07 import copies_of, different_over_rounds, follow, mean_copies, numpy_global_seed
 from course_lib.lessons.lesson_07.filter_stepper import (
     ALLOWED_AFTER,
     FRAMES,
@@ -20,7 +19,14 @@ from course_lib.lessons.lesson_07.filter_stepper import (
     step,
     whole_round,
 )
-from course_lib.lessons.lesson_07.filter_stepper_panel import StepperSession, stepper_panel
+from course_lib.lessons.lesson_07.panel import StepperSession, stepper_panel
+from course_lib.lessons.lesson_07.resampling import (
+    copies_of,
+    different_over_rounds,
+    follow,
+    mean_copies,
+    numpy_global_seed,
+)
 
 PAPER = Settings(alpha=0.1, beta=0.01, n_particles=50, noise=1.0)
 TEN = np.array([0.22] * 2 + [0.07] * 8)

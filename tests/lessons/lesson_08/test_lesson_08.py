@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_08 import OFFSETS, AgreementTable, localize_along, row, two_errors_figure
+from course_lib.lessons.lesson_08.along import OFFSETS, AgreementTable, localize_along, row
+from course_lib.lessons.lesson_08.figures import two_errors_figure
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from course_lib.lessons.kit.paths import REPOSITORY, data_path
-from course_lib.lessons.lesson_11 import all_bearings, look_up, object_at_the_seam, recording, sphere_panel, the_image
-from course_lib.lessons.lesson_11.sphere_scene import SCENE, Scene, scene_html, write_scene
+from course_lib.lessons.kit.room_photographs import room_recording, the_image
+from course_lib.lessons.lesson_11.panel import sphere_panel
+from course_lib.lessons.lesson_11.sphere_scene import SCENE, Scene
 from course_lib.lessons.lesson_11.sphere_view import SIZE, SphereView, circle_around, circle_on_panorama
+from course_lib.lessons.lesson_11.views import all_bearings, look_up, object_at_the_seam
+from course_lib.lessons.lesson_11.write_sphere_scene import scene_html, write_scene
+from course_lib.paths import REPOSITORY, data_path
 from course_lib.spherical_stereo.panorama import direction_from_angles, direction_to_pixel, pixel_to_direction
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -81,7 +84,7 @@ def test_the_panel_tells_one_direction_for_both_copies_of_a_column():
 
 
 def test_the_recording_is_the_one_of_the_scene():
-    assert recording().pairs[9].upper_file.name == "05_b_upper.jpg"
+    assert room_recording(1).pairs[9].upper_file.name == "05_b_upper.jpg"
 
 
 def test_the_stored_scene_is_what_the_command_writes(tmp_path):

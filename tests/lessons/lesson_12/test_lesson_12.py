@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from course_lib.lessons.lesson_11 import the_image
-from course_lib.lessons.lesson_12 import (
+from course_lib.lessons.kit.room_photographs import the_image
+from course_lib.lessons.lesson_12.figures import crop_of, hues_and_saturations, outline, part_of
+from course_lib.lessons.lesson_12.panel import seam_panel
+from course_lib.lessons.lesson_12.scores import colours_against_map
+from course_lib.lessons.lesson_12.seam_cuts import (
     CUTS,
     SOFA,
     Found,
     best_overlap,
     chosen_threshold,
-    colours_against_map,
     cut_counts,
     cut_sofa,
     cut_table,
@@ -21,7 +23,6 @@ from course_lib.lessons.lesson_12 import (
     pieces_of_sofa,
     true_object,
 )
-from course_lib.lessons.lesson_12.seam_figures import crop_of, hues_and_saturations, outline, part_of, seam_panel
 from course_lib.spherical_stereo.detection.boxes import box_iou
 from course_lib.spherical_stereo.detection.colour import central_half, mean_hue_saturation
 

@@ -5,30 +5,26 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.paths import data_path
-from course_lib.lessons.lesson_13 import band, matching_panel
-from course_lib.lessons.lesson_13.matching_scene import (
-    EXPERIMENT,
-    PLACE,
+from course_lib.lessons.kit.panorama_features import EXPERIMENT, PLACE, scene
+from course_lib.lessons.kit.room_photographs import pair_of, room_recording
+from course_lib.lessons.lesson_13.matching import (
     WAYS,
     count_table,
     matches_in_boxes,
     matches_when_turned,
     object_names,
-    pair_of,
     part_of,
     plain_object,
-    scene,
     score,
     turned,
     turned_objects,
     turned_scene,
 )
+from course_lib.lessons.lesson_13.panel import band, matching_panel
 from course_lib.spherical_stereo.matching.epipolar import epipolar_pairs, epipolar_residual
 from course_lib.spherical_stereo.matching.features import inside_box
 from course_lib.spherical_stereo.matching.object_matching import NO_MATCHES, match_detections, stereo_matching
 from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel
-from course_lib.spherical_stereo.recording import read_stereo_recording
 
 
 @pytest.fixture(scope="module")
@@ -132,7 +128,7 @@ def test_objects_are_named_by_class_and_azimuth(one):
 
 def test_there_is_no_pair_of_an_unknown_name():
     with pytest.raises(KeyError):
-        pair_of(read_stereo_recording(data_path(EXPERIMENT)), "99_z")
+        pair_of(room_recording(EXPERIMENT), "99_z")
 
 
 def test_the_panel_finds_the_table_across_the_seam(panel):

@@ -5,22 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_14 import (
-    PIXEL,
+from course_lib.lessons.kit.room_photographs import room_map, room_recording
+from course_lib.lessons.lesson_14.noise import PIXEL, directions_to, ellipse, noisy_directions, sampled_places
+from course_lib.lessons.lesson_14.panel import triangulation_panel
+from course_lib.lessons.lesson_14.ranges import (
     PLACES,
     both_ranges,
     box_range,
     cuboid_range,
-    directions_to,
-    ellipse,
     exact_box_ranges,
-    noisy_directions,
     places_in_room,
     ranges_of_one_object,
-    room_map,
-    sampled_places,
-    scene_recording,
-    triangulation_panel,
     typical_error,
 )
 from course_lib.spherical_stereo.ranging.triangulation import DIVERGING, OK, object_position, triangulation_covariance
@@ -35,7 +30,7 @@ def panel():
 
 @pytest.fixture(scope="module")
 def recording():
-    return scene_recording()
+    return room_recording(2)
 
 
 def sigma_along(rho: float, baseline: float) -> float:

@@ -7,17 +7,10 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from course_lib.lessons.lesson_15 import (
-    SOFAS,
-    fitted_pose,
-    hidden_score,
-    pose_error,
-    room_map,
-    room_scenes,
-    score,
-    weights_panel,
-)
-from course_lib.lessons.lesson_15.penalty_panel import match, next_best
+from course_lib.lessons.kit.room_observations import room_scenes
+from course_lib.lessons.kit.room_photographs import room_map
+from course_lib.lessons.lesson_15.panel import match, next_best, weights_panel
+from course_lib.lessons.lesson_15.scores import SOFAS, fitted_pose, hidden_score, pose_error, score
 from course_lib.spherical_stereo.semantic_map.association import (
     PenaltyWeights,
     associate_greedy,

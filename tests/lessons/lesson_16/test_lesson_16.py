@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from course_lib.lessons.lesson_16 import (
+from course_lib.lessons.kit.room_observations import room_scenes
+from course_lib.lessons.lesson_16.fits import (
     CORNER,
     LINE,
     MIRRORED,
@@ -14,7 +15,6 @@ from course_lib.lessons.lesson_16 import (
     ROOM,
     TWO,
     expected_sigmas,
-    fit_panel,
     landmarks_of,
     matched_points,
     mirrored_by_plain_svd,
@@ -22,9 +22,9 @@ from course_lib.lessons.lesson_16 import (
     pose_error,
     residual_over_heading,
     ring_of_landmarks,
-    room_scenes,
     scene_of,
 )
+from course_lib.lessons.lesson_16.panel import fit_panel
 from course_lib.spherical_stereo.pose.rigid_fit import CoincidentPoints, MirroredPoints, Pose2D, fit_rigid_2d
 
 

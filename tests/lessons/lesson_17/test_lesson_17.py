@@ -9,16 +9,9 @@ import numpy as np
 import pytest
 
 from course_lib.experiments.room_evaluation import CORRECT, INCORRECT, UNABLE, wrong_pairs
-from course_lib.lessons.lesson_17 import (
-    exact_results,
-    failing_places,
-    live_places,
-    nearest_5,
-    outcomes_figure,
-    recording,
-    semantic_map,
-    table_1,
-)
+from course_lib.lessons.kit.room_photographs import room_map, room_recording
+from course_lib.lessons.lesson_17.experiments import exact_results, failing_places, live_places, nearest_5, table_1
+from course_lib.lessons.lesson_17.figures import outcomes_figure
 from course_lib.lessons.lesson_17.room_causes import (
     CURES,
     cured_by,
@@ -46,12 +39,12 @@ from course_lib.spherical_stereo.semantic_map.association import Observation, as
 
 @pytest.fixture(scope="module")
 def room():
-    return semantic_map()
+    return room_map()
 
 
 @pytest.fixture(scope="module")
 def localizer(room):
-    return SemanticLocalizer(recording(1).rig, room)
+    return SemanticLocalizer(room_recording(1).rig, room)
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +69,7 @@ def made_up_run(seed: int, correct: float, wrong_places=("06_a",)) -> StoredRoom
         }
         for e in (1, 2)
         for source in ("images", "exact_boxes")
-        for pair in recording(1).pairs
+        for pair in room_recording(1).pairs
     ]
     return StoredRoom(seed, summary, rows)
 
@@ -86,7 +79,7 @@ def test_all_stored_seeds_are_read_with_every_pose_of_both_experiments():
     assert [run.seed for run in runs] == sorted(run.seed for run in runs)
     for run in runs:
         for experiment in (1, 2):
-            assert set(run.outcomes(experiment, "images")) == {pair.name for pair in recording(1).pairs}
+            assert set(run.outcomes(experiment, "images")) == {pair.name for pair in room_recording(1).pairs}
 
 
 def test_the_stored_rates_are_those_of_the_stored_poses():
@@ -134,7 +127,7 @@ def test_failing_poses_are_counted_over_the_seeds_the_most_frequent_first():
 
 
 def test_live_poses_are_those_that_failed_on_the_shipped_photographs_and_never_too_few():
-    shipped = recording(1).seed
+    shipped = room_recording(1).seed
     runs = [made_up_run(shipped, 95, ("09_b",)), made_up_run(shipped + 1, 95, ("02_a",))]
     assert live_places(runs, 1) == ["09_b", "01_a"]
     assert live_places([made_up_run(shipped, 100, ())], 1) == ["01_a", "01_b"]

@@ -11,8 +11,6 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
-from course_lib.lessons.kit.paths import REPOSITORY
-from course_lib.lessons.lesson_20 import READINGS, Checker, MissingMapError, Recording, at_most, misread_run, recording
 from course_lib.lessons.lesson_20.own_panoramas import (
     MissingBaselineError,
     MissingPanoramaError,
@@ -21,6 +19,16 @@ from course_lib.lessons.lesson_20.own_panoramas import (
     measured_objects,
     panorama_pair,
 )
+from course_lib.lessons.lesson_20.readings import (
+    READINGS,
+    Checker,
+    MissingMapError,
+    Recording,
+    at_most,
+    misread_run,
+    recording,
+)
+from course_lib.paths import REPOSITORY
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.object_matching import match_objects
 from course_lib.spherical_stereo.panorama import StereoRig

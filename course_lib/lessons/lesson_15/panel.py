@@ -10,32 +10,19 @@ from matplotlib.colors import PowerNorm
 
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider
+from course_lib.lessons.kit.room_observations import MatchingScene, room_scenes
+from course_lib.lessons.kit.room_photographs import room_map
+from course_lib.lessons.lesson_15.figures import short_name
 from course_lib.plots import figures
 from course_lib.plots.room_figures import map_axes
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.semantic_map.association import (
-    Association,
-    Observation,
-    PenaltyWeights,
-    associate_greedy,
-)
+from course_lib.spherical_stereo.semantic_map.association import Association, PenaltyWeights, associate_greedy
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 WITH_ABSOLUTE, AS_PRINTED = "with absolute value", "as printed"
 _TERMS = {WITH_ABSOLUTE: "absolute", AS_PRINTED: "as_printed"}
-_SHORT = {"television": "TV", "potted plant": "plant", "refrigerator": "fridge"}
 _MOST = 6.0  # penalty that the colours end at
 _SHOWN = (-1.2, 2.6)  # penalties that the right plot shows; what is beyond is drawn at its edge
 _MOST_HIDDEN = 8
-
-
-class MatchingScene(NamedTuple):
-    """One pair of photographs as the matcher gets it, and the truth that it does not get."""
-
-    observations: tuple[Observation, ...]
-    true_landmarks: tuple[int, ...]
-    """For every observation the landmark it shows."""
-    pose: Pose2D
 
 
 class Matching(NamedTuple):
@@ -46,11 +33,6 @@ class Matching(NamedTuple):
     shows: tuple[int, ...]
     """For every kept observation the landmark it shows."""
     association: Association
-
-
-def short_name(label: str, number: int) -> str:
-    """Name of a landmark in a figure, such as "sofa 2"."""
-    return f"{_SHORT.get(label, label)} {number}"
 
 
 def match(
@@ -183,3 +165,11 @@ def _summary(found: Matching, k: int, right: np.ndarray, names: list[str]) -> st
         lines.append(f"last round: {names[found.shows[i]]} taken for {names[j]}, penalty {one.total:.3f}:")
         lines.append(f"class {one.object:.2f} + {colour} + distance {one.distance:.3f}")
     return "\n".join(lines)
+
+
+def weights_panel() -> Panel:
+    """The panel of this lesson: weights, the table, and the matching as it grows."""
+    return penalty_panel(room_map(), {name: room_scenes()[name] for name in ("03_b", "06_a", "08_a", "10_a")})
+
+
+PANELS = {"15 penalty weights": weights_panel}

@@ -1,10 +1,13 @@
-"""Where the lessons find the repository's data, whatever folder a notebook runs in."""
+"""Where the repository is: its data and its lessons, whatever folder a command or a notebook runs in.
+
+The methods take paths from their callers and never look here.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[3]
+REPOSITORY = Path(__file__).resolve().parents[1]
 
 
 def data_path(relative: str) -> Path:
@@ -15,8 +18,8 @@ def data_path(relative: str) -> Path:
     path = REPOSITORY / "data" / relative
     if not path.exists():
         raise FileNotFoundError(
-            f"no {relative!r} in {REPOSITORY / 'data'}: the lessons run on the data that comes with the repository. "
-            "Get a complete copy of it, or make the data again as data/README.md says"
+            f"no {relative!r} in {REPOSITORY / 'data'}: lessons and commands run on the data that comes with the "
+            "repository. Get a complete copy of it, or make the data again as data/README.md says"
         )
     return path
 

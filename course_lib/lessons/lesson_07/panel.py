@@ -167,3 +167,6 @@ def stepper_panel(title: str = "07 filter stepper") -> Panel:
     actions = {"Reset": reset} | {name.capitalize(): button(name) for name in ALLOWED_AFTER}
     panel = Panel(title, controls, draw, actions=actions | {"Whole round": session.round})
     return panel
+
+
+PANELS = {"07 filter stepper": stepper_panel}

@@ -1,16 +1,14 @@
-"""Pairs of panoramas of the room with their features, and three ways to match what is in two boxes."""
+"""Three ways to match the features in two boxes, how they score, and a lower camera that is turned."""
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.room import exact_detections
-from course_lib.lessons.kit.paths import data_path
+from course_lib.lessons.kit.panorama_features import Scene
 from course_lib.spherical_stereo.detection.boxes import box_centre
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.matching.epipolar import (
@@ -21,54 +19,14 @@ from course_lib.spherical_stereo.matching.epipolar import (
     epipolar_pairs,
 )
 from course_lib.spherical_stereo.matching.feature_matching import RATIO
-from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, inside_box
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures, inside_box
 from course_lib.spherical_stereo.matching.object_matching import pair_by_most_matches
-from course_lib.spherical_stereo.panorama import StereoRig, azimuth_elevation_of_pixel
-from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, read_stereo_recording
+from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel
 
-EXPERIMENT, PLACE = "room/experiment_2", "09_a"  # a chair stands before another, and a table lies across the seam
 PLACES = ("02_a", "06_b", "08_a", "09_a")  # where the ways are compared: all over the room
 WAYS = ("both", "AKAZE alone", "geometry alone")
 EVERYWHERE = 1.57  # radians: a tolerance that lets everything through
 ALL_BITS = 486  # of an AKAZE descriptor: no two differ in more
-
-
-class View(NamedTuple):
-    """One panorama: its picture, what is on it, and its features."""
-
-    image: np.ndarray
-    """`(H, W, 3)` uint8 BGR."""
-    objects: list[Detection]
-    """With their exact boxes."""
-    numbers: list[int]
-    """Line of each object in the map."""
-    features: PanoramaFeatures
-
-
-class Scene(NamedTuple):
-    """Both panoramas of one place."""
-
-    upper: View
-    lower: View
-    rig: StereoRig
-
-
-def pair_of(recording: StereoRecording, name: str) -> StereoPair:
-    """The pair of that name, such as "09_a". Raises `KeyError` where there is none."""
-    pairs = {pair.name: pair for pair in recording.pairs}
-    return pairs[name]
-
-
-@functools.lru_cache(maxsize=8)
-def scene(name: str = PLACE) -> Scene:
-    """One place of the experiment's room, features found: half a second, once."""
-    recording = read_stereo_recording(data_path(EXPERIMENT))
-    pair = pair_of(recording, name)
-    views = [
-        View(image, *exact_detections(things, image), detect_features(image))
-        for image, things in zip(pair.images(), (pair.upper_objects, pair.lower_objects), strict=True)
-    ]
-    return Scene(*views, recording.rig)
 
 
 def object_names(objects: Sequence[Detection], width: int, height: int) -> list[str]:

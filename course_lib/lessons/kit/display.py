@@ -1,0 +1,62 @@
+"""How a lesson shows a figure: as one compressed picture with its alternative text, and only where it is labelled."""
+
+from __future__ import annotations
+
+import base64
+import html
+import re
+
+from IPython.display import display
+from matplotlib.figure import Figure
+
+from course_lib.plots.figures import png_bytes
+
+
+class FigureError(ValueError):
+    """A figure that lacks what every figure of the course has: title, labels with units, alternative text."""
+
+
+def show(figure: Figure, alt: str) -> None:
+    """Display a finished figure as one compressed picture with its alternative text.
+
+    Raises `FigureError` where title, axis labels with units (such as "depth Z [m]") or `alt` are missing.
+    """
+    require_labels(figure)
+    display(Picture(png_bytes(figure), alt))
+
+
+def require_labels(figure: Figure) -> None:
+    """Raise `FigureError` unless every axes has a title and labels with units in square brackets."""
+    shared = {"x": figure.get_supxlabel(), "y": figure.get_supylabel()}
+    for axes in figure.axes:
+        labels = {"x": axes.get_xlabel() or shared["x"], "y": axes.get_ylabel() or shared["y"]}
+        if axes.get_label() == "<colorbar>":
+            labels = {"colour bar": axes.get_xlabel() or axes.get_ylabel()}
+        elif not (any(axes.get_title(loc) for loc in ("left", "center", "right")) or figure.get_suptitle()):
+            raise FigureError("this figure has no title: set one with axes.set_title(...)")
+        for name, label in labels.items():
+            if not re.search(r"\[[^\]]+\]", label):
+                raise FigureError(f"the {name} label {label!r} has no unit: write it as 'depth Z [m]' or 'weight [-]'")
+
+
+class Picture:
+    """A PNG with alternative text, shown as `<img alt=...>`.
+
+    JupyterLab drops the alternative text of an `image/png` output, so the picture travels as HTML.
+    """
+
+    def __init__(self, png: bytes, alt: str) -> None:
+        if len(alt.split()) < 4:
+            raise FigureError(f"alternative text says what the picture shows, in a sentence; got {alt!r}")
+        self.png, self.alt = png, " ".join(alt.split())
+
+    def html(self) -> str:
+        """The `<img>` element, its bytes inside."""
+        data = base64.b64encode(self.png).decode("ascii")
+        return f'<img alt="{html.escape(self.alt)}" src="data:image/png;base64,{data}" style="max-width: 100%">'
+
+    def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
+        return {"text/plain": repr(self), "text/html": self.html()}
+
+    def __repr__(self) -> str:
+        return f"Picture: {self.alt}"

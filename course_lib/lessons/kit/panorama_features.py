@@ -1,0 +1,48 @@
+"""Pairs of panoramas of the room with their exact boxes and their features, for lessons 13 and 14."""
+
+from __future__ import annotations
+
+import functools
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.experiments.room import exact_detections
+from course_lib.lessons.kit.room_photographs import pair_of, room_recording
+from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features
+from course_lib.spherical_stereo.panorama import StereoRig
+
+EXPERIMENT, PLACE = 2, "09_a"  # a chair stands before another, and a table lies across the seam
+
+
+class View(NamedTuple):
+    """One panorama: its picture, what is on it, and its features."""
+
+    image: np.ndarray
+    """`(H, W, 3)` uint8 BGR."""
+    objects: list[Detection]
+    """With their exact boxes."""
+    numbers: list[int]
+    """Line of each object in the map."""
+    features: PanoramaFeatures
+
+
+class Scene(NamedTuple):
+    """Both panoramas of one place."""
+
+    upper: View
+    lower: View
+    rig: StereoRig
+
+
+@functools.lru_cache(maxsize=8)
+def scene(name: str = PLACE) -> Scene:
+    """One place of the experiment's room, features found: half a second, once."""
+    recording = room_recording(EXPERIMENT)
+    pair = pair_of(recording, name)
+    views = [
+        View(image, *exact_detections(things, image), detect_features(image))
+        for image, things in zip(pair.images(), (pair.upper_objects, pair.lower_objects), strict=True)
+    ]
+    return Scene(*views, recording.rig)

@@ -1,0 +1,40 @@
+"""What the matcher gets of the experiment's room, from exact boxes, for lessons 15 and 16."""
+
+from __future__ import annotations
+
+import functools
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.experiments.room import PairResult, run_experiment
+from course_lib.lessons.kit.room_photographs import room_map, room_recording
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.semantic_map.association import Observation
+
+
+class MatchingScene(NamedTuple):
+    """One pair of photographs as the matcher gets it, and the truth that it does not get."""
+
+    observations: tuple[Observation, ...]
+    true_landmarks: tuple[int, ...]
+    """For every observation the landmark it shows."""
+    pose: Pose2D
+
+
+@functools.cache
+def room_scenes(experiment: int = 1) -> dict[str, MatchingScene]:
+    """Name of a pair of photographs -> its observations, from exact boxes: no network takes part."""
+    recording = room_recording(experiment)
+    results = run_experiment(recording, SemanticLocalizer(recording.rig, room_map()), "exact_boxes")
+    rng = np.random.default_rng(15)
+    return {result.pair.name: _scene(result, rng) for result in results}
+
+
+def _scene(result: PairResult, rng: np.random.Generator) -> MatchingScene:
+    # Exact boxes come in the order of the map. Among equal penalties the matcher takes the first: it would be told.
+    order = rng.permutation(len(result.true_landmarks))
+    seen, shows = result.localization.observations, result.true_landmarks
+    pose = Pose2D(*(float(value) for value in result.pair.pose))
+    return MatchingScene(tuple(seen[k] for k in order), tuple(int(shows[k]) for k in order), pose)

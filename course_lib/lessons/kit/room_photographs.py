@@ -1,0 +1,43 @@
+"""The experiment's room: its map, its two recordings, and the pair of panoramas with a sofa across the seam."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+from course_lib.paths import data_path
+from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, read_stereo_recording
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+SEAM_PAIR = 9  # of the room's experiment 1: a sofa lies across the seam
+
+
+@functools.cache
+def room_map() -> SemanticMap:
+    """The surveyed map of the room."""
+    return SemanticMap.load(data_path("room/semantic_map.json"))
+
+
+@functools.cache
+def room_recording(experiment: int) -> StereoRecording:
+    """The 20 pairs of panoramas of experiment 1 or 2."""
+    return read_stereo_recording(data_path(f"room/experiment_{experiment}"))
+
+
+def pair_of(recording: StereoRecording, name: str) -> StereoPair:
+    """The pair of that name, such as "09_a". Raises `KeyError` where there is none."""
+    pairs = {pair.name: pair for pair in recording.pairs}
+    return pairs[name]
+
+
+@functools.cache
+def the_pair() -> StereoPair:
+    """The pair of panoramas that lessons 11 and 12 look at."""
+    return room_recording(1).pairs[SEAM_PAIR]
+
+
+@functools.cache
+def the_image() -> np.ndarray:
+    """Its upper panorama, `(640, 1280, 3)` uint8 BGR."""
+    return the_pair().images()[0]

@@ -1,0 +1,62 @@
+"""What lesson 00 looks at: one frame of the corridor's recording, and what the map would show from other poses."""
+
+from __future__ import annotations
+
+import functools
+from typing import NamedTuple
+
+import numpy as np
+import trimesh
+
+from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.experiments.corridor import sequence_camera
+from course_lib.geometry import state_from_optical_pose
+from course_lib.paths import data_path
+
+FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
+PAIR = 3  # of the room's experiment 1: most objects in view, nothing special (chosen)
+
+
+class Moment(NamedTuple):
+    """One frame of the recording, with all that it is compared with."""
+
+    measured: np.ndarray
+    """`(H, W)` metres, NaN where nothing was measured."""
+    state: np.ndarray
+    """`(6,)` the true pose."""
+    renderer: DepthRenderer
+
+    def share(self, states: np.ndarray) -> np.ndarray:
+        """l / m `(N,)`: the likelihood, eq. (8), divided by the number of measured pixels: 1 for perfect agreement."""
+        return likelihood(self.measured, self.renderer.render(states)) / valid_pixels(self.measured).sum()
+
+
+@functools.cache
+def moment(frame: int = FRAME) -> Moment:
+    """A frame of the corridor run with the map's renderer; kept, since a panel asks for it again and again."""
+    sequence = read_sequence(data_path("corridor/wagon"))
+    renderer = DepthRenderer(SceneMap.load(data_path("corridor/map.ply")), sequence_camera(sequence))
+    return Moment(sequence.depth(frame), state_from_optical_pose(sequence.camera_to_world[frame]), renderer)
+
+
+def wall_reads(distance: float) -> float:
+    """Depth [m] that the renderer gives for a wall `distance` metres ahead: does drawing work on this computer?"""
+    box = trimesh.creation.box(bounds=np.array([[distance, -9.0, -9.0], [distance + 0.1, 9.0, 9.0]]))
+    with DepthRenderer(SceneMap(box.vertices, box.faces), DepthCamera.sr4000()) as renderer:
+        return float(renderer.render(np.zeros(6))[0, 72, 88])
+
+
+def moved(state: np.ndarray, name: str, offsets: np.ndarray) -> np.ndarray:
+    """States `(N, 6)`: one state, moved along "x" or "y" (metres) or turned by "yaw" (degrees)."""
+    states = np.tile(state, (len(np.atleast_1d(offsets)), 1))
+    states[:, {"x": 0, "y": 1, "yaw": 5}[name]] += np.deg2rad(offsets) if name == "yaw" else offsets
+    return states
+
+
+def true_positions(sequence: DepthSequence, frames: range) -> np.ndarray:
+    """True camera positions `(T, 3)` [m] of some frames."""
+    return sequence.camera_to_world[frames.start : frames.stop : frames.step, :3, 3]

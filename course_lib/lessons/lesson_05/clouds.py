@@ -1,0 +1,81 @@
+"""Clouds of particles that walk along the wagon's path, and an oracle that keeps the nearest."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.depth_mcl.particle_filter import initial_particles, propagate
+from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.geometry import pose_matrix, state_from_optical_pose
+from course_lib.paths import data_path
+
+_NEAR = 0.10  # m from the wagon within which a particle is called near: the wagon's step (chosen)
+
+
+@functools.cache
+def wagon_states() -> np.ndarray:
+    """True states `(T, 6)` of the wagon's camera."""
+    states = state_from_optical_pose(read_sequence(data_path("corridor/wagon")).camera_to_world)
+    states.setflags(write=False)
+    return states
+
+
+def corner_states(step: float = 0.1) -> np.ndarray:
+    """True states `(T, 6)` of a wagon that rolls along x, turns left on an arc of 0.6 m, and goes on along y."""
+    radius, before, after = 0.6, 3.1, 4.2
+    quarter = radius * np.pi / 2
+    way = np.arange(0, before + quarter + after, step)
+    turn = np.clip((way - before) / radius, 0, np.pi / 2)
+    states = np.zeros((len(way), 6))
+    states[:, 0] = 14.0 + np.minimum(way, before) + radius * np.sin(turn)
+    states[:, 1] = radius - radius * np.cos(turn) + np.maximum(way - before - quarter, 0)
+    states[:, 2], states[:, 5] = 1.0, turn
+    return states
+
+
+class Walk(NamedTuple):
+    """A particle set over the frames."""
+
+    clouds: np.ndarray
+    """`(T, N, 6)`, the first being the start."""
+    nearest: np.ndarray
+    """`(T,)` distance [m] on the floor from the wagon to its nearest particle."""
+    near_share: np.ndarray
+    """`(T,)` share of the particles within 0.10 m of the wagon."""
+
+
+def walk(true: np.ndarray, sigma: np.ndarray, n: int, seed: int, keep_nearest: bool, own_axes: bool = False) -> Walk:
+    """A cloud that starts at the first true state `(T, 6)` and moves once a frame by eq. (5).
+
+    keep_nearest: after each move an oracle names the particle that is nearest to the wagon on the floor, and all start
+    from there: the best that any weighting could do for x and y. own_axes: sigma's first two are along the wagon's
+    forward and left axes, its heading given by a compass, instead of along the world's x and y.
+    """
+    rng = np.random.default_rng(seed)
+    particles = initial_particles(true[0], n)
+    clouds = [particles]
+    for before, state in itertools.pairwise(true):
+        moved = propagate(particles, sigma, rng)
+        if own_axes:
+            moved[:, :2] = particles[:, :2] + (moved - particles)[:, :2] @ pose_matrix(before)[:2, :2].T
+        clouds.append(moved)
+        particles = moved
+        if keep_nearest:
+            best = np.hypot(*(moved[:, :2] - state[:2]).T).argmin()
+            particles = np.repeat(moved[best : best + 1], n, axis=0)
+    clouds = np.array(clouds)
+    distances = np.hypot(*np.moveaxis(clouds[:, :, :2] - true[:, None, :2], -1, 0))
+    return Walk(clouds, distances.min(axis=1), (distances <= _NEAR).mean(axis=1))
+
+
+def nearest_expected(sigma_x: float, sigma_y: float, n: int) -> float:
+    """Mean distance [m] from the middle of a normal cloud of n particles in the plane to the nearest of them.
+
+    Near its middle the cloud has n / (2 pi sigma_x sigma_y) particles a square metre, and the nearest of points
+    scattered with density rho is 1 / (2 sqrt(rho)) away in the mean.
+    """
+    return 0.5 / np.sqrt(n / (2 * np.pi * sigma_x * sigma_y))

@@ -1,0 +1,67 @@
+"""Precision and recall over thresholds, and how far measured colours are from the map's."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.experiments.detector_evaluation import match_image
+from course_lib.experiments.room import counts_as_object
+from course_lib.lessons.kit.progress_bar import progress
+from course_lib.lessons.kit.room_photographs import room_map, room_recording
+from course_lib.lessons.lesson_12.seam_cuts import keen_detector
+from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
+
+SCORED_PAIRS = (0, 3, 9, 15)  # of experiment 1, spread over the room (chosen)
+
+
+def precision_and_recall(thresholds: Sequence[float]) -> dict[float, tuple[float, float]]:
+    """Precision and recall at IoU 0.5 over SCORED_PAIRS' upper images, for each score threshold.
+
+    The network runs once an image; objects that hardly show are neither right nor wrong.
+    """
+    pairs = [room_recording(1).pairs[index] for index in SCORED_PAIRS]
+    seen = [keen_detector().detect(pair.images()[0]) for pair in progress(pairs, "detecting objects")]
+    width, scores = room_recording(1).width, {}
+    for threshold in thresholds:
+        matchings = [
+            match_image([one for one in found if one.score >= threshold], pair.upper_objects, width)
+            for pair, found in zip(pairs, seen, strict=True)
+        ]
+        right, made = (
+            sum(count) for count in zip(*((m.correct.sum(), len(m.correct)) for m in matchings), strict=True)
+        )
+        wanted = sum(matching.n_objects for matching in matchings)
+        scores[threshold] = (right / made if made else float("nan"), right / wanted)
+    return scores
+
+
+class Colours(NamedTuple):
+    """Hue and saturation of objects, measured in exact boxes, against the map's; `(n,)` each."""
+
+    hue_difference: np.ndarray
+    """Degrees, 0 to 180; NaN where one of both is grey."""
+    saturation_difference: np.ndarray
+    """Percent."""
+    visible: np.ndarray
+    """Share of the object that shows, 0 to 1."""
+
+
+@functools.cache
+def colours_against_map() -> Colours:
+    """Every object of the upper images of experiment 1 that counts or is half hidden."""
+    semantic_map = room_map()
+    rows = []
+    for pair in room_recording(1).pairs:
+        image = pair.images()[0]
+        for thing in pair.upper_objects:
+            if thing.visible_box[3] - thing.visible_box[1] < 30 and not counts_as_object(thing, image.shape[1]):
+                continue
+            hue, saturation = mean_hue_saturation(image, thing.visible_box)
+            landmark = semantic_map.landmarks[thing.number]
+            gap = abs((hue - landmark.hue + 180) % 360 - 180)
+            rows.append((gap, abs(saturation - landmark.saturation), thing.visible_fraction))
+    return Colours(*np.array(rows).T)
