@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from course_lib.depth_mcl.particle_filter import initial_particles, propagate
+from course_lib.depth_mcl.motion import propagate
+from course_lib.depth_mcl.particle_filter import initial_particles
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import pose_matrix, state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import draw_walls
