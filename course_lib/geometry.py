@@ -12,6 +12,7 @@ neighbouring poses have far-apart angles. Whoever perturbs or averages all three
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 # Body (x forward, y left, z up) from camera optical (x right, y down, z forward): columns are the optical axes in body.
 BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
@@ -125,50 +126,28 @@ def circular_mean(angles: np.ndarray, weights: np.ndarray | None = None) -> np.n
 
 
 def rotation_exp(rotation_vector: np.ndarray) -> np.ndarray:
-    """Rotation matrices `(..., 3, 3)` of rotation vectors `(..., 3)` (axis times angle, radians): Rodrigues' formula.
-
-    R = I + sin(a)/a [v]x + (1 - cos(a))/a^2 [v]x^2, a = |v|.
-    """
-    v = np.asarray(rotation_vector, dtype=np.float64)
-    angle = np.linalg.norm(v, axis=-1)[..., None, None]
-    skew = np.zeros((*v.shape[:-1], 3, 3))
-    skew[..., 0, 1], skew[..., 0, 2], skew[..., 1, 2] = -v[..., 2], v[..., 1], -v[..., 0]
-    skew[..., 1, 0], skew[..., 2, 0], skew[..., 2, 1] = v[..., 2], -v[..., 1], v[..., 0]
-    # np.sinc(x) is sin(pi x)/(pi x), finite at zero.
-    return np.eye(3) + np.sinc(angle / np.pi) * skew + 0.5 * np.sinc(angle / (2 * np.pi)) ** 2 * (skew @ skew)
+    """Rotation matrices `(..., 3, 3)` of rotation vectors `(..., 3)`: axis times angle, radians."""
+    vectors = np.asarray(rotation_vector, dtype=np.float64)
+    return Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(*vectors.shape, 3)
 
 
 def rotation_log(rotation: np.ndarray) -> np.ndarray:
     """Rotation vectors `(..., 3)` (axis times angle, radians, angle up to pi) of matrices: `rotation_exp` undone."""
-    from scipy.spatial.transform import Rotation
-
     rotation = np.asarray(rotation, dtype=np.float64)
-    return Rotation.from_matrix(rotation.reshape(-1, 3, 3)).as_rotvec().reshape(*rotation.shape[:-2], 3)
+    return Rotation.from_matrix(rotation.reshape(-1, 3, 3)).as_rotvec().reshape(rotation.shape[:-1])
 
 
 def rotation_angle(rotation: np.ndarray) -> np.ndarray:
-    """Angle in [0, pi] radians by which each rotation `(..., 3, 3)` turns: atan2(|axial part|, trace - 1)."""
-    rotation = np.asarray(rotation, dtype=np.float64)
-    axial = np.stack(
-        [
-            rotation[..., 2, 1] - rotation[..., 1, 2],
-            rotation[..., 0, 2] - rotation[..., 2, 0],
-            rotation[..., 1, 0] - rotation[..., 0, 1],
-        ],
-        axis=-1,
-    )
-    return np.arctan2(np.linalg.norm(axial, axis=-1), np.trace(rotation, axis1=-2, axis2=-1) - 1.0)
+    """Angle in [0, pi] radians by which each rotation `(..., 3, 3)` turns."""
+    return np.linalg.norm(rotation_log(rotation), axis=-1)
 
 
 def rotation_mean(rotations: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
-    """Chordal mean `(3, 3)` of rotations `(N, 3, 3)`: the rotation nearest to sum w R (SVD, determinant kept at +1).
+    """Chordal mean `(3, 3)` of rotations `(N, 3, 3)`: the rotation nearest to sum w R.
 
     Unlike a mean of Euler angles it does not depend on the choice of axes and knows no gimbal lock.
     """
-    rotations = np.asarray(rotations, dtype=np.float64)
-    w = np.full(len(rotations), 1.0 / len(rotations)) if weights is None else np.asarray(weights) / np.sum(weights)
-    u, _, vt = np.linalg.svd(np.tensordot(w, rotations, 1))
-    return u @ np.diag([1.0, 1.0, np.linalg.det(u) * np.linalg.det(vt)]) @ vt
+    return Rotation.from_matrix(rotations).mean(weights).as_matrix()
 
 
 def optical_pose(states: np.ndarray) -> np.ndarray:

@@ -53,6 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs the filter; 0 when it reached the last frame."""
     from course_lib.commands.arguments import require_output_folder, require_seed
     from course_lib.commands.progress import progress_bar
+    from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments.corridor import pose_error_summary, run_sequence
@@ -79,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
         sigma=sigma,
         n_particles=arguments.particles,
         seed=arguments.seed,
-        noise="tangent" if full else "euler",
+        motion=TANGENT_SPACE if full else BODY_AXES,
         up="z" if up == "unknown" else up,
         frames=arguments.frames,
         backend=arguments.backend,

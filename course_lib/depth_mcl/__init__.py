@@ -4,7 +4,8 @@
     renderer             3.3.1, eq. (6): a depth image of the map for every particle
     sensor               3.3.2, eq. (7): the camera's own points, made comparable
     likelihood           3.3.3 and 3.3.4, eqs (8) to (11): A-2
-    particle_filter      3.1, 3.2 and 3.4, eqs (3) to (5), (12): start, A-1, A-3
+    motion               3.2, eq. (5): A-1, as printed and in the body's axes
+    particle_filter      3.1 and 3.4, eqs (3), (4), (12): start, A-3
     localizer            figure 1: all of it in order
     evaluation           section 4: table 1
     fallon, planar_map   the method that table 1 compares with
@@ -18,10 +19,10 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, Motion, propagate
 from course_lib.depth_mcl.particle_filter import (
     effective_sample_size,
     initial_particles,
-    propagate,
     resample,
     weighted_mean_state,
 )
@@ -31,11 +32,15 @@ from course_lib.depth_mcl.sensor import depth_image_from_points
 from course_lib.depth_mcl.sequence import SequenceError, read_sequence
 
 __all__ = [
+    "BODY_AXES",
+    "TANGENT_SPACE",
+    "WORLD_AXES",
     "DepthCamera",
     "DepthImageError",
     "DepthRenderer",
     "Estimate",
     "MonteCarloLocalizer",
+    "Motion",
     "NoMeasurementWarning",
     "OpenGLError",
     "RendererClosedError",

@@ -11,6 +11,7 @@ independent of its neighbours: differences between particles grow in proportion,
 from __future__ import annotations
 
 from functools import partial
+from typing import Literal
 
 import numpy as np
 from scipy.stats import norm
@@ -103,7 +104,7 @@ _FORMS = {
 }
 
 
-def fallon_weighting(form: str = "depth") -> WeightingRule:
+def fallon_weighting(form: Literal["depth", "disparity"] = "depth") -> WeightingRule:
     """Weighting rule for `MonteCarloLocalizer`: "depth" or "disparity". The score is the log-likelihood a pixel."""
     if form not in _FORMS:
         raise ValueError(f"form must be 'depth' or 'disparity'; got {form!r}")

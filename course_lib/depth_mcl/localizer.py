@@ -5,7 +5,8 @@
     for depth in recording:
         estimate = localizer.step(depth)
 
-How particles are weighed is a part that can be exchanged: `paper_weighting` here, Fallon's in fallon.py.
+How particles move and how they are weighed are parts that can be exchanged: the motions are in motion.py,
+`paper_weighting` is here, Fallon's in fallon.py.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -26,21 +27,14 @@ from course_lib.depth_mcl.likelihood import (
     valid_pixels,
     weights,
 )
-from course_lib.depth_mcl.particle_filter import (
-    checked_sigma,
-    effective_sample_size,
-    initial_particles,
-    propagate,
-    propagate_tangent,
-    resample,
-    weighted_mean_pose,
-    weighted_mean_state,
-)
+from course_lib.depth_mcl.motion import BODY_AXES, Motion, checked_sigma
+from course_lib.depth_mcl.particle_filter import Scheme, effective_sample_size, initial_particles, resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.geometry import as_states, pose_matrix, rotation_log, wrap_angle
 
-# Standard deviations of the system noise a frame for the paper's experiment (x, y, yaw), metres and radians. Chosen on
-# tuning seeds; the paper says "set by hand". Along the corridor, x, 1.5 of its longest steps (0.1 m).
+# Standard deviations of the system noise a frame for the paper's experiment (x, y, yaw), metres and radians: x is
+# forward and y left where the body's axes count, as they do unless another motion is given. Chosen on tuning seeds; the
+# paper says "set by hand". Forward 1.5 of the wagon's longest steps (0.1 m). It is a wagon's noise: its camera looks
+# where it goes. A camera that is carried sideways, or anywhere, needs as much to the left as forward.
 SIGMA_XY_YAW = (0.15, 0.04, 0.0, 0.0, 0.0, np.deg2rad(1.5))
 
 # How far outside the map's bounding box a start is still taken for a camera that looks at it, metres (chosen).
@@ -48,7 +42,7 @@ MAP_MARGIN = 1.0
 
 
 class NoMeasurementWarning(UserWarning):
-    """A frame without a single measured pixel: the filter kept its particles."""
+    """A frame without a single measured pixel: the filter moved its particles and could not weigh them."""
 
 
 class Weighting(NamedTuple):
@@ -93,19 +87,19 @@ class Estimate(NamedTuple):
     """`(N, 6)` before resampling, as weighed."""
     weights: np.ndarray
     """`(N,)` of these particles."""
-    status: str
-    """"ok", or "no measurement" where the frame held none and the particles were kept as they were."""
+    status: Literal["ok", "no measurement"]
+    """"no measurement" where the frame held none: the particles were moved by system noise, and all weigh the same."""
 
 
 class MonteCarloLocalizer:
     """Particle filter that compares a depth camera's image with renders of the map.
 
-    renderer: draws the map for the camera. sigma: `(6,)` system noise a frame, metres and radians. noise: "euler" adds
-    it to the angles as eq. (5) does, and 0 keeps a component at its initial value (the paper's experiment estimates x,
-    y and yaw); "tangent" turns about the body's own axes, for all six degrees of freedom. weighting: how particles
-    are weighed; None for the paper's rule with alpha (metres) and beta. seed: of the one generator that all draws come
-    from.
-    Raises `ValueError` for zero particles, a bad sigma, alpha, beta, noise or resampling scheme.
+    renderer: draws the map for the camera. sigma: `(6,)` system noise a frame, metres and radians, along the axes that
+    `motion` says: those of the body unless told otherwise (forward, left, up), where 0 keeps z, roll, pitch or yaw at
+    its initial value, as the paper's experiment does, which estimates x, y and yaw; `TANGENT_SPACE` for all six degrees
+    of freedom, `WORLD_AXES` for eq. (5) as printed. weighting: how particles are weighed; None for the paper's rule
+    with alpha (metres) and beta. seed: of the one generator that all draws come from.
+    Raises `ValueError` for zero particles, a bad sigma, motion, alpha, beta or resampling scheme.
     Source: paper 1, figure 1.
     """
 
@@ -118,8 +112,8 @@ class MonteCarloLocalizer:
         beta: float = BETA,
         seed: int = 0,
         *,
-        noise: str = "euler",
-        resampling: str = "systematic",
+        motion: Motion = BODY_AXES,
+        resampling: Scheme = "systematic",
         weighting: WeightingRule | None = None,
     ) -> None:
         if int(n_particles) != n_particles or n_particles < 1:
@@ -127,13 +121,13 @@ class MonteCarloLocalizer:
         for name, value in (("alpha", alpha), ("beta", beta)):
             if not (np.isfinite(value) and value > 0):
                 raise ValueError(f"{name} must be positive; got {value!r}")
-        if noise not in ("euler", "tangent"):
-            raise ValueError(f"noise must be 'euler' (eq. (5)) or 'tangent' (rotations); got {noise!r}")
+        if not all(callable(getattr(motion, part, None)) for part in Motion._fields):
+            raise ValueError(f"motion must have the calls {', '.join(Motion._fields)} (motion.py); got {motion!r}")
         resample(np.ones(1), np.random.default_rng(0), resampling)  # an unknown scheme is told now, not at frame one
         self.renderer = renderer
         self.n_particles = int(n_particles)
         self.sigma = checked_sigma(sigma)
-        self.noise = noise
+        self.motion = motion
         self.resampling = resampling
         self.weighting = weighting or paper_weighting(alpha, beta)
         if int(seed) != seed or seed < 0:
@@ -158,25 +152,25 @@ class MonteCarloLocalizer:
     def step(self, depth: np.ndarray) -> Estimate:
         """One round of the paper's figure 1 for a depth image `(H, W)` in metres, NaN = no measurement.
 
-        A frame without any measurement keeps the particles as they are, warns (`NoMeasurementWarning`), and says so in
-        the estimate's status. Raises `DepthImageError` for an image of another size, `RuntimeError` before
-        `initialize`.
+        A frame without any measurement moves the particles (A-1) but can neither weigh nor resample them: the cloud
+        grows, as what is known of a moving camera shrinks. It warns (`NoMeasurementWarning`), and the estimate's status
+        says so. The arrays of the estimate are the caller's own. Raises `DepthImageError` for an image of another size,
+        `RuntimeError` before `initialize`.
         """
         if self.particles is None:
             raise RuntimeError("call initialize(state0) before the first step: the paper's filter is given its start")
         measured = self._measure(depth)
+        particles = self.motion.propagate(self.particles, self.sigma, self.rng)
         if not valid_pixels(measured).any():
             warnings.warn(
-                "this frame holds no measurement between the camera's near and far planes; the particles are kept",
+                "this frame holds no measurement between the camera's near and far planes; particles were moved only",
                 NoMeasurementWarning,
                 stacklevel=2,
             )
+            self.particles = particles.copy()
             w = np.full(self.n_particles, 1.0 / self.n_particles)
-            return self._estimate(self.particles, w, float("nan"), "no measurement")
-        move = propagate_tangent if self.noise == "tangent" else propagate
-        particles = move(self.particles, self.sigma, self.rng)
-        simulated = self.renderer.render(particles)
-        w, scores = self.weighting(measured, simulated)
+            return self._estimate(particles, w, float("nan"), "no measurement")
+        w, scores = self.weighting(measured, self.renderer.render(particles))
         self.particles = particles[resample(w, self.rng, self.resampling)]
         return self._estimate(particles, w, float(scores.max()), "ok")
 
@@ -191,26 +185,7 @@ class MonteCarloLocalizer:
         return self.renderer.render_points(camera.points(depth))
 
     def _estimate(self, particles: np.ndarray, w: np.ndarray, score: float, status: str) -> Estimate:
-        mean = weighted_mean_pose if self.noise == "tangent" else weighted_mean_state
-        state = mean(particles, w)
-        deviations = self._deviations(particles, state)
+        state = self.motion.mean(particles, w)
+        deviations = self.motion.deviations(particles, state)
         covariance = (w[:, None] * deviations).T @ deviations
         return Estimate(state, covariance, score, effective_sample_size(w), particles, w, status)
-
-    def _deviations(self, particles: np.ndarray, state: np.ndarray) -> np.ndarray:
-        """Particles minus estimate `(N, 6)`: angles wrapped, or rotation vectors about the body's axes."""
-        deviations = particles - state
-        if self.noise == "tangent":
-            rotation = pose_matrix(state)[:3, :3]
-            deviations[:, 3:] = rotation_log(rotation.T @ pose_matrix(particles)[:, :3, :3])
-        else:
-            deviations[:, 3:] = wrap_angle(deviations[:, 3:])
-        return deviations
-
-
-def run_localizer(
-    localizer: MonteCarloLocalizer, state0: np.ndarray, depths: list[np.ndarray], progress: Callable = iter
-) -> list[Estimate]:
-    """Initializes the filter and steps it through depth images; `progress` may wrap them in a progress bar."""
-    localizer.initialize(as_states(state0, "state0"))
-    return [localizer.step(depth) for depth in progress(depths)]

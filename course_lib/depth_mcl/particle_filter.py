@@ -1,4 +1,4 @@
-"""The particle filter's steps that know nothing of images (paper 1, sections 3.1, 3.2, 3.4): A-1 and A-3.
+"""The particle filter's steps that know nothing of images or motion (paper 1, sections 3.1, 3.4): the start and A-3.
 
 Particles are an array `(N, 6)` of states [x, y, z, roll, pitch, yaw], eqs (1) and (2). Every function is pure: arrays
 and a `numpy.random.Generator` in, arrays out. All four resampling schemes share one signature.
@@ -6,17 +6,13 @@ and a `numpy.random.Generator` in, arrays out. All four resampling schemes share
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
-from course_lib.geometry import (
-    as_states,
-    circular_mean,
-    pose_matrix,
-    rotation_exp,
-    rotation_mean,
-    state_from_matrix,
-    wrap_angle,
-)
+from course_lib.geometry import as_states, circular_mean, pose_matrix, rotation_mean, state_from_matrix
+
+Scheme = Literal["systematic", "stratified", "multinomial", "residual"]
 
 
 def initial_particles(state0: np.ndarray, n: int) -> np.ndarray:
@@ -33,49 +29,6 @@ def initial_particles(state0: np.ndarray, n: int) -> np.ndarray:
     if int(n) != n or n < 1:
         raise ValueError(f"the number of particles must be a whole number, at least 1; got {n!r}")
     return np.tile(state0, (int(n), 1))
-
-
-def checked_sigma(sigma: np.ndarray) -> np.ndarray:
-    """Standard deviations `(6,)` as float64; `ValueError` for another length, negative numbers or NaN."""
-    array = np.asarray(sigma, dtype=np.float64)
-    if array.shape != (6,):
-        raise ValueError(
-            f"sigma needs six standard deviations [x, y, z (metres), roll, pitch, yaw (radians)]; got {array.shape}"
-        )
-    if not np.isfinite(array).all() or (array < 0).any():
-        raise ValueError(f"sigma must be finite and not negative (0 keeps a component fixed); got {array.tolist()}")
-    return array
-
-
-def propagate(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Particles moved by system noise (A-1): the model knows nothing of the motion but how large it may be.
-
-    X_t = X_{t-1} + V_t,    V_t ~ N(0, sigma^2)
-
-    particles: `(N, 6)`. sigma: `(6,)` standard deviations, metres and radians, a frame; 0 keeps a component fixed.
-    Angles come back in [-pi, pi). Raises `ValueError` for a bad sigma or particles.
-    Source: paper 1, eq. (5).
-    """
-    particles, sigma = as_states(particles, "particles"), checked_sigma(sigma)
-    moved = particles + sigma * rng.standard_normal(particles.shape)
-    moved[..., 3:] = wrap_angle(moved[..., 3:])
-    return moved
-
-
-def propagate_tangent(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Particles moved by noise in the tangent space of the rotations, for all six degrees of freedom.
-
-    t' = t + v,  R' = R Exp(w),  (v, w) ~ N(0, sigma^2): v along the world's axes, w about the body's own axes.
-    The paper's eq. (5) adds noise to roll, pitch and yaw, which near pitch = +-90 degrees (gimbal lock) turns a camera
-    by other amounts, about other axes, than sigma says. Arguments and errors as in `propagate`; sigma's last three are
-    about the body's axes x, y, z, so a single 0 there keeps no single angle fixed.
-    """
-    particles, sigma = as_states(particles, "particles"), checked_sigma(sigma)
-    noise = sigma * rng.standard_normal(particles.shape)
-    matrices = pose_matrix(particles)
-    matrices[..., :3, :3] = matrices[..., :3, :3] @ rotation_exp(noise[..., 3:])
-    matrices[..., :3, 3] += noise[..., :3]
-    return state_from_matrix(matrices)
 
 
 def weighted_mean_state(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
@@ -107,7 +60,7 @@ def effective_sample_size(w: np.ndarray) -> float:
     return float(1.0 / np.sum(np.asarray(w, dtype=np.float64) ** 2))
 
 
-def resample(w: np.ndarray, rng: np.random.Generator, scheme: str = "systematic") -> np.ndarray:
+def resample(w: np.ndarray, rng: np.random.Generator, scheme: Scheme = "systematic") -> np.ndarray:
     """Indices `(N,)` of the particles that live on: heavy ones are copied, light ones vanish (A-3).
 
     Every scheme is unbiased: particle i is drawn N w~_i times in the mean. They differ in how far single draws stray.
@@ -141,11 +94,11 @@ def resample(w: np.ndarray, rng: np.random.Generator, scheme: str = "systematic"
 
 def _pick(w: np.ndarray, points: np.ndarray) -> np.ndarray:
     """For each point in [0, 1) the particle whose share of the cumulative weights it falls into."""
-    cumulative = np.cumsum(w)
-    # The last sum may round to just below one: a point above it would name a particle that is not there, and a
-    # particle without weight at the end must not be drawn in its place.
+    cumulative = np.minimum(np.cumsum(w), 1.0)
+    # The last sum may round to just below one, and the last point, (N - 1 + u) / N, up to one: either would name a
+    # particle that is not there. A particle without weight at the end must not be drawn in its place.
     cumulative[np.flatnonzero(w)[-1] :] = 1.0
-    return np.searchsorted(cumulative, points, side="right")
+    return np.searchsorted(cumulative, np.minimum(points, np.nextafter(1.0, 0.0)), side="right")
 
 
 def _checked_pair(particles: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -16,6 +16,7 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import PositionError, nearest_path_error, pose_errors, timed_error
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH, fallon_weighting
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, MonteCarloLocalizer, NoMeasurementWarning, WeightingRule
+from course_lib.depth_mcl.motion import BODY_AXES, Motion
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
@@ -73,7 +74,7 @@ def run_sequence(
     sigma: np.ndarray = SIGMA_XY_YAW,
     n_particles: int = 200,
     seed: int = 0,
-    noise: str = "euler",
+    motion: Motion = BODY_AXES,
     weighting: WeightingRule | None = None,
     coarse: bool = False,
     up: str | None = None,
@@ -97,7 +98,7 @@ def run_sequence(
         raise ValueError(f"frames must be at least 1; got {frames}")
     estimates, seconds = [], 0.0
     with DepthRenderer(scene_map.transformed(to_z_up), used, backend) as renderer:
-        localizer = MonteCarloLocalizer(renderer, n_particles, sigma, seed=seed, noise=noise, weighting=weighting)
+        localizer = MonteCarloLocalizer(renderer, n_particles, sigma, seed=seed, motion=motion, weighting=weighting)
         localizer.initialize(state_from_optical_pose(to_z_up @ sequence.camera_to_world[0]))
         with warnings.catch_warnings():
             # They are counted instead, below.

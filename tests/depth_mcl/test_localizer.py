@@ -7,8 +7,10 @@ import pytest
 
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
-from course_lib.depth_mcl.likelihood import DepthImageError, likelihood
-from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning, run_localizer
+from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
+from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning, Weighting
+from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES
+from course_lib.depth_mcl.particle_filter import resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.geometry import wrap_angle
 from tests.depth_mcl.shapes import SMALL, random_triangles, room, room_depth
@@ -29,29 +31,45 @@ def walk(n):
     return START + np.cumsum(steps, axis=0)
 
 
-@pytest.mark.parametrize("noise", ["euler", "tangent"])
+def run(localizer, true):
+    """Estimates along a walk in the small room, the start given."""
+    localizer.initialize(START)
+    return [localizer.step(room_depth(SMALL, state)[0]) for state in true]
+
+
 @pytest.mark.parametrize(
-    ("weighting", "bound"),
-    [(None, 0.05), (fallon_weighting("depth"), 0.15), (fallon_weighting("disparity"), 0.15)],
-    ids=["paper", "Fallon, depth", "Fallon, disparity"],
+    ("motion", "weighting", "bound"),
+    [
+        (BODY_AXES, None, 0.05),
+        (WORLD_AXES, None, 0.05),
+        (TANGENT_SPACE, None, 0.05),
+        (BODY_AXES, fallon_weighting("depth"), 0.15),
+        (TANGENT_SPACE, fallon_weighting("disparity"), 0.15),
+    ],
+    ids=["body axes", "as printed", "tangent space", "Fallon, depth", "Fallon, disparity"],
 )
-def test_the_filter_follows_a_walk(renderer, noise, weighting, bound):
-    true = walk(12)
-    localizer = MonteCarloLocalizer(renderer, 150, SIGMA, seed=1, noise=noise, weighting=weighting)
-    estimates = run_localizer(localizer, START, [room_depth(SMALL, s)[0] for s in true])
+def test_the_filter_follows_a_walk(renderer, motion, weighting, bound):
+    true = walk(25)
+    estimates = run(MonteCarloLocalizer(renderer, 150, SIGMA, seed=1, motion=motion, weighting=weighting), true)
     states = np.array([e.state for e in estimates])
+    # A filter that stays at its start, or loses the walk anywhere, is off by up to a metre and half a radian.
+    assert timed_error(states[:, :3], true[:, :3]).errors.max() < 3 * bound
     assert timed_error(states[:, :3], true[:, :3]).median < bound
-    assert np.median(np.abs(wrap_angle(states[:, 5] - true[:, 5]))) < bound
+    assert np.abs(wrap_angle(states[:, 5] - true[:, 5])).max() < 3 * bound
     for estimate in estimates:
         assert estimate.weights.sum() == pytest.approx(1)
         assert 1 <= estimate.ess <= 150 + 1e-9
         assert np.linalg.eigvalsh(estimate.covariance).min() > -1e-12
 
 
-def test_components_without_noise_stay_at_their_start(renderer):
-    localizer = MonteCarloLocalizer(renderer, 50, SIGMA)
-    estimates = run_localizer(localizer, START, [room_depth(SMALL, s)[0] for s in walk(3)])
-    assert estimates[-1].state[2:5] == pytest.approx(START[2:5])
+@pytest.mark.parametrize("motion", [BODY_AXES, WORLD_AXES])
+def test_components_without_noise_stay_at_their_start(renderer, motion):
+    tilted = START + [0, 0, 0, 0.02, -0.1, 0]
+    localizer = MonteCarloLocalizer(renderer, 50, SIGMA, motion=motion)
+    localizer.initialize(tilted)
+    estimates = [localizer.step(room_depth(SMALL, s)[0]) for s in walk(3) + [0, 0, 0, 0.02, -0.1, 0]]
+    assert estimates[-1].state[2:5] == pytest.approx(tilted[2:5])
+    assert (estimates[-1].state[[0, 1, 5]] != tilted[[0, 1, 5]]).all()
 
 
 def test_likelihood_is_greatest_at_the_true_pose(rng):
@@ -64,40 +82,117 @@ def test_likelihood_is_greatest_at_the_true_pose(rng):
 
 
 def test_moving_world_and_particles_together_changes_nothing():
-    shift = np.array([300.0, -200.0, 50.0])
-    estimates = []
+    shift, true, estimates = np.array([300.0, -200.0, 50.0]), walk(12), []
     for offset in (np.zeros(3), shift):
         with DepthRenderer(room(offset=offset), SMALL, "vtk") as renderer:
             localizer = MonteCarloLocalizer(renderer, 100, SIGMA, seed=3)
-            start = START + np.array([*offset, 0, 0, 0])
-            estimates.append(run_localizer(localizer, start, [room_depth(SMALL, s)[0] for s in walk(5)])[-1].state)
+            localizer.initialize(START + np.array([*offset, 0, 0, 0]))
+            estimates.append([localizer.step(room_depth(SMALL, s)[0]).state for s in true][-1])
     assert estimates[1] - [*shift, 0, 0, 0] == pytest.approx(estimates[0], abs=1e-4)
+    assert estimates[0][:2] == pytest.approx(true[-1, :2], abs=0.15)  # the walk is half a metre long
 
 
 def test_the_same_seed_gives_the_same_bytes_and_another_seed_does_not(renderer):
-    depths = [room_depth(SMALL, s)[0] for s in walk(4)]
     runs = [
-        np.array([e.particles for e in run_localizer(MonteCarloLocalizer(renderer, 60, SIGMA, seed=s), START, depths)])
-        for s in (7, 7, 8)
+        np.array([e.particles for e in run(MonteCarloLocalizer(renderer, 60, SIGMA, seed=seed), walk(4))])
+        for seed in (7, 7, 8)
     ]
     assert runs[0].tobytes() == runs[1].tobytes()
     assert runs[0].tobytes() != runs[2].tobytes()
 
 
-def test_a_frame_without_measurement_keeps_the_particles_says_so_and_the_filter_goes_on(renderer):
-    localizer = MonteCarloLocalizer(renderer, 80, SIGMA)
-    true = walk(3)
+def test_a_frame_without_measurement_moves_the_particles_says_so_and_the_filter_goes_on(renderer):
+    localizer, true = MonteCarloLocalizer(renderer, 80, SIGMA), walk(3)
     localizer.initialize(START)
     localizer.step(room_depth(SMALL, true[0])[0])
     before = localizer.particles.copy()
     with pytest.warns(NoMeasurementWarning, match="no measurement"):
         estimate = localizer.step(np.full(SMALL.shape, np.nan))
     assert estimate.status == "no measurement"
-    assert np.array_equal(localizer.particles, before)
-    assert np.isfinite(estimate.state).all()
+    assert np.isnan(estimate.score)
+    assert estimate.weights == pytest.approx(np.full(80, 1 / 80))
+    # One more frame's noise, on the cloud as it was: the particles moved, each a step of its own.
+    steps = localizer.particles - before
+    assert np.array_equal(localizer.particles, estimate.particles)
+    assert np.linalg.norm(steps[:, :2], axis=1).min() > 0
+    assert np.abs(steps[:, 5]).std() == pytest.approx(SIGMA[5] * np.sqrt(1 - 2 / np.pi), rel=0.3)
+    assert (steps[:, 2:5] == 0).all()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert localizer.step(room_depth(SMALL, true[2])[0]).status == "ok"
+
+
+@pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
+@pytest.mark.parametrize("seed", range(3))
+def test_after_a_gap_in_a_walk_the_filter_is_there_at_once(renderer, seed):
+    """Ten blank frames and 0.4 m later; particles that had been kept would need several frames to catch up."""
+    localizer, true = MonteCarloLocalizer(renderer, 400, SIGMA, seed=seed), walk(16)
+    localizer.initialize(START)
+    blank = np.full(SMALL.shape, np.nan)
+    estimates = [localizer.step(blank if 4 <= i < 14 else room_depth(SMALL, s)[0]) for i, s in enumerate(true)]
+    assert np.hypot(*(estimates[14].state[:2] - true[14, :2])) < 0.15
+
+
+@pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
+def test_arrays_that_the_filter_took_or_gave_are_the_callers_own(renderer):
+    depths = [room_depth(SMALL, walk(3)[0])[0], np.full(SMALL.shape, np.nan), room_depth(SMALL, walk(3)[2])[0]]
+    last = []
+    for spoil in (False, True):
+        sigma, start = np.array(SIGMA), START.copy()
+        localizer = MonteCarloLocalizer(renderer, 30, sigma)
+        localizer.initialize(start)
+        for depth in depths:
+            image = depth.copy()
+            estimate = localizer.step(image)
+            last.append(np.concatenate([estimate.state, localizer.particles.ravel()]))
+            for array in (sigma, start, image, *estimate[:2], estimate.particles, estimate.weights) if spoil else ():
+                array[:] = 9.0
+    assert np.array_equal(last[:3], last[3:])
+
+
+def by_rank(measured, simulated):
+    """Weights that depend on the particle's number alone."""
+    w = np.arange(1.0, len(simulated) + 1)
+    return Weighting(w / w.sum(), w)
+
+
+@pytest.mark.parametrize("motion", [BODY_AXES, WORLD_AXES, TANGENT_SPACE])
+def test_the_covariance_is_that_of_the_weighted_particles_across_the_wrap_too(renderer, motion):
+    backwards = START * [1, 1, 1, 0, 0, 0] + [0, 0, 0, 0, 0, np.pi]
+    localizer = MonteCarloLocalizer(renderer, 60, SIGMA, motion=motion, weighting=by_rank)
+    localizer.initialize(backwards)
+    estimate = localizer.step(room_depth(SMALL, backwards)[0])
+    unwrapped = estimate.particles.copy()
+    unwrapped[:, 5] %= 2 * np.pi
+    expected = np.cov(unwrapped.T, aweights=np.arange(1, 61), ddof=0)
+    assert expected[5, 5] == pytest.approx(SIGMA[5] ** 2, rel=0.6)
+    assert estimate.covariance == pytest.approx(expected, rel=1e-3, abs=1e-7)
+
+
+def test_alpha_and_beta_reach_the_weights(renderer):
+    localizer = MonteCarloLocalizer(renderer, 40, SIGMA, alpha=0.5, beta=0.3)
+    (estimate,) = run(localizer, walk(1))
+    measured = renderer.render_points(SMALL.points(room_depth(SMALL, walk(1)[0])[0]))
+    values = likelihood(measured, renderer.render(estimate.particles), 0.5)
+    assert estimate.weights == pytest.approx(weights(normalize_likelihood(values), 0.3), rel=1e-6)
+
+
+@pytest.mark.parametrize("scheme", ["systematic", "stratified", "multinomial", "residual"])
+def test_the_particles_that_live_on_are_those_that_the_scheme_draws(renderer, scheme):
+    localizer = MonteCarloLocalizer(renderer, 40, SIGMA, seed=5, resampling=scheme, weighting=by_rank)
+    (estimate,) = run(localizer, walk(1))
+    rng = np.random.default_rng(5)
+    rng.standard_normal((40, 6))  # the system noise came first
+    assert np.array_equal(localizer.particles, estimate.particles[resample(estimate.weights, rng, scheme)])
+
+
+@pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
+@pytest.mark.parametrize("depth", [SMALL.near / 2, SMALL.far + 1])
+def test_what_the_views_cannot_show_is_no_measurement(renderer, depth):
+    """The measured image goes through the camera's near and far planes as the simulated ones do."""
+    localizer = MonteCarloLocalizer(renderer, 10, SIGMA)
+    localizer.initialize(START)
+    assert localizer.step(np.full(SMALL.shape, depth)).status == "no measurement"
 
 
 def test_particles_that_all_miss_the_map_keep_equal_weights(renderer):
@@ -132,7 +227,7 @@ def test_the_score_falls_when_the_filter_is_lost_though_the_best_weight_does_not
         ({"sigma": [np.nan] * 6}, "sigma"),
         ({"alpha": 0.0}, "alpha"),
         ({"beta": -1.0}, "beta"),
-        ({"noise": "quaternion"}, "noise"),
+        ({"motion": "tangent"}, "motion"),
         ({"resampling": "lottery"}, "scheme"),
         ({"seed": -1}, "seed"),
     ],

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.particle_filter import initial_particles, propagate
+from course_lib.depth_mcl.motion import propagate
+from course_lib.depth_mcl.particle_filter import initial_particles
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import pose_matrix, state_from_optical_pose
 from course_lib.paths import data_path

@@ -14,10 +14,10 @@ import numpy as np
 
 from course_lib.depth_mcl.likelihood import likelihood, normalize_likelihood, valid_pixels, weights
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
+from course_lib.depth_mcl.motion import propagate
 from course_lib.depth_mcl.particle_filter import (
     effective_sample_size,
     initial_particles,
-    propagate,
     resample,
     weighted_mean_state,
 )

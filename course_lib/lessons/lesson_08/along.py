@@ -9,7 +9,8 @@ import numpy as np
 
 from course_lib.depth_mcl.evaluation import PositionError, nearest_path_error, summarize
 from course_lib.depth_mcl.likelihood import likelihood, normalize_likelihood, valid_pixels, weights
-from course_lib.depth_mcl.particle_filter import initial_particles, propagate, resample, weighted_mean_state
+from course_lib.depth_mcl.motion import propagate
+from course_lib.depth_mcl.particle_filter import initial_particles, resample, weighted_mean_state
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth

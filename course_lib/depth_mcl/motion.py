@@ -1,0 +1,124 @@
+"""How particles move between two frames (paper 1, A-1): a part of the filter that is exchanged as the weighting is.
+
+A `Motion` says three things of one choice of coordinates: how system noise moves particles, what their mean is, and how
+far each lies from it. Three of them are here; they differ in the axes along which sigma is meant.
+
+    WORLD_AXES     eq. (5) as printed: along the world's x, y, z, and on roll, pitch, yaw
+    BODY_AXES      along the body's forward, left and up, and on roll, pitch, yaw: the filter's own choice
+    TANGENT_SPACE  along and about all three axes of the body: six degrees of freedom, any attitude
+
+As printed, sigma = (0.15, 0.04, ...) says that the camera may move fast along the *world's* x: right in a corridor
+that runs along x, wrong in the same corridor drawn at another angle on the map. The other two know no direction of the
+world: turn map and recording about z, and the estimates turn with them.
+
+A motion with a memory (a velocity, an odometer's increments) is another object with these three calls, which keeps what
+it remembers to itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.depth_mcl.particle_filter import weighted_mean_pose, weighted_mean_state
+from course_lib.geometry import as_states, pose_matrix, rotation_exp, rotation_log, state_from_matrix, wrap_angle
+
+
+class Motion(NamedTuple):
+    """What the filter asks of a motion; every function is pure, and all three agree about the angles."""
+
+    propagate: Callable[[np.ndarray, np.ndarray, np.random.Generator], np.ndarray]
+    """(particles `(N, 6)`, sigma `(6,)` a frame, generator) -> moved particles `(N, 6)`, a new array."""
+    mean: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    """(particles `(N, 6)`, weights `(N,)`) -> state `(6,)`."""
+    deviations: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    """(particles `(N, 6)`, state `(6,)`) -> `(N, 6)`, metres along the world's axes, then radians."""
+
+
+def checked_sigma(sigma: np.ndarray) -> np.ndarray:
+    """Standard deviations `(6,)` as a float64 array of their own.
+
+    Raises `ValueError` for another length, negative numbers or NaN.
+    """
+    array = np.array(sigma, dtype=np.float64)
+    if array.shape != (6,):
+        raise ValueError(
+            f"sigma needs six standard deviations [x, y, z (metres), roll, pitch, yaw (radians)]; got {array.shape}"
+        )
+    if not np.isfinite(array).all() or (array < 0).any():
+        raise ValueError(f"sigma must be finite and not negative (0 keeps a component fixed); got {array.tolist()}")
+    return array
+
+
+def propagate(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Particles moved by system noise (A-1): the model knows nothing of the motion but how large it may be.
+
+    X_t = X_{t-1} + V_t,    V_t ~ N(0, sigma^2)
+
+    particles: `(N, 6)`. sigma: `(6,)` standard deviations, metres and radians, a frame; 0 keeps a component fixed.
+    Angles come back in [-pi, pi). Raises `ValueError` for a bad sigma or particles.
+    Source: paper 1, eq. (5).
+    """
+    particles, sigma = as_states(particles, "particles"), checked_sigma(sigma)
+    moved = particles + sigma * rng.standard_normal(particles.shape)
+    moved[..., 3:] = wrap_angle(moved[..., 3:])
+    return moved
+
+
+def propagate_body(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Particles moved by the same noise, its first two parts along each particle's own heading.
+
+    (x, y)' = (x, y) + Rz(yaw) (v_forward, v_left),    z' = z + v_up,    angles' = angles + w
+
+    The axes follow the heading alone and stay level, for a body that a floor carries: with 0 in sigma z, roll and pitch
+    stay exactly as they were, whatever the tilt of the mount. Yaw is the one before its own noise. Arguments and errors
+    as in `propagate`; sigma is [forward, left, up, roll, pitch, yaw], and "forward" is where the camera looks: one that
+    is carried sideways needs the larger number in second place, one that may go anywhere the same in both.
+    """
+    particles = as_states(particles, "particles")
+    moved = propagate(particles, sigma, rng)
+    forward, left = np.moveaxis((moved - particles)[..., :2], -1, 0)
+    cosine, sine = np.cos(particles[..., 5]), np.sin(particles[..., 5])
+    moved[..., 0] = particles[..., 0] + cosine * forward - sine * left
+    moved[..., 1] = particles[..., 1] + sine * forward + cosine * left
+    return moved
+
+
+def propagate_tangent(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Particles moved by noise along and about the body's own axes, for all six degrees of freedom.
+
+    t' = t + R v,  R' = R Exp(w),  (v, w) ~ N(0, sigma^2)
+
+    Noise on roll, pitch and yaw turns a camera near pitch = +-90 degrees (gimbal lock) by other amounts, about other
+    axes, than sigma says; this does not. Arguments and errors as in `propagate`; sigma is [forward, left, up, about x,
+    about y, about z of the body], so a single 0 there keeps no single component of the state fixed.
+    """
+    particles, sigma = as_states(particles, "particles"), checked_sigma(sigma)
+    noise = sigma * rng.standard_normal(particles.shape)
+    matrices = pose_matrix(particles)
+    rotations = matrices[..., :3, :3].copy()
+    matrices[..., :3, 3] += np.einsum("...ij,...j->...i", rotations, noise[..., :3])
+    matrices[..., :3, :3] = rotations @ rotation_exp(noise[..., 3:])
+    return state_from_matrix(matrices)
+
+
+def angle_deviations(particles: np.ndarray, state: np.ndarray) -> np.ndarray:
+    """Particles minus state `(N, 6)`, the differences of roll, pitch and yaw the short way round."""
+    deviations = as_states(particles, "particles") - as_states(state, "state")
+    deviations[..., 3:] = wrap_angle(deviations[..., 3:])
+    return deviations
+
+
+def rotation_deviations(particles: np.ndarray, state: np.ndarray) -> np.ndarray:
+    """Particles minus state `(N, 6)`, turns as rotation vectors about the body's axes at the state: Log(R^T R_i)."""
+    deviations = as_states(particles, "particles") - as_states(state, "state")
+    rotation = pose_matrix(state)[:3, :3]
+    deviations[..., 3:] = rotation_log(rotation.T @ pose_matrix(particles)[..., :3, :3])
+    return deviations
+
+
+WORLD_AXES = Motion(propagate, weighted_mean_state, angle_deviations)
+BODY_AXES = Motion(propagate_body, weighted_mean_state, angle_deviations)
+TANGENT_SPACE = Motion(propagate_tangent, weighted_mean_pose, rotation_deviations)
