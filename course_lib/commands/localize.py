@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
-    from course_lib.experiments.corridor import pose_error_summary, run_sequence
+    from course_lib.experiments.recordings import pose_error_summary, run_sequence
 
     require_seed(arguments.seed)
     if arguments.out:
@@ -127,7 +127,8 @@ def _table(s: dict) -> str:
 
 def _write(folder: Path, summary: dict, result: object, sequence: object) -> None:
     from course_lib.depth_mcl.evaluation import pose_errors
-    from course_lib.experiments.results import write_results, write_tum
+    from course_lib.depth_mcl.sequence import write_tum
+    from course_lib.experiments.results import write_results
     from course_lib.plots.corridor_figures import figure_6
 
     true = sequence.camera_to_world[: len(result.frames)]

@@ -18,11 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.geometry import is_rotation, rotation_mean
+from course_lib.geometry import UP_AXES, is_rotation, rotation_mean
 
-UP_AXES = {
-    "x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1),
-}  # fmt: skip
+NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
 
 
 class SequenceError(ValueError):
@@ -61,6 +59,11 @@ class DepthSequence:
 
     def __len__(self) -> int:
         return len(self.frames)
+
+    def camera(self, near: float = NEAR, far: float = FAR) -> DepthCamera:
+        """The depth camera that made the recording; near, far: its clip planes, metres."""
+        height, width = self.image_shape
+        return DepthCamera.from_matrix(self.intrinsics, width, height, near, far)
 
     def depth(self, index: int) -> np.ndarray:
         """Depth image `(H, W)` float32 metres of the index-th frame; NaN where nothing was measured."""
@@ -220,22 +223,6 @@ def write_tum(path: str | Path, times: np.ndarray, poses: np.ndarray) -> None:
     quaternions = Rotation.from_matrix(poses[:, :3, :3]).as_quat(canonical=True)
     rows = np.column_stack([times, poses[:, :3, 3], quaternions])
     np.savetxt(path, rows, fmt="%.9f", header="t tx ty tz qx qy qz qw")
-
-
-def rotation_to_z_up(up: str) -> np.ndarray:
-    """Rotation `(4, 4)` that turns the named up axis ("y", "-z", ...) of a world into +z, by the shortest turn."""
-    if up not in UP_AXES:
-        raise ValueError(f"up must be one of {', '.join(UP_AXES)}; got {up!r}")
-    from scipy.spatial.transform import Rotation
-
-    matrix = np.eye(4)
-    axis = np.asarray(UP_AXES[up], dtype=np.float64)
-    if up == "-z":
-        matrix[:3, :3] = np.diag([1.0, -1.0, -1.0])
-    elif up != "z":
-        turn = np.cross(axis, [0.0, 0.0, 1.0])
-        matrix[:3, :3] = np.rint(Rotation.from_rotvec(turn * np.pi / 2).as_matrix())
-    return matrix
 
 
 def _depth_files(folder: Path) -> dict[int, Path]:

@@ -4,17 +4,15 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.sequence import (
-    UP_AXES,
     SequenceError,
     read_depth_png,
     read_sequence,
     read_tum,
-    rotation_to_z_up,
     write_depth_png,
     write_sequence,
     write_tum,
 )
-from course_lib.geometry import optical_pose, state_from_optical_pose
+from course_lib.geometry import UP_AXES, optical_pose, rotation_to_z_up, state_from_optical_pose
 from tests.depth_mcl.shapes import SMALL, random_states
 
 
