@@ -164,3 +164,24 @@ def state_from_optical_pose(matrices: np.ndarray) -> np.ndarray:
         raise ValueError(f"matrices must have shape (..., 4, 4); got {matrices.shape}")
     matrices[..., :3, :3] = matrices[..., :3, :3] @ BODY_FROM_OPTICAL.T
     return state_from_matrix(matrices)
+
+
+UP_AXES = {
+    "x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1),
+}  # fmt: skip
+
+
+def rotation_to_z_up(up: str) -> np.ndarray:
+    """Rotation `(4, 4)` that turns the named up axis ("y", "-z", ...) of a world into +z, by the shortest turn."""
+    if up not in UP_AXES:
+        raise ValueError(f"up must be one of {', '.join(UP_AXES)}; got {up!r}")
+    from scipy.spatial.transform import Rotation
+
+    matrix = np.eye(4)
+    axis = np.asarray(UP_AXES[up], dtype=np.float64)
+    if up == "-z":
+        matrix[:3, :3] = np.diag([1.0, -1.0, -1.0])
+    elif up != "z":
+        turn = np.cross(axis, [0.0, 0.0, 1.0])
+        matrix[:3, :3] = np.rint(Rotation.from_rotvec(turn * np.pi / 2).as_matrix())
+    return matrix

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from pathlib import Path
 
@@ -10,6 +11,12 @@ def require_seed(seed: int) -> None:
     """Raises `ValueError` for a negative seed."""
     if seed < 0:
         raise ValueError(f"--seed must be 0 or more; got {seed}")
+
+
+def require_positive(option: str, value: float, unit: str) -> None:
+    """Raises `ValueError` for a value that is not positive and finite."""
+    if not (math.isfinite(value) and value > 0):
+        raise ValueError(f"{option} must be a positive number of {unit}; got {value:g}")
 
 
 def require_output_folder(folder: Path) -> None:

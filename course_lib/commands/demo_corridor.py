@@ -132,7 +132,8 @@ def write(
     """Writes numbers (JSON, CSV a row a frame), trajectory (TUM) and figures; the names of the files."""
     import numpy as np
 
-    from course_lib.experiments.results import write_results, write_tum
+    from course_lib.depth_mcl.sequence import write_tum
+    from course_lib.experiments.results import write_results
 
     ours = runs["proposed"]
     rows = [

@@ -1,144 +1,317 @@
-"""Localize a recorded depth-camera sequence in a mesh map, starting at its first pose, and print the pose errors.
+"""Localize a recorded depth-camera sequence in a mesh map, and say of every frame whether the filter seems lost.
 
-The sequence is a folder with depth/*.png (16-bit, millimetres), intrinsics.txt and poses.txt, as in 7-Scenes.
+The recording is a folder with depth/*.png (16-bit) and intrinsics.txt, as in 7-Scenes. With poses.txt, the truth,
+errors are printed too; without it the start must be given.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
+    from course_lib.depth_mcl.scene_map import SceneMap
+    from course_lib.depth_mcl.sequence import DepthSequence
+    from course_lib.experiments.recordings import Run
 
 # Standard deviations of the system noise a frame, metres and degrees (chosen: for six degrees of freedom about the
 # steps of a camera carried by hand, median 0.04 m and 2 degrees in the kitchen recording; for x, y, yaw one and a half
 # of a wagon's longest steps, 0.1 m).
 SIGMA = {"6": (0.05, 2.0), "xyyaw": (0.15, 1.5)}
 
+EPILOG = """\
+the folder of the recording:
+  depth/*.png      16-bit depth along the optical axis, 0 = no measurement; the first number in the name is the frame
+  intrinsics.txt   3 x 3 matrix K in pixels, for images of this size
+  poses.txt        optional, the truth: frame, row-major 4 x 4 camera-to-world matrix (x right, y down, z forward)
+  up.txt           optional: which axis of map and poses points up (x, -x, y, -y, z, -z)
+
+examples:
+  own recording, no truth; the camera starts 1.2 m up at x = 2, y = -0.5 and looks along +y:
+    localize --map home.ply --sequence walk --start 2 -0.5 1.2 0 0 90 --up z --out results/walk
+  depth as TUM RGB-D files have it (5000 units a metre), start from a file with a 4 x 4 matrix:
+    localize --map desk.ply --sequence desk --depth-scale 5000 --far 5 --start first_pose.txt
+  a wagon on a level floor, with truth:
+    localize --map data/corridor/map.ply --sequence data/corridor/wagon --dof xyyaw --seed 1
+"""
+
 
 def join_words(words: list[str]) -> list[str]:
-    """`--up -y` as one word, `--up=-y`: argparse would take `-y` for an option."""
+    """`--up -y` and `--start 2 -0.5 1e-3 ...` as one word each: argparse would take -y for an option."""
     joined = list(words)
     for index in range(len(words) - 2, -1, -1):
         if words[index] == "--up" and words[index + 1] in ("-x", "-y", "-z"):
             joined[index : index + 2] = [f"--up={words[index + 1]}"]
+        if words[index] == "--start":
+            end = index + 1
+            while end < len(words) and _are_numbers(words[end]):
+                end += 1
+            if end > index + 1:
+                joined[index:end] = ["--start=" + " ".join(words[index + 1 : end])]
     return joined
+
+
+def _are_numbers(text: str) -> bool:
+    """Whether a word, or a quoted list of words, is made of numbers."""
+    try:
+        return bool([float(word) for word in text.replace(",", " ").split()])
+    except ValueError:
+        return False
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `localize`."""
-    parser.add_argument("--map", required=True, type=Path, metavar="MESH", help="mesh file (PLY, OBJ, STL, GLB)")
+    from course_lib.depth_mcl.sequence import FAR, NEAR, UNITS_PER_METRE
+
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the examples
+    parser.epilog = EPILOG
+    parser.add_argument("--map", required=True, type=Path, metavar="MESH", help="mesh in metres (PLY, OBJ, STL, GLB)")
     parser.add_argument("--sequence", required=True, type=Path, metavar="FOLDER", help="folder of the recording")
+    parser.add_argument(
+        "--start",
+        metavar="POSE",
+        help="pose of the camera's body (x forward, y left, z up) in the first frame: six numbers, X Y Z in metres in "
+        "the map's own axes, then ROLL PITCH YAW in degrees, level and towards the map's x where they are 0; or a file "
+        "with a 4 x 4 camera-to-world matrix, or whose first row is one of poses.txt (default: that of the recording)",
+    )
+    parser.add_argument(
+        "--depth-scale",
+        type=float,
+        default=UNITS_PER_METRE,
+        metavar="N",
+        help="units of the depth images in a metre (default: 1000, millimetres; TUM RGB-D files: 5000)",
+    )
+    parser.add_argument(
+        "--near", type=float, default=NEAR, metavar="M", help=f"what is nearer is not seen, metres (default: {NEAR:g})"
+    )
+    parser.add_argument(
+        "--far", type=float, default=FAR, metavar="M", help=f"what is farther is not seen, metres (default: {FAR:g})"
+    )
     parser.add_argument("--dof", choices=["xyyaw", "6"], default="6", help="what to estimate (default: 6)")
     parser.add_argument(
         "--up",
         choices=["x", "-x", "y", "-y", "z", "-z", "unknown"],
-        help="the axis of map and poses that points up (default: what up.txt in the folder says, else unknown).",
+        help="the axis of map and poses that points up (default: what up.txt in the folder says, else unknown)",
     )
     parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
     parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames")
     parser.add_argument(
-        "--sigma-position", type=float, metavar="M", help="system noise a frame (default: 0.05; xyyaw 0.15)"
+        "--sigma-position", type=float, metavar="M", help="system noise a frame, metres (default: 0.05; xyyaw: 0.15)"
     )
-    parser.add_argument("--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (2; xyyaw 1.5)")
+    parser.add_argument(
+        "--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (default: 2; xyyaw: 1.5)"
+    )
     parser.add_argument("--backend", choices=["vtk", "ray"], default="vtk", help="z-buffer (default) or ray casting")
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write results, trajectory, figure here")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Runs the filter; 0 when it reached the last frame."""
-    from course_lib.commands.arguments import require_output_folder, require_seed
+    """Runs the filter; 0 when it reached the last frame, whatever it believes of the track."""
+    from course_lib.commands.arguments import require_output_folder, require_positive, require_seed
     from course_lib.commands.progress import progress_bar
-    from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
-    from course_lib.experiments.corridor import pose_error_summary, run_sequence
+    from course_lib.experiments.recordings import pose_error_summary, run_sequence
 
     require_seed(arguments.seed)
+    require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
+    require_positive("--near", arguments.near, "metres")
+    require_positive("--far", arguments.far, "metres")
+    if arguments.near >= arguments.far:
+        raise ValueError(f"--near must be below --far; got {arguments.near:g} and {arguments.far:g} m")
     if arguments.out:
         require_output_folder(arguments.out)
-    sequence = read_sequence(arguments.sequence)
+    sequence = read_sequence(arguments.sequence, arguments.depth_scale)
     up = arguments.up or sequence.up or "unknown"
     if arguments.dof == "xyyaw" and up == "unknown":
         raise ValueError(
             "--dof xyyaw moves the camera on a horizontal plane, and which way is up in this world is unknown; give "
             "--up AXIS (x, -x, y, -y, z, -z) if you know it, else use --dof 6"
         )
+    start = _start(arguments.start, sequence, "z" if up == "unknown" else up)
     scene_map = SceneMap.load(arguments.map)
-    position, rotation_deg = SIGMA[arguments.dof]
-    position = position if arguments.sigma_position is None else arguments.sigma_position
-    rotation = np.deg2rad(rotation_deg if arguments.sigma_rotation is None else arguments.sigma_rotation)
-    full = arguments.dof == "6"
-    sigma = [position] * 3 + [rotation] * 3 if full else [position, position, 0.0, 0.0, 0.0, rotation]
     result = run_sequence(
         scene_map,
         sequence,
-        sigma=sigma,
         n_particles=arguments.particles,
         seed=arguments.seed,
-        motion=TANGENT_SPACE if full else BODY_AXES,
         up="z" if up == "unknown" else up,
+        start=start,
         frames=arguments.frames,
         backend=arguments.backend,
+        near=arguments.near,
+        far=arguments.far,
         progress=progress_bar("localizing"),
+        **_system_noise(arguments),
     )
     summary = {
-        "map": str(arguments.map),
-        "sequence": str(arguments.sequence),
-        "dof": arguments.dof,
-        "up": up,
-        "seed": arguments.seed,
-        "n_particles": arguments.particles,
-        "sigma_position_m": float(position),
-        "sigma_rotation_deg": float(np.rad2deg(rotation)),
+        **_options(arguments, up),
         "frames": len(result.frames),
         "frames_without_measurement": result.frames_without_measurement,
-        **pose_error_summary(result, sequence),
+        **{f"frames_{status}": result.statuses.count(status) for status in ("tracked", "doubtful", "lost")},
+        "believes": believed(result.frames, result.statuses),
+        **(pose_error_summary(result, sequence) if sequence.has_poses else {}),
         "renders_per_frame": arguments.particles,
         "ms_per_frame": result.ms_per_frame,
     }
     if arguments.out:
-        _write(arguments.out, summary, result, sequence)
+        _write(arguments.out, summary, result, sequence, scene_map)
     print(json.dumps(summary) if arguments.json else _table(summary))
     if arguments.out and not arguments.json:
-        print(f"Written to {arguments.out}: localize.json, localize.csv, trajectory.txt (TUM), errors.png")
-    if result.frames_without_measurement:
-        print(f"{result.frames_without_measurement} frames held no measurement; particles were kept", file=sys.stderr)
+        print(f"Written to {arguments.out}: localize.json, localize.csv, trajectory.txt (TUM), track.png")
+    if not arguments.json:
+        print(summary["believes"])
     return 0
+
+
+def _start(given: str | None, sequence: DepthSequence, up: str) -> np.ndarray:
+    """Camera-to-world matrix `(4, 4)` of the first frame in the map's own world, optical convention."""
+    from course_lib.depth_mcl.sequence import read_pose
+    from course_lib.geometry import optical_pose, rotation_to_z_up
+
+    if given is None and not sequence.has_poses:
+        raise ValueError(
+            f"where does the camera start? {sequence.folder} holds no poses.txt; give --start X Y Z ROLL PITCH YAW "
+            "(metres, degrees) or --start FILE with a 4 x 4 camera-to-world matrix"
+        )
+    if given is None:
+        return sequence.camera_to_world[0]
+    if not _are_numbers(given):
+        return read_pose(given)
+    numbers = np.array([float(word) for word in given.replace(",", " ").split()])
+    if len(numbers) != 6 or not np.isfinite(numbers).all():
+        raise ValueError(
+            f"--start needs six finite numbers, X Y Z in metres and ROLL PITCH YAW in degrees, or a file; got {given!r}"
+        )
+    start = np.linalg.inv(rotation_to_z_up(up)) @ optical_pose(np.concatenate([np.zeros(3), np.deg2rad(numbers[3:])]))
+    start[:3, 3] = numbers[:3]
+    return start
+
+
+def _system_noise(arguments: argparse.Namespace) -> dict:
+    """What the filter is told of the motion: sigma `(6,)` and what it is meant of."""
+    from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE
+
+    position, rotation_deg = _sigma(arguments)
+    rotation = np.deg2rad(rotation_deg)
+    if arguments.dof == "6":
+        return {"sigma": [position] * 3 + [rotation] * 3, "motion": TANGENT_SPACE}
+    return {"sigma": [position, position, 0.0, 0.0, 0.0, rotation], "motion": BODY_AXES}
+
+
+def _sigma(arguments: argparse.Namespace) -> tuple[float, float]:
+    """System noise a frame: metres, degrees."""
+    position, rotation_deg = SIGMA[arguments.dof]
+    position = position if arguments.sigma_position is None else arguments.sigma_position
+    rotation_deg = rotation_deg if arguments.sigma_rotation is None else arguments.sigma_rotation
+    for name, value in (("position", position), ("rotation", rotation_deg)):
+        if not (np.isfinite(value) and value >= 0):
+            raise ValueError(f"--sigma-{name} must be 0 or more; got {value:g}")
+    return position, rotation_deg
+
+
+def _options(arguments: argparse.Namespace, up: str) -> dict:
+    """What was asked for, as the results keep it."""
+    position, rotation_deg = _sigma(arguments)
+    return {
+        "map": str(arguments.map),
+        "sequence": str(arguments.sequence),
+        "start": arguments.start or "first row of poses.txt",
+        "dof": arguments.dof,
+        "up": up,
+        "seed": arguments.seed,
+        "n_particles": arguments.particles,
+        "sigma_position_m": position,
+        "sigma_rotation_deg": rotation_deg,
+        "depth_units_per_metre": arguments.depth_scale,
+        "near_m": arguments.near,
+        "far_m": arguments.far,
+        "backend": arguments.backend,
+    }
+
+
+def believed(frames: list[int], statuses: list[str]) -> str:
+    """One line on the track: "lost from frame 41 on (126 of 167 frames)", "tracked in all 167 frames", and the like."""
+    total, lost, tracked = len(frames), statuses.count("lost"), statuses.count("tracked")
+    if tracked == total:
+        return f"tracked in all {total} frames"
+    if not lost:
+        return f"tracked in {tracked} of {total} frames, doubtful in {total - tracked}"
+    stretches = []  # first and last index of every stretch of lost frames
+    for index in (i for i, status in enumerate(statuses) if status == "lost"):
+        if stretches and stretches[-1][1] == index - 1:
+            stretches[-1][1] = index
+        else:
+            stretches.append([index, index])
+    first, last = stretches[0][0], stretches[-1][1]
+    if "tracked" not in statuses[first:]:
+        where = f"from frame {frames[first]} on" if first else "from the first frame on"
+    elif len(stretches) == 1:
+        where = f"from frame {frames[first]} to {frames[last]}"
+    else:
+        where = f"in {len(stretches)} stretches between frames {frames[first]} and {frames[last]}"
+    return f"lost {where} ({lost} of {total} frames; tracked {tracked}, doubtful {total - tracked - lost})"
 
 
 def _table(s: dict) -> str:
     estimated = "all six degrees of freedom" if s["dof"] == "6" else "x, y and yaw"
-    lines = [
-        f"{s['frames']} frames, {estimated} estimated with {s['renders_per_frame']} particles",
-        "",
-        "                      median   90th percentile",
-        f"position error [m]    {s['median_position_m']:6.3f}   {s['p90_position_m']:6.3f}",
-        f"rotation error [deg]  {s['median_rotation_deg']:6.2f}   {s['p90_rotation_deg']:6.2f}",
-        "",
-        f"within 5 cm and 5 degrees: {s['within_5cm_5deg_percent']:.1f} %",
-        f"{s['renders_per_frame']} renders and {s['ms_per_frame']:.0f} ms a frame",
-    ]
+    lines = [f"{s['frames']} frames, {estimated} estimated with {s['renders_per_frame']} particles", ""]
+    if "median_position_m" in s:
+        lines += [
+            "                      median   90th percentile",
+            f"position error [m]    {s['median_position_m']:6.3f}   {s['p90_position_m']:6.3f}",
+            f"rotation error [deg]  {s['median_rotation_deg']:6.2f}   {s['p90_rotation_deg']:6.2f}",
+            "",
+            f"within 5 cm and 5 degrees: {s['within_5cm_5deg_percent']:.1f} %",
+        ]
+    else:
+        lines += ["no poses.txt: errors are not known", ""]
+    if s["frames_without_measurement"]:
+        lines.append(f"{s['frames_without_measurement']} frames held no measurement between --near and --far")
+    lines.append(f"{s['renders_per_frame']} renders and {s['ms_per_frame']:.0f} ms a frame")
     return "\n".join(lines)
 
 
-def _write(folder: Path, summary: dict, result: object, sequence: object) -> None:
+def _write(folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap) -> None:
+    """Writes options and numbers (JSON), a row a frame (CSV), the trajectory (TUM) and the figure."""
     from course_lib.depth_mcl.evaluation import pose_errors
-    from course_lib.experiments.results import write_results, write_tum
-    from course_lib.plots.corridor_figures import figure_6
+    from course_lib.depth_mcl.sequence import write_tum
+    from course_lib.experiments.results import write_results
+    from course_lib.plots.track_figure import track_figure
 
-    true = sequence.camera_to_world[: len(result.frames)]
-    position, rotation = pose_errors(result.camera_to_world, true)
+    count, positions = len(result.frames), result.camera_to_world[:, :3, 3]
     rows = [
-        {"frame": frame, "position_error_m": round(p, 5), "rotation_error_deg": round(r, 4), "score": round(score, 5)}
-        for frame, p, r, score in zip(result.frames, position, np.rad2deg(rotation), result.scores, strict=True)
+        {
+            "frame": frame,
+            "status": status,
+            "score": round(float(score), 5),
+            **{f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", position, strict=True)},
+            **{name: round(value, 4) for name, value in agreement._asdict().items()},
+        }
+        for frame, status, score, position, agreement in zip(
+            result.frames, result.statuses, result.scores, positions, result.agreements, strict=True
+        )
     ]
+    true = sequence.camera_to_world[:count] if sequence.has_poses else None
+    if true is not None:
+        for row, metres, radians in zip(rows, *pose_errors(result.camera_to_world, true), strict=True):
+            row |= {"position_error_m": round(metres, 5), "rotation_error_deg": round(float(np.rad2deg(radians)), 4)}
     write_results(folder / "localize.json", summary, rows)
-    times = np.asarray(result.frames, float) if sequence.times is None else sequence.times[: len(result.frames)]
+    times = np.asarray(result.frames, float) if sequence.times is None else sequence.times[:count]
     write_tum(folder / "trajectory.txt", times, result.camera_to_world)
-    figure = figure_6(np.asarray(result.frames), {"position error": position}, "Position error of every frame")
-    figure.savefig(folder / "errors.png", dpi=130)
+    figure = track_figure(
+        scene_map,
+        result.frames,
+        positions,
+        result.scores,
+        result.statuses,
+        None if summary["up"] == "unknown" else summary["up"],
+        None if true is None else true[:, :3, 3],
+    )
+    figure.savefig(folder / "track.png", dpi=130)

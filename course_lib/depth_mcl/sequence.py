@@ -1,8 +1,10 @@
 """Depth-camera recordings: a folder of depth images with intrinsics and poses, as in the 7-Scenes dataset.
 
-depth/NNNNNN*.png   16-bit, depth along the optical axis in millimetres, 0 = no measurement
+depth/NNNNNN*.png   16-bit, depth along the optical axis in millimetres (or other units: read_sequence's
+                    units_per_metre), 0 = no measurement
 intrinsics.txt      3 x 3 matrix K in pixels, pixel centres at integer coordinates
-poses.txt           frame number, then a row-major 4 x 4 camera-to-world matrix (x right, y down, z forward)
+poses.txt           optional, the truth: frame number, then a row-major 4 x 4 camera-to-world matrix (x right, y down,
+                    z forward)
 up.txt              optional: which world axis points up (x, -x, y, -y, z, -z); without it nothing is known
 groundtruth.txt     optional: the same poses with time stamps, TUM format (t tx ty tz qx qy qz qw)
 path_on_floor.txt   optional: the surveyed line on the floor below the camera, x y z per row (the paper's truth)
@@ -18,11 +20,12 @@ from pathlib import Path
 import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.geometry import is_rotation, rotation_mean
+from course_lib.geometry import UP_AXES, is_rotation, rotation_mean
 
-UP_AXES = {
-    "x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1),
-}  # fmt: skip
+NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
+
+
+UNITS_PER_METRE = 1000.0  # of depth images: millimetres (7-Scenes); files of the TUM RGB-D dataset have 5000
 
 
 class SequenceError(ValueError):
@@ -32,9 +35,10 @@ class SequenceError(ValueError):
 class DepthSequence:
     """A recording on disk; images are read when asked for.
 
-    frames: frame numbers, ascending. camera_to_world: `(T, 4, 4)` float64, optical convention. intrinsics: `(3, 3)`.
-    image_shape: (height, width). up: "z" and the like, or None where nothing is known. times: `(T,)` seconds or None.
-    path_on_floor: `(P, 3)` metres or None.
+    frames: frame numbers, ascending. camera_to_world: `(T, 4, 4)` float64, optical convention; None where the truth is
+    not known, and asking for it is then a `SequenceError`. intrinsics: `(3, 3)`. image_shape: (height, width). up: "z"
+    and the like, or None where nothing is known. times: `(T,)` seconds or None. path_on_floor: `(P, 3)` metres or None.
+    units_per_metre: of the depth images.
     """
 
     def __init__(
@@ -42,29 +46,51 @@ class DepthSequence:
         folder: Path,
         frames: list[int],
         files: list[Path],
-        camera_to_world: np.ndarray,
+        camera_to_world: np.ndarray | None,
         intrinsics: np.ndarray,
         image_shape: tuple[int, int],
         up: str | None,
         times: np.ndarray | None,
         path_on_floor: np.ndarray | None,
+        units_per_metre: float = UNITS_PER_METRE,
     ) -> None:
         self.folder = folder
         self.frames = frames
         self.files = files
-        self.camera_to_world = camera_to_world
+        self._camera_to_world = camera_to_world
         self.intrinsics = intrinsics
         self.image_shape = image_shape
         self.up = up
         self.times = times
         self.path_on_floor = path_on_floor
+        self.units_per_metre = units_per_metre
+
+    @property
+    def has_poses(self) -> bool:
+        """Whether the true poses are known."""
+        return self._camera_to_world is not None
+
+    @property
+    def camera_to_world(self) -> np.ndarray:
+        """The true poses `(T, 4, 4)`, optical convention; `SequenceError` for a recording that came without."""
+        if self._camera_to_world is None:
+            raise SequenceError(
+                f"{self.folder} holds no poses.txt: its true poses are not known. The filter must be given its start "
+                "by hand (localize: --start), and errors cannot be measured"
+            )
+        return self._camera_to_world
 
     def __len__(self) -> int:
         return len(self.frames)
 
+    def camera(self, near: float = NEAR, far: float = FAR) -> DepthCamera:
+        """The depth camera that made the recording; near, far: its clip planes, metres."""
+        height, width = self.image_shape
+        return DepthCamera.from_matrix(self.intrinsics, width, height, near, far)
+
     def depth(self, index: int) -> np.ndarray:
         """Depth image `(H, W)` float32 metres of the index-th frame; NaN where nothing was measured."""
-        depth = read_depth_png(self.files[index])
+        depth = read_depth_png(self.files[index], self.units_per_metre)
         if depth.shape != self.image_shape:
             raise SequenceError(
                 f"{self.files[index]} is {depth.shape[1]} x {depth.shape[0]} pixels, the first image of the sequence "
@@ -72,27 +98,31 @@ class DepthSequence:
             )
         return depth
 
-    def __iter__(self) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
-        """Yields (frame number, depth image, camera-to-world matrix)."""
+    def __iter__(self) -> Iterator[tuple[int, np.ndarray, np.ndarray | None]]:
+        """Yields (frame number, depth image, camera-to-world matrix or None where the truth is not known)."""
         for index, frame in enumerate(self.frames):
-            yield frame, self.depth(index), self.camera_to_world[index]
+            yield frame, self.depth(index), self._camera_to_world[index] if self.has_poses else None
 
     def __repr__(self) -> str:
         return f"DepthSequence({str(self.folder)!r}, {len(self)} frames, up={self.up!r})"
 
 
-def read_sequence(folder: str | Path) -> DepthSequence:
-    """The recording in a folder (format: top of this module).
+def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) -> DepthSequence:
+    """The recording in a folder (format: top of this module), with or without its true poses.
 
+    units_per_metre: what the depth images count in; 1000 for millimetres, 5000 for files of the TUM RGB-D dataset.
     Raises `FileNotFoundError` for a missing folder or file, `SequenceError` (a `ValueError`) for malformed ones,
     intrinsics that do not fit the images, and poses whose frame numbers are not those of the images.
     """
     folder = Path(folder)
     if not folder.is_dir():
-        raise FileNotFoundError(f"no sequence at {folder}: give a folder with depth/, intrinsics.txt and poses.txt")
+        raise FileNotFoundError(f"no sequence at {folder}: give a folder with depth/ and intrinsics.txt")
+    require_units(units_per_metre)
     images = _depth_files(folder)
-    frames, camera_to_world = _read_poses(folder / "poses.txt")
-    _require_same_frames(folder, frames, sorted(images))
+    frames, camera_to_world = sorted(images), None
+    if (folder / "poses.txt").exists():
+        frames, camera_to_world = _read_poses(folder / "poses.txt")
+        _require_same_frames(folder, frames, sorted(images))
     intrinsics = _read_numbers(folder / "intrinsics.txt")
     if intrinsics.shape != (3, 3):
         raise SequenceError(f"{folder / 'intrinsics.txt'} must hold a 3 x 3 matrix; got {intrinsics.shape}")
@@ -101,19 +131,23 @@ def read_sequence(folder: str | Path) -> DepthSequence:
         DepthCamera.from_matrix(intrinsics, width=image_shape[1], height=image_shape[0])
     except ValueError as error:
         raise SequenceError(f"{folder / 'intrinsics.txt'}: {error}") from error
-    times = None
-    if (folder / "groundtruth.txt").is_file():
-        times, timed_poses = read_tum(folder / "groundtruth.txt")
-        if len(times) != len(frames) or not np.allclose(timed_poses, camera_to_world, atol=1e-3):
-            raise SequenceError(f"groundtruth.txt and poses.txt in {folder} do not hold the same {len(frames)} poses")
     path_file = folder / "path_on_floor.txt"
     path_on_floor = _read_numbers(path_file) if path_file.is_file() else None
     if path_on_floor is not None and (path_on_floor.ndim != 2 or path_on_floor.shape[1] != 3):
         raise SequenceError(f"{path_file} must hold x y z per row; got shape {path_on_floor.shape}")
     return DepthSequence(
-        folder, frames, [images[f] for f in frames], camera_to_world, intrinsics, image_shape, _read_up(folder), times,
-        path_on_floor,
+        folder, frames, [images[f] for f in frames], camera_to_world, intrinsics, image_shape, _read_up(folder),
+        _read_times(folder, camera_to_world), path_on_floor, units_per_metre,
     )  # fmt: skip
+
+
+def require_units(units_per_metre: float) -> None:
+    """Raises `ValueError` unless a metre has a positive, finite number of depth units."""
+    if not (np.isfinite(units_per_metre) and units_per_metre > 0):
+        raise ValueError(
+            f"a metre must have a positive number of depth units (1000 for millimetres, 5000 in TUM files); got "
+            f"{units_per_metre!r}"
+        )
 
 
 def write_sequence(
@@ -164,8 +198,8 @@ def write_sequence(
     )
 
 
-def read_depth_png(path: str | Path) -> np.ndarray:
-    """Depth image `(H, W)` float32 metres from a 16-bit PNG in millimetres; 0 becomes NaN (no measurement)."""
+def read_depth_png(path: str | Path, units_per_metre: float = UNITS_PER_METRE) -> np.ndarray:
+    """Depth image `(H, W)` float32 metres from a 16-bit PNG, in millimetres or as told; 0 becomes NaN (unmeasured)."""
     import cv2
 
     path = Path(path)
@@ -175,10 +209,8 @@ def read_depth_png(path: str | Path) -> np.ndarray:
     if image is None:
         raise SequenceError(f"{path} cannot be read as a PNG: is it complete?")
     if image.dtype != np.uint16 or image.ndim != 2:
-        raise SequenceError(
-            f"{path} must be a 16-bit single-channel PNG in millimetres; got {image.dtype} with shape {image.shape}"
-        )
-    depth = image.astype(np.float32) * np.float32(1e-3)
+        raise SequenceError(f"{path} must be a 16-bit single-channel PNG; got {image.dtype} with shape {image.shape}")
+    depth = image.astype(np.float32) * np.float32(1 / units_per_metre)
     depth[image == 0] = np.nan
     return depth
 
@@ -222,20 +254,24 @@ def write_tum(path: str | Path, times: np.ndarray, poses: np.ndarray) -> None:
     np.savetxt(path, rows, fmt="%.9f", header="t tx ty tz qx qy qz qw")
 
 
-def rotation_to_z_up(up: str) -> np.ndarray:
-    """Rotation `(4, 4)` that turns the named up axis ("y", "-z", ...) of a world into +z, by the shortest turn."""
-    if up not in UP_AXES:
-        raise ValueError(f"up must be one of {', '.join(UP_AXES)}; got {up!r}")
-    from scipy.spatial.transform import Rotation
+def read_pose(path: str | Path) -> np.ndarray:
+    """A camera-to-world matrix `(4, 4)`, optical convention, from a file in any of the formats that hold poses.
 
-    matrix = np.eye(4)
-    axis = np.asarray(UP_AXES[up], dtype=np.float64)
-    if up == "-z":
-        matrix[:3, :3] = np.diag([1.0, -1.0, -1.0])
-    elif up != "z":
-        turn = np.cross(axis, [0.0, 0.0, 1.0])
-        matrix[:3, :3] = np.rint(Rotation.from_rotvec(turn * np.pi / 2).as_matrix())
-    return matrix
+    A 4 x 4 matrix, or the first row of a poses.txt (frame, then 16 numbers) or of a TUM trajectory (8 numbers).
+    Raises `FileNotFoundError` for a missing file, `SequenceError` for anything else in it.
+    """
+    path = Path(path)
+    rows = _read_numbers(path)
+    if rows.shape[1] == 8:
+        return read_tum(path)[1][0]
+    if rows.shape[1] == 17:
+        return _read_poses(path)[1][0]
+    if rows.shape != (4, 4) or not _are_rigid(rows[None])[0]:
+        raise SequenceError(
+            f"{path} must hold a pose: a rigid 4 x 4 matrix, rows as in poses.txt (17 numbers), or a TUM trajectory (8 "
+            f"numbers); got {rows.shape[0]} rows of {rows.shape[1]} numbers"
+        )
+    return _nearest_rigid(rows[None])[0]
 
 
 def _depth_files(folder: Path) -> dict[int, Path]:
@@ -265,13 +301,22 @@ def _read_poses(path: Path) -> tuple[list[int], np.ndarray]:
     if (rows[:, 0] != np.rint(rows[:, 0])).any() or (np.diff(rows[:, 0]) <= 0).any():
         raise SequenceError(f"{path}: frame numbers must be whole and ascending, each once")
     poses = rows[:, 1:].reshape(-1, 4, 4)
-    good = is_rotation(poses[:, :3, :3], tolerance=1e-3) & (np.abs(poses[:, 3] - [0, 0, 0, 1]).max(axis=-1) < 1e-6)
+    good = _are_rigid(poses)
     if not good.all():
         frame = int(rows[np.argmin(good), 0])
         raise SequenceError(f"{path}: the matrix of frame {frame} is not rigid (a rotation, and 0 0 0 1 below)")
-    # Files hold few digits: the nearest rotation makes good what rounding took.
-    poses[:, :3, :3] = [rotation_mean(rotation[None]) for rotation in poses[:, :3, :3]]
-    return rows[:, 0].astype(int).tolist(), poses
+    return rows[:, 0].astype(int).tolist(), _nearest_rigid(poses)
+
+
+def _are_rigid(poses: np.ndarray) -> np.ndarray:
+    return is_rotation(poses[:, :3, :3], tolerance=1e-3) & (np.abs(poses[:, 3] - [0, 0, 0, 1]).max(axis=-1) < 1e-6)
+
+
+def _nearest_rigid(poses: np.ndarray) -> np.ndarray:
+    """Files hold few digits: the nearest rotation makes good what rounding took."""
+    rigid = poses.copy()
+    rigid[:, :3, :3] = [rotation_mean(rotation[None]) for rotation in poses[:, :3, :3]]
+    return rigid
 
 
 def _require_same_frames(folder: Path, pose_frames: list[int], image_frames: list[int]) -> None:
@@ -283,6 +328,19 @@ def _require_same_frames(folder: Path, pose_frames: list[int], image_frames: lis
         f"poses.txt and depth/ in {folder} name other frames: {len(pose_frames)} poses, {len(image_frames)} images; "
         f"poses without an image start {without_image}, images without a pose {without_pose}"
     )
+
+
+def _read_times(folder: Path, camera_to_world: np.ndarray | None) -> np.ndarray | None:
+    """Times of groundtruth.txt, which must hold the poses of poses.txt; None where either is missing."""
+    path = folder / "groundtruth.txt"
+    if camera_to_world is None or not path.is_file():
+        return None
+    times, timed_poses = read_tum(path)
+    if len(times) != len(camera_to_world) or not np.allclose(timed_poses, camera_to_world, atol=1e-3):
+        raise SequenceError(
+            f"groundtruth.txt and poses.txt in {folder} do not hold the same {len(camera_to_world)} poses"
+        )
+    return times
 
 
 def _read_up(folder: Path) -> str | None:

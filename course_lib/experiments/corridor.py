@@ -1,29 +1,15 @@
-"""Runs of the filter as plain functions of a recording, a method and a seed (paper 1, section 4, and real recordings).
-
-Every run gives plain arrays and numbers, so that a sweep over seeds can hand it to any executor.
-"""
+"""Table 1 of paper 1, section 4: its methods as plain functions of a recording and a seed, and the paper's errors."""
 
 from __future__ import annotations
 
-import time
-import warnings
-from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.evaluation import PositionError, nearest_path_error, pose_errors, timed_error
-from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH, fallon_weighting
-from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, MonteCarloLocalizer, NoMeasurementWarning, WeightingRule
-from course_lib.depth_mcl.motion import BODY_AXES, Motion
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.evaluation import PositionError, nearest_path_error, timed_error
+from course_lib.depth_mcl.fallon import fallon_weighting
+from course_lib.depth_mcl.localizer import WeightingRule
 from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.depth_mcl.sensor import subsample_depth
-from course_lib.depth_mcl.sequence import DepthSequence, rotation_to_z_up
-from course_lib.geometry import optical_pose, state_from_optical_pose
-
-NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
+from course_lib.depth_mcl.sequence import DepthSequence
+from course_lib.experiments.recordings import Run, run_sequence
 
 
 class Method(NamedTuple):
@@ -44,84 +30,6 @@ METHODS = {
 }
 
 
-class Run(NamedTuple):
-    """What the filter made of a recording, frame by frame."""
-
-    frames: list[int]
-    states: np.ndarray
-    """`(T, 6)` estimates, in the world of the map that was used."""
-    camera_to_world: np.ndarray
-    """`(T, 4, 4)` estimates in the recording's own world, optical convention."""
-    scores: np.ndarray
-    """`(T,)` raw score of the best particle; NaN where the frame held no measurement."""
-    ess: np.ndarray
-    """`(T,)` effective sample size."""
-    ms_per_frame: float
-    """Milliseconds, the mean over steps; reading the images is not counted."""
-    frames_without_measurement: int
-
-
-def sequence_camera(sequence: DepthSequence, near: float = NEAR, far: float = FAR) -> DepthCamera:
-    """The depth camera that made a recording."""
-    height, width = sequence.image_shape
-    return DepthCamera.from_matrix(sequence.intrinsics, width, height, near, far)
-
-
-def run_sequence(
-    scene_map: SceneMap,
-    sequence: DepthSequence,
-    *,
-    sigma: np.ndarray = SIGMA_XY_YAW,
-    n_particles: int = 200,
-    seed: int = 0,
-    motion: Motion = BODY_AXES,
-    weighting: WeightingRule | None = None,
-    coarse: bool = False,
-    up: str | None = None,
-    frames: int | None = None,
-    backend: str = "vtk",
-    far: float = FAR,
-    progress: Callable = iter,
-) -> Run:
-    """Localizes a recording, starting at its first pose, and gives one estimate a frame.
-
-    up: the axis of map and recording that points up (None: what the recording says, else z); the filter works in a
-    world turned to z up. coarse: compare 20 x 15 pixels instead of all. frames: only so many from the start.
-    progress: wraps the frame indices (tqdm). Other arguments as in `MonteCarloLocalizer` and `DepthRenderer`.
-    """
-    to_z_up = rotation_to_z_up(up or sequence.up or "z")
-    camera = used = sequence_camera(sequence, far=far)
-    if coarse:
-        used = camera.resized(COARSE_WIDTH, COARSE_HEIGHT)
-    count = len(sequence) if frames is None else min(frames, len(sequence))
-    if count < 1:
-        raise ValueError(f"frames must be at least 1; got {frames}")
-    estimates, seconds = [], 0.0
-    with DepthRenderer(scene_map.transformed(to_z_up), used, backend) as renderer:
-        localizer = MonteCarloLocalizer(renderer, n_particles, sigma, seed=seed, motion=motion, weighting=weighting)
-        localizer.initialize(state_from_optical_pose(to_z_up @ sequence.camera_to_world[0]))
-        with warnings.catch_warnings():
-            # They are counted instead, below.
-            warnings.simplefilter("ignore", NoMeasurementWarning)
-            for index in progress(range(count)):
-                depth = sequence.depth(index)
-                if coarse:
-                    depth = subsample_depth(depth, camera, used)
-                start = time.perf_counter()
-                estimates.append(localizer.step(depth))
-                seconds += time.perf_counter() - start
-    states = np.array([e.state for e in estimates])
-    return Run(
-        frames=sequence.frames[:count],
-        states=states,
-        camera_to_world=np.linalg.inv(to_z_up) @ optical_pose(states),
-        scores=np.array([e.score for e in estimates]),
-        ess=np.array([e.ess for e in estimates]),
-        ms_per_frame=1000 * seconds / count,
-        frames_without_measurement=sum(e.status != "ok" for e in estimates),
-    )
-
-
 def run_method(
     method: Method, scene_map: SceneMap, planar_map: SceneMap, sequence: DepthSequence, **options: object
 ) -> Run:
@@ -136,16 +44,3 @@ def path_errors(run: Run, sequence: DepthSequence) -> tuple[PositionError, Posit
         raise ValueError(f"{sequence.folder} holds no path_on_floor.txt, which the paper's error needs")
     estimated, true = run.camera_to_world[:, :3, 3], sequence.camera_to_world[: len(run.frames), :3, 3]
     return nearest_path_error(estimated, sequence.path_on_floor), timed_error(estimated, true)
-
-
-def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float]:
-    """Median and 90th percentile of position (m) and rotation (degrees) errors; share within 5 cm, 5 degrees."""
-    position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
-    rotation_deg = np.rad2deg(rotation)
-    return {
-        "median_position_m": float(np.median(position)),
-        "p90_position_m": float(np.percentile(position, 90)),
-        "median_rotation_deg": float(np.median(rotation_deg)),
-        "p90_rotation_deg": float(np.percentile(rotation_deg, 90)),
-        "within_5cm_5deg_percent": float(100 * np.mean((position <= 0.05) & (rotation_deg <= 5.0))),
-    }

@@ -1,9 +1,4 @@
-"""The formats that readers can bring and take away (all in one place; the code of depth sequences is in depth_mcl).
-
-Meshes: whatever trimesh reads (`SceneMap.load`). Depth sequences: a folder with depth/*.png, intrinsics.txt and
-poses.txt (`read_sequence`, `write_sequence`). Trajectories: TUM (`read_tum`, `write_tum`). Results: JSON and CSV with
-seed and versions inside (`write_results`).
-"""
+"""Results of commands and experiments: JSON and CSV, with seed and versions inside."""
 
 from __future__ import annotations
 
@@ -15,29 +10,6 @@ from importlib.metadata import version
 from pathlib import Path
 
 import course_lib
-from course_lib.depth_mcl.sequence import (
-    DepthSequence,
-    SequenceError,
-    read_depth_png,
-    read_sequence,
-    read_tum,
-    write_depth_png,
-    write_sequence,
-    write_tum,
-)
-
-__all__ = [
-    "DepthSequence",
-    "SequenceError",
-    "read_depth_png",
-    "read_sequence",
-    "read_tum",
-    "versions",
-    "write_depth_png",
-    "write_results",
-    "write_sequence",
-    "write_tum",
-]
 
 
 def versions() -> dict[str, str]:

@@ -9,7 +9,7 @@ from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
-from course_lib.experiments.corridor import Run, sequence_camera
+from course_lib.experiments.recordings import Run
 from course_lib.plots.figures import colour_bar, depth_image, new_figure
 
 BESIDE = np.array([-0.5, 0.0, 0.0, 0.0, 0.0, np.deg2rad(4.0)])  # from the estimate: half a metre back, four degrees
@@ -21,7 +21,7 @@ def overview_figure(scene_map: SceneMap, sequence: DepthSequence, run: Run, back
     Agreement is eq. (8) divided by the number of measured pixels, 0 to 1.
     """
     index = len(run.frames) // 2
-    camera = sequence_camera(sequence)
+    camera = sequence.camera()
     with DepthRenderer(scene_map, camera, backend) as renderer:
         measured = renderer.render_points(camera.points(sequence.depth(index)))
         simulated = renderer.render(np.stack([run.states[index], run.states[index] + BESIDE]))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.experiments.results import read_tum
+from course_lib.depth_mcl.sequence import read_tum
 
 KEYS = {
     "frames", "median_position_m", "p90_position_m", "median_rotation_deg", "p90_rotation_deg",
@@ -80,8 +80,8 @@ def test_a_turned_world_gives_the_same_errors(corridor_folder, tmp_path, capsys,
     """The corridor's map and poses turned so that another axis points up, and told so with --up."""
     import trimesh
 
-    from course_lib.depth_mcl.sequence import rotation_to_z_up
-    from course_lib.experiments.results import read_sequence, write_sequence
+    from course_lib.depth_mcl.sequence import read_sequence, write_sequence
+    from course_lib.geometry import rotation_to_z_up
 
     turn = np.linalg.inv(rotation_to_z_up(up))
     mesh = trimesh.load(corridor_folder / "map.ply", process=False)

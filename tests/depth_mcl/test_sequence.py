@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
+from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.sequence import (
-    UP_AXES,
     SequenceError,
     read_depth_png,
+    read_pose,
     read_sequence,
     read_tum,
-    rotation_to_z_up,
     write_depth_png,
     write_sequence,
     write_tum,
 )
-from course_lib.geometry import optical_pose, state_from_optical_pose
+from course_lib.geometry import UP_AXES, optical_pose, rotation_to_z_up, state_from_optical_pose
 from tests.depth_mcl.shapes import SMALL, random_states
 
 
@@ -111,11 +111,49 @@ def test_a_damaged_recording_is_named(folder, damage, said):
         read_sequence(folder)
 
 
-@pytest.mark.parametrize("name", ["poses.txt", "intrinsics.txt"])
-def test_a_missing_file_is_named(folder, name):
-    (folder / name).unlink()
-    with pytest.raises(FileNotFoundError, match=name):
+def test_missing_intrinsics_are_named(folder):
+    (folder / "intrinsics.txt").unlink()
+    with pytest.raises(FileNotFoundError, match=r"intrinsics\.txt"):
         read_sequence(folder)
+
+
+def test_a_recording_without_truth_is_read_and_says_so_where_the_truth_is_asked_for(folder):
+    (folder / "poses.txt").unlink()
+    sequence = read_sequence(folder)
+    assert not sequence.has_poses
+    assert sequence.frames == [2, 5, 7, 9]
+    assert [pose for _, _, pose in sequence] == [None] * 4
+    assert sequence.times is None  # the truth file's; it does not stand alone
+    with pytest.raises(SequenceError, match=r"no poses\.txt.*--start"):
+        _ = sequence.camera_to_world
+
+
+def test_depth_counts_in_the_units_that_are_told(folder):
+    millimetres, fifths = read_sequence(folder), read_sequence(folder, units_per_metre=5000)
+    assert np.allclose(fifths.depth(1), millimetres.depth(1) / 5, equal_nan=True)
+    for bad in (0, -1000, np.nan, np.inf):
+        with pytest.raises(ValueError, match="units"):
+            read_sequence(folder, units_per_metre=bad)
+
+
+def test_a_recording_names_its_camera(folder):
+    assert read_sequence(folder).camera(near=0.3, far=7.0) == DepthCamera.from_matrix(
+        SMALL.matrix, SMALL.width, SMALL.height, 0.3, 7.0
+    )
+
+
+def test_a_pose_is_read_from_a_matrix_from_poses_and_from_a_trajectory(folder, tmp_path):
+    first = read_sequence(folder).camera_to_world[0]
+    np.savetxt(tmp_path / "matrix.txt", first, fmt="%.6f")
+    for path in (tmp_path / "matrix.txt", folder / "poses.txt", folder / "groundtruth.txt"):
+        assert np.allclose(read_pose(path), first, atol=1e-5)
+
+
+@pytest.mark.parametrize("matrix", [np.ones((4, 4)), np.eye(3), np.diag([1, 1, 1, 2])])
+def test_what_is_no_pose_is_named(tmp_path, matrix):
+    np.savetxt(tmp_path / "pose.txt", matrix)
+    with pytest.raises(SequenceError, match="must hold a pose"):
+        read_pose(tmp_path / "pose.txt")
 
 
 def test_two_images_of_one_frame_number_are_named(folder):

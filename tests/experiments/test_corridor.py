@@ -9,7 +9,8 @@ from course_lib.commands.localize import SIGMA
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.corridor import METHODS, path_errors, run_method, run_sequence, sequence_camera
+from course_lib.experiments.corridor import METHODS, path_errors, run_method
+from course_lib.experiments.recordings import run_sequence
 from course_lib.geometry import state_from_optical_pose
 
 REPORTING_SEEDS = (1, 2, 3, 4, 5)
@@ -61,7 +62,7 @@ def test_both_backends_lead_to_the_same_estimates(corridor):
 
 def test_blank_frames_are_counted_and_passed_over(corridor, monkeypatch):
     scene_map, _, sequence = corridor
-    blank = np.full(sequence_camera(sequence).shape, np.nan)
+    blank = np.full(sequence.camera().shape, np.nan)
     real = type(sequence).depth
     monkeypatch.setattr(type(sequence), "depth", lambda self, i: blank if i == 1 else real(self, i))
     run = run_sequence(scene_map, sequence, frames=3, n_particles=20)

@@ -13,7 +13,6 @@ from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
-from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import state_from_optical_pose
 from course_lib.paths import data_path
 
@@ -39,7 +38,7 @@ class Moment(NamedTuple):
 def moment(frame: int = FRAME) -> Moment:
     """A frame of the corridor run with the map's renderer; kept, since a panel asks for it again and again."""
     sequence = read_sequence(data_path("corridor/wagon"))
-    renderer = DepthRenderer(SceneMap.load(data_path("corridor/map.ply")), sequence_camera(sequence))
+    renderer = DepthRenderer(SceneMap.load(data_path("corridor/map.ply")), sequence.camera())
     return Moment(sequence.depth(frame), state_from_optical_pose(sequence.camera_to_world[frame]), renderer)
 
 

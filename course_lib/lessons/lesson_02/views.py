@@ -13,7 +13,6 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
 from course_lib.lessons.lesson_02.small_room import MapQuality, room
 from course_lib.paths import data_path
@@ -89,7 +88,7 @@ def corridor_difference(scene_map: SceneMap, true_world: SceneMap, frames: range
     states = state_from_optical_pose(recording.camera_to_world[list(frames)])
     images = []
     for scene in (scene_map, true_world):
-        with DepthRenderer(scene, sequence_camera(recording)) as renderer:
+        with DepthRenderer(scene, recording.camera()) as renderer:
             images.append(renderer.render(states))
     mapped, true = images
     there = np.isfinite(true)

@@ -14,7 +14,6 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import state_from_optical_pose
 from course_lib.lessons.lesson_06.gaussian import gaussian_log_likelihood
 from course_lib.paths import data_path
@@ -82,7 +81,7 @@ class Scene(NamedTuple):
 def small_scene() -> Scene:
     """The frame of this lesson at 44 x 36 pixels. Small images are drawn faster by rays than by a window."""
     sequence = read_sequence(data_path("corridor/wagon"))
-    camera = sequence_camera(sequence)
+    camera = sequence.camera()
     small = camera.resized(*SMALL)
     renderer = DepthRenderer(SceneMap.load(data_path("corridor/map.ply")), small, "ray")
     truth = state_from_optical_pose(sequence.camera_to_world[FRAME])

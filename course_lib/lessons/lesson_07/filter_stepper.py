@@ -25,7 +25,6 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import state_from_optical_pose
 from course_lib.paths import data_path
 from course_lib.plots.corridor_figures import floor_plan
@@ -100,7 +99,7 @@ class View(NamedTuple):
 def corridor_stretch() -> Stretch:
     """The stretch at 32 x 26 pixels. Small images are drawn faster by rays than by a window."""
     sequence = read_sequence(data_path("corridor/wagon"))
-    camera = sequence_camera(sequence)
+    camera = sequence.camera()
     small = camera.resized(*SMALL)
     scene_map = SceneMap.load(data_path("corridor/map.ply"))
     true = state_from_optical_pose(sequence.camera_to_world[list(FRAMES)])

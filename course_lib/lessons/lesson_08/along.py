@@ -15,7 +15,6 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import state_from_optical_pose
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.paths import data_path
@@ -46,7 +45,7 @@ class AgreementTable(NamedTuple):
 def agreement_table() -> AgreementTable:
     """The panel's table, made once: every frame of the stretch against small images from places along the corridor."""
     sequence = read_sequence(data_path("corridor/wagon"))
-    camera = sequence_camera(sequence)
+    camera = sequence.camera()
     small = camera.resized(*_TABLE_SIZE)
     true = state_from_optical_pose(sequence.camera_to_world[list(STRETCH)])
     rows = []

@@ -15,7 +15,7 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
-from course_lib.experiments.corridor import Run, run_sequence, sequence_camera
+from course_lib.experiments.recordings import Run, run_sequence
 from course_lib.geometry import rotation_exp
 from course_lib.paths import data_path
 
@@ -130,7 +130,7 @@ class Checker:
 
     def _renderer(self, focal_scale: float) -> DepthRenderer:
         if focal_scale not in self._renderers:
-            camera: DepthCamera = sequence_camera(self.given.sequence)
+            camera: DepthCamera = self.given.sequence.camera()
             camera = dataclasses.replace(camera, fx=camera.fx * focal_scale, fy=camera.fy * focal_scale)
             self._renderers[focal_scale] = DepthRenderer(self.given.scene_map, camera)
         return self._renderers[focal_scale]

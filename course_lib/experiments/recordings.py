@@ -1,0 +1,122 @@
+"""Any recording through the filter, as plain functions of a recording, a map and a seed.
+
+Every run gives plain arrays and numbers, so that a sweep over seeds can hand it to any executor.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.depth_mcl.evaluation import pose_errors
+from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
+from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, MonteCarloLocalizer, NoMeasurementWarning, WeightingRule
+from course_lib.depth_mcl.motion import BODY_AXES, Motion
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.depth_mcl.sensor import subsample_depth
+from course_lib.depth_mcl.sequence import FAR, NEAR, DepthSequence
+from course_lib.depth_mcl.tracking import Agreement, TrackStatus, agreement, judge_track
+from course_lib.geometry import optical_pose, rotation_to_z_up, state_from_optical_pose
+
+
+class Run(NamedTuple):
+    """What the filter made of a recording, frame by frame."""
+
+    frames: list[int]
+    states: np.ndarray
+    """`(T, 6)` estimates, in the world of the map that was used."""
+    camera_to_world: np.ndarray
+    """`(T, 4, 4)` estimates in the recording's own world, optical convention."""
+    scores: np.ndarray
+    """`(T,)` raw score of the best particle; NaN where the frame held no measurement."""
+    ess: np.ndarray
+    """`(T,)` effective sample size."""
+    agreements: list[Agreement]
+    """How each frame's image agrees with the map as seen from its estimate."""
+    statuses: list[TrackStatus]
+    """Whether the filter believes itself on the track, frame by frame."""
+    ms_per_frame: float
+    """Milliseconds, the mean over steps; reading the images is not counted."""
+    frames_without_measurement: int
+
+
+def run_sequence(
+    scene_map: SceneMap,
+    sequence: DepthSequence,
+    *,
+    sigma: np.ndarray = SIGMA_XY_YAW,
+    n_particles: int = 200,
+    seed: int = 0,
+    motion: Motion = BODY_AXES,
+    weighting: WeightingRule | None = None,
+    coarse: bool = False,
+    up: str | None = None,
+    start: np.ndarray | None = None,
+    frames: int | None = None,
+    backend: str = "vtk",
+    near: float = NEAR,
+    far: float = FAR,
+    progress: Callable = iter,
+) -> Run:
+    """Localizes a recording and gives one estimate a frame, each with what the filter thinks of it.
+
+    start: camera-to-world matrix `(4, 4)` in the recording's own world, optical convention (None: the recording's first
+    true pose; `SequenceError` where it has none).
+    up: the axis of map and recording that points up (None: what the recording says, else z); the filter works in a
+    world turned to z up. coarse: compare 20 x 15 pixels instead of all. frames: only so many from the start.
+    progress: wraps the frame indices (tqdm). Other arguments as in `MonteCarloLocalizer` and `DepthRenderer`.
+    """
+    to_z_up = rotation_to_z_up(up or sequence.up or "z")
+    camera = used = sequence.camera(near, far)
+    if coarse:
+        used = camera.resized(COARSE_WIDTH, COARSE_HEIGHT)
+    count = len(sequence) if frames is None else min(frames, len(sequence))
+    if count < 1:
+        raise ValueError(f"frames must be at least 1; got {frames}")
+    start = sequence.camera_to_world[0] if start is None else start
+    estimates, agreements, seconds = [], [], 0.0
+    with DepthRenderer(scene_map.transformed(to_z_up), used, backend) as renderer:
+        localizer = MonteCarloLocalizer(renderer, n_particles, sigma, seed=seed, motion=motion, weighting=weighting)
+        localizer.initialize(state_from_optical_pose(to_z_up @ start))
+        with warnings.catch_warnings():
+            # They are counted instead, below.
+            warnings.simplefilter("ignore", NoMeasurementWarning)
+            for index in progress(range(count)):
+                depth = sequence.depth(index)
+                if coarse:
+                    depth = subsample_depth(depth, camera, used)
+                begun = time.perf_counter()
+                estimates.append(localizer.step(depth))
+                seconds += time.perf_counter() - begun
+                measured = renderer.render_points(used.points(depth))
+                agreements.append(agreement(measured, renderer.render(estimates[-1].state)[0]))
+    states = np.array([e.state for e in estimates])
+    return Run(
+        frames=sequence.frames[:count],
+        states=states,
+        camera_to_world=np.linalg.inv(to_z_up) @ optical_pose(states),
+        scores=np.array([e.score for e in estimates]),
+        ess=np.array([e.ess for e in estimates]),
+        agreements=agreements,
+        statuses=judge_track(agreements),
+        ms_per_frame=1000 * seconds / count,
+        frames_without_measurement=sum(e.status != "ok" for e in estimates),
+    )
+
+
+def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float]:
+    """Median and 90th percentile of position (m) and rotation (degrees) errors; share within 5 cm, 5 degrees."""
+    position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
+    rotation_deg = np.rad2deg(rotation)
+    return {
+        "median_position_m": float(np.median(position)),
+        "p90_position_m": float(np.percentile(position, 90)),
+        "median_rotation_deg": float(np.median(rotation_deg)),
+        "p90_rotation_deg": float(np.percentile(rotation_deg, 90)),
+        "within_5cm_5deg_percent": float(100 * np.mean((position <= 0.05) & (rotation_deg <= 5.0))),
+    }
