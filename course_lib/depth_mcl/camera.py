@@ -11,6 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+# How far rounding may move a surface that lies exactly on a clip plane: a tenth of a millimetre for float32 coordinates
+# (measured: XX), and so many steps of a 24-bit z-buffer (measured: YY).
+PLANE_ROUNDING = 1e-4
+PLANE_ROUNDING_STEPS = 4
+
 # Share of the image's size by which a principal point read from a file may miss the middle (chosen).
 MAX_CENTRE_OFFSET = 0.2
 
@@ -20,9 +25,9 @@ class DepthCamera:
     """Pinhole depth camera.
 
     width, height: pixels. fx, fy: focal lengths in pixels (they differ for an SR4000). cx, cy: principal point in
-    pixels, pixel centres at integers. near, far: clip planes in metres; a surface outside them is not hit. The z-buffer
-    has steps of Z^2 / (near 2^24): 0.06 mm at 10 m with near = 0.1 m, ten times that with near = 0.01 m; far costs
-    nothing.
+    pixels, pixel centres at integers. near, far: clip planes in metres; a surface outside them is not hit, one on
+    them is (`nearest`, `farthest`). The z-buffer has steps of Z^2 / (near 2^24): 0.06 mm at 10 m with near = 0.1 m,
+    ten times that with near = 0.01 m; far costs nothing.
     Raises `ValueError` for a size below one pixel, focal lengths or clip planes that are not positive and finite, or
     near >= far.
     """
@@ -120,6 +125,17 @@ class DepthCamera:
             cx=(self.cx + 0.5) * scale_x - 0.5,
             cy=(self.cy + 0.5) * scale_y - 0.5,
         )
+
+    @property
+    def nearest(self) -> float:
+        """Least depth in metres that counts as seen: near, less what rounding may take from a surface lying on it."""
+        return max(self.near - PLANE_ROUNDING, 0.99 * self.near)
+
+    @property
+    def farthest(self) -> float:
+        """Greatest depth in metres that counts as seen: far, and what rounding may add to a surface lying on it."""
+        step = self.far**2 / (self.near * 2**24)
+        return self.far + PLANE_ROUNDING + PLANE_ROUNDING_STEPS * step
 
     def with_clip_planes(self, near: float, far: float) -> DepthCamera:
         """The same camera with other clip planes, in metres."""

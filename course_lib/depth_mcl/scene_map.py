@@ -6,11 +6,18 @@ import re
 from pathlib import Path
 
 import numpy as np
+import trimesh
 
 from course_lib.geometry import is_rotation
 
 # Below this area (square metres) a triangle has no inside that a pixel centre could hit.
 _DEGENERATE_AREA = 1e-16
+
+# No place on Earth lies farther than this many metres, half its circumference, from where a map could have its zero.
+MAX_COORDINATE = 2e7
+
+# Metres between the points that coordinates are taken from (`SceneMap.anchor`): float32 has steps of 0.06 mm at 1 km.
+_ANCHOR_STEP = 1000.0
 
 
 class SceneMapError(ValueError):
@@ -21,10 +28,10 @@ class SceneMap:
     """Triangles in the world frame.
 
     vertices: `(V, 3)` float64 metres. faces: `(F, 3)` int32 vertex indices; the winding does not matter, both sides of
-    a triangle are seen. origin: `(3,)` float64, the middle of the bounding box; renderers subtract it before anything
-    becomes float32, so that a map a kilometre from its coordinate origin keeps its millimetres.
-    Raises `SceneMapError` (a `ValueError`) for an empty mesh, no faces, vertices that are not finite, or indices out of
-    range. Triangles without area are dropped.
+    a triangle are seen. bounds: `(2, 3)`, least and greatest coordinates. origin: `(3,)` float64, the median of
+    the triangles' corners: where most of the map is, however far away a stray triangle lies (`anchor`).
+    Raises `SceneMapError` (a `ValueError`) for an empty mesh, no faces, vertices that are not finite, a triangle too
+    far away to be part of a building, or indices out of range. Triangles without area are dropped.
     """
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
@@ -47,15 +54,15 @@ class SceneMap:
                 f"{faces.min()} to {faces.max()}"
             )
         corners = vertices[faces]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        keep = 0.5 * np.linalg.norm(normals, axis=1) > _DEGENERATE_AREA
+        _require_places_on_earth(corners)
+        keep = trimesh.triangles.area(corners) > _DEGENERATE_AREA
         if not keep.any():
             raise SceneMapError(f"none of the {len(faces)} triangles has an area")
         self.vertices = vertices
         self.faces = np.ascontiguousarray(faces[keep], dtype=np.int32)
-        used = vertices[np.unique(self.faces)]
+        used = corners[keep].reshape(-1, 3)
         self.bounds = np.stack([used.min(axis=0), used.max(axis=0)])
-        self.origin = self.bounds.mean(axis=0)
+        self.origin = np.median(used, axis=0)
         for array in (self.vertices, self.faces, self.bounds, self.origin):
             array.setflags(write=False)
 
@@ -66,8 +73,6 @@ class SceneMap:
         Raises `FileNotFoundError` where there is no file, `SceneMapError` where it cannot be read, holds no triangles,
         or fewer than its own header announces (PLY, OFF; an OBJ file has no header, so a truncated one goes unnoticed).
         """
-        import trimesh
-
         path = Path(path)
         if not path.is_file():
             raise FileNotFoundError(f"no map at {path}: give the path of a mesh file (PLY, OBJ, STL or GLB)")
@@ -89,7 +94,10 @@ class SceneMap:
         announced = _announced_faces(path)
         if announced is not None and len(faces) < announced:
             raise SceneMapError(f"{path} announces {announced} faces and holds {len(faces)}: the file is not complete")
-        return cls(vertices, faces)
+        try:
+            return cls(vertices, faces)
+        except SceneMapError as error:
+            raise SceneMapError(f"{path}: {error}") from None
 
     def transformed(self, matrix: np.ndarray) -> SceneMap:
         """The map moved by a rigid transform `(4, 4)`."""
@@ -97,6 +105,22 @@ class SceneMap:
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or not is_rotation(matrix[:3, :3]):
             raise ValueError("matrix must be a rigid transform (4, 4): finite, with a rotation in the upper left")
         return SceneMap(self.vertices @ matrix[:3, :3].T + matrix[:3, 3], self.faces)
+
+    def anchor(self, positions: np.ndarray) -> np.ndarray:
+        """The point `(3,)` that renderers subtract from vertices and cameras before anything becomes float32.
+
+        positions: `(N, 3)` of the cameras. The anchor is the map's origin where the cameras are within half a kilometre
+        of it, else whole kilometres from it and near them: a millimetre at the cameras is still a millimetre, however
+        far away other parts of the map lie.
+        """
+        if len(positions) == 0:
+            return self.origin
+        middle = np.clip(np.median(positions, axis=0), *self.bounds)
+        return self.origin + _ANCHOR_STEP * np.round((middle - self.origin) / _ANCHOR_STEP)
+
+    def __reduce__(self) -> tuple[type[SceneMap], tuple[np.ndarray, np.ndarray]]:
+        """For pickle and copy: made anew, since arrays that travel forget that they are read-only."""
+        return SceneMap, (self.vertices, self.faces)
 
     def contains(self, positions: np.ndarray, margin: float = 0.0) -> np.ndarray:
         """Whether positions `(..., 3)` lie in the map's bounding box grown by `margin` metres: `(...)` bool."""
@@ -110,6 +134,20 @@ class SceneMap:
     def __repr__(self) -> str:
         size = self.bounds[1] - self.bounds[0]
         return f"SceneMap({len(self.faces)} triangles, {size[0]:.1f} x {size[1]:.1f} x {size[2]:.1f} m)"
+
+
+def _require_places_on_earth(corners: np.ndarray) -> None:
+    """Raises `SceneMapError` where one of the triangles `(F, 3, 3)` is too far away for a building."""
+    far_away = (np.abs(corners) > MAX_COORDINATE).any(axis=(1, 2))
+    if far_away.any():
+        first = int(np.argmax(far_away))
+        x, y, z = corners[first][np.abs(corners[first]).max(axis=1).argmax()]
+        raise SceneMapError(
+            f"{int(far_away.sum())} of {len(corners)} triangles lie beyond {MAX_COORDINATE:g} m, where no building is: "
+            f"triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Coordinates must be metres. To drop such "
+            "triangles: mesh = trimesh.load(path, process=False); "
+            f"mesh.update_faces((abs(mesh.triangles) <= {MAX_COORDINATE:g}).all(axis=(1, 2))); mesh.export(path)"
+        )
 
 
 def _announced_faces(path: Path) -> int | None:

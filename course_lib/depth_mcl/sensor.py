@@ -10,8 +10,9 @@ from course_lib.depth_mcl.camera import DepthCamera
 def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarray:
     """Depth image `(H, W)` float32 metres of points `(..., 3)` in the optical frame; NaN where no point fell.
 
-    A point (X, Y, Z) with near <= Z <= far falls on the pixel nearest to u = fx X / Z + cx, v = fy Y / Z + cy; of
-    several on one pixel the nearest counts:  z^j = min { Z : point on pixel j }.
+    A point (X, Y, Z) with near <= Z <= far (each within rounding: `DepthCamera.nearest`, `farthest`) falls on the pixel
+    nearest to u = fx X / Z + cx, v = fy Y / Z + cy; of several on one pixel the nearest counts:
+    z^j = min { Z : point on pixel j }.
     NaN points are no measurement. Raises `ValueError` for a wrong shape.
     Source: paper 1, eq. (7); NumPy reference of `DepthRenderer.render_points`.
     """
@@ -20,7 +21,7 @@ def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarr
         raise ValueError(f"points must have shape (..., 3); got {points.shape}")
     points = points.reshape(-1, 3)
     points = points[np.isfinite(points).all(axis=1)]
-    points = points[(points[:, 2] >= camera.near) & (points[:, 2] <= camera.far)]
+    points = points[(points[:, 2] >= camera.nearest) & (points[:, 2] <= camera.farthest)]
     u, v, z = camera.project(points)
     # Pixel j covers [j - 0.5, j + 0.5): floor(u + 0.5), as a rasterizer does it, not rint, which rounds to even.
     column, row = np.floor(u + 0.5), np.floor(v + 0.5)

@@ -7,57 +7,46 @@ a forward component of one, so that the ray parameter is depth along the optical
 from __future__ import annotations
 
 import numpy as np
+import trimesh
 
 from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.rendering import embree
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import depth_image_from_points
 
-try:
-    from embreex.mesh_construction import TriangleMesh
-    from embreex.rtcore_scene import EmbreeScene
-except ImportError:  # no wheel for this processor
-    EmbreeScene = None
-
 
 class RayBackend:
-    """Casts rays into the map about its origin."""
+    """Casts rays into the map. Threads share it: what is exchanged, is exchanged as a whole (`_caster_about`)."""
 
     def __init__(self, scene_map: SceneMap, camera: DepthCamera) -> None:
         self.camera = camera
+        self._scene_map = scene_map
         self._rays = camera.rays().reshape(-1, 3)
-        vertices = scene_map.vertices - scene_map.origin
-        if EmbreeScene is not None:
-            # robust: no ray slips through the edge that two triangles share.
-            self._scene = EmbreeScene(robust=True)
-            self._mesh = TriangleMesh(self._scene, vertices[scene_map.faces].astype(np.float32))
-        else:
-            import trimesh
-
-            self._scene = None
-            self._mesh = trimesh.Trimesh(vertices, scene_map.faces, process=False)
+        self._anchor_and_caster = scene_map.origin, self._new_caster(scene_map.origin)
 
     def render(self, poses: np.ndarray, out: np.ndarray) -> None:
-        """Fills `out` `(N, H, W)` with the depth seen from poses `(N, 4, 4)`, relative to the map's origin."""
+        """Fills `out` `(N, H, W)` with the depth seen from camera poses `(N, 4, 4)`."""
+        anchor = self._scene_map.anchor(poses[:, :3, 3])
+        caster = self._caster_about(anchor)
         for pose, image in zip(poses, out, strict=True):
             directions = self._rays @ pose[:3, :3].T
             # Rays start on the near plane: what lies before it is not hit.
-            origins = pose[:3, 3] + self.camera.near * directions
-            depth = self.camera.near + self._first_hit(origins, directions)
-            depth[depth > self.camera.far] = np.inf
+            origins = pose[:3, 3] - anchor + self.camera.nearest * directions
+            depth = self.camera.nearest + caster.cast(origins, directions)[0].astype(np.float64)
+            depth[depth > self.camera.farthest] = np.inf
             image[:] = depth.reshape(self.camera.shape)
 
-    def _first_hit(self, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
-        if self._scene is not None:
-            hits = self._scene.run(origins.astype(np.float32), directions.astype(np.float32), output=True)
-            return np.where(hits["primID"] >= 0, hits["tfar"], np.inf).astype(np.float64)
-        triangle, ray, location = self._mesh.ray.intersects_id(
-            origins, directions, multiple_hits=False, return_locations=True
-        )
-        del triangle
-        parameter = np.full(len(origins), np.inf)
-        along = np.einsum("ij,ij->i", location - origins[ray], directions[ray])
-        np.minimum.at(parameter, ray, along / np.einsum("ij,ij->i", directions[ray], directions[ray]))
-        return parameter
+    def _caster_about(self, anchor: np.ndarray) -> embree.EmbreeCaster | _TrimeshCaster:
+        """Caster of the map relative to `anchor` `(3,)`; the last one is kept, as views seldom move by kilometres."""
+        made_about, caster = self._anchor_and_caster
+        if not np.array_equal(anchor, made_about):
+            caster = self._new_caster(anchor)
+            self._anchor_and_caster = anchor, caster
+        return caster
+
+    def _new_caster(self, anchor: np.ndarray) -> embree.EmbreeCaster | _TrimeshCaster:
+        corners = (self._scene_map.vertices - anchor)[self._scene_map.faces]
+        return _TrimeshCaster(corners) if embree.EmbreeScene is None else embree.EmbreeCaster(corners)
 
     def render_points(self, points: np.ndarray) -> np.ndarray:
         """The camera's points as a depth image, in NumPy."""
@@ -65,8 +54,26 @@ class RayBackend:
 
     def describe(self) -> str:
         """Name of the ray caster."""
-        return "ray casting with Embree (embreex)" if self._scene is not None else "ray casting with trimesh"
+        without_embree = isinstance(self._anchor_and_caster[1], _TrimeshCaster)
+        return "ray casting with trimesh" if without_embree else "ray casting with Embree (embreex)"
 
     def close(self) -> None:
-        """Drops the scene."""
-        self._scene = self._mesh = None
+        """Nothing is held that the renderer's own end does not free."""
+
+
+class _TrimeshCaster:
+    """What `EmbreeCaster` does, in Python and far slower."""
+
+    def __init__(self, corners: np.ndarray) -> None:
+        self._mesh = trimesh.Trimesh(**trimesh.triangles.to_kwargs(corners), process=False)
+
+    def cast(self, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """First hits of rays: as `EmbreeCaster.cast`."""
+        faces, rays, places = self._mesh.ray.intersects_id(
+            origins, directions, multiple_hits=False, return_locations=True
+        )
+        along = np.einsum("ij,ij->i", places - origins[rays], directions[rays])
+        distance, face = np.full(len(origins), np.inf), np.full(len(origins), -1)
+        distance[rays] = along / np.einsum("ij,ij->i", directions[rays], directions[rays])
+        face[rays] = faces
+        return distance, face, self._mesh.face_normals[face]

@@ -3,13 +3,17 @@
 `DepthRenderer` is one door with two rooms behind it. Backend "vtk" draws the map once per particle, as tiles of one
 off-screen window, and reads the z-buffer back once (vtk_backend.py): the paper's method. Backend "ray" shoots one ray
 through every pixel centre (ray_backend.py): the reference that tests compare with. Both take float64 states, subtract
-the map's origin before anything becomes float32, and give depth along the optical axis, `inf` where nothing between the
+the map's anchor before anything becomes float32, and give depth along the optical axis, `inf` where nothing between the
 camera's near and far planes is hit.
+
+Threads may share a renderer. Processes: a forked child may use one that it inherits if it is "ray"; "vtk" says by name
+that it cannot. Pickled, as "spawn" does it, a renderer takes its map and camera along and opens again when first used.
 """
 
 from __future__ import annotations
 
 from types import TracebackType
+from typing import Literal
 
 import numpy as np
 
@@ -26,7 +30,8 @@ class RendererClosedError(RuntimeError):
 
 
 class OpenGLError(RuntimeError):
-    """OpenGL could not start or draw; the message names the cure."""
+    """OpenGL could not start or draw, or belongs to the process that this one was forked from; the message says what to
+    do."""
 
 
 class DepthRenderer:
@@ -36,14 +41,15 @@ class DepthRenderer:
     backend: "vtk" (z-buffer) or "ray" (ray casting, the reference). max_batch_pixels bounds the memory of one batch:
     as many images as fit are drawn at once, at least one.
     A context manager; `close()` frees the window, after which every call raises `RendererClosedError`.
-    Raises `OpenGLError` where OpenGL cannot start (backend "vtk"), `ValueError` for an unknown backend.
+    Raises `OpenGLError` where OpenGL cannot start (backend "vtk"), which is so in a process forked after the first
+    window was opened, `ValueError` for an unknown backend.
     """
 
     def __init__(
         self,
         scene_map: SceneMap,
         camera: DepthCamera,
-        backend: str = "vtk",
+        backend: Literal["vtk", "ray"] = "vtk",
         *,
         max_batch_pixels: int = MAX_BATCH_PIXELS,
     ) -> None:
@@ -52,18 +58,20 @@ class DepthRenderer:
         self.scene_map = scene_map
         self.camera = camera
         self.backend = backend
-        batch_size = max(1, int(max_batch_pixels) // (camera.width * camera.height))
-        if backend == "vtk":
+        self.batch_size = max(1, int(max_batch_pixels) // (camera.width * camera.height))
+        self._closed = False
+        self._open_backend = self._new_backend()
+
+    def _new_backend(self):
+        if self.backend == "vtk":
             from course_lib.depth_mcl.rendering.vtk_backend import VtkBackend
 
-            self._backend = VtkBackend(scene_map, camera, batch_size)
-        elif backend == "ray":
+            return VtkBackend(self.scene_map, self.camera, self.batch_size)
+        if self.backend == "ray":
             from course_lib.depth_mcl.rendering.ray_backend import RayBackend
 
-            self._backend = RayBackend(scene_map, camera)
-        else:
-            raise ValueError(f"backend must be 'vtk' (z-buffer) or 'ray' (ray casting); got {backend!r}")
-        self.batch_size = batch_size
+            return RayBackend(self.scene_map, self.camera)
+        raise ValueError(f"backend must be 'vtk' (z-buffer) or 'ray' (ray casting); got {self.backend!r}")
 
     def render(self, states: np.ndarray) -> np.ndarray:
         """Depth images `(N, H, W)` float32 metres of the map from states `(N, 6)`; `inf` where nothing is hit.
@@ -80,17 +88,16 @@ class DepthRenderer:
 
     def render_poses(self, camera_to_world: np.ndarray) -> np.ndarray:
         """The same from camera-to-world matrices `(N, 4, 4)` in the optical convention."""
-        self._require_open()
-        poses = np.array(camera_to_world, dtype=np.float64)
+        backend = self._backend()
+        poses = np.asarray(camera_to_world, dtype=np.float64)
         if poses.ndim != 3 or poses.shape[1:] != (4, 4):
             raise ValueError(f"camera_to_world must have shape (N, 4, 4); got {poses.shape}")
         if not (np.isfinite(poses).all() and is_rotation(poses[:, :3, :3]).all()):
             raise ValueError("camera_to_world must hold rigid transforms: finite, with a rotation in the upper left")
-        poses[:, :3, 3] -= self.scene_map.origin
         images = np.empty((len(poses), *self.camera.shape), dtype=np.float32)
         for start in range(0, len(poses), self.batch_size):
             batch = slice(start, start + self.batch_size)
-            self._backend.render(poses[batch], images[batch])
+            backend.render(poses[batch], images[batch])
         return images
 
     def render_points(self, points: np.ndarray) -> np.ndarray:
@@ -102,27 +109,39 @@ class DepthRenderer:
         Z_t = {z_t^1, ..., z_t^m}. `depth_image_from_points` is the same in NumPy.
         Raises `ValueError` for a wrong shape, `RendererClosedError` after `close()`. Source: paper 1, section 3.3.2.
         """
-        self._require_open()
+        backend = self._backend()
         points = np.asarray(points, dtype=np.float64)
         if points.ndim == 0 or points.shape[-1] != 3:
             raise ValueError(f"points must have shape (..., 3); got {points.shape}")
         points = points.reshape(-1, 3)
-        return self._backend.render_points(points[np.isfinite(points).all(axis=1)])
+        return backend.render_points(points[np.isfinite(points).all(axis=1)])
 
     def describe(self) -> str:
         """Name of what draws: the OpenGL renderer string, or the ray caster."""
-        self._require_open()
-        return self._backend.describe()
+        return self._backend().describe()
 
     def close(self) -> None:
         """Frees the window and its memory; closing twice is harmless."""
-        if self._backend is not None:
-            self._backend.close()
-            self._backend = None
+        self._closed = True
+        if self._open_backend is not None:
+            self._open_backend.close()
+            self._open_backend = None
 
-    def _require_open(self) -> None:
-        if self._backend is None:
+    def _backend(self):
+        """What draws; after a journey to another process it is opened here, at first use.
+
+        Not on arrival, where an error would kill a pool's worker and leave the pool waiting for its answer.
+        """
+        if self._closed:
             raise RendererClosedError("this renderer was closed; make a new DepthRenderer(scene_map, camera)")
+        backend = self._open_backend
+        if backend is None:
+            backend = self._open_backend = self._new_backend()
+        return backend
+
+    def __getstate__(self) -> dict[str, object]:
+        """For pickle and copy: everything but the window."""
+        return vars(self) | {"_open_backend": None}
 
     def __enter__(self) -> DepthRenderer:
         return self
@@ -133,6 +152,6 @@ class DepthRenderer:
         self.close()
 
     def __repr__(self) -> str:
-        state = "closed" if self._backend is None else "open"
+        state = "closed" if self._closed else "open"
         size = f"{self.camera.width} x {self.camera.height}"
         return f"DepthRenderer({self.scene_map!r}, {size} pixels, backend={self.backend!r}, {state})"

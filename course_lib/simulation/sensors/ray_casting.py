@@ -6,13 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from course_lib.depth_mcl.rendering.embree import EmbreeCaster
 from course_lib.simulation.corridor.mesh_building import WorldMesh
-
-try:
-    from embreex.mesh_construction import TriangleMesh
-    from embreex.rtcore_scene import EmbreeScene
-except ImportError:  # no wheel for this processor
-    EmbreeScene = TriangleMesh = None
 
 # Rays per call, so that the results of one call stay below about 100 MB.
 _BATCH = 1_000_000
@@ -35,14 +30,7 @@ class WorldCaster:
     """
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray, reflectivity: np.ndarray | float = 1.0) -> None:
-        if EmbreeScene is None:
-            raise ImportError(
-                "the simulated world needs embreex, which has wheels for x86-64 and for macOS: make the data there "
-                "(the shipped data and the lessons do not need it)"
-            )
-        triangles = np.ascontiguousarray(vertices[faces], dtype=np.float32)
-        self._scene = EmbreeScene(robust=True)
-        self._mesh = TriangleMesh(self._scene, triangles)
+        self._caster = EmbreeCaster(vertices[faces])
         self.reflectivity = np.broadcast_to(np.asarray(reflectivity, dtype=np.float64), (len(faces),))
 
     @classmethod
@@ -59,11 +47,9 @@ class WorldCaster:
         distance, cosine, face = np.empty(n, np.float32), np.empty(n, np.float32), np.empty(n, np.int32)
         for start in range(0, n, _BATCH):
             part = slice(start, start + _BATCH)
-            d = np.ascontiguousarray(directions[part])
-            out = self._scene.run(np.ascontiguousarray(origins[part]), d, output=True)
-            normal, hit = out["Ng"], out["primID"] >= 0
+            d = directions[part]
+            distance[part], face[part], normal = self._caster.cast(origins[part], d)
             length = np.linalg.norm(normal, axis=1) * np.linalg.norm(d, axis=1)
-            cosine[part] = np.where(hit, np.abs(np.einsum("ij,ij->i", normal, d)) / np.where(length > 0, length, 1), 0)
-            distance[part] = np.where(hit, out["tfar"], np.inf)
-            face[part] = out["primID"]
+            slant = np.abs(np.einsum("ij,ij->i", normal, d)) / np.where(length > 0, length, 1)
+            cosine[part] = np.where(face[part] >= 0, slant, 0)
         return Hits(distance.reshape(shape), cosine.reshape(shape), face.reshape(shape))

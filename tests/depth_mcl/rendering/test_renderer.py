@@ -8,11 +8,10 @@ import numpy as np
 import psutil
 import pytest
 import trimesh
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.chunks import MeshChunks
+from course_lib.depth_mcl.rendering.embree import EmbreeCaster
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from course_lib.depth_mcl.rendering.vtk_backend import depth_from_buffer
 from course_lib.depth_mcl.scene_map import SceneMap
@@ -126,13 +125,12 @@ def test_random_meshes_agree_with_ray_casting_away_from_silhouettes(n_triangles,
 
 
 def _triangle_ids(scene, camera, states):
-    caster = EmbreeScene(robust=True)
-    TriangleMesh(caster, (scene.vertices - scene.origin)[scene.faces].astype(np.float32))
+    caster = EmbreeCaster((scene.vertices - scene.origin)[scene.faces])
     ids = []
     for pose in optical_pose(states):
-        directions = (camera.rays().reshape(-1, 3) @ pose[:3, :3].T).astype(np.float32)
-        origins = (pose[:3, 3] - scene.origin + camera.near * directions).astype(np.float32)
-        ids.append(caster.run(origins, directions, output=True)["primID"].reshape(camera.shape))
+        directions = camera.rays().reshape(-1, 3) @ pose[:3, :3].T
+        origins = pose[:3, 3] - scene.origin + camera.near * directions
+        ids.append(caster.cast(origins, directions)[1].reshape(camera.shape))
     return np.array(ids)
 
 
@@ -190,13 +188,13 @@ def test_a_stopped_render_leaves_no_tile_in_the_way_of_the_measurement(monkeypat
     """Ctrl-C between drawing and reading, as in a stopped notebook cell: tile 0 and the points share their pixels."""
     points = SMALL.points(np.ones(SMALL.shape))
     with DepthRenderer(room(), SMALL, "vtk") as renderer:
-        read = type(renderer._backend)._read_tiles
+        read = type(renderer._open_backend)._read_tiles
 
         def stop(self, out):
-            monkeypatch.setattr(type(renderer._backend), "_read_tiles", read)
+            monkeypatch.setattr(type(renderer._open_backend), "_read_tiles", read)
             raise KeyboardInterrupt
 
-        monkeypatch.setattr(type(renderer._backend), "_read_tiles", stop)
+        monkeypatch.setattr(type(renderer._open_backend), "_read_tiles", stop)
         with pytest.raises(KeyboardInterrupt):
             renderer.render(np.zeros(6))
         assert np.abs(renderer.render_points(points) - 1.0).max() < HALF_MILLIMETRE
@@ -207,7 +205,7 @@ def test_ray_casting_without_embree_agrees_with_embree(monkeypatch, rng):
     camera = SMALL.resized(16, 12)
     with DepthRenderer(scene, camera, "ray") as renderer:
         with_embree = renderer.render(states)
-    monkeypatch.setattr("course_lib.depth_mcl.rendering.ray_backend.EmbreeScene", None)
+    monkeypatch.setattr("course_lib.depth_mcl.rendering.embree.EmbreeScene", None)
     with DepthRenderer(scene, camera, "ray") as renderer:
         without = renderer.render(states)
         assert "trimesh" in renderer.describe()
@@ -240,8 +238,9 @@ def test_the_linearized_buffer_inverts_the_projection():
     near, far = SMALL.near, SMALL.far
     depth = np.array([0.1, 0.5, 3.0, 10.0])
     buffer = far * (depth - near) / (depth * (far - near))
-    assert depth_from_buffer(buffer, SMALL) == pytest.approx(depth, rel=1e-6)
-    assert np.isinf(depth_from_buffer(np.array([1.0], dtype=np.float32), SMALL)).all()
+    assert depth_from_buffer(buffer, SMALL, far) == pytest.approx(depth, rel=1e-6)
+    assert np.isinf(depth_from_buffer(buffer, SMALL, 9.0)).tolist() == [False, False, False, True]
+    assert np.isinf(depth_from_buffer(np.array([1.0], dtype=np.float32), SMALL, 0.99 * far)).all()
 
 
 @pytest.mark.parametrize("camera", [SMALL, OFF_CENTRE], ids=["centred", "off-centre"])
