@@ -146,4 +146,4 @@ def test_control_c_ends_it_without_a_question(tmp_path):
 
 
 def test_the_command_runs_in_this_environment():
-    assert lab.lab_command()[0][:3] == [sys.executable, "-m", "jupyterlab"]
+    assert lab.lab_command()[0][:4] == [sys.executable, "-P", "-m", "jupyterlab"]
