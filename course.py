@@ -5,6 +5,7 @@ The standard library only. The first call makes `.venv` from environment.txt, in
 the system's OpenGL libraries; every call then hands over to `python -m course_lib` in `.venv`. What is said on the way
 goes to standard error, so that `--json` output stays clean.
 
+`.venv/course-made` says that the folder is ours: nothing is written to or deleted from a `.venv` without it.
 `.venv/course-ready.json` is written last and says what was installed, from where: without it `.venv` is not trusted.
 `.venv/course-incomplete` stands there while an installation runs: what was killed half-way is made anew.
 This file must be readable by an old Python (3.6), which has to get as far as saying that it is too old.
@@ -23,6 +24,7 @@ import time
 ROOT = os.path.dirname(os.path.abspath(__file__))
 VENV = os.path.join(ROOT, ".venv")
 PYTHON = os.path.join(VENV, "Scripts", "python.exe") if os.name == "nt" else os.path.join(VENV, "bin", "python")
+MADE = os.path.join(VENV, "course-made")
 READY = os.path.join(VENV, "course-ready.json")
 INCOMPLETE = os.path.join(VENV, "course-incomplete")
 OPENGL_READY = os.path.join(VENV, "course-opengl-ready")
@@ -143,8 +145,7 @@ def why_not_ready():
     """None when `.venv` can be used; else (the sentence to say, whether it must be made anew)."""
     if not os.path.lexists(VENV):
         return "There is no .venv yet: setting it up.", True
-    if not os.path.isdir(VENV):
-        raise SetupError(f"{VENV} is not a folder. Move it away and call course.py again.")
+    refuse_what_is_not_ours()
     if os.path.exists(INCOMPLETE):
         return "An earlier set-up was interrupted and left .venv half-made: making it anew.", True
     if not os.path.exists(PYTHON):
@@ -154,7 +155,7 @@ def why_not_ready():
             found = json.load(file)
         count = found.pop("packages")
     except (OSError, ValueError, KeyError, AttributeError):
-        return "The .venv here is half-made or was not made by course.py: completing it.", False
+        return "The .venv here is half-made: completing it.", False
     now = wanted()
     if found.get("folder") != now["folder"] or found.get("python") != now["python"]:
         return "The .venv here was made in another folder or by another Python: making it anew.", True
@@ -165,16 +166,28 @@ def why_not_ready():
     return None
 
 
+def refuse_what_is_not_ours():
+    """Raises SetupError where `.venv` is a file, a link, or a folder that course.py did not make.
+
+    Earlier versions of course.py set no mark of their own; an installation of theirs, finished or interrupted, shows by
+    the two files that it left.
+    """
+    if os.path.realpath(VENV) != os.path.join(os.path.realpath(ROOT), ".venv"):  # a junction of Windows shows here too
+        raise SetupError(
+            f"{VENV} is a link to {os.path.realpath(VENV)}, and course.py touches nothing that is elsewhere. "
+            "Remove the link (not what it leads to) and call course.py again."
+        )
+    if not os.path.isdir(VENV):
+        raise SetupError(f"{VENV} is not a folder. Move it away and call course.py again.")
+    if os.listdir(VENV) and not any(os.path.isfile(mark) for mark in (MADE, READY, INCOMPLETE)):
+        raise SetupError(f"{VENV} was not made by course.py. Move it away and call course.py again.")
+
+
 def set_up():
     """Makes or repairs `.venv`; only one course.py does it at a time."""
     if not os.path.exists(os.path.join(ROOT, "environment.txt")):
         raise SetupError("environment.txt is missing beside course.py. Download the course again, whole.")
-    for module in ("venv", "ensurepip"):
-        if importlib.util.find_spec(module) is None:
-            raise SetupError(
-                f"this Python {python_version()} comes without its module {module!r}, which makes .venv. On Debian or "
-                f"Ubuntu: apt-get install python{python_version()}-venv; then call course.py again."
-            )
+    see_to_venv_module()
     with only_one_at_a_time() as lock:
         state = why_not_ready()  # another course.py may have done it meanwhile
         if state is None:
@@ -182,7 +195,9 @@ def set_up():
         sentence, anew = state
         say(sentence)
         os.makedirs(VENV, exist_ok=True)
-        if not anew and run([PYTHON, "-c", "import pip, sys; sys.exit(sys.version_info < (3, 11))"], lock)[0]:
+        with open(MADE, "w", encoding="utf-8") as file:
+            file.write("course.py made this folder, and deletes what is in it where it has to be made anew.\n")
+        if not anew and run([PYTHON, "-P", "-c", "import pip, sys; sys.exit(sys.version_info < (3, 11))"], lock)[0]:
             say("Its Python is too old or has no pip: making .venv anew.")
             anew = True
         with open(INCOMPLETE, "w", encoding="utf-8"):
@@ -202,13 +217,13 @@ def make_venv(lock):
     """An empty environment; the mark of an unfinished one is never away while files are."""
     for name in os.listdir(VENV):
         path = os.path.join(VENV, name)
-        if path != INCOMPLETE:
+        if path not in (MADE, INCOMPLETE):
             shutil.rmtree(path) if os.path.isdir(path) and not os.path.islink(path) else os.remove(path)
-    code, lines = run([getattr(sys, "_base_executable", sys.executable), "-m", "venv", VENV], lock)
+    code, lines = run([getattr(sys, "_base_executable", sys.executable), "-P", "-m", "venv", VENV], lock)
     if code:
         raise SetupError(
-            "could not make .venv. If Python's module venv is incomplete, on Debian or Ubuntu: apt-get install "
-            f"python{python_version()}-venv; then call course.py again. Python said: {last_lines(lines)}"
+            f"could not make .venv. If Python's module venv is incomplete, on Debian or Ubuntu: "
+            f"{apt_install_line([venv_package()])}; then call course.py again. Python said: {last_lines(lines)}"
         )
 
 
@@ -216,7 +231,7 @@ def install(lock):
     with open(os.path.join(ROOT, "environment.txt"), encoding="utf-8") as file:
         total = sum(line[0] not in "# \n" for line in file)
     say("Installing the environment into .venv, a minute or a few:")
-    pip = [PYTHON, "-m", "pip", "install", "--no-deps", "--no-user", "--disable-pip-version-check", "--no-input"]
+    pip = [PYTHON, "-P", "-m", "pip", "install", "--no-deps", "--no-user", "--disable-pip-version-check", "--no-input"]
     started = {"count": 0}
 
     def progress(line):
@@ -296,12 +311,51 @@ def only_one_at_a_time():
         yield lock
 
 
+def see_to_venv_module():
+    """Installs Python's module that makes environments, which Debian keeps apart, or raises SetupError with the cure."""
+    missing = missing_venv_modules()
+    if not missing:
+        return
+    said = ""
+    # Only the system's own Python can be completed by the system's packages.
+    if shutil.which("apt-get") and sys.base_prefix == "/usr" and os.geteuid() == 0:
+        say(f"Python's module {missing[0]!r}, which makes .venv, is missing: installing {venv_package()}")
+        said = f" It could not be installed: {last_lines(apt_install([venv_package()])[1])}."
+        importlib.invalidate_caches()
+        if not missing_venv_modules():
+            return
+    raise SetupError(
+        f"this Python {python_version()} comes without its module {missing[0]!r}, which makes .venv.{said} On Debian "
+        f"or Ubuntu, as an administrator: {apt_install_line([venv_package()])}; then call course.py again."
+    )
+
+
+def missing_venv_modules():
+    return [module for module in ("venv", "ensurepip") if importlib.util.find_spec(module) is None]
+
+
+def venv_package():
+    """Debian's package of the modules venv and ensurepip."""
+    return f"python{python_version()}-venv"
+
+
+def apt_install_line(packages):
+    return "apt-get install -y --no-install-recommends " + " ".join(packages)
+
+
+def apt_install(packages):
+    """Exit code and output of installing Debian's packages, as root."""
+    os.environ.setdefault("DEBIAN_FRONTEND", "noninteractive")
+    run(["apt-get", "update"], None)
+    return run([*apt_install_line(packages).split(), "-o", "DPkg::Lock::Timeout=120"], None)
+
+
 def see_to_opengl():
     """Installs the system's OpenGL libraries, or prints the line that does; remembers a success."""
     if not sys.platform.startswith("linux") or os.path.exists(OPENGL_READY):
         return
     if not opengl_works():
-        install_line = "apt-get install -y --no-install-recommends " + " ".join(OPENGL_PACKAGES)
+        install_line = apt_install_line(OPENGL_PACKAGES)
         if not shutil.which("apt-get"):
             say("OpenGL is missing: install Mesa's EGL and OpenGL drivers with your system's package manager.")
             return
@@ -312,9 +366,7 @@ def see_to_opengl():
             say("OpenGL is missing, and installing it failed earlier today. Run: " + install_line)
             return
         say("OpenGL is missing: installing " + " ".join(OPENGL_PACKAGES))
-        os.environ.setdefault("DEBIAN_FRONTEND", "noninteractive")
-        run(["apt-get", "update"], None)
-        code, lines = run([*install_line.split(), "-o", "DPkg::Lock::Timeout=120"], None)
+        code, lines = apt_install(OPENGL_PACKAGES)
         if code or not opengl_works():
             say(f"OpenGL could not be installed ({last_lines(lines)}). Run: {install_line}")
             remember(OPENGL_FAILED)
@@ -333,7 +385,7 @@ def tried_today(path):
 
 
 def opengl_works():
-    return run([sys.executable, "-c", OPENGL_PROBE], None)[0] == 0
+    return run([sys.executable, "-P", "-c", OPENGL_PROBE], None)[0] == 0
 
 
 def last_lines(lines, count=3):

@@ -5,7 +5,6 @@ import importlib.util
 import os
 import signal
 import socket
-import statistics
 import subprocess
 import sys
 import time
@@ -40,6 +39,7 @@ def build_editable(folder, config_settings=None, metadata_directory=None):
     return name
 build_wheel = build_editable
 """
+HANGS_S = 1200  # no call takes so long, however busy the machine is
 HANDED_OVER = 'import os, sys\nprint("handed over", sys.argv[1:], sys.prefix, os.getcwd())\n'
 
 
@@ -70,7 +70,7 @@ def call(folder, *arguments, prelude="", cwd=None, **more):
     runner += f"runpy.run_path({str(folder / 'course.py')!r}, run_name='__main__')"
     command = [sys.executable, "-c", runner] if prelude else [sys.executable, str(folder / "course.py")]
     done = subprocess.run(
-        [*command, *arguments], capture_output=True, text=True, env=environment(**more), cwd=cwd, timeout=120
+        [*command, *arguments], capture_output=True, text=True, env=environment(**more), cwd=cwd, timeout=HANGS_S
     )
     assert "Traceback" not in done.stdout + done.stderr
     return done
@@ -107,14 +107,6 @@ def test_an_old_python_is_told_which_one_is_needed(copy, version):
     assert not (copy / ".venv").exists()
 
 
-@pytest.mark.parametrize("module", ["venv", "ensurepip"])
-def test_a_missing_venv_module_is_told_with_its_cure(copy, module):
-    done = call(copy, "check", prelude=f"sys.modules[{module!r}] = None")
-    assert done.returncode == 1
-    assert module in done.stderr
-    assert f"apt-get install python{sys.version_info[0]}.{sys.version_info[1]}-venv" in done.stderr
-
-
 def test_usage_lists_every_command_as_the_command_line_does():
     listed = {}
     for line in load_course().USAGE.splitlines():
@@ -126,9 +118,7 @@ def test_usage_lists_every_command_as_the_command_line_does():
 
 @pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["lab", "--help"]])
 def test_help_before_any_set_up_installs_nothing(copy, arguments):
-    started = time.monotonic()
     done = call(copy, *arguments)
-    assert time.monotonic() - started < 3
     assert done.returncode == 0
     assert "usage: python3 course.py" in done.stdout
     assert not (copy / ".venv").exists()
@@ -140,58 +130,115 @@ def test_no_command_shows_the_usage_and_fails(copy):
     assert "usage:" in done.stdout
 
 
-def test_first_call_sets_up_and_hands_over_and_the_second_is_quick_and_quiet(copy, tmp_path):
+def test_first_call_sets_up_and_hands_over_and_the_second_is_quiet(copy, tmp_path):
     first = call(copy, "demo", "corridor", "--json", cwd=tmp_path)
     # Only the command writes to standard output, or --json would be spoilt; the folder one is in stays.
     assert first.stdout == f"handed over ['demo', 'corridor', '--json'] {copy / '.venv'} {tmp_path}\n"
     assert "setting it up" in first.stderr
     assert first.returncode == 0
-    seconds = []
-    for _ in range(5):
-        started = time.monotonic()
-        again = call(copy, "x")
-        seconds.append(time.monotonic() - started)
-        assert again.stderr == ""
-        assert again.stdout.startswith("handed over ['x']")
-    assert statistics.median(seconds) < 0.5
-
-
-def test_help_of_the_real_environment_takes_less_than_three_seconds():
-    if not (ROOT / ".venv" / "course-ready.json").exists():
-        pytest.skip("this checkout's .venv was not made by course.py")
-    for arguments in (["--help"], ["lab", "--help"], ["test", "--help"]):
-        started = time.monotonic()
-        done = subprocess.run([sys.executable, str(COURSE), *arguments], capture_output=True, text=True)
-        assert time.monotonic() - started < 3
-        assert done.returncode == 0
-        assert "usage:" in done.stdout
+    again = call(copy, "x")
+    assert again.stderr == ""
+    assert again.stdout.startswith("handed over ['x']")
 
 
 def make_nothing(venv):
     venv.mkdir()
 
 
-def make_a_mark_only(venv):
+def make_an_interrupted_one(venv):
     (venv / "bin").mkdir(parents=True)
-    (venv / "course-incomplete").touch()
+    (venv / "course-incomplete").touch()  # all that earlier versions of course.py left
 
 
 def make_a_dangling_python(venv):
     (venv / "bin").mkdir(parents=True)
     (venv / "bin" / "python").symlink_to("/nowhere/python3.11")
+    (venv / "course-made").touch()
 
 
 def make_one_without_pip(venv):
-    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(venv)], check=True)
+    subprocess.run([sys.executable, "-P", "-m", "venv", "--without-pip", str(venv)], check=True)
+    (venv / "course-ready.json").write_text("{}")  # all that earlier versions of course.py left
 
 
-@pytest.mark.parametrize("make", [make_nothing, make_a_mark_only, make_a_dangling_python, make_one_without_pip])
+@pytest.mark.parametrize("make", [make_nothing, make_an_interrupted_one, make_a_dangling_python, make_one_without_pip])
 def test_a_half_made_environment_is_made_anew(copy, make):
     make(copy / ".venv")
     done = call(copy, "x")
     assert "half-made" in done.stderr
     assert done.stdout.startswith("handed over")
     assert not (copy / ".venv" / "course-incomplete").exists()
+    assert (copy / ".venv" / "course-made").exists()
+
+
+def put_a_link_to_a_folder(venv):
+    precious = venv.parent.parent / "precious"
+    precious.mkdir()
+    (precious / "thesis.txt").write_text("mine")
+    venv.symlink_to(precious)
+    return precious / "thesis.txt"
+
+
+def put_a_link_to_an_environment_of_ours(venv):
+    kept = put_a_link_to_a_folder(venv)
+    for mark in ("course-made", "course-incomplete"):
+        (kept.parent / mark).touch()
+    return kept
+
+
+def put_a_foreign_folder(venv):
+    venv.mkdir()
+    (venv / "thesis.txt").write_text("mine")
+    return venv / "thesis.txt"
+
+
+def put_a_foreign_environment(venv):
+    subprocess.run([sys.executable, "-P", "-m", "venv", "--without-pip", str(venv)], check=True)
+    (venv / "thesis.txt").write_text("mine")
+    return venv / "thesis.txt"
+
+
+def put_a_file(venv):
+    venv.write_text("mine")
+    return venv
+
+
+@pytest.mark.parametrize(
+    ("put", "said"),
+    [
+        (put_a_link_to_a_folder, "is a link to"),
+        (put_a_link_to_an_environment_of_ours, "is a link to"),
+        (put_a_foreign_folder, "was not made by course.py"),
+        (put_a_foreign_environment, "was not made by course.py"),
+        (put_a_file, "is not a folder"),
+    ],
+)
+def test_what_course_py_did_not_make_is_refused_and_left_as_it_is(copy, put, said):
+    kept = put(copy / ".venv")
+    before = sorted((path, path.lstat().st_mtime_ns) for path in copy.parent.rglob("*"))
+    done = call(copy, "check")
+    assert done.returncode == 1
+    assert said in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert "course.py again" in done.stderr
+    assert kept.read_text() == "mine"
+    assert sorted((path, path.lstat().st_mtime_ns) for path in copy.parent.rglob("*")) == before
+
+
+def test_a_link_inside_an_environment_is_removed_and_not_what_it_leads_to(copy):
+    precious = put_a_link_to_a_folder(copy / "a_link")
+    (copy / ".venv").mkdir()
+    (copy / ".venv" / "course-incomplete").touch()
+    (copy / ".venv" / "share").symlink_to(precious.parent)
+    assert call(copy, "x").stdout.startswith("handed over")
+    assert precious.read_text() == "mine"
+
+
+def test_a_module_of_the_callers_folder_neither_breaks_the_set_up_nor_runs(copy, tmp_path):
+    for name in ("random", "ctypes", "venv", "pip", "shutil"):
+        (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\nraise SystemExit(3)\n")
+    assert call(copy, "x", cwd=tmp_path).stdout.startswith("handed over")
+    assert not (tmp_path / "ran").exists()
 
 
 def test_what_has_changed_is_told_and_repaired(copy):
@@ -238,14 +285,6 @@ def test_a_folder_without_write_permission_is_told(copy):
     assert "folder of your own" in done.stderr
 
 
-def test_a_file_in_the_place_of_the_environment_is_told(copy):
-    (copy / ".venv").write_text("mine")
-    done = call(copy, "check")
-    assert done.returncode == 1
-    assert "is not a folder" in done.stderr
-    assert (copy / ".venv").read_text() == "mine"
-
-
 def test_a_missing_lock_file_is_told(copy):
     (copy / "environment.txt").unlink()
     done = call(copy, "check")
@@ -273,7 +312,7 @@ def start_hanging_installation(copy, silent_index):
         # A run started in the background has SIGINT ignored, and would hand that on.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    server.settimeout(60)
+    server.settimeout(HANGS_S)
     connection, _ = server.accept()  # pip asks: it runs
     return process, connection
 
@@ -295,7 +334,7 @@ def test_control_c_stops_with_a_sentence(copy, silent_index):
     process, connection = start_hanging_installation(copy, silent_index)
     with connection:
         os.killpg(process.pid, signal.SIGINT)
-        errors = process.communicate(timeout=60)[1]
+        errors = process.communicate(timeout=HANGS_S)[1]
     assert process.returncode == 130
     assert "Call course.py again to go on" in errors
     assert "Traceback" not in errors
@@ -308,7 +347,7 @@ def test_two_at_once_wait_for_each_other(copy):
     while not (copy / ".venv").exists():
         time.sleep(0.01)
     second = subprocess.Popen(command, **pipes)
-    results = [process.communicate(timeout=120) for process in (first, second)]
+    results = [process.communicate(timeout=HANGS_S) for process in (first, second)]
     assert [process.returncode for process in (first, second)] == [0, 0]
     assert all(output.startswith("handed over") for output, _ in results)
     assert "waiting for it to finish" in results[1][1]

@@ -7,6 +7,8 @@ its own and becomes a FAIL like any other. Exit code 0 only if every line is OK.
 from __future__ import annotations
 
 import argparse
+import base64
+import hashlib
 import importlib.metadata
 import os
 import platform
@@ -18,12 +20,16 @@ from dataclasses import dataclass
 from course_lib.commands.depth_image_probe import LARGEST_ERROR_MM, read_result
 
 DISTRIBUTION = "course-lib"
-# Module names that are not the distribution's name with underscores.
-MODULES = {"opencv-python-headless": "cv2"}
+EXTRAS = ("", "lessons", "test")  # what environment.txt pins
 MAKE_ANEW = "delete the folder .venv and run: python3 course.py check"
+NOT_BY_A_NEW_ENVIRONMENT = (
+    "its files are as pip installed them, so a new .venv would be the same: mend what the message names (a library of "
+    "the system?), or send this line to whoever gave you the course"
+)
 INSTALL_OPENGL = "as root: apt-get install -y --no-install-recommends libegl1 libgl1-mesa-dri libgl1"
-IMPORT_TIMEOUT_S = 120
-RENDER_TIMEOUT_S = 120
+APART = ("-P",)  # Python's option: no module of the folder that one stands in
+IMPORT_TIMEOUT_S = 600  # only what hangs takes so long
+RENDER_TIMEOUT_S = 600
 LEAST_FREE_MEMORY_GB = 1.0  # chosen: a kernel with the corridor's map and one batch of tiles, with room to spare
 
 IMPORT_SCRIPT = """
@@ -85,10 +91,12 @@ def check_packages() -> Iterator[Finding]:
     except (ImportError, importlib.metadata.PackageNotFoundError) as error:
         yield Finding(False, f"the list of dependencies cannot be read ({type(error).__name__}: {error})", MAKE_ANEW)
         return
-    here = [r for r in requirements if r.marker is None or any(r.marker.evaluate({"extra": e}) for e in ("", "test"))]
-    broken = find_broken_imports([module_name(requirement.name) for requirement in here])
+    here = [r for r in requirements if r.marker is None or any(r.marker.evaluate({"extra": e}) for e in EXTRAS)]
+    modules = {requirement.name: import_names(requirement.name) for requirement in here}
+    broken = find_broken_imports([name for names in modules.values() for name in names])
     for requirement in here:
-        yield check_package(requirement, broken.get(module_name(requirement.name)))
+        errors = [f"{name}: {broken[name]}" for name in modules[requirement.name] if name in broken]
+        yield check_package(requirement, errors[0] if errors else None)
 
 
 def check_package(requirement, import_error: str | None) -> Finding:
@@ -102,12 +110,46 @@ def check_package(requirement, import_error: str | None) -> Finding:
     if version is None or not requirement.specifier.contains(version, prereleases=True):
         return Finding(False, text, MAKE_ANEW)
     if import_error is not None:
-        return Finding(False, f"{text} cannot be imported ({import_error})", MAKE_ANEW)
+        cure = NOT_BY_A_NEW_ENVIRONMENT if is_as_installed(requirement.name) else MAKE_ANEW
+        return Finding(False, f"{text} cannot be imported ({import_error})", cure)
     return Finding(True, text)
 
 
-def module_name(distribution: str) -> str:
-    return MODULES.get(distribution, distribution.replace("-", "_"))
+def import_names(distribution: str) -> list[str]:
+    """The modules that a distribution brings, by its own metadata: `skimage` of scikit-image; none where it is missing.
+
+    Of several modules, the one named as the distribution stands for all of them, since what lies beside it are parts
+    and helpers (`mpl_toolkits`); without such a one all that are not private count, and where all are, all.
+    """
+    try:
+        found = importlib.metadata.distribution(distribution)
+    except importlib.metadata.PackageNotFoundError:
+        return []
+    declared = (found.read_text("top_level.txt") or "").split()
+    listed = declared or [file.parts[0].split(".")[0] for file in found.files or [] if is_python_module(file)]
+    names = sorted({name for name in listed if name.isidentifier()})
+    own = [name for name in names if name.lower() == distribution.lower().replace("-", "_").replace(".", "_")]
+    return own or [name for name in names if not name.startswith("_")] or names
+
+
+def is_python_module(file: importlib.metadata.PackagePath) -> bool:
+    """Whether a file of a distribution is a module, or a part of a package, that can be imported from site-packages."""
+    return file.suffix in (".py", ".so", ".pyd") and file.parts[0] != ".."
+
+
+def is_as_installed(distribution: str) -> bool:
+    """Whether every file of a distribution has the size and checksum that its RECORD states."""
+    for file in importlib.metadata.files(distribution) or []:
+        if file.hash is None:  # RECORD itself
+            continue
+        try:
+            content = file.locate().read_bytes()
+        except OSError:
+            return False
+        digest = hashlib.new(file.hash.mode, content).digest()
+        if base64.urlsafe_b64encode(digest).rstrip(b"=").decode() != file.hash.value:
+            return False
+    return True
 
 
 def find_broken_imports(modules: list[str]) -> dict[str, str]:
@@ -115,7 +157,7 @@ def find_broken_imports(modules: list[str]) -> dict[str, str]:
     broken: dict[str, str] = {}
     rest = list(modules)
     while rest:
-        code, output = run_apart([sys.executable, "-c", IMPORT_SCRIPT, *rest], IMPORT_TIMEOUT_S)
+        code, output = run_apart([sys.executable, *APART, "-c", IMPORT_SCRIPT, *rest], IMPORT_TIMEOUT_S)
         begun = [line.split()[1] for line in output.splitlines() if line.startswith("importing ")]
         for line in output.splitlines():
             if line.startswith("broken "):
@@ -132,7 +174,7 @@ def find_broken_imports(modules: list[str]) -> dict[str, str]:
 def check_depth_images() -> Iterator[Finding]:
     """OpenGL's renderer, and one depth image of a tilted plane by each backend beside its closed form."""
     for backend, name in (("vtk", "z-buffer"), ("ray", "ray casting")):
-        command = [sys.executable, "-m", "course_lib.commands.depth_image_probe", backend]
+        command = [sys.executable, *APART, "-m", "course_lib.commands.depth_image_probe", backend]
         code, output = run_apart(command, RENDER_TIMEOUT_S)
         result = read_result(output) if code == 0 else None
         cure = INSTALL_OPENGL if backend == "vtk" else MAKE_ANEW

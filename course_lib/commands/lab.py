@@ -77,7 +77,7 @@ def lab_command(
     write_settings(state)
     trust_lessons(state)
     command = [
-        *(sys.executable, "-m", "jupyterlab"),
+        *(sys.executable, "-P", "-m", "jupyterlab"),  # -P: no module of the folder that one stands in
         "--ServerApp.ip=127.0.0.1",
         f"--ServerApp.port={8888 if port is None else port}",
         f"--ServerApp.port_retries={50 if port is None else 0}",

@@ -1,14 +1,22 @@
 """`course.py check`: OK for what is right, FAIL with the cure for what is not, whatever breaks underneath."""
 
 import argparse
+import base64
+import hashlib
 import importlib.metadata
+import importlib.util
+import os
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 from course_lib.commands import check, depth_image_probe
+
+LOCK = Path(__file__).resolve().parents[2] / "environment.txt"
 
 
 @pytest.fixture
@@ -48,6 +56,91 @@ def test_a_package_that_is_not_right_fails_with_the_cure(requirement, import_err
     assert said in str(finding)
     assert str(finding).startswith("FAIL")
     assert ".venv" in finding.cure
+
+
+def locked_and_installed():
+    """The names in environment.txt that this platform needs and this environment has."""
+    lines = [line.split(" #")[0].strip() for line in LOCK.read_text("utf-8").splitlines()]
+    wanted = [Requirement(line) for line in lines if line and not line.startswith("#")]
+    here = [requirement.name for requirement in wanted if requirement.marker is None or requirement.marker.evaluate()]
+    installed = {canonicalize_name(found.metadata["Name"]) for found in importlib.metadata.distributions()}
+    return [name for name in here if canonicalize_name(name) in installed]
+
+
+def test_every_locked_package_has_import_names_that_lead_to_a_module():
+    names = {distribution: check.import_names(distribution) for distribution in locked_and_installed()}
+    assert len(names) > 100
+    for distribution, modules in names.items():
+        assert modules, f"{distribution} has no module"
+        for module in modules:
+            assert importlib.util.find_spec(module) is not None, f"{distribution}: {module}"
+
+
+@pytest.mark.parametrize(
+    ("distribution", "modules"),
+    [
+        ("scikit-image", ["skimage"]),
+        ("pillow", ["PIL"]),
+        ("opencv-python-headless", ["cv2"]),
+        ("argon2-cffi-bindings", ["_argon2_cffi_bindings"]),
+        ("Matplotlib", ["matplotlib"]),
+        ("setuptools", ["setuptools"]),
+        ("no-such-package", []),
+    ],
+)
+def test_the_import_name_comes_from_the_metadata(distribution, modules):
+    assert check.import_names(distribution) == modules
+
+
+@pytest.fixture
+def fake_distribution(tmp_path, monkeypatch):
+    """Installs "course-fake" in a scratch folder of its own, with one module of another name; returns a function."""
+
+    def install(source, top_level=True):
+        (tmp_path / "of_another_name.py").write_text(source)
+        checksum = base64.urlsafe_b64encode(hashlib.sha256(source.encode()).digest()).rstrip(b"=").decode()
+        info = tmp_path / "course_fake-1.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text("Metadata-Version: 2.1\nName: course-fake\nVersion: 1\n")
+        (info / "RECORD").write_text(f"of_another_name.py,sha256={checksum},{len(source)}\n{info.name}/RECORD,,\n")
+        if top_level:
+            (info / "top_level.txt").write_text("of_another_name\n")
+        monkeypatch.syspath_prepend(tmp_path)
+        monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(tmp_path), os.environ.get("PYTHONPATH")])))
+        monkeypatch.setattr(importlib.metadata, "requires", lambda name: ["course-fake>=1"])
+        return tmp_path / "of_another_name.py"
+
+    return install
+
+
+@pytest.mark.parametrize("top_level", [True, False], ids=["top_level.txt", "RECORD alone"])
+def test_a_package_whose_module_has_another_name_is_ok(fake_distribution, top_level):
+    fake_distribution("x = 1\n", top_level)
+    (finding,) = check.check_packages()
+    assert str(finding) == "OK    course-fake 1 (wanted >=1)"
+
+
+def test_a_broken_package_fails_with_a_cure_that_does_not_go_round_in_a_circle(fake_distribution):
+    module = fake_distribution("raise OSError('libfake.so: cannot open')\n")
+    (finding,) = check.check_packages()
+    assert not finding.ok
+    assert "of_another_name: OSError libfake.so: cannot open" in finding.text
+    # As pip installed it: a new .venv would fail in the same way.
+    assert "delete" not in finding.cure
+    module.write_text("raise OSError('half of the fi")
+    (damaged,) = check.check_packages()
+    assert damaged.cure == check.MAKE_ANEW
+    module.unlink()
+    assert [finding.cure for finding in check.check_packages()] == [check.MAKE_ANEW]
+
+
+def test_a_module_of_the_callers_folder_neither_breaks_the_checks_nor_runs(tmp_path, monkeypatch):
+    for name in ("random", "json", "numpy"):
+        (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\nraise SystemExit(3)\n")
+    monkeypatch.chdir(tmp_path)
+    assert check.find_broken_imports(["numpy", "random", "json"]) == {}
+    assert all(finding.ok for finding in check.check_depth_images())
+    assert not (tmp_path / "ran").exists()
 
 
 def test_every_dependency_of_the_package_gets_a_line(monkeypatch):

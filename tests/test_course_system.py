@@ -1,4 +1,4 @@
-"""How course.py sees to OpenGL: what it looks for, what it installs, and what it says where it cannot."""
+"""How course.py sees to what only the system can install, OpenGL and Python's module venv, and what it says."""
 
 import importlib.util
 import os
@@ -22,6 +22,7 @@ def course(monkeypatch, tmp_path):
     monkeypatch.setattr(module, "OPENGL_READY", str(tmp_path / "ready"))
     monkeypatch.setattr(module.shutil, "which", lambda name: f"/usr/bin/{name}")
     monkeypatch.setattr(module.os, "geteuid", lambda: 0)
+    monkeypatch.setattr(module.sys, "base_prefix", "/usr")
     return module
 
 
@@ -86,3 +87,58 @@ def test_the_look_notices_a_missing_driver(course, monkeypatch):
     # The library that dispatches is there, and the file that would name a driver is not.
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere/mesa.json")
     assert not course.opengl_works()
+
+
+VERSION = f"{sys.version_info[0]}.{sys.version_info[1]}"
+VENV_LINE = f"apt-get install -y --no-install-recommends python{VERSION}-venv"
+
+
+def take_venv_away(course, monkeypatch, apt_brings_it, module="ensurepip"):
+    """A Python without `module`, until apt-get has run, where that brings it. Returns the commands that are run."""
+    commands = []
+
+    def run(command, lock):
+        commands.append(" ".join(command))
+        if apt_brings_it and "install" in command:
+            monkeypatch.delitem(sys.modules, module)
+        return 0 if apt_brings_it else 100, ["E: Unable to locate package"]
+
+    monkeypatch.setitem(sys.modules, module, None)
+    monkeypatch.setattr(course, "run", run)
+    return commands
+
+
+def test_a_complete_python_needs_no_package(course, monkeypatch):
+    monkeypatch.setattr(course, "run", lambda *anything: pytest.fail("a command was run"))
+    course.see_to_venv_module()
+
+
+@pytest.mark.parametrize("module", ["venv", "ensurepip"])
+def test_root_on_debian_gets_the_module_venv_installed_in_one_line(course, monkeypatch, capsys, module):
+    commands = take_venv_away(course, monkeypatch, apt_brings_it=True, module=module)
+    course.see_to_venv_module()
+    assert commands[0] == "apt-get update"
+    assert commands[1].startswith(VENV_LINE)
+    announced = capsys.readouterr().err.splitlines()
+    assert len(announced) == 1
+    assert f"installing python{VERSION}-venv" in announced[0]
+
+
+def test_a_module_venv_that_apt_cannot_bring_is_told_with_what_apt_said(course, monkeypatch):
+    take_venv_away(course, monkeypatch, apt_brings_it=False)
+    with pytest.raises(course.SetupError, match=rf"Unable to locate package.*{VENV_LINE}"):
+        course.see_to_venv_module()
+
+
+@pytest.mark.parametrize("who", ["another user", "a system without apt", "a Python that is not the system's"])
+def test_where_apt_is_of_no_use_the_cure_for_a_missing_venv_is_told(course, monkeypatch, who):
+    commands = take_venv_away(course, monkeypatch, apt_brings_it=True)
+    if who == "another user":
+        monkeypatch.setattr(course.os, "geteuid", lambda: 1000)
+    elif who == "a system without apt":
+        monkeypatch.setattr(course.shutil, "which", lambda name: None)
+    else:
+        monkeypatch.setattr(course.sys, "base_prefix", "/opt/python")
+    with pytest.raises(course.SetupError, match=f"'ensurepip'.*{VENV_LINE}; then call course.py again"):
+        course.see_to_venv_module()
+    assert commands == []

@@ -1,0 +1,107 @@
+"""`pip install .` gives the two methods alone: what they import is what it installs, and nothing of the lessons'."""
+
+import ast
+import importlib.metadata
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).resolve().parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+METHODS = ("geometry.py", "depth_mcl", "spherical_stereo")
+# What only the lessons, the commands or the tests have.
+LESSONS_ONLY = ("jupyterlab", "ipywidgets", "IPython", "matplotlib", "pyvista", "tqdm", "filterpy", "pytest", "nbval")
+
+# Refuses the named packages, imports every module of the two methods, and takes one step of each.
+USE_THE_METHODS = """
+import importlib, pkgutil, sys
+refused = set(sys.argv[1:])
+class Refuse:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in refused:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+sys.meta_path.insert(0, Refuse())
+import course_lib.depth_mcl, course_lib.spherical_stereo
+for method in (course_lib.depth_mcl, course_lib.spherical_stereo):
+    for module in pkgutil.walk_packages(method.__path__, method.__name__ + "."):
+        importlib.import_module(module.name)
+import numpy as np
+from course_lib.depth_mcl import DepthCamera, DepthRenderer, SceneMap
+corners = np.array([[3.0, -9.0, -9.0], [3.0, 9.0, -9.0], [3.0, 0.0, 18.0]])
+with DepthRenderer(SceneMap(corners, [[0, 1, 2]]), DepthCamera(8, 6, 8.0, 8.0, 4.0, 3.0, 0.1, 10.0)) as renderer:
+    print(round(float(renderer.render(np.zeros((1, 6)))[0, 3, 4]), 3))
+from course_lib.spherical_stereo import fit_rigid_2d
+square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+print(round(fit_rigid_2d(square, square + [2.0, 0.0]).x, 6))
+print(sorted(refused & {name.split(".")[0] for name in sys.modules}))
+"""
+
+
+def imported_packages(path):
+    """The top-level names that a file imports, wherever in it."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.split(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            yield node.module.split(".")[0]
+
+
+def method_files():
+    for name in METHODS:
+        path = ROOT / "course_lib" / name
+        yield from [path] if path.is_file() else sorted(path.rglob("*.py"))
+
+
+def test_the_methods_import_and_run_without_what_only_the_lessons_have():
+    done = subprocess.run(
+        [sys.executable, "-c", USE_THE_METHODS, *LESSONS_ONLY], capture_output=True, text=True, cwd=ROOT
+    )
+    assert done.stdout.splitlines() == ["3.0", "2.0", "[]"], done.stderr
+
+
+def test_what_the_methods_import_is_what_is_installed_with_them():
+    distributions = importlib.metadata.packages_distributions()
+    installed = {canonicalize_name(Requirement(line).name) for line in PROJECT["dependencies"]}
+    for path in method_files():
+        for name in set(imported_packages(path)) - set(sys.stdlib_module_names) - {"course_lib"}:
+            owners = {canonicalize_name(owner) for owner in distributions[name]}
+            assert owners & installed, f"{path.relative_to(ROOT)} imports {name}, which `pip install .` does not bring"
+
+
+def test_the_lessons_packages_come_with_their_extra_alone():
+    extras = PROJECT["optional-dependencies"]
+    names = {extra: {canonicalize_name(Requirement(line).name) for line in lines} for extra, lines in extras.items()}
+    assert {"jupyterlab", "ipywidgets", "matplotlib", "pyvista"} <= names["lessons"]
+    assert names["lessons"].isdisjoint(canonicalize_name(Requirement(line).name) for line in PROJECT["dependencies"])
+    assert "torch" in names["train"]
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """Names of the files that setuptools would install, from a build of a copy of the package."""
+    import shutil
+
+    folder = tmp_path_factory.mktemp("build")
+    shutil.copytree(ROOT / "course_lib", folder / "course_lib", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, folder)
+    command = [sys.executable, "-c", "from setuptools import setup; setup()", "-q", "build", "--build-lib", "built"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return {path.relative_to(folder / "built").as_posix() for path in (folder / "built").rglob("*") if path.is_file()}
+
+
+def test_every_file_of_the_package_is_installed(built):
+    there = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "course_lib").rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts and not re.search(r"\.pyc$|/\.", path.as_posix())
+    }
+    assert built == there
+    assert {"course_lib/py.typed", "course_lib/lessons/lesson_11/sphere_scene.html"} <= built
