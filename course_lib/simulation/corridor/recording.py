@@ -24,8 +24,11 @@ def record(
     floor_survey: FloorSurveyModel,
     rng: np.random.Generator,
     progress: Callable[[Iterable], Iterable] = iter,
+    frames: int | None = None,
 ) -> dict[str, int]:
     """Captures a run, states `(T, 6)` and times `(T,)`, and writes it to `folder`; returns counts over its pixels.
+
+    frames: only the first so many images and poses; the line on the floor is always the whole run's.
 
     What is written is what a user is told: the nominal intrinsics, and as true poses those of the body, where the user
     believes the camera to be.
@@ -33,11 +36,12 @@ def record(
     states, times = run
     caster = WorldCaster.of(world)
     depths, counts = [], []
-    for state in progress(states):
+    for state in progress(states[:frames]):
         frame = camera.capture(caster, state, rng)
         depths.append(frame.depth)
         counts.append(frame_counts(frame, camera.model))
     path = survey_floor_line(states, floor_survey, rng)
-    frames = list(range(len(states)))
-    write_sequence(folder, camera.camera.matrix, frames, depths, optical_pose(states), times, "z", path)
+    count = len(depths)
+    poses = optical_pose(states[:count])
+    write_sequence(folder, camera.camera.matrix, list(range(count)), depths, poses, times[:count], "z", path)
     return {key: sum(c[key] for c in counts) for key in counts[0]}

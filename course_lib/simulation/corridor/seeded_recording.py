@@ -74,9 +74,11 @@ def record_seed(
     hardships: Collection[Hardship] = (),
     models: SeedModels | None = None,
     camera: DepthCamera | None = None,
+    frames: int | None = None,
     progress: Callable[[Iterable], Iterable] = iter,
 ) -> None:
     """Writes the recording of a seed to a new `folder`. camera: what the user is told (default: the SR4000's).
+    frames: only the first so many.
 
     Raises `ValueError` for an unknown hardship, or a folder that holds a recording.
     """
@@ -93,7 +95,7 @@ def record_seed(
     errors = _only(models.calibration.draw(calibration_rng), hardships)
     instrument = TimeOfFlightCamera(camera or DepthCamera.sr4000(), models.camera, pattern_rng, errors)
     run = wagon_run(wagon, day.clutter_boxes, path_rng, pushing)
-    record(folder, day.mesh, instrument, run, models.floor_survey, noise_rng, progress)
+    record(folder, day.mesh, instrument, run, models.floor_survey, noise_rng, progress, frames)
 
 
 def _only(drawn: CalibrationErrors, hardships: Collection[Hardship]) -> CalibrationErrors:
