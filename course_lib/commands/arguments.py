@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tempfile
 from pathlib import Path
 
@@ -17,6 +18,18 @@ def require_positive(option: str, value: float, unit: str) -> None:
     """Raises `ValueError` for a value that is not positive and finite."""
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"{option} must be a positive number of {unit}; got {value:g}")
+
+
+def parse_seeds(text: str) -> list[int]:
+    """The seeds that "4", "1-20" or "1-5,8" name, each once, in their order. Raises `ValueError` for anything else."""
+    seeds: list[int] = []
+    for part in text.split(","):
+        match = re.fullmatch(r"\s*(\d+)(?:-(\d+))?\s*", part)
+        first, last = (int(match[1]), int(match[2] or match[1])) if match else (1, 0)
+        if last < first:
+            raise ValueError(f"--seeds must be numbers or ranges such as 1-20 or 1-5,8; got {text!r}")
+        seeds += range(first, last + 1)
+    return list(dict.fromkeys(seeds))
 
 
 def require_output_folder(folder: Path) -> None:

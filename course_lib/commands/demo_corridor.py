@@ -1,7 +1,9 @@
 """Run paper 1's experiment on the simulated corridor: estimate x, y and yaw, print table 1, save figures 5 and 6.
 
-The recorded run, the map of the laser survey and its planar simplification are those of data/corridor. Fallon's scoring
-runs on the same recording, with the same motion noise and number of particles.
+Every seed makes a recording of its own: another day in the building of the map (doors, things in the way), another run
+of the wagon, other noise; and a less kind one, with errors of calibration and mount, pushed by hand. The map and its
+planar simplification are those of data/corridor. Fallon's scoring runs on the same recordings, with the same motion
+noise and number of particles.
 """
 
 from __future__ import annotations
@@ -9,18 +11,43 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
+
+from course_lib.commands.corridor_tables import table_1, table_of_kindnesses, table_over_recordings
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
     from matplotlib.figure import Figure
 
-    from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import DepthSequence
+    from course_lib.experiments.corridor_seeds import Maps, Row
+
+KINDNESS_SEEDS = "10001-10003"
+KINDNESS_SIZE = (44, 36)  # pixels: a quarter of the SR4000's each way, so that 21 runs take minutes
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `demo corridor`."""
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="N", help="seed of the recording and of the filter (default: 0)"
+    )
+    parser.add_argument(
+        "--seeds",
+        metavar="A-B",
+        help="several seeds: median, least and greatest over their recordings; what is finished is kept under --out "
+        "and used again. 1 to 99 are for reporting; tune on 10000 and above",
+    )
+    parser.add_argument(
+        "--recording",
+        choices=["own", "shipped"],
+        default="own",
+        help="made anew for the seed (default), or data/corridor/wagon, where a seed is the filter's alone",
+    )
+    parser.add_argument(
+        "--kindnesses",
+        action="store_true",
+        help=f"measure instead what the simulator's kindnesses are worth, on small images (seeds {KINDNESS_SEEDS})",
+    )
     parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
     parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames (default: all)")
     parser.add_argument("--data", type=Path, metavar="FOLDER", help="corridor data (default: data/corridor)")
@@ -37,35 +64,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs all rows of the table; 0 when every one reached the last frame."""
-    from course_lib.commands.arguments import require_output_folder, require_seed
-    from course_lib.commands.progress import progress_bar
-    from course_lib.depth_mcl.scene_map import SceneMap
-    from course_lib.depth_mcl.sequence import read_sequence
-    from course_lib.experiments.corridor import METHODS, path_errors, run_method
-    from course_lib.paths import data_path
+    from course_lib.commands.arguments import parse_seeds, require_output_folder, require_seed
 
     require_seed(arguments.seed)
+    seeds = None if arguments.seeds is None else parse_seeds(arguments.seeds)
+    if arguments.frames is not None and arguments.frames < 1:
+        raise ValueError(f"--frames must be at least 1; got {arguments.frames}")
     require_output_folder(arguments.out)
-    folder = arguments.data or data_path("corridor")
-    sequence = read_sequence(folder / "wagon")
-    scene_map, planar_map = SceneMap.load(folder / "map.ply"), SceneMap.load(folder / "planar_map.ply")
-    runs, errors = {}, {}
-    for key, method in METHODS.items():
-        runs[key] = run_method(
-            method,
-            scene_map,
-            planar_map,
-            sequence,
-            n_particles=arguments.particles,
-            seed=arguments.seed,
-            frames=arguments.frames,
-            backend=arguments.backend,
-            progress=progress_bar(method.name),
-        )
-        errors[key] = path_errors(runs[key], sequence)
-    summary = summarize(arguments.seed, arguments.particles, runs, errors)
-    figures = draw(scene_map, sequence, runs, errors, arguments.backend)
-    written = write(arguments.out, summary, sequence, runs, errors, figures)
+    if arguments.kindnesses:
+        return _run_kindnesses(arguments, seeds or parse_seeds(KINDNESS_SEEDS))
+    return _run_seed(arguments) if seeds is None else _run_seeds(arguments, seeds)
+
+
+def _run_seed(arguments: argparse.Namespace) -> int:
+    """One seed: table 1, figures, results."""
+    with TemporaryDirectory() as temporary:
+        maps, sequence, rows = _rows_of(arguments, arguments.seed, Path(temporary))
+        summary = summarize(arguments, arguments.seed, rows)
+        figures = draw(maps, sequence, rows, arguments.backend)
+    write(arguments.out / "corridor.json", summary, rows)
+    written = [*write_figures(arguments.out, sequence, rows, figures), "corridor.json", "corridor.csv"]
     if arguments.json:
         print(json.dumps(summary))
     else:
@@ -74,113 +92,164 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def summarize(seed: int, n_particles: int, runs: dict, errors: dict) -> dict:
-    """The numbers of table 1: the paper's experiment at the top level, every method below `methods`."""
-    import numpy as np
+def _run_seeds(arguments: argparse.Namespace, seeds: list[int]) -> int:
+    """Several seeds, each written when it is done: table 1 over their recordings."""
+    import sys
 
+    from course_lib.experiments.corridor_seeds import over_recordings
+    from course_lib.experiments.results import write_results
+
+    summaries = []
+    for seed in seeds:
+        path = arguments.out / f"seed_{seed}.json"
+        summary = _finished(path, _settings(arguments, seed))
+        if summary is None:
+            with TemporaryDirectory() as temporary:
+                _, _, rows = _rows_of(arguments, seed, Path(temporary))
+            summary = summarize(arguments, seed, rows)
+            write(path, summary, rows)
+        else:
+            print(f"seed {seed}: finished before, taken from {path}", file=sys.stderr)
+        summaries.append(summary)
+    result = {
+        "seeds": seeds,
+        **{key: summaries[0][key] for key in ("n_particles", "frames", "sigma_noise", "settings")},
+        "over_recordings": over_recordings(summaries),
+        "recordings": summaries,
+    }
+    write_results(arguments.out / "recordings.json", result)
+    print(json.dumps(result) if arguments.json else table_over_recordings(result))
+    return 0
+
+
+def _run_kindnesses(arguments: argparse.Namespace, seeds: list[int]) -> int:
+    """The paper's method on recordings with no hardship, with each alone, and with all."""
+    from course_lib.commands.progress import progress_bar
+    from course_lib.depth_mcl.camera import DepthCamera
+    from course_lib.experiments.corridor_seeds import hardship_errors, spread
+    from course_lib.experiments.results import write_results
+    from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
+
+    camera = DepthCamera.sr4000().resized(*KINDNESS_SIZE)
+    options = {"n_particles": arguments.particles, "backend": arguments.backend, "frames": arguments.frames}
+    result = {"seeds": seeds, "image": list(KINDNESS_SIZE), "n_particles": arguments.particles, "hardships": {}}
+    for name, hardships in {"none": (), **{name: (name,) for name in HARDSHIPS}, "all": HARDSHIPS}.items():
+        errors = [hardship_errors(_data(arguments), s, hardships, camera, bar=progress_bar, **options) for s in seeds]
+        result["hardships"][name] = {key: spread([e[key] for e in errors]) for key in errors[0]}
+        write_results(arguments.out / "kindnesses.json", result)
+    print(json.dumps(result) if arguments.json else table_of_kindnesses(result))
+    return 0
+
+
+def _data(arguments: argparse.Namespace) -> Path:
+    from course_lib.paths import data_path
+
+    return arguments.data or data_path("corridor")
+
+
+def _rows_of(arguments: argparse.Namespace, seed: int, temporary: Path) -> tuple[Maps, DepthSequence, dict[str, Row]]:
+    """The maps, the even recording and all rows of a seed; a recording of its own is made in `temporary`."""
+    from course_lib.commands.progress import progress_bar
+    from course_lib.depth_mcl.sequence import read_sequence
+    from course_lib.experiments.corridor_seeds import Maps, own_recordings, run_rows
+
+    data = _data(arguments)
+    maps = Maps.load(data)
+    if arguments.recording == "shipped":
+        even, by_hand = read_sequence(data / "wagon"), None
+    else:
+        even, by_hand = own_recordings(data, temporary, seed, arguments.frames, progress_bar)
+    options = {"n_particles": arguments.particles, "backend": arguments.backend, "frames": arguments.frames}
+    return maps, even, run_rows(maps, even, by_hand, progress_bar, seed=seed, **options)
+
+
+def _settings(arguments: argparse.Namespace, seed: int) -> dict:
+    """What decides a seed's result."""
+    names = ("particles", "frames", "recording", "backend")
+    return {"seed": seed, "data": str(_data(arguments)), **{name: getattr(arguments, name) for name in names}}
+
+
+def _finished(path: Path, settings: dict) -> dict | None:
+    """The stored summary of a seed, if there is one and it was made with these settings."""
+    if not path.is_file():
+        return None
+    summary = json.loads(path.read_text(encoding="utf-8"))
+    return summary if summary.get("settings") == settings else None
+
+
+def summarize(arguments: argparse.Namespace, seed: int, rows: dict[str, Row]) -> dict:
+    """The numbers of table 1: the paper's experiment at the top level, every method below `methods`, those on the less
+    kind recording below `methods_by_hand`."""
     from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
-    from course_lib.experiments.corridor import METHODS
+    from course_lib.experiments.corridor_seeds import BY_HAND, row_numbers
 
-    rows = {}
-    for key, run in runs.items():
-        nearest, timed = errors[key]
-        rows[key] = {
-            "name": METHODS[key].name,
-            "median_m": nearest.median,
-            "sigma_m": nearest.sigma,
-            "within_3sigma_percent": 100 * nearest.within_3sigma,
-            "median_timed_m": timed.median,
-            "median_effective_sample_size": float(np.median(run.ess)),
-            "ms_per_frame": run.ms_per_frame,
-        }
-    ours = rows["proposed"]
+    numbers = {key: row_numbers(key, row) for key, row in rows.items()}
+    even = {key: row for key, row in numbers.items() if not key.endswith(BY_HAND)}
+    by_hand = {key.removesuffix(BY_HAND): row for key, row in numbers.items() if key.endswith(BY_HAND)}
     copied = ("median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "ms_per_frame")
     return {
         "seed": seed,
-        "n_particles": n_particles,
-        "frames": len(runs["proposed"].frames),
+        "n_particles": arguments.particles,
+        "frames": len(rows["proposed"].run.frames),
         "sigma_noise": [float(s) for s in SIGMA_XY_YAW],
-        **{name: ours[name] for name in copied},
-        "fallon_median_m": rows["fallon"]["median_m"],
-        "methods": rows,
+        "settings": _settings(arguments, seed),
+        **{name: even["proposed"][name] for name in copied},
+        "fallon_median_m": even["fallon"]["median_m"],
+        "methods": even,
+        **({"methods_by_hand": by_hand} if by_hand else {}),
     }
 
 
-def draw(scene_map: SceneMap, sequence: DepthSequence, runs: dict, errors: dict, backend: str) -> dict[str, Figure]:
+def draw(maps: Maps, sequence: DepthSequence, rows: dict[str, Row], backend: str) -> dict[str, Figure]:
     """Figures 5 and 6 and the overview, by file name."""
     import numpy as np
 
     from course_lib.plots.corridor_figures import figure_5, figure_6, floor_plan
     from course_lib.plots.overview_figure import overview_figure
 
-    ours = runs["proposed"]
-    shown = {"ours": "proposed", "Fallon-style, 20 x 15": "fallon"}
-    walls = floor_plan(scene_map.vertices, height=sequence.camera_to_world[0, 2, 3])
-    positions = {name: runs[key].states[:, :2] for name, key in shown.items()}
-    lines = {f"{name}, nearest path": errors[key][0].errors for name, key in shown.items()}
-    lines["ours, timed"] = errors["proposed"][1].errors
+    ours = rows["proposed"]
+    shown = {"ours": rows["proposed"], "Fallon-style, 20 x 15": rows["fallon"]}
+    walls = floor_plan(maps.detailed.vertices, height=sequence.camera_to_world[0, 2, 3])
+    positions = {name: row.run.states[:, :2] for name, row in shown.items()}
+    lines = {f"{name}, nearest path": row.nearest.errors for name, row in shown.items()}
+    lines["ours, timed"] = ours.timed.errors
     return {
         "figure_5.png": figure_5(sequence.path_on_floor, positions, walls),
-        "figure_6.png": figure_6(np.asarray(ours.frames), lines),
-        "overview.png": overview_figure(scene_map, sequence, ours, backend),
+        "figure_6.png": figure_6(np.asarray(ours.run.frames), lines),
+        "overview.png": overview_figure(maps.detailed, sequence, ours.run, backend),
     }
 
 
-def write(
-    out: Path, summary: dict, sequence: DepthSequence, runs: dict, errors: dict, figures: dict[str, Figure]
-) -> list[str]:
-    """Writes numbers (JSON, CSV a row a frame), trajectory (TUM) and figures; the names of the files."""
+def write(path: Path, summary: dict, rows: dict[str, Row]) -> None:
+    """Writes numbers: `path` (JSON) and beside it a CSV with a line a frame."""
+    from course_lib.experiments.results import write_results
+
+    lines = [
+        {
+            "frame": frame,
+            **{f"{key}_nearest_m": round(float(row.nearest.errors[i]), 5) for key, row in rows.items()},
+            **{f"{key}_timed_m": round(float(row.timed.errors[i]), 5) for key, row in rows.items()},
+            **{
+                f"{key}_{axis}_m": round(float(row.run.camera_to_world[i, j, 3]), 4)
+                for key, row in rows.items()
+                for j, axis in enumerate("xy")
+            },
+            **{f"{key}_score": round(float(row.run.scores[i]), 5) for key, row in rows.items()},
+        }
+        for i, frame in enumerate(rows["proposed"].run.frames)
+    ]
+    write_results(path, summary, lines)
+
+
+def write_figures(out: Path, sequence: DepthSequence, rows: dict[str, Row], figures: dict[str, Figure]) -> list[str]:
+    """Writes the figures and the trajectory (TUM); the names of the files."""
     import numpy as np
 
     from course_lib.depth_mcl.sequence import write_tum
-    from course_lib.experiments.results import write_results
 
-    ours = runs["proposed"]
-    rows = [
-        {
-            "frame": frame,
-            **{f"{key}_nearest_m": round(float(nearest.errors[i]), 5) for key, (nearest, _) in errors.items()},
-            **{f"{key}_timed_m": round(float(timed.errors[i]), 5) for key, (_, timed) in errors.items()},
-            **{
-                f"{key}_{axis}_m": round(float(run.camera_to_world[i, j, 3]), 4)
-                for key, run in runs.items()
-                for j, axis in enumerate("xy")
-            },
-            **{f"{key}_score": round(float(run.scores[i]), 5) for key, run in runs.items()},
-        }
-        for i, frame in enumerate(ours.frames)
-    ]
-    write_results(out / "corridor.json", summary, rows)
+    ours = rows["proposed"].run
     times = np.asarray(ours.frames, float) if sequence.times is None else sequence.times[: len(ours.frames)]
     write_tum(out / "trajectory.txt", times, ours.camera_to_world)
     for name, figure in figures.items():
         figure.savefig(out / name, dpi=130)
-    return [*figures, "corridor.json", "corridor.csv", "trajectory.txt (TUM)"]
-
-
-def table_1(summary: dict) -> str:
-    """The paper's table 1 with its two rows and ours, the timed error beside the nearest-path error."""
-    from course_lib.depth_mcl.evaluation import PAPER_TABLE_1
-
-    lines = [
-        f"Table 1, {summary['frames']} frames, {summary['n_particles']} particles, seed {summary['seed']}",
-        "",
-        f"{'':36} {'nearest point of the path':^33}  {'same frame':>10}  {'particles':>9}",
-        f"{'':36} {'median [m]':>10} {'sigma [m]':>10} {'<= 0.30 m':>11}  {'median [m]':>10}  {'effective':>9}",
-    ]
-    for name, (median, sigma, within) in PAPER_TABLE_1.items():
-        sigma_text = "n/a" if sigma is None else f"{sigma:.2f}"
-        lines.append(f"{'paper: ' + name:36} {median:>10.2f} {sigma_text:>10} {within:>9.0f} %  {'-':>10}  {'-':>9}")
-    for row in summary["methods"].values():
-        lines.append(
-            f"{row['name']:36} {row['median_m']:>10.3f} {row['sigma_m']:>10.3f} {row['within_3sigma_percent']:>9.1f} %"
-            f"  {row['median_timed_m']:>10.3f}  {row['median_effective_sample_size']:>9.1f}"
-        )
-    lines += [
-        "",
-        "sigma is the root mean square about zero. Fallon-style rows use a planar simplification of the map. At full",
-        "size their sum over 25,344 pixels collapses onto few particles, at 20 x 15 it hardly tells them apart (last",
-        "column: median effective sample size). Their published system also had visual odometry; here no row has any.",
-        f"{summary['ms_per_frame']:.0f} ms a frame (paper: 125 ms, on a graphics card)",
-    ]
-    return "\n".join(lines)
+    return [*figures, "trajectory.txt (TUM)"]

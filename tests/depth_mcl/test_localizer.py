@@ -64,10 +64,10 @@ def test_the_filter_follows_a_walk(renderer, motion, weighting, bound):
 
 @pytest.mark.parametrize("motion", [BODY_AXES, WORLD_AXES])
 def test_components_without_noise_stay_at_their_start(renderer, motion):
-    tilted = START + [0, 0, 0, 0.02, -0.1, 0]
+    tilted = START + np.array([0, 0, 0, 0.02, -0.1, 0])
     localizer = MonteCarloLocalizer(renderer, 50, SIGMA, motion=motion)
     localizer.initialize(tilted)
-    estimates = [localizer.step(room_depth(SMALL, s)[0]) for s in walk(3) + [0, 0, 0, 0.02, -0.1, 0]]
+    estimates = [localizer.step(room_depth(SMALL, s)[0]) for s in walk(3) + np.array([0, 0, 0, 0.02, -0.1, 0])]
     assert estimates[-1].state[2:5] == pytest.approx(tilted[2:5])
     assert (estimates[-1].state[[0, 1, 5]] != tilted[[0, 1, 5]]).all()
 

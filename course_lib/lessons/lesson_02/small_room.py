@@ -91,7 +91,7 @@ def room_map(
 
 @functools.lru_cache(maxsize=12)
 def _fused(survey_day: tuple, voxel: float) -> tuple[np.ndarray, np.ndarray]:
-    return fuse(list(_scans(*survey_day)), fusion(voxel))
+    return fuse([scan.as_registered() for scan in _scans(*survey_day)], fusion(voxel))
 
 
 @functools.lru_cache(maxsize=32)

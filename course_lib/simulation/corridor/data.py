@@ -17,9 +17,8 @@ import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.depth_mcl.sequence import write_sequence
-from course_lib.geometry import optical_pose
-from course_lib.simulation.corridor.measurements import frame_counts, hole_share, map_error, noise_on_a_wall
+from course_lib.simulation.corridor.measurements import hole_share, map_error, noise_on_a_wall
+from course_lib.simulation.corridor.mesh_building import WorldMesh
 from course_lib.simulation.corridor.mesh_files import write_ply, write_world_ply
 from course_lib.simulation.corridor.planar_map import planar_simplification
 from course_lib.simulation.corridor.recorded_runs import (
@@ -29,11 +28,11 @@ from course_lib.simulation.corridor.recorded_runs import (
     WagonModel,
     hand_run,
     steps_and_turns,
-    survey_floor_line,
     wagon_run,
 )
+from course_lib.simulation.corridor.recording import record
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
-from course_lib.simulation.corridor.world import LENGTH, TrueWorld, make_corridor
+from course_lib.simulation.corridor.world import LENGTH, make_corridor
 from course_lib.simulation.data_folder import checksums, move_products, require_folder
 from course_lib.simulation.parameter_tables import parameter_tables
 from course_lib.simulation.sensors.laser_survey import STATIONS, ScannerModel, registration_error, survey
@@ -84,13 +83,12 @@ def make_corridor_data(
         folder = Path(temporary)
         world = make_corridor(world_rng)
         write_world_ply(folder / "true_world.ply", world.run_day, "corridor, true world of the run day; CC BY 4.0")
-        measured = {"map": _make_map(folder, world, models, survey_rng, planar_rng, measure_rng, progress)}
+        measured = {"map": _make_map(folder, world.survey_day, models, survey_rng, planar_rng, measure_rng, progress)}
         camera = TimeOfFlightCamera(DepthCamera.sr4000(), models.camera, camera_rng)
         wagon = wagon_run(models.wagon, world.clutter_boxes, wagon_rng)
         hand = hand_run(models.hand, world.clutter_boxes, hand_rng)
-        caster = WorldCaster.of(world.run_day)
-        for name, (states, times), rng in (("wagon", wagon, wagon_rng), ("hand", hand, hand_rng)):
-            measured[name] = _record(folder / name, caster, camera, states, times, models, rng, progress)
+        for name, run, rng in (("wagon", wagon, wagon_rng), ("hand", hand, hand_rng)):
+            measured[name] = _record(folder / name, world.run_day, camera, run, models, rng, progress)
         measured["noise_on_a_wall_m"] = {
             f"{distance} m": noise_on_a_wall(models.camera, distance, measure_rng) for distance in (2, 5, 8)
         }
@@ -104,17 +102,18 @@ def make_corridor_data(
 
 def _make_map(
     folder: Path,
-    world: TrueWorld,
+    surveyed: WorldMesh,
     models: CorridorModels,
     rng: np.random.Generator,
     planar_rng: np.random.Generator,
     measure_rng: np.random.Generator,
     progress: Progress,
 ) -> dict:
-    """Surveys the world of the survey day and writes map.ply and planar_map.ply; returns what was measured on them."""
-    caster = WorldCaster.of(world.survey_day)
+    """Surveys the world as it is given, writes map.ply and planar_map.ply; returns what was measured on them."""
+    caster = WorldCaster.of(surveyed)
     scans = survey(caster, models.scanner, rng, progress(models.stations, "surveying from the stations"))
-    vertices, faces = fuse(scans, models.fusion, lambda slabs: progress(slabs, "fusing the scans"))
+    registered = [scan.as_registered() for scan in scans]
+    vertices, faces = fuse(registered, models.fusion, lambda slabs: progress(slabs, "fusing the scans"))
     for _ in progress(range(1), "decimating the map"):
         vertices, faces = simplify(vertices, faces, models.fusion)
     write_ply(folder / "map.ply", vertices, faces, "corridor map, simulated laser survey; CC BY 4.0")
@@ -126,32 +125,25 @@ def _make_map(
         "planar_triangles": len(planar.faces),
         "hole_share": hole_share(vertices, faces, caster, LENGTH, measure_rng),
         "registration": registration_error(scans, measure_rng),
-        "distance_to_surveyed_world": map_error(vertices, faces, world.survey_day, measure_rng),
-        "planar_distance_to_surveyed_world": map_error(planar.vertices, planar.faces, world.survey_day, measure_rng),
+        "distance_to_surveyed_world": map_error(vertices, faces, surveyed, measure_rng),
+        "planar_distance_to_surveyed_world": map_error(planar.vertices, planar.faces, surveyed, measure_rng),
     }
 
 
 def _record(
     folder: Path,
-    caster: WorldCaster,
+    world: WorldMesh,
     camera: TimeOfFlightCamera,
-    states: np.ndarray,
-    times: np.ndarray,
+    run: tuple[np.ndarray, np.ndarray],
     models: CorridorModels,
     rng: np.random.Generator,
     progress: Progress,
 ) -> dict:
-    """Captures and writes one run; returns rates over its pixels and the sizes of its steps."""
-    depths, counts = [], []
-    for state in progress(states, f"recording the {folder.name} run"):
-        frame = camera.capture(caster, state, rng)
-        depths.append(frame.depth)
-        counts.append(frame_counts(frame, models.camera))
-    path = survey_floor_line(states, models.floor_survey, rng)
-    frames = list(range(len(states)))
-    write_sequence(folder, camera.camera.matrix, frames, depths, optical_pose(states), times, "z", path)
+    """Records one run; returns rates over its pixels and the sizes of its steps."""
+    states = run[0]
+    text = f"recording the {folder.name} run"
+    total = record(folder, world, camera, run, models.floor_survey, rng, lambda items: progress(items, text))
     _shrink(folder / "depth")
-    total = {key: sum(c[key] for c in counts) for key in counts[0]}
     steps, turns = steps_and_turns(states)
     return {
         "frames": len(states),

@@ -6,6 +6,7 @@ Trajectories are smooth curves through drawn knots; the states are exact, and be
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
@@ -30,6 +31,33 @@ class WagonModel:
     heading_wobble_deg: float = 1.0  # degrees, one sigma about the path's direction, smooth over about a second; chosen
     height_jitter: float = 0.001  # m, one sigma, cut at two sigma: wheels on linoleum; chosen
     tilt_jitter_deg: float = 0.1  # degrees, one sigma, cut at two sigma, roll and pitch; chosen
+
+
+@dataclass(frozen=True)
+class PushModel:
+    """How somebody who walks pushes the wagon; path, height and wheels stay those of WagonModel."""
+
+    speed_spread: float = 0.25  # share of the mean speed, one sigma, over seconds; chosen: a stroll of 0.5 to 1.4 m/s
+    speed_seconds: float = 2.0  # s over which the speed changes; chosen
+    least_and_most: tuple[float, float] = (0.4, 1.6)  # shares of the mean speed, but for stops; chosen
+    steps_per_second: float = 1.8  # chosen: usual for a stroll
+    step_spread: float = 0.10  # share of the speed that comes and goes with every step, amplitude; chosen
+    stops: tuple[int, int] = (2, 4)  # how often the wagon stands still, least and most; chosen: doors, people
+    stop_seconds: tuple[float, float] = (0.5, 2.0)  # s; chosen
+    ramp_seconds: float = 0.7  # s from speed to standing still and back; chosen: about 1.4 m/s^2
+    sway_deg: float = 1.5  # degrees, amplitude with every second step: hips turn by about 5, arms give way; chosen
+    wobble: float = 0.012  # m sideways, amplitude with every second step; chosen: a head's sway is about twice that
+
+
+class Pushing(NamedTuple):
+    """What pushing does to each frame, all `(T,)`."""
+
+    speed: np.ndarray
+    """Factor on the speed; its mean without stops is one."""
+    sway: np.ndarray
+    """Radians added to the heading."""
+    wobble: np.ndarray
+    """Metres to the left of the path."""
 
 
 @dataclass(frozen=True)
@@ -58,22 +86,51 @@ class FloorSurveyModel:
     registration: float = 0.003  # m, one sigma per axis, one offset for the whole line; chosen
 
 
-def wagon_run(model: WagonModel, clutter_boxes: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """States `(T, 6)` and times `(T,)` of the wagon; its path keeps clear of the clutter `(n, 2, 2)`."""
+def wagon_run(
+    model: WagonModel, clutter_boxes: np.ndarray, rng: np.random.Generator, pushing: Pushing | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """States `(T, 6)` and times `(T,)` of the wagon; its path keeps clear of the clutter `(n, 2, 2)`.
+
+    pushing: what the one who pushes it adds; None for a wagon that rolls evenly.
+    """
     length = model.mean_step * model.frames * (1 + model.step_spread) + 1.0
     path = _clear_path(model.start, length, model.wander, model.knot_spacing, model.clearance, clutter_boxes, rng)
     # Arc length along the path, so that steps are steps along the floor.
     x = np.linspace(model.start, model.start + length, 8000)
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(path(x))))])
     speed = 1 + np.clip(_smooth(model.frames, 25, rng), -2, 2) * model.step_spread
+    speed = speed if pushing is None else speed * pushing.speed
     travelled = np.cumsum(model.mean_step * speed) - model.mean_step * speed[0]
     at = np.interp(travelled, arc, x)
-    heading = np.arctan(path(at, 1)) + np.deg2rad(model.heading_wobble_deg) * _smooth(model.frames, 6, rng)
+    along = np.arctan(path(at, 1))
+    heading = along + np.deg2rad(model.heading_wobble_deg) * _smooth(model.frames, 6, rng)
+    place = np.column_stack([at, path(at)])
+    if pushing is not None:
+        heading += pushing.sway
+        place += pushing.wobble[:, None] * np.column_stack([-np.sin(along), np.cos(along)])
     jitter = np.clip(rng.normal(size=(model.frames, 3)), -2, 2)
     tilt = np.deg2rad(model.tilt_jitter_deg)
     z = model.height + model.height_jitter * jitter[:, 0]
-    states = np.column_stack([at, path(at), z, tilt * jitter[:, 1], tilt * jitter[:, 2], heading])
+    states = np.column_stack([place, z, tilt * jitter[:, 1], tilt * jitter[:, 2], heading])
     return states, np.arange(model.frames) / FRAME_RATE
+
+
+def draw_pushing(model: PushModel, frames: int, rng: np.random.Generator) -> Pushing:
+    """How the wagon is pushed over so many frames: speed that varies and stops, sway and wobble while it moves."""
+    times = np.arange(frames) / FRAME_RATE
+    slow = 1 + model.speed_spread * _smooth(frames, model.speed_seconds * FRAME_RATE, rng)
+    slow = np.clip(slow / slow.mean(), *model.least_and_most)
+    step = 2 * np.pi * (model.steps_per_second * times + rng.random())
+    moving = np.ones(frames)
+    for _ in range(rng.integers(model.stops[0], model.stops[1] + 1)):
+        middle, half = rng.uniform(0, times[-1]), rng.uniform(*model.stop_seconds) / 2
+        share = np.clip((np.abs(times - middle) - half) / model.ramp_seconds, 0, 1)
+        moving *= (1 - np.cos(np.pi * share)) / 2
+    # Left and right foot: what turns and shifts the wagon takes two steps to come back.
+    side = moving * np.sin(step / 2)
+    return Pushing(
+        slow * (1 + model.step_spread * np.sin(step)) * moving, np.deg2rad(model.sway_deg) * side, model.wobble * side
+    )
 
 
 def hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -126,7 +183,9 @@ def survey_floor_line(states: np.ndarray, model: FloorSurveyModel, rng: np.rando
     """Points `(P, 3)` on the line on the floor below the camera, as a laser survey, registered to the map, has them."""
     xy = states[:, :2]
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=1))])
-    line = CubicSpline(arc, xy)(np.arange(0.0, arc[-1], model.spacing))
+    # A wagon that stands still is at one place of the line for many frames.
+    moved = np.concatenate([[True], np.diff(arc) > 1e-6])
+    line = CubicSpline(arc[moved], xy[moved])(np.arange(0.0, arc[-1], model.spacing))
     points = np.column_stack([line, np.zeros(len(line))])
     offset = model.registration * rng.normal(size=3)
     return points + offset + model.noise * rng.normal(size=points.shape)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from course_lib.simulation.sensors.laser_survey import Scan
+from course_lib.simulation.sensors.laser_survey import RegisteredScan
 
 _BLOCK = 8  # voxels along the edge of a block; only blocks near measured points are worked on
 
@@ -30,7 +30,9 @@ class FusionModel:
     triangles: int = 120_000  # after decimation; chosen
 
 
-def fuse(scans: list[Scan], model: FusionModel, progress=lambda slabs: slabs) -> tuple[np.ndarray, np.ndarray]:
+def fuse(
+    scans: list[RegisteredScan], model: FusionModel, progress=lambda slabs: slabs
+) -> tuple[np.ndarray, np.ndarray]:
     """Surface of the scans at their registered poses: vertices `(V, 3)` metres, faces `(F, 3)`, before decimation.
 
     progress wraps the slabs, for a progress bar.
@@ -80,12 +82,12 @@ def simplify(vertices: np.ndarray, faces: np.ndarray, model: FusionModel) -> tup
     return points, triangles
 
 
-def _near_points(scan: Scan, greatest_range: float) -> np.ndarray:
+def _near_points(scan: RegisteredScan, greatest_range: float) -> np.ndarray:
     points = scan.points()
     return points[np.linalg.norm(points - scan.registered_pose[:3, 3], axis=1) < greatest_range]
 
 
-def _range_image(scan: Scan) -> tuple[np.ndarray, np.ndarray]:
+def _range_image(scan: RegisteredScan) -> tuple[np.ndarray, np.ndarray]:
     """Ranges and cosines of incidence `(E, A)` of a scan; the slopes are one-sided where the other side jumps."""
     ranges = scan.ranges.astype(np.float64)
     reach = 3  # pixels: a slope over one pixel would be mostly noise
@@ -108,7 +110,12 @@ def _smaller(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _integrate(
-    scans: list[Scan], images: list, blocks: np.ndarray, origin: np.ndarray, size: np.ndarray, model: FusionModel
+    scans: list[RegisteredScan],
+    images: list,
+    blocks: np.ndarray,
+    origin: np.ndarray,
+    size: np.ndarray,
+    model: FusionModel,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Weighted mean of truncated signed distances on one slab, in metres, and the weights; both `size`."""
     inside = np.stack(np.meshgrid(*[np.arange(_BLOCK)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -144,7 +151,7 @@ def _integrate(
     return distances, weights
 
 
-def _pixel(scan: Scan, local: np.ndarray, far: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _pixel(scan: RegisteredScan, local: np.ndarray, far: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Nearest row and column of a scan for points in its frame."""
     step = scan.azimuths[1] - scan.azimuths[0]
     elevation = np.arcsin(np.clip(local[:, 2] / np.maximum(far, 1e-9), -1.0, 1.0))

@@ -7,13 +7,14 @@ corridor follow no common spacing, so that one place does not look like the next
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.simulation.corridor import clutter as clutter
+from course_lib.simulation.corridor import clutter, parts
 from course_lib.simulation.corridor import materials as m
-from course_lib.simulation.corridor import parts as parts
 from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement, WorldMesh
 
 LENGTH = 40.0  # m, chosen
@@ -58,19 +59,48 @@ LAMPS = ((1.4, 1.2), (4.0, 0.6), (6.9, 1.2), (9.4, 1.5), (12.9, 1.2), (16.2, 0.6
          (24.6, 0.6),
          (26.4, 1.2), (30.2, 1.5), (32.6, 0.6), (35.7, 1.2), (38.6, 1.2))  # (x, length) in m  # fmt: skip
 
-# Clutter of the run day: (kind, x, y, turn in degrees)
+
+class Thing(NamedTuple):
+    """A piece of clutter: kind (a function of clutter.py), place in metres, turn in degrees."""
+
+    kind: str
+    x: float
+    y: float
+    turn: float
+
+
+# Clutter of the shipped data's run day.
 CLUTTER = (
-    ("cartons", 6.9, -1.02, 10.0),
-    ("chair", 11.2, -1.08, 150.0),
-    ("person", 15.9, 0.88, 200.0),
-    ("person", 16.5, 0.62, 40.0),
-    ("trolley", 19.9, -1.06, 3.0),
-    ("plant", 23.2, -0.86, 0.0),
-    ("ladder", 25.12, 0.80, 0.0),
-    ("bin", 28.95, 0.86, 0.0),
-    ("cartons", 33.9, 0.86, 80.0),
-    ("person", 36.0, -0.75, 90.0),
+    Thing("cartons", 6.9, -1.02, 10.0),
+    Thing("chair", 11.2, -1.08, 150.0),
+    Thing("person", 15.9, 0.88, 200.0),
+    Thing("person", 16.5, 0.62, 40.0),
+    Thing("trolley", 19.9, -1.06, 3.0),
+    Thing("plant", 23.2, -0.86, 0.0),
+    Thing("ladder", 25.12, 0.80, 0.0),
+    Thing("bin", 28.95, 0.86, 0.0),
+    Thing("cartons", 33.9, 0.86, 80.0),
+    Thing("person", 36.0, -0.75, 90.0),
 )
+
+
+@dataclass(frozen=True)
+class Building:
+    """What both days have in common. layout: rows of LEFT_DOORS, LEFT_PILLARS, ... by name, each moved along x;
+    windows: rows of WINDOWS, moved; phases `(6,)` of the walls' bow; detail_seed: of brackets and papers."""
+
+    layout: dict[str, list[tuple]]
+    windows: list[tuple]
+    phases: np.ndarray
+    detail_seed: int
+
+
+@dataclass(frozen=True)
+class RunDay:
+    """The corridor on a day of recording. clutter_boxes: `(n, 2, 2)` [[x, y] low, high], metres."""
+
+    mesh: WorldMesh
+    clutter_boxes: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -83,22 +113,46 @@ class TrueWorld:
 
 
 def make_corridor(rng: np.random.Generator) -> TrueWorld:
-    """The corridor drawn with `rng`: the seed moves every feature by up to JITTER and draws bow and small parts."""
+    """The corridor drawn with `rng`, on the survey day and on the run day of LEFT_DOORS and CLUTTER."""
+    building = draw_building(rng)
+    doors = building.layout["left doors"]
+    survey_angles, run_angles = [row[4] for row in doors], [row[5] for row in doors]
+    rooms = [survey > 0 or run > 0 for survey, run in zip(survey_angles, run_angles, strict=True)]
+    survey_builder, _ = _furnished(building, survey_angles, rooms)
+    run_builder, detail = _furnished(building, run_angles, rooms)
+    boxes = _clutter(run_builder, CLUTTER, detail)
+    return TrueWorld(survey_builder.build(), run_builder.build(), boxes)
+
+
+def draw_building(rng: np.random.Generator) -> Building:
+    """A building: the seed moves every feature by up to JITTER and draws bow and small parts."""
     moves = iter(rng.uniform(-JITTER, JITTER, 200))
     phases = rng.uniform(0, 2 * np.pi, 6)
     seed = int(rng.integers(2**62))
     layout = {name: [(row[0] + next(moves), *row[1:]) for row in rows] for name, rows in _features().items()}
     windows = [(low + (move := next(moves)), high + move, *rest) for low, high, *rest in WINDOWS]
-    built = {}
-    for day in ("survey", "run"):
-        builder = MeshBuilder(lambda points: _bow(points, phases))
-        detail = np.random.default_rng(seed)
-        _shell(builder, layout, windows)
-        _fittings(builder, layout, windows, detail)
-        _doors(builder, layout, day)
-        boxes = _clutter(builder, detail) if day == "run" else None
-        built[day] = builder.build()
-    return TrueWorld(built["survey"], built["run"], boxes)
+    return Building(layout, windows, phases, seed)
+
+
+def run_day(
+    building: Building, door_angles: Sequence[float], things: Sequence[Thing], rng: np.random.Generator
+) -> RunDay:
+    """The building on a day of its own: degrees that each left door stands open, and what stands in the way."""
+    builder, _ = _furnished(building, door_angles, [angle > 0 for angle in door_angles])
+    boxes = _clutter(builder, things, rng)
+    return RunDay(builder.build(), boxes)
+
+
+def _furnished(
+    building: Building, door_angles: Sequence[float], rooms: Sequence[bool]
+) -> tuple[MeshBuilder, np.random.Generator]:
+    """The building with its fittings and doors, rooms behind those of `rooms`; and the generator of small parts."""
+    builder = MeshBuilder(lambda points: _bow(points, building.phases))
+    detail = np.random.default_rng(building.detail_seed)
+    _shell(builder, building.layout, building.windows)
+    _fittings(builder, building.layout, building.windows, detail)
+    _doors(builder, building.layout, door_angles, rooms)
+    return builder, detail
 
 
 def left_wall() -> Placement:
@@ -210,26 +264,27 @@ def _fittings(b: MeshBuilder, layout: dict, windows: list, rng: np.random.Genera
     b.tube(left_wall(), (34.2, -0.05, 0.0), (34.2, -0.05, parts.CEILING_HEIGHT), 0.03, m.STEEL, 16)
 
 
-def _doors(b: MeshBuilder, layout: dict, day: str) -> None:
-    """All doors as they stand on `day`, and a room behind each that is open on either day."""
+def _doors(b: MeshBuilder, layout: dict, left_angles: Sequence[float], left_rooms: Sequence[bool]) -> None:
+    """All doors, the left ones open by degrees `left_angles`, with rooms behind those of `left_rooms`."""
     rows = [(left_wall(), *row) for row in layout["left doors"]]
     rows += [(right_wall(row[0]), *row) for row in layout["right doors"]]
     rows.append((_cross_wall(LENGTH, 0.0, 1.0), 0.1, 1.0, 0.35, False, 0.0, 0.0))
     rows.append((_cross_wall(JUNCTION[1], LEFT, 1.0), 3.1, 0.9, 0.16, False, 0.0, 0.0))
     rows.append((_cross_wall(JUNCTION[0], LEFT, -1.0), 4.2, 0.9, 0.16, True, 0.0, 0.0))
-    for number, (frame, along, width, depth, hinge_at_end, survey_angle, run_angle) in enumerate(rows):
+    # All others are closed on every day.
+    angles = [*left_angles, *[0.0] * (len(rows) - len(left_angles))]
+    rooms = [*left_rooms, *[False] * (len(rows) - len(left_rooms))]
+    for number, (frame, along, width, depth, hinge_at_end, *_) in enumerate(rows):
         place = frame.moved(along=along)
-        parts.door(
-            b, place, f"door {number}", width, depth, survey_angle if day == "survey" else run_angle, hinge_at_end
-        )
-        if survey_angle or run_angle:
+        parts.door(b, place, f"door {number}", width, depth, angles[number], hinge_at_end)
+        if rooms[number]:
             parts.room_behind(b, place, width, depth, 1.1 + 0.12 * number)
 
 
-def _clutter(b: MeshBuilder, rng: np.random.Generator) -> np.ndarray:
-    """Things of the run day; returns their boxes on the floor plan `(n, 2, 2)`."""
+def _clutter(b: MeshBuilder, things: Sequence[Thing], rng: np.random.Generator) -> np.ndarray:
+    """Adds the things; returns their boxes on the floor plan `(n, 2, 2)`."""
     boxes = []
-    for number, (kind, x, y, turn) in enumerate(CLUTTER):
+    for number, (kind, x, y, turn) in enumerate(things):
         place, piece = Placement(np.array([x, y, 0.0])).moved(turn_deg=turn), MeshBuilder()
         if kind == "cartons":
             clutter.cartons(piece, place, rng)
@@ -243,4 +298,4 @@ def _clutter(b: MeshBuilder, rng: np.random.Generator) -> np.ndarray:
             ](piece, place)
         b.take(piece, f"clutter {number} {kind}")
         boxes.append(piece.build().vertices[:, :2])
-    return np.array([[points.min(axis=0), points.max(axis=0)] for points in boxes])
+    return np.array([[points.min(axis=0), points.max(axis=0)] for points in boxes]).reshape(-1, 2, 2)

@@ -46,26 +46,45 @@ class ScannerModel:
 
 
 @dataclass(frozen=True)
-class Scan:
-    """One station. ranges `(E, A)` metres, nan = nothing came back, over `elevations` `(E,)` and `azimuths` `(A,)` in
-    radians; true_pose, registered_pose `(4, 4)` scanner-to-world."""
+class RegisteredScan:
+    """One station as the surveyor knows it, and all that a map may be made from.
+
+    ranges `(E, A)` metres, nan = nothing came back, over `elevations` `(E,)` and `azimuths` `(A,)` in radians;
+    registered_pose `(4, 4)` scanner-to-world, where registration believes that the scanner stood.
+    """
 
     ranges: np.ndarray
     elevations: np.ndarray
     azimuths: np.ndarray
-    true_pose: np.ndarray
     registered_pose: np.ndarray
 
     def directions(self) -> np.ndarray:
         """Unit vectors `(E, A, 3)` in the scanner's frame."""
         return _directions(self.elevations, self.azimuths)
 
-    def points(self, registered: bool = True) -> np.ndarray:
-        """Measured points `(n, 3)` in the world by the registered or by the true pose."""
+    def points(self) -> np.ndarray:
+        """Measured points `(n, 3)` in the world by the registered pose."""
+        return self._points(self.registered_pose)
+
+    def _points(self, pose: np.ndarray) -> np.ndarray:
         measured = np.isfinite(self.ranges)
         local = self.directions()[measured] * self.ranges[measured][:, None]
-        pose = self.registered_pose if registered else self.true_pose
         return local @ pose[:3, :3].T + pose[:3, 3]
+
+
+@dataclass(frozen=True)
+class Scan(RegisteredScan):
+    """One station as the simulation knows it. true_pose `(4, 4)` scanner-to-world: where it really stood."""
+
+    true_pose: np.ndarray
+
+    def points(self, registered: bool = True) -> np.ndarray:
+        """Measured points `(n, 3)` in the world by the registered or by the true pose."""
+        return self._points(self.registered_pose if registered else self.true_pose)
+
+    def as_registered(self) -> RegisteredScan:
+        """What leaves the simulation: the scan without its true pose."""
+        return RegisteredScan(self.ranges, self.elevations, self.azimuths, self.registered_pose)
 
 
 def survey(
@@ -108,7 +127,7 @@ def scan(
         _scan_rows(caster, model, true_pose, band, azimuths, rng)
         for band in np.array_split(elevations, max(1, len(elevations) // 200))
     ]
-    return Scan(np.concatenate(rows), elevations, azimuths, true_pose, registered_pose)
+    return Scan(np.concatenate(rows), elevations, azimuths, registered_pose, true_pose)
 
 
 def _scan_rows(

@@ -8,7 +8,7 @@ import pytest
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.simulation.corridor.measurements import noise_on_a_wall
 from course_lib.simulation.sensors.ray_casting import WorldCaster
-from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel, simulate_frame
+from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 
 CAMERA = DepthCamera.sr4000().resized(44, 36)
 MODEL = TimeOfFlightModel()
@@ -100,9 +100,7 @@ def test_scattered_light_pulls_a_far_dark_wall_towards_a_near_bright_one():
 
 def test_one_seed_gives_one_frame():
     world = walls((3.0, -20.0))
-    first, again, other = (
-        simulate_frame(world, np.zeros(6), CAMERA, np.random.default_rng(seed)) for seed in (1, 1, 2)
-    )
+    first, again, other = (capture(world, seed=seed).depth for seed in (1, 1, 2))
     assert first.tobytes() == again.tobytes()
     assert first.dtype == np.float32
     assert first.shape == CAMERA.shape
