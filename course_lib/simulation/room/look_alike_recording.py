@@ -80,7 +80,7 @@ def mount_of(seed: int, models: RecordingModels) -> Mount:
 def photograph_room(folder: Path, room: Room, seed: int, n_poses: int, models: RecordingModels) -> list[Path]:
     """Writes a recording for each of the paper's heights, `experiment_1` and `experiment_2`; returns their folders."""
     mount, poses, folders = mount_of(seed, models), measurement_poses(room, n_poses, seed), []
-    with PanoramaRenderer(room, models.width) as renderer:
+    with PanoramaRenderer(room, models.width, alone_scale=1) as renderer:
         for number, (upper, lower) in CAMERA_HEIGHTS.items():
             folders.append(folder / f"experiment_{number}")
             folders[-1].mkdir()
