@@ -21,6 +21,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "check": ("check", "look at the environment: packages, OpenGL, one rendered depth image"),
     "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
     "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
+    "demo rooms": ("demo_rooms", "run paper 2's experiment in generated rooms that nobody shaped, with intervals"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
     "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),

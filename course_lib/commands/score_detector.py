@@ -11,7 +11,13 @@ import tempfile
 from pathlib import Path
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
-from course_lib.commands.make_training_rooms import FIRST_TEST_ROOM, IMAGES_PER_ROOM, N_TEST_ROOMS
+from course_lib.commands.make_training_rooms import (
+    FIRST_TEST_ROOM,
+    FIRST_VALIDATION_ROOM,
+    IMAGES_PER_ROOM,
+    N_TEST_ROOMS,
+    N_VALIDATION_ROOMS,
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +37,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"how many unseen rooms to photograph (default: {N_TEST_ROOMS})",
     )
     parser.add_argument("--data", type=Path, metavar="FOLDER", help="the experiment's room (default: data/room)")
-    parser.add_argument("--json", action="store_true", help="print one JSON object instead of two lines")
+    parser.add_argument(
+        "--voting",
+        action="store_true",
+        help="instead compare choices of the constants by which boxes vote, on the validation rooms (or on --images)",
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of lines")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -47,6 +58,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.rooms < 1:
         raise ValueError(f"--rooms must be at least 1; got {arguments.rooms}")
     detector = chosen_detector(arguments)
+    if arguments.voting:
+        return _compare_voting(arguments, detector)
     folder = arguments.data or data_path("room")
     recordings = [read_stereo_recording(folder / f"experiment_{number}") for number in (1, 2)]
     scores = {
@@ -78,4 +91,33 @@ def run(arguments: argparse.Namespace) -> int:
                 f"{name.replace('_', ' ')}: precision {score.precision:.3f}, recall {score.recall:.3f} "
                 f"({score.images} images, {score.objects} objects, score at least {detector.score_threshold:.3f})"
             )
+    return 0
+
+
+def _compare_voting(arguments: argparse.Namespace, detector) -> int:
+    """Prints what each choice of the voters' constants gives; returns the exit code."""
+    from course_lib.commands.progress import progress_bar
+    from course_lib.experiments.detector_evaluation import NO_VOTES, compare_voting
+    from course_lib.simulation.room.training_images import labelled_images, make_room_images
+    from course_lib.spherical_stereo.detection.suppression import VOTE_IOU, VOTE_SCORE
+
+    with tempfile.TemporaryDirectory() as temporary:
+        images = arguments.images or Path(temporary)
+        if arguments.images is None:
+            bar = progress_bar("photographs", "room")
+            make_room_images(images, FIRST_VALIDATION_ROOM, N_VALIDATION_ROOMS, IMAGES_PER_ROOM, bar)
+        found = compare_voting(detector, labelled_images(images))
+    if arguments.json:
+        rows = [one._asdict() | {"score": one.score._asdict()} for one in found]
+        print(json.dumps({"voting": rows, "used": {"vote_iou": VOTE_IOU, "vote_score": VOTE_SCORE}}))
+        return 0
+    print("least IoU, least score: root mean square by which box centres miss exact ones [pixels]; precision, recall")
+    for one in found:
+        choice = (one.vote_iou, one.vote_score)
+        name = "no votes" if choice == NO_VOTES else f"{one.vote_iou:.2f}, {one.vote_score:.2f}"
+        used = "  (used)" if choice == (VOTE_IOU, VOTE_SCORE) else ""
+        print(
+            f"  {name:12} u {one.jitter_u:.2f}, v {one.jitter_v:.2f}; {one.score.precision:.3f}, "
+            f"{one.score.recall:.3f}{used}"
+        )
     return 0

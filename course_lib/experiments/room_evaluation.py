@@ -143,11 +143,11 @@ def true_landmarks_of(
 
 
 def summary(outcomes: Sequence[PoseOutcome]) -> dict:
-    """Tables 3 to 5 of one experiment: rates, and means and standard deviations of the absolute errors.
+    """Tables 3 to 5 of one experiment: rates, and means, standard deviations and medians of the errors.
 
     Keys: n, correct_percent, incorrect_percent, unable_percent, and for "all" (everything but unable), "correct" and
-    "incorrect": n, mean_dx_m, mean_dy_m, mean_dtheta_deg, std_dx_m, std_dy_m, std_dtheta_deg; None where there is
-    nothing to average. The standard deviation is that of the *absolute* differences about their mean, with divisor n:
+    "incorrect": n, mean_dx_m, mean_dy_m, mean_dtheta_deg, the same with std_ and median_; None where there is nothing
+    to average. The standard deviation is that of the *absolute* differences about their mean, with divisor n:
     so reckoned, the paper's rows "correct" (13 poses) and "incorrect" (5) give its row "All" (18).
     Raises `EvaluationError` for no outcomes. Source: paper 2, tables 3 to 5.
     """
@@ -159,7 +159,7 @@ def summary(outcomes: Sequence[PoseOutcome]) -> dict:
     for name, members in (("all", (CORRECT, INCORRECT)), (CORRECT, (CORRECT,)), (INCORRECT, (INCORRECT,))):
         errors = np.array([one[1:] for one in outcomes if one.kind in members]).reshape(-1, 3)
         group: dict = {"n": len(errors)}
-        for statistic, reduce in (("mean", np.mean), ("std", np.std)):
+        for statistic, reduce in (("mean", np.mean), ("std", np.std), ("median", np.median)):
             for column, unit in enumerate(PoseOutcome._fields[1:]):
                 group[f"{statistic}_{unit}"] = float(reduce(errors[:, column])) if len(errors) else None
         result[name] = group

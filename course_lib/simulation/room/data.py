@@ -6,10 +6,9 @@ old data as they were.
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Callable, Iterable
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -18,11 +17,11 @@ from course_lib.simulation.data_folder import checksums, move_products, require_
 from course_lib.simulation.parameter_tables import parameter_tables
 from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
-from course_lib.simulation.room.object_boxes import object_boxes
+from course_lib.simulation.room.stereo_photographs import photograph_pair, write_poses
 from course_lib.simulation.room.survey import RoomSurveyModel, survey_room
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
+from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import RigModel, stand_up
+from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, RigModel, assemble, stand_up
 
 PRODUCTS = ("experiment_1", "experiment_2", "semantic_map.json", "PARAMETERS.md", "SHA256SUMS")
 
@@ -43,7 +42,7 @@ class RoomModels:
     """All parameters of the room's data. The defaults are the shipped data's; tests take smaller ones."""
 
     heights: RigHeights = field(default_factory=RigHeights)
-    rig: RigModel = field(default_factory=RigModel)
+    rig: RigModel = NEARLY_PERFECT_RIG
     camera: PanoramaCameraModel = field(default_factory=PanoramaCameraModel)
     survey: RoomSurveyModel = field(default_factory=RoomSurveyModel)
     width: int = 1280  # pixels
@@ -61,6 +60,7 @@ def make_room_data(
     out = require_folder(out)
     survey_rng, rng = np.random.default_rng(seed).spawn(2)
     room = make_experiment_room()
+    mount = None if models.rig.assembled_anew else assemble(models.rig, rng.spawn(1)[0])
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         survey_room(room, models.survey, survey_rng).save(folder / "semantic_map.json")
@@ -77,33 +77,12 @@ def make_room_data(
                 (folder / f"experiment_{experiment}").mkdir(exist_ok=True)
                 name = f"{place.place:02d}_{'ab'[turn]}"
                 heading = np.deg2rad(place.headings_deg[turn])
-                rig = stand_up(place.x, place.y, heading, upper_height, models.heights.baseline, models.rig, rng)
-                entry = _photograph_pair(renderer, rig, folder / f"experiment_{experiment}", name, models.camera, rng)
+                rig = stand_up(place.x, place.y, heading, upper_height, models.heights.baseline, models.rig, rng, mount)
+                entry = photograph_pair(renderer, rig, folder / f"experiment_{experiment}", name, models.camera, rng)
                 lists[experiment].append(entry)
         for experiment, entries in lists.items():
-            _write_poses(folder / f"experiment_{experiment}" / "poses.json", seed, models, entries)
+            write_poses(folder / f"experiment_{experiment}", seed, models.width, models.heights.baseline, entries)
         (folder / "PARAMETERS.md").write_text(parameter_tables(models, "room"))
         (folder / "SHA256SUMS").write_text(checksums(folder, PRODUCTS))
         move_products(folder, out, PRODUCTS)
     return {"seed": seed, "pairs": sum(map(len, lists.values())), "objects": len(room.objects)}
-
-
-def _photograph_pair(renderer, rig, folder: Path, name: str, camera: PanoramaCameraModel, rng) -> dict:
-    entry = {"name": name, "rig": asdict(rig)}
-    for side, state in zip(("upper", "lower"), rig.camera_states(), strict=True):
-        file = f"{name}_{side}.jpg"
-        write_photograph(folder / file, photograph(renderer.render(state), camera, rng), camera, rng)
-        entry[side] = {"file": file, "objects": [box.as_dict() for box in object_boxes(renderer, state)]}
-    return entry
-
-
-def _write_poses(path: Path, seed: int, models: RoomModels, entries: list[dict]) -> None:
-    content = {
-        "version": 1,
-        "seed": seed,
-        "width": models.width,
-        "height": models.width // 2,
-        "baseline": models.heights.baseline,
-        "pairs": entries,
-    }
-    path.write_text(json.dumps(content) + "\n")

@@ -46,22 +46,18 @@ def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[ObjectBo
     seen = np.flatnonzero(np.bincount(numbers.ravel(), minlength=BACKGROUND + 1)[:BACKGROUND])
     scale = numbers.shape[1] / renderer.width
     boxes = []
-    try:
-        for number in seen:
-            renderer.show_only(int(number))
-            alone = renderer.render_objects(state) == number
-            visible = numbers == number
-            boxes.append(
-                ObjectBox(
-                    int(number),
-                    renderer.room.objects[number].label,
-                    box_around(visible, scale),
-                    box_around(alone | visible, scale),
-                    float(visible.sum() / (alone | visible).sum()),
-                )
+    for number in seen:
+        visible = numbers == number
+        whole = renderer.render_alone(state, int(number)) | visible
+        boxes.append(
+            ObjectBox(
+                int(number),
+                renderer.room.objects[number].label,
+                box_around(visible, scale),
+                box_around(whole, scale),
+                float(visible.sum() / whole.sum()),
             )
-    finally:
-        renderer.show_only(None)
+        )
     return boxes
 
 

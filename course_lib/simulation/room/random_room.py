@@ -5,23 +5,13 @@ The detector is trained on these rooms; the room of the experiment is another (e
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from course_lib.simulation.furniture import RANDOM_PIECES
-from course_lib.simulation.furniture.cabinet import random_cabinet
-from course_lib.simulation.furniture.piece import Piece
-from course_lib.simulation.furniture.television import random_television
-from course_lib.simulation.room.footprints import clear_of, footprint, free_places, overlap, rectangle
-from course_lib.simulation.room.random_shell import Shell, free_stretch, random_shell
-from course_lib.simulation.room.scene import Room, RoomObject
-from course_lib.simulation.room.shell import Wall, walls_of
-
-__all__ = ["footprint", "free_places", "make_room"]
+from course_lib.simulation.room.furnishing import add_piece, add_television, empty_room, furnished_room
+from course_lib.simulation.room.scene import Room
 
 FEWEST, MOST = 9, 16  # pieces of furniture
-GAP = 0.06  # metres between two footprints
 # How likely each class is to be drawn, and how many of it a room has at most.
 SHARES = {
     "sofa": (0.13, 3),
@@ -32,42 +22,8 @@ SHARES = {
     "refrigerator": (0.09, 2),
     "cabinet": (0.14, 3),
 }
-# How likely each class stands with its back to a wall.
-AGAINST_WALL = {
-    "sofa": 0.8,
-    "chair": 0.3,
-    "table": 0.3,
-    "television": 0.85,
-    "potted plant": 0.75,
-    "refrigerator": 1.0,
-    "cabinet": 0.97,
-}
 # Large pieces come first, while there is space for them.
 ORDER = ("television", "refrigerator", "sofa", "cabinet", "table", "potted plant", "chair")
-
-Spot = tuple[float, float, float]  # x, y in metres, heading in radians
-
-
-@dataclass
-class _Plan:
-    """A room while it is being furnished. taken: rectangles; probes: places of which some must stay free for a rig."""
-
-    low: np.ndarray
-    high: np.ndarray
-    walls: list[Wall]
-    taken: list[np.ndarray]
-    probes: np.ndarray
-    objects: list[RoomObject] = field(default_factory=list)
-    tables: list[np.ndarray] = field(default_factory=list)
-
-    def fits(self, corners: np.ndarray, gap: float = GAP) -> bool:
-        """Whether the rectangle lies inside the walls and apart from all others."""
-        inside = (corners.min(axis=0) >= self.low + 0.005).all() and (corners.max(axis=0) <= self.high - 0.005).all()
-        return bool(inside) and not any(overlap(corners, other, gap) for other in self.taken)
-
-    def leaves_space(self, corners: np.ndarray) -> bool:
-        """Whether one probe in 40 stays free when the rectangle is taken."""
-        return clear_of([*self.taken, corners], self.probes, 0.35).sum() * 40 >= len(self.probes)
 
 
 def _draw_labels(rng: np.random.Generator, n: int) -> list[str]:
@@ -82,89 +38,6 @@ def _draw_labels(rng: np.random.Generator, n: int) -> list[str]:
     return sorted(labels, key=ORDER.index)
 
 
-def _by_a_wall(rng: np.random.Generator, plan: _Plan, size: np.ndarray) -> Spot:
-    depth, width, _ = size
-    wall = plan.walls[int(rng.integers(4))]
-    slack = max(wall.length - width - 0.06, 0.0)
-    out = depth / 2 + 0.02 + rng.choice([0.0, rng.uniform(0.0, 0.15)])
-    pose = wall.pose(0.03 + width / 2 + rng.uniform(0.0, slack), out=out)
-    turned = rng.normal(0.0, 0.05) if rng.random() < 0.3 else 0.0
-    return pose["x"], pose["y"], pose["yaw"] + turned
-
-
-def _anywhere(rng: np.random.Generator, plan: _Plan, size: np.ndarray) -> Spot:
-    reach = 0.5 * np.hypot(size[0], size[1]) + 0.05
-    x, y = rng.uniform(plan.low + reach, np.maximum(plan.high - reach, plan.low + reach + 0.01))
-    heading = rng.uniform(-np.pi, np.pi) if rng.random() < 0.6 else rng.integers(4) * np.pi / 2
-    return float(x), float(y), float(heading)
-
-
-def _at_a_table(rng: np.random.Generator, plan: _Plan, size: np.ndarray) -> Spot:
-    """Before one side of a table, facing it."""
-    corners = plan.tables[int(rng.integers(len(plan.tables)))]
-    side = int(rng.integers(4))
-    middle = (corners[side] + corners[(side + 1) % 4]) / 2
-    outward = middle - corners.mean(axis=0)
-    outward /= np.linalg.norm(outward)
-    x, y = middle + (size[0] / 2 + rng.uniform(0.02, 0.25)) * outward
-    return float(x), float(y), float(np.arctan2(-outward[1], -outward[0]) + rng.normal(0.0, 0.15))
-
-
-def _find_spot(rng: np.random.Generator, plan: _Plan, label: str, size: np.ndarray) -> Spot | None:
-    """Where a piece of this size fits between what stands already, or None after 60 tries."""
-    at_wall = rng.random() < AGAINST_WALL[label]
-    at_table = label == "chair" and bool(plan.tables) and rng.random() < 0.5
-    for attempt in range(60):
-        if at_table and attempt < 20:
-            spot = _at_a_table(rng, plan, size)
-        elif at_wall or attempt >= 40:
-            spot = _by_a_wall(rng, plan, size)
-        else:
-            spot = _anywhere(rng, plan, size)
-        corners = rectangle(*spot, *size[:2])
-        if plan.fits(corners, 0.01 if at_table else GAP) and plan.leaves_space(corners):
-            return spot
-    return None
-
-
-def _add_television(rng: np.random.Generator, plan: _Plan, shell: Shell) -> None:
-    """A television on its own stand, on the wall, or on a low cabinet, which the map then lists too."""
-    stand = str(rng.choice(["floor", "wall", "foot", "foot"]))
-    piece = random_television(rng, stand)
-    if stand == "wall":
-        index = int(rng.integers(4))
-        s = free_stretch(rng, plan.walls[index], shell.spans[index], float(piece.size[1]))
-        if s is not None:
-            pose = plan.walls[index].pose(s, out=piece.size[0] / 2 + 0.01)
-            corners = rectangle(pose["x"], pose["y"], pose["yaw"], *piece.size[:2])
-            if plan.fits(corners):
-                plan.taken.append(corners)
-                z = float(rng.uniform(0.7, 1.1))
-                plan.objects.append(piece.at(pose["x"], pose["y"], pose["yaw"], z))
-        return
-    under = random_cabinet(rng, "sideboard") if stand == "foot" else None
-    size = np.maximum(piece.size, under.size) if under else piece.size
-    spot = _find_spot(rng, plan, "television", size)
-    if spot is None:
-        return
-    if under:
-        plan.objects.append(under.at(*spot))
-    plan.objects.append(piece.at(*spot, z=float(under.size[2]) if under else 0.0))
-    plan.taken.append(rectangle(*spot, *size[:2]))
-
-
-def _add(rng: np.random.Generator, plan: _Plan, piece: Piece) -> None:
-    """Places the piece where it fits; without space the room does without it."""
-    spot = _find_spot(rng, plan, piece.label, piece.size)
-    if spot is None:
-        return
-    corners = rectangle(*spot, *piece.size[:2])
-    plan.objects.append(piece.at(*spot))
-    plan.taken.append(corners)
-    if piece.label == "table":
-        plan.tables.append(corners)
-
-
 def make_room(seed: int | np.random.Generator) -> Room:
     """A furnished rectangular room, 4.5 to 7.5 m a side, its south-west corner at the origin.
 
@@ -173,25 +46,16 @@ def make_room(seed: int | np.random.Generator) -> Room:
     rng = np.random.default_rng(seed)
     low, high = np.zeros(2), rng.uniform(4.5, 7.5, 2)
     height = float(rng.uniform(2.4, 3.0))
-    shell = random_shell(rng, low, high, height)
-    probes = rng.uniform(low + 0.5, high - 0.5, (400, 2))
-    plan = _Plan(low, high, walls_of(low, high), list(shell.kept_free), probes)
+    shell, plan = empty_room(rng, low, high, height)
     n = int(np.clip(round(rng.normal(6 + high.prod() / 6.0, 1.5)), FEWEST, MOST - 2))
     for label in _draw_labels(rng, n):
         if label == "television":
-            _add_television(rng, plan, shell)
+            add_television(rng, plan, shell)
         else:
-            _add(rng, plan, RANDOM_PIECES[label](rng))
+            add_piece(rng, plan, RANDOM_PIECES[label](rng))
     for _ in range(60):
         # What found no space is made up for with small pieces.
         if len(plan.objects) >= FEWEST:
             break
-        _add(rng, plan, RANDOM_PIECES[str(rng.choice(["chair", "potted plant"]))](rng))
-    return Room(
-        walls=np.array([low, [high[0], low[1]], high, [low[0], high[1]]], float),
-        height=height,
-        objects=tuple(plan.objects),
-        shell=tuple(shell.meshes),
-        lamps=tuple(shell.lamps),
-        ambient=shell.ambient,
-    )
+        add_piece(rng, plan, RANDOM_PIECES[str(rng.choice(["chair", "potted plant"]))](rng))
+    return furnished_room(shell, plan, height)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from course_lib.geometry import circular_mean
-from course_lib.simulation.room.random_room import free_places
+from course_lib.simulation.room.footprints import free_places
 from course_lib.simulation.room.scene import Lamp, Room
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
@@ -32,11 +32,15 @@ class RoomSurveyModel:
     fewest_pixels: int = 150  # an object seen by fewer pixels is not judged from that place; chosen
 
 
+class UnseenObject(ValueError):
+    """An object that is seen from none of the survey's places."""
+
+
 def survey_room(room: Room, model: RoomSurveyModel, rng: np.random.Generator) -> SemanticMap:
     """The semantic map of a room: class, centroid, hue and saturation of the whole object, and the walls.
 
     Hue and saturation are means over all pixels that show the object, and over the places that see it well.
-    Raises `ValueError` for an object that no place sees.
+    Raises `UnseenObject` for an object that no place sees.
     """
     lamps = tuple(
         Lamp(lamp.position, tuple(np.multiply(lamp.colour, model.lamp_colour)), lamp.strength * model.lamp_gain)
@@ -47,7 +51,7 @@ def survey_room(room: Room, model: RoomSurveyModel, rng: np.random.Generator) ->
     landmarks = []
     for number, thing in enumerate(room.objects):
         if not colours[number]:
-            raise ValueError(
+            raise UnseenObject(
                 f"object {number} ({thing.label} at {thing.x:.2f}, {thing.y:.2f}) is seen from none of the "
                 f"{model.places} places of the survey: give more places, or move the object."
             )

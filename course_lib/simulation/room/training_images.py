@@ -13,11 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
+from course_lib.simulation.room.footprints import free_places
 from course_lib.simulation.room.object_boxes import object_boxes
-from course_lib.simulation.room.random_room import free_places, make_room
+from course_lib.simulation.room.random_room import make_room
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import RigModel, stand_up
+from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, stand_up
 from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.recording import TrueObject, true_object
 
@@ -93,11 +94,10 @@ def labelled_images(folder: str | Path) -> Iterator[tuple[np.ndarray, list[TrueO
 def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:
     room_rng, rng = np.random.default_rng(seed).spawn(2)
     room = make_room(room_rng)
-    rig_model = RigModel()
     images = []
     with PanoramaRenderer(room, WIDTH, number_scale=1) as renderer:
         for index, (x, y) in enumerate(free_places(room, count, rng)):
-            rig = stand_up(x, y, rng.uniform(-np.pi, np.pi), rng.uniform(*CAMERA_HEIGHTS), 0.3, rig_model, rng)
+            rig = stand_up(x, y, rng.uniform(-np.pi, np.pi), rng.uniform(*CAMERA_HEIGHTS), 0.3, NEARLY_PERFECT_RIG, rng)
             state, _ = rig.camera_states()
             name = f"{seed:06d}_{index}.jpg"
             image = photograph(renderer.render(state), TRAINING_CAMERA, rng)

@@ -40,10 +40,12 @@ class PanoramaRenderer:
     room: what to draw; at most 255 objects.
     width: of the panoramas, pixels, an even number; their height is half of it.
     number_scale: the pictures of object numbers are so many times as large: boxes exact to a part of a pixel.
+    alone_scale: the same for pictures of one object alone, a divisor of number_scale; None: as fine. They are most of
+    the work, one for each object, and less depends on them.
     Raises `ValueError` for an odd or too large width, or too many objects.
     """
 
-    def __init__(self, room: Room, width: int = 1280, number_scale: int = 2) -> None:
+    def __init__(self, room: Room, width: int = 1280, number_scale: int = 2, alone_scale: int | None = None) -> None:
         if width % 2 or not 16 <= width <= 4096:
             raise ValueError(f"a panorama {width} pixels wide: expected an even width from 16 to 4096.")
         if len(room.objects) >= BACKGROUND:
@@ -51,6 +53,8 @@ class PanoramaRenderer:
         self.room, self.width, self.height = room, width, width // 2
         self._picture = _Scene(OVERSAMPLING * width, interpolate=True)
         self._numbers = _Scene(number_scale * width, interpolate=False)
+        self._repeats = number_scale // (alone_scale or number_scale)
+        self._alone = _Scene(alone_scale * width, interpolate=False) if self._repeats > 1 else self._numbers
         for lamp in room.lamps:
             self._picture.add_lamp(lamp.position, lamp.colour, lamp.strength)
         numbered = [(mesh, BACKGROUND) for mesh in room.shell]
@@ -59,6 +63,8 @@ class PanoramaRenderer:
             data = _poly_data(mesh)
             self._picture.add(data, mesh.texture, mesh.emission, room.ambient)
             self._numbers.add_flat(data, number)
+            if self._alone is not self._numbers:
+                self._alone.add_flat(data, number)
 
     def render(self, state: np.ndarray) -> np.ndarray:
         """The panorama from a camera pose, without the camera's own faults: noise and the like come later.
@@ -76,13 +82,18 @@ class PanoramaRenderer:
         """
         return self._numbers.draw(state)[..., 0].copy()
 
-    def show_only(self, number: int | None) -> None:
-        """Let `render_objects` draw one object as if nothing else were there; None: everything again."""
-        self._numbers.show_only(number)
+    def render_alone(self, state: np.ndarray, number: int) -> np.ndarray:
+        """Which pixels would show one object if nothing stood before it: bool, of the size of `render_objects`."""
+        self._alone.show_only(number)
+        try:
+            mask = self._alone.draw(state)[..., 0] == number
+        finally:
+            self._alone.show_only(None)
+        return mask if self._repeats == 1 else mask.repeat(self._repeats, axis=0).repeat(self._repeats, axis=1)
 
     def close(self) -> None:
         """Free the windows."""
-        for scene in (self._picture, self._numbers):
+        for scene in {self._picture, self._numbers, self._alone}:
             scene.close()
 
     def __enter__(self) -> PanoramaRenderer:

@@ -1,8 +1,8 @@
-"""Where the two cameras of a rig really are: a place, a heading, and the small tilts that nobody measured."""
+"""Where the two cameras of a rig really are: a place, a heading, the small tilts and faults that nobody measured."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -11,10 +11,46 @@ from course_lib.geometry import pose_matrix, state_from_matrix
 
 @dataclass(frozen=True)
 class RigModel:
-    """How far a rig that is set up by hand stands from upright."""
+    """How far a rig that is set up by hand stands from upright, and its two cameras from one vertical axis.
+
+    The method takes the lower camera to be a pure shift of the upper one by the baseline that it was told. What real
+    mounts leave: the seat of a tripod thread is some 30 mm wide, and 0.15 mm of play, paint or dust under one edge
+    tilts the camera by 0.3 degrees; the two lenses inside one uncalibrated consumer camera were measured to be 0.7 to
+    1.2 degrees from opposite (a Theta SC; monochrome.sutic.nu, 2017-08-03). So 0.3 degrees stand for a rig that was
+    set up with care and never calibrated; 1 degree for one set up without.
+    """
 
     tilt_deg: float = 1.0  # degrees, greatest tilt of the rig as a whole; chosen
-    relative_tilt_deg: float = 0.05  # degrees, greatest tilt of the lower camera against the upper; chosen
+    relative_tilt_deg: float = 0.3  # degrees, greatest tilt of the lower camera against the upper; chosen
+    relative_yaw_deg: float = 0.3  # degrees, greatest turn of the lower camera against the upper; chosen: one column
+    baseline_error: float = 0.001  # m, standard deviation of true less told baseline; chosen: a ruler
+    height_error: float = 0.005  # m, standard deviation of true less told height of the rig; chosen: a tape measure
+    assembled_anew: bool = False  # whether the lower camera is mounted anew at every place; chosen: once for all
+
+
+NEARLY_PERFECT_RIG = RigModel(
+    relative_tilt_deg=0.05, relative_yaw_deg=0.0, baseline_error=0.0, height_error=0.0, assembled_anew=True
+)
+"""The rig of data/room, which was photographed before these faults had parameters: kinder than a real one."""
+
+
+@dataclass(frozen=True)
+class Mount:
+    """How the lower camera really sits below the upper one.
+
+    relative_tilt: (roll, pitch), radians. relative_yaw: radians. baseline_error, height_error: metres, true less told.
+    """
+
+    relative_tilt: tuple[float, float] = (0.0, 0.0)
+    relative_yaw: float = 0.0
+    baseline_error: float = 0.0
+    height_error: float = 0.0
+
+    def tilted(self, tilt_deg: float) -> Mount:
+        """The same mount with a relative tilt of exactly so many degrees, in the direction that it has already."""
+        direction = np.arctan2(self.relative_tilt[1], self.relative_tilt[0])
+        length = np.deg2rad(tilt_deg)
+        return replace(self, relative_tilt=(float(length * np.cos(direction)), float(length * np.sin(direction))))
 
 
 @dataclass(frozen=True)
@@ -22,7 +58,8 @@ class RigPose:
     """A vertical pair of 360-degree cameras as it really stands.
 
     x, y, heading: of the upper camera, metres and radians: what the methods estimate. upper_height: metres above the
-    floor; the lower camera is `baseline` metres below. tilt, relative_tilt: (roll, pitch), radians.
+    floor; the lower camera is `baseline` metres below. tilt, relative_tilt: (roll, pitch), radians. relative_yaw: of
+    the lower camera against the upper, radians.
     """
 
     x: float
@@ -32,12 +69,34 @@ class RigPose:
     baseline: float
     tilt: tuple[float, float] = (0.0, 0.0)
     relative_tilt: tuple[float, float] = (0.0, 0.0)
+    relative_yaw: float = 0.0
 
     def camera_states(self) -> tuple[np.ndarray, np.ndarray]:
         """Poses `(6,)` of the upper and the lower camera: [x, y, z, roll, pitch, yaw], metres and radians."""
         upper = pose_matrix(np.array([self.x, self.y, self.upper_height, *self.tilt, self.heading]))
-        below = pose_matrix(np.array([0.0, 0.0, -self.baseline, *self.relative_tilt, 0.0]))
+        below = pose_matrix(np.array([0.0, 0.0, -self.baseline, *self.relative_tilt, self.relative_yaw]))
         return state_from_matrix(upper), state_from_matrix(upper @ below)
+
+    def as_dict(self) -> dict:
+        """For JSON. A yaw of exactly 0 is left out: data/room's files were written before rigs had one."""
+        fields = asdict(self)
+        if self.relative_yaw == 0.0:
+            del fields["relative_yaw"]
+        return fields
+
+
+def assemble(model: RigModel, rng: np.random.Generator) -> Mount:
+    """A mount with faults drawn from the model: tilt uniformly from a disk, yaw from a range, lengths normal."""
+    relative_tilt = _from_disk(np.deg2rad(model.relative_tilt_deg), rng)
+    # A generator of its own: the numbers that rng gives next do not depend on how many faults a mount has.
+    (faults,) = rng.spawn(1)
+    yaw = np.deg2rad(model.relative_yaw_deg)
+    return Mount(
+        relative_tilt,
+        float(faults.uniform(-yaw, yaw)),
+        float(model.baseline_error * faults.standard_normal()),
+        float(model.height_error * faults.standard_normal()),
+    )
 
 
 def stand_up(
@@ -48,16 +107,24 @@ def stand_up(
     baseline: float,
     model: RigModel,
     rng: np.random.Generator,
+    mount: Mount | None = None,
 ) -> RigPose:
-    """A rig set up at a place, with tilts drawn uniformly from disks of the model's radii."""
+    """A rig set up at a place, tilted as a whole by an angle drawn uniformly from a disk of the model's radius.
+
+    upper_height, baseline: as told to the method, metres. mount: how the cameras sit on the bar; None: assembled anew
+    at this place.
+    """
+    tilt = _from_disk(np.deg2rad(model.tilt_deg), rng)
+    mount = mount or assemble(model, rng)
     return RigPose(
         x,
         y,
         heading,
-        upper_height,
-        baseline,
-        _from_disk(np.deg2rad(model.tilt_deg), rng),
-        _from_disk(np.deg2rad(model.relative_tilt_deg), rng),
+        upper_height + mount.height_error,
+        baseline + mount.baseline_error,
+        tilt,
+        mount.relative_tilt,
+        mount.relative_yaw,
     )
 
 

@@ -1,0 +1,124 @@
+"""Run paper 2's room experiment in rooms of look-alikes that nobody shaped, made on the fly; print rates and errors.
+
+A room takes minutes. What is finished is kept under --out and used again when the same rooms are asked for.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import re
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from course_lib.commands.arguments import require_output_folder
+from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+
+SEEDS = "1-20"
+NETWORK_FILES = (".cfg", ".weights", ".names", ".json")  # what makes a detector what it is
+GREATEST_TILT_DEG = 10.0  # of the lower camera: beyond it no pair of images matches
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options of `demo rooms`."""
+    parser.add_argument(
+        "--seeds",
+        default=SEEDS,
+        metavar="A-B",
+        help=f"of the rooms: a number, a range, or several with commas (default: {SEEDS}). 1 to 99 are for reporting; "
+        "tune on 10000 and above",
+    )
+    parser.add_argument(
+        "--poses", type=int, default=20, metavar="N", help="poses in each room at each height (default: the paper's 20)"
+    )
+    parser.add_argument(
+        "--tilts",
+        type=float,
+        nargs="+",
+        default=[],
+        metavar="DEG",
+        help="also run the same rooms with the lower camera tilted by exactly DEG degrees against the upper one, and "
+        "print the errors (default: not; the issue's table: 0 0.1 0.3 1)",
+    )
+    add_detector_arguments(parser)
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("results/rooms"),
+        metavar="FOLDER",
+        help="where results go, and finished rooms are looked for (default: results/rooms)",
+    )
+    parser.add_argument("--processes", type=int, metavar="N", help="rooms made at a time (default: one for each core)")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the tables")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Runs the experiment; returns the exit code."""
+    seeds = parse_seeds(arguments.seeds)
+    if arguments.poses < 1:
+        raise ValueError(f"--poses must be at least 1; got {arguments.poses}")
+    if arguments.processes is not None and arguments.processes < 1:
+        raise ValueError(f"--processes must be at least 1; got {arguments.processes}")
+    for tilt in arguments.tilts:
+        if not 0 <= tilt <= GREATEST_TILT_DEG:
+            raise ValueError(f"--tilts must be between 0 and {GREATEST_TILT_DEG:g} degrees; got {tilt:g}")
+    require_output_folder(arguments.out)
+    chosen_detector(arguments)  # What is wrong with it is told now, not after the first room.
+
+    from course_lib.commands.progress import progress_bar
+    from course_lib.commands.rooms_tables import tables, tilt_table
+    from course_lib.experiments.results import write_results
+    from course_lib.experiments.rooms import RoomsOptions, observe_rooms
+    from course_lib.experiments.rooms_summary import judge_rooms, pose_rows, rooms_summary
+    from course_lib.simulation.room.look_alike_recording import RecordingModels
+
+    options = RoomsOptions(arguments.poses, RecordingModels(), detector_identity(arguments))
+    processes = arguments.processes or os.cpu_count() or 1
+    load = partial(chosen_detector, arguments)
+    rooms = observe_rooms(seeds, options, load, arguments.out / "rooms", processes, progress_bar("rooms", "room"))
+    judged = judge_rooms(rooms)
+    summary = rooms_summary(rooms, judged)
+    for tilt in arguments.tilts:
+        tilted = replace(options, models=replace(options.models, tilt_deg=tilt))
+        bar = progress_bar(f"rooms, tilt {tilt:g} degrees", "room")
+        rooms = observe_rooms(seeds, tilted, load, arguments.out / f"rooms_tilt_{tilt:g}", processes, bar)
+        both = rooms_summary(rooms, judge_rooms(rooms))["both"]
+        summary.setdefault("tilts", {})[f"{tilt:g}"] = both
+    write_results(arguments.out / "rooms.json", summary, pose_rows(judged))
+    if arguments.json:
+        print(json.dumps(summary))
+    else:
+        print(tables(summary))
+        if arguments.tilts:
+            print("\n" + tilt_table(summary["tilts"]))
+        print(
+            f"\nWritten to {arguments.out}: rooms.json, rooms.csv; the rooms' observations in {arguments.out / 'rooms'}"
+        )
+    return 0
+
+
+def parse_seeds(text: str) -> list[int]:
+    """The seeds that "4", "1-20" or "1-5,8" name, each once, in their order. Raises `ValueError` for anything else."""
+    seeds: list[int] = []
+    for part in text.split(","):
+        match = re.fullmatch(r"\s*(\d+)(?:-(\d+))?\s*", part)
+        first, last = (int(match[1]), int(match[2] or match[1])) if match else (1, 0)
+        if last < first:
+            raise ValueError(f"--seeds must be numbers or ranges such as 1-20 or 1-5,8; got {text!r}")
+        seeds += range(first, last + 1)
+    return list(dict.fromkeys(seeds))
+
+
+def detector_identity(arguments: argparse.Namespace) -> str:
+    """Words by which a stored room knows its detector: a checksum of the network's files, and the options."""
+    from course_lib.lessons.kit.paths import data_path
+
+    folder = arguments.detector or data_path("detector")
+    digest = hashlib.sha256()
+    for path in sorted(folder.iterdir()):
+        if path.suffix in NETWORK_FILES and path.name != "scores.json":
+            digest.update(path.name.encode() + path.read_bytes())
+    return f"{digest.hexdigest()[:16]}, input {arguments.input_size}, threshold {arguments.score_threshold}"
