@@ -114,7 +114,7 @@ def parse_seeds(text: str) -> list[int]:
 
 def detector_identity(arguments: argparse.Namespace) -> str:
     """Words by which a stored room knows its detector: a checksum of the network's files, and the options."""
-    from course_lib.lessons.kit.paths import data_path
+    from course_lib.paths import data_path
 
     folder = arguments.detector or data_path("detector")
     digest = hashlib.sha256()
