@@ -1,4 +1,4 @@
-"""The README quotes what the commands print: its table, its numbers over seeds, its code."""
+"""README.md and RESULTS.md quote what the commands print: tables, numbers over seeds; the README's code runs."""
 
 import json
 import re
@@ -7,22 +7,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from course_lib.cli import find_command
 from course_lib.commands.demo_corridor import table_1
 
 ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text()
-RESULTS = ROOT / "data" / "corridor" / "results"
+README, RESULTS = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "RESULTS.md"))
+CORRIDOR_RESULTS = ROOT / "data" / "corridor" / "results"
+ROOM_RESULTS = ROOT / "data" / "room" / "results"
+SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.S)
 
 
 def results():
-    return [json.loads((RESULTS / f"seed_{seed}.json").read_text()) for seed in range(1, 6)]
+    return [json.loads((CORRIDOR_RESULTS / f"seed_{seed}.json").read_text()) for seed in range(1, 6)]
 
 
 def test_the_table_is_the_one_that_seed_1_prints():
     printed = [line.rstrip() for line in table_1(results()[0]).splitlines()]
     # Without the line of the times, which differ from machine to machine.
     printed = [line for line in printed if "ms a frame" not in line]
-    quoted = [line[4:].rstrip() for line in README.splitlines() if line.startswith("    ") or not line.strip()]
+    quoted = [line[4:].rstrip() for line in RESULTS.splitlines() if line.startswith("    ") or not line.strip()]
     start = quoted.index(printed[0])
     assert quoted[start : start + len(printed)] == printed
 
@@ -39,26 +42,54 @@ def test_the_table_is_the_one_that_seed_1_prints():
 )
 def test_the_rows_over_seeds_are_the_medians_and_ranges_of_the_stored_results(name, key, digits):
     values = [r[key] for r in results()]
-    row = next(line for line in README.splitlines() if line.startswith(f"| {name} "))
+    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name} "))
     middle, low, high = (float(v) for v in re.findall(r"\d+\.\d+", row.split("|")[2])[:3])
     expected = np.round([np.median(values), min(values), max(values)], digits)
     assert np.array_equal([middle, low, high], expected)
 
 
-def test_the_code_of_the_readme_runs(monkeypatch, capsys):
+def test_the_readme_is_a_front_page():
+    assert len(README.splitlines()) <= 130
+
+
+def test_every_number_of_the_readmes_tables_stands_in_the_results():
+    rows = [line for line in README.splitlines() if re.match(r"\| .*\d", line) and "](" not in line]
+    assert len(rows) >= 6
+    assert [row for row in rows if row not in RESULTS.splitlines()] == []
+
+
+def test_every_command_that_is_named_exists():
+    calls = re.findall(r"python3 course\.py ([a-z][^`#\n]*)", README + RESULTS)
+    assert len(calls) >= 10
+    assert [call for call in calls if find_command(call.split()) is None] == []
+
+
+def test_the_first_snippet_of_the_readme_follows_the_wagon(monkeypatch):
     monkeypatch.chdir(ROOT)
-    code = re.search(r"```python\n(.*?)```", README, re.S).group(1)
-    exec(compile(code.replace("n_particles=200", "n_particles=20"), "README.md", "exec"), {})
-    assert capsys.readouterr().out.startswith("[")
+    names = {}
+    exec(compile(SNIPPETS[0].replace("n_particles=200", "n_particles=20"), "README.md", "exec"), names)
+    true = names["run"].camera_to_world[0][:3, 3]
+    assert np.linalg.norm(names["estimate"].state[:3] - true) < 0.5
 
 
-def test_every_local_link_leads_somewhere():
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
+def test_the_second_snippet_of_the_readme_finds_the_rig(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    names = {}
+    exec(compile(SNIPPETS[1], "README.md", "exec"), names)
+    found, true = names["found"], names["room"].pairs[0].pose
+    assert found.status == "ok"
+    assert np.hypot(found.pose.x - true[0], found.pose.y - true[1]) < 0.5
+
+
+def test_there_are_no_more_snippets():
+    assert len(SNIPPETS) == 2
+
+
+@pytest.mark.parametrize("text", [README, RESULTS], ids=["README", "RESULTS"])
+def test_every_local_link_leads_somewhere(text):
+    for target in re.findall(r"\]\(([^)#]+)\)", text):
         if not target.startswith("http"):
             assert (ROOT / target).exists(), target
-
-
-ROOM_RESULTS = ROOT / "data" / "room" / "results"
 
 
 @pytest.mark.parametrize(
@@ -74,7 +105,7 @@ ROOM_RESULTS = ROOT / "data" / "room" / "results"
     ],
 )
 def test_the_rows_of_the_room_are_the_medians_and_ranges_of_its_stored_results(name, method, keys, digits):
-    row = next(line for line in README.splitlines() if line.startswith(f"| {name} |"))
+    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name} |"))
     for experiment, cell in zip(("experiment_1", "experiment_2"), row.split("|")[2:4], strict=True):
         values = []
         for path in sorted(ROOM_RESULTS.glob("seed_*.json")):
@@ -88,7 +119,7 @@ def test_the_rows_of_the_room_are_the_medians_and_ranges_of_its_stored_results(n
         assert quoted == expected
 
 
-def test_the_readme_quotes_detector_stereo_and_distances_as_stored():
+def test_the_results_quote_detector_stereo_and_distances_as_stored():
     scores = json.loads((ROOT / "data" / "detector" / "scores.json").read_text())
     stored = json.loads((ROOM_RESULTS / "seed_4.json").read_text())
     errors, matching = stored["median_relative_range_error_percent"], stored["stereo_matching"]
@@ -104,7 +135,7 @@ def test_the_readme_quotes_detector_stereo_and_distances_as_stored():
             [errors[k] for k in ("exact_boxes", "detected_box_centres", "akaze_disparities")],
         ),
     ):
-        line = next(line for line in README.splitlines() if line.startswith(row))
+        line = next(line for line in RESULTS.splitlines() if line.startswith(row))
         quoted = [number.strip() for number in line.split("|")[2].split(",")]
         digits = len(quoted[0].split(".")[1])
         assert quoted == [f"{value:.{digits}f}" for value in values]

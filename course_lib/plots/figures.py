@@ -9,6 +9,7 @@ matplotlib's global state, so no lesson leaves a window or an open figure behind
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib import colormaps, rcParams
@@ -56,6 +57,20 @@ def depth_image(axes: Axes, depth: np.ndarray, title: str, limits: tuple[float, 
     axes.spines[["top", "right"]].set_visible(True)
     axes.set(title=title, xlabel="column u [pixels]", ylabel="row v [pixels]")
     return image
+
+
+def depth_images(
+    images: Sequence[np.ndarray],
+    titles: Sequence[str],
+    limits: tuple[float, float],
+    size: tuple[float, float] | None = None,
+) -> Figure:
+    """Depth images in metres side by side, with one colour bar; size in inches, None: what their number needs."""
+    figure, axes = new_figure(1, len(images), size or (3.3 * len(images) + 0.9, 2.9))
+    for a, image, title in zip(np.atleast_1d(axes), images, titles, strict=True):
+        drawn = depth_image(a, image, title, limits)
+    colour_bar(figure, drawn, axes)
+    return figure
 
 
 def colour_bar(figure: Figure, image: AxesImage, axes: Axes | np.ndarray, label: str = "depth Z [m]") -> None:

@@ -9,8 +9,8 @@ from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
-from course_lib.experiments.recordings import Run
-from course_lib.plots.figures import colour_bar, depth_image, new_figure
+from course_lib.experiments.corridor import Run
+from course_lib.plots.figures import depth_images
 
 BESIDE = np.array([-0.5, 0.0, 0.0, 0.0, 0.0, np.deg2rad(4.0)])  # from the estimate: half a metre back, four degrees
 
@@ -26,13 +26,9 @@ def overview_figure(scene_map: SceneMap, sequence: DepthSequence, run: Run, back
         measured = renderer.render_points(camera.points(sequence.depth(index)))
         simulated = renderer.render(np.stack([run.states[index], run.states[index] + BESIDE]))
     agreement = likelihood(measured, simulated) / max(1, valid_pixels(measured).sum())
-    figure, axes = new_figure(1, 3, size=(10.5, 3.2))
     titles = (
         "Measured by the depth camera",
         f"Map from the estimate: agreement {agreement[0]:.2f}",
         f"Map from 0.5 m, 4 degrees beside it: {agreement[1]:.2f}",
     )
-    for a, image, title in zip(axes, (measured, *simulated), titles, strict=True):
-        drawn = depth_image(a, image, title, (0.0, 10.0))
-    colour_bar(figure, drawn, axes)
-    return figure
+    return depth_images((measured, *simulated), titles, (0.0, 10.0), size=(10.5, 3.2))

@@ -1,4 +1,4 @@
-"""A small world of boxes for the sensors of `course_lib.worlds`: rays meet it in NumPy alone, quickly and exactly.
+"""A small world of boxes for the sensors of `course_lib.simulation`: rays meet it in NumPy alone, quickly and exactly.
 
 The corridor's world needs a ray caster with wheels for some processors only. The lessons run everywhere, so theirs are
 boxes along the axes: `BoxWorld` answers `cast` as `WorldCaster` does.
@@ -14,6 +14,13 @@ import trimesh
 
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.simulation.sensors.ray_casting import Hits
+
+
+def box_map(*boxes: tuple[tuple, tuple]) -> SceneMap:
+    """A map of boxes, each given by two opposite corners (x, y, z) in metres."""
+    meshes = [trimesh.creation.box(bounds=np.array(corners, dtype=float)) for corners in boxes]
+    mesh = trimesh.util.concatenate(meshes)
+    return SceneMap(mesh.vertices, mesh.faces)
 
 
 class Box(NamedTuple):
@@ -76,6 +83,4 @@ class BoxWorld:
 
     def mesh(self) -> SceneMap:
         """The boxes' surfaces as triangles."""
-        meshes = [trimesh.creation.box(bounds=np.array([box.low, box.high])) for box in self.boxes]
-        mesh = trimesh.util.concatenate(meshes)
-        return SceneMap(mesh.vertices, mesh.faces)
+        return box_map(*((box.low, box.high) for box in self.boxes))

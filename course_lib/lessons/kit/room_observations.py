@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from course_lib.experiments.room import PairResult, run_experiment
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 
 
@@ -21,6 +22,11 @@ class MatchingScene(NamedTuple):
     true_landmarks: tuple[int, ...]
     """For every observation the landmark it shows."""
     pose: Pose2D
+
+
+def in_body_frame(points: np.ndarray, pose: Sequence[float]) -> np.ndarray:
+    """World points `(n, 2)` as seen from [x, y, theta]: R(theta)' (p - t), metres; the way back of `Pose2D.apply`."""
+    return (np.asarray(points) - np.asarray(pose[:2])) @ rotation_2d(pose[2])
 
 
 @functools.cache

@@ -6,15 +6,14 @@ import functools
 from typing import NamedTuple
 
 import numpy as np
-import trimesh
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.geometry import state_from_optical_pose
-from course_lib.paths import data_path
+from course_lib.lessons.kit.box_world import box_map
+from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 
 FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
 PAIR = 3  # of the room's experiment 1: most objects in view, nothing special (chosen)
@@ -37,15 +36,15 @@ class Moment(NamedTuple):
 @functools.cache
 def moment(frame: int = FRAME) -> Moment:
     """A frame of the corridor run with the map's renderer; kept, since a panel asks for it again and again."""
-    sequence = read_sequence(data_path("corridor/wagon"))
-    renderer = DepthRenderer(SceneMap.load(data_path("corridor/map.ply")), sequence.camera())
+    sequence = wagon_run()
+    renderer = DepthRenderer(corridor_map(), sequence.camera())
     return Moment(sequence.depth(frame), state_from_optical_pose(sequence.camera_to_world[frame]), renderer)
 
 
 def wall_reads(distance: float) -> float:
     """Depth [m] that the renderer gives for a wall `distance` metres ahead: does drawing work on this computer?"""
-    box = trimesh.creation.box(bounds=np.array([[distance, -9.0, -9.0], [distance + 0.1, 9.0, 9.0]]))
-    with DepthRenderer(SceneMap(box.vertices, box.faces), DepthCamera.sr4000()) as renderer:
+    wall = box_map(((distance, -9.0, -9.0), (distance + 0.1, 9.0, 9.0)))
+    with DepthRenderer(wall, DepthCamera.sr4000()) as renderer:
         return float(renderer.render(np.zeros(6))[0, 72, 88])
 
 

@@ -1,13 +1,14 @@
 """Lesson 01, poses and frames: its figures, and a camera that six sliders drive through the corridor."""
 
-from course_lib.lessons.lesson_01.figures import depth_figure, frames_figure, lock_figure, mean_figure, turns_figure
+from course_lib.lessons.lesson_01.figures import frames_figure, lock_figure, mean_figure, turns_figure
 from course_lib.lessons.lesson_01.panel import PANELS, drive_panel
 from course_lib.lessons.lesson_01.poses import AXES, matrix_text, turn_per_degree
+from course_lib.plots.figures import depth_images
 
 __all__ = [
     "AXES",
     "PANELS",
-    "depth_figure",
+    "depth_images",
     "drive_panel",
     "frames_figure",
     "lock_figure",

@@ -92,15 +92,6 @@ def _triad(axes, matrix: np.ndarray, names, colour: str | None, length: float, l
         axes.text(*(start + 1.16 * (end - start) + above), name, color=own, ha="center", va="center", fontsize=9)
 
 
-def depth_figure(images: list[np.ndarray], titles: list[str], greatest: float = 10.0) -> Figure:
-    """Depth images in metres side by side, with one colour bar."""
-    figure, axes = figures.new_figure(1, len(images), size=(3.3 * len(images) + 0.9, 2.9))
-    for a, image, title in zip(np.atleast_1d(axes), images, titles, strict=True):
-        drawn = figures.depth_image(a, image, title, (0, greatest))
-    figures.colour_bar(figure, drawn, axes)
-    return figure
-
-
 def mean_figure(headings: np.ndarray, as_numbers: float, on_circle: float) -> Figure:
     """Headings as points of the unit circle, with their mean as numbers and their mean direction."""
     figure, axes = figures.new_figure(size=(5.6, 3.4))

@@ -74,11 +74,7 @@ def maps_figure(maps: dict[str, SceneMap], door_open: bool = False) -> Figure:
 
 def views_figure(images: dict[str, np.ndarray]) -> Figure:
     """Depth images of the room side by side."""
-    figure, axes = figures.new_figure(1, len(images), size=(3.2 * len(images) + 0.7, 2.9))
-    for a, (name, image) in zip(axes, images.items(), strict=True):
-        drawn = figures.depth_image(a, image, name, (0, 6))
-    figures.colour_bar(figure, drawn, axes)
-    return figure
+    return figures.depth_images(list(images.values()), list(images), (0.0, 6.0))
 
 
 def corridor_figure(scene_map: SceneMap, true_world: SceneMap, x: tuple[float, float] = (5.0, 18.0)) -> Figure:

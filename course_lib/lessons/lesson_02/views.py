@@ -7,13 +7,12 @@ import json
 from typing import NamedTuple
 
 import numpy as np
-import trimesh
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
+from course_lib.lessons.kit.corridor_views import plane_cut, wagon_run
 from course_lib.lessons.lesson_02.small_room import MapQuality, room
 from course_lib.paths import data_path
 
@@ -35,9 +34,7 @@ def _millimetres(value: float) -> str:
 
 def cut(vertices: np.ndarray, faces: np.ndarray, height: float = CUT) -> np.ndarray:
     """Segments `(n, 2, 2)` [m] in which triangles meet the horizontal plane at `height`."""
-    mesh = trimesh.Trimesh(vertices, faces, process=False)
-    lines = trimesh.intersections.mesh_plane(mesh, plane_normal=[0, 0, 1.0], plane_origin=[0, 0, height])
-    return np.asarray(lines)[:, :, :2]
+    return plane_cut(vertices, faces, 2, height)
 
 
 @functools.cache
@@ -84,7 +81,7 @@ class CorridorDifference(NamedTuple):
 
 def corridor_difference(scene_map: SceneMap, true_world: SceneMap, frames: range) -> CorridorDifference:
     """Map and true world drawn from the wagon's true poses of some frames, compared pixel by pixel up to 11 m."""
-    recording = read_sequence(data_path("corridor/wagon"))
+    recording = wagon_run()
     states = state_from_optical_pose(recording.camera_to_world[list(frames)])
     images = []
     for scene in (scene_map, true_world):

@@ -1,9 +1,11 @@
 """Lesson 03, GPU scene simulation: its small scenes, figures and panel."""
 
-from course_lib.lessons.lesson_03.figures import buffer_figure, depth_figure, idea_figure, time_figure, window_figure
+from course_lib.lessons.kit.box_world import box_map
+from course_lib.lessons.lesson_03.figures import buffer_figure, idea_figure, time_figure, window_figure
 from course_lib.lessons.lesson_03.measurements import buffer_step, seconds_per_view, slanted_wall_error, views_that_see
 from course_lib.lessons.lesson_03.panel import PANELS, camera_panel
-from course_lib.lessons.lesson_03.scenes import SLOPES, box_map, corridor_end, pole_ahead, side_view, wall_with_hole
+from course_lib.lessons.lesson_03.scenes import SLOPES, corridor_end, pole_ahead, side_view, wall_with_hole
+from course_lib.plots.figures import depth_images
 
 __all__ = [
     "PANELS",
@@ -13,7 +15,7 @@ __all__ = [
     "buffer_step",
     "camera_panel",
     "corridor_end",
-    "depth_figure",
+    "depth_images",
     "idea_figure",
     "pole_ahead",
     "seconds_per_view",

@@ -34,16 +34,6 @@ def idea_figure(hits: dict[str, list[tuple[float, float]]]) -> Figure:
     return figure
 
 
-def depth_figure(images: list[np.ndarray], titles: list[str], limits: tuple[float, float]) -> Figure:
-    """Depth images in metres side by side, with one colour bar."""
-    figure, axes = figures.new_figure(1, len(images), size=(3.3 * len(images) + 0.9, 2.9))
-    axes = np.atleast_1d(axes)
-    for a, image, title in zip(axes, images, titles, strict=True):
-        drawn = figures.depth_image(a, image, title, limits)
-    figures.colour_bar(figure, drawn, axes)
-    return figure
-
-
 def window_figure(images: np.ndarray, columns: int, limits: tuple[float, float]) -> Figure:
     """Depth images `(N, H, W)` as the tiles of one window, N a multiple of `columns`."""
     n, height, width = images.shape

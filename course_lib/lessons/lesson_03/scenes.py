@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import trimesh
 
 from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.lessons.kit.box_world import box_map
 
 # The side view of the idea: two surfaces (ends as depth, height in metres) and the slopes of seven rays.
 SURFACES = (((3.0, -0.75), (3.4, 0.35)), ((5.2, -1.5), (5.2, 1.6)))
 SLOPES = np.linspace(-0.24, 0.24, 7)
-
-
-def box_map(*boxes: tuple[tuple, tuple]) -> SceneMap:
-    """A map of boxes, each given by two opposite corners (x, y, z) in metres."""
-    meshes = [trimesh.creation.box(bounds=np.array(corners, dtype=float)) for corners in boxes]
-    mesh = trimesh.util.concatenate(meshes)
-    return SceneMap(mesh.vertices, mesh.faces)
 
 
 def corridor_end() -> SceneMap:

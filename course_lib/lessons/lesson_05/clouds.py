@@ -10,9 +10,8 @@ import numpy as np
 
 from course_lib.depth_mcl.motion import propagate
 from course_lib.depth_mcl.particle_filter import initial_particles
-from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import pose_matrix, state_from_optical_pose
-from course_lib.paths import data_path
+from course_lib.lessons.kit.corridor_views import wagon_run
 
 _NEAR = 0.10  # m from the wagon within which a particle is called near: the wagon's step (chosen)
 
@@ -20,7 +19,7 @@ _NEAR = 0.10  # m from the wagon within which a particle is called near: the wag
 @functools.cache
 def wagon_states() -> np.ndarray:
     """True states `(T, 6)` of the wagon's camera."""
-    states = state_from_optical_pose(read_sequence(data_path("corridor/wagon")).camera_to_world)
+    states = state_from_optical_pose(wagon_run().camera_to_world)
     states.setflags(write=False)
     return states
 

@@ -11,12 +11,10 @@ import numpy as np
 from course_lib.depth_mcl.fallon import DEPTH_CUT, DEPTH_SIGMA, depth_log_likelihood, disparity_log_likelihood
 from course_lib.depth_mcl.likelihood import ALPHA, likelihood, normalize_likelihood
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
-from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import state_from_optical_pose
+from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 from course_lib.lessons.lesson_06.gaussian import gaussian_log_likelihood
-from course_lib.paths import data_path
 
 FRAME = 100  # of the wagon's run: two people stand before the camera who are not in the map
 SMALL = (44, 36)  # pixels of the small images: a sixteenth, so that a profile takes milliseconds
@@ -80,10 +78,10 @@ class Scene(NamedTuple):
 @functools.cache
 def small_scene() -> Scene:
     """The frame of this lesson at 44 x 36 pixels. Small images are drawn faster by rays than by a window."""
-    sequence = read_sequence(data_path("corridor/wagon"))
+    sequence = wagon_run()
     camera = sequence.camera()
     small = camera.resized(*SMALL)
-    renderer = DepthRenderer(SceneMap.load(data_path("corridor/map.ply")), small, "ray")
+    renderer = DepthRenderer(corridor_map(), small, "ray")
     truth = state_from_optical_pose(sequence.camera_to_world[FRAME])
     return Scene(subsample_depth(sequence.depth(FRAME), camera, small), truth, renderer)
 

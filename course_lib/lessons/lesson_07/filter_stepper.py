@@ -22,11 +22,9 @@ from course_lib.depth_mcl.particle_filter import (
     weighted_mean_state,
 )
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
-from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import state_from_optical_pose
-from course_lib.paths import data_path
+from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 from course_lib.plots.corridor_figures import floor_plan
 
 FRAMES = range(60, 84)  # of the wagon's run, the stretch of lesson 08
@@ -98,10 +96,10 @@ class View(NamedTuple):
 @functools.cache
 def corridor_stretch() -> Stretch:
     """The stretch at 32 x 26 pixels. Small images are drawn faster by rays than by a window."""
-    sequence = read_sequence(data_path("corridor/wagon"))
+    sequence = wagon_run()
     camera = sequence.camera()
     small = camera.resized(*SMALL)
-    scene_map = SceneMap.load(data_path("corridor/map.ply"))
+    scene_map = corridor_map()
     true = state_from_optical_pose(sequence.camera_to_world[list(FRAMES)])
     measured = np.stack([subsample_depth(sequence.depth(frame), camera, small) for frame in FRAMES])
     walls = floor_plan(scene_map.vertices, true[0, 2])

@@ -12,12 +12,10 @@ from course_lib.depth_mcl.likelihood import likelihood, normalize_likelihood, va
 from course_lib.depth_mcl.motion import propagate
 from course_lib.depth_mcl.particle_filter import initial_particles, resample, weighted_mean_state
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
-from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import state_from_optical_pose
+from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 from course_lib.lessons.kit.progress_bar import progress
-from course_lib.paths import data_path
 
 STRETCH = range(60, 84)  # frames that are localized live: a good two metres of the run (chosen)
 # Where the panel's table is read off, metres from the true x: finely near it, where the hill is steep, and far back,
@@ -44,12 +42,12 @@ class AgreementTable(NamedTuple):
 @functools.cache
 def agreement_table() -> AgreementTable:
     """The panel's table, made once: every frame of the stretch against small images from places along the corridor."""
-    sequence = read_sequence(data_path("corridor/wagon"))
+    sequence = wagon_run()
     camera = sequence.camera()
     small = camera.resized(*_TABLE_SIZE)
     true = state_from_optical_pose(sequence.camera_to_world[list(STRETCH)])
     rows = []
-    with DepthRenderer(SceneMap.load(data_path("corridor/map.ply")), small) as renderer:
+    with DepthRenderer(corridor_map(), small) as renderer:
         for frame, state in progress(list(zip(STRETCH, true, strict=True)), "making the panel's table"):
             measured = subsample_depth(sequence.depth(frame), camera, small)
             states = np.tile(state, (len(OFFSETS), 1))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
@@ -26,11 +26,12 @@ from course_lib.spherical_stereo.recording import TrueObject
 _N_BINS = 36  # of hue, 10 degrees each
 
 
-def seam_panel(cuts: dict[int, object], pieces_of: Callable, best_overlap: Callable) -> Panel:
+def seam_panel(percents: Sequence[int] = CUTS) -> Panel:
     """Slide the seam through the sofa, with and without the extension; a score threshold.
 
-    cuts: percent -> `lesson_12.Cut`. pieces_of, best_overlap: which boxes lie on the sofa, and how well the best does.
+    percents: where the seam may cut the sofa, in percent of its width; the network runs twice for each.
     """
+    cuts = {percent: cut_sofa(percent) for percent in percents}
     first = next(iter(cuts.values()))
     height, width = first.image.shape[:2]
     end = width + appended_columns(width)
@@ -64,7 +65,7 @@ def seam_panel(cuts: dict[int, object], pieces_of: Callable, best_overlap: Calla
         away = [i for i, box in enumerate(seen.boxes) if not _is_drawn(box, [b for b, _ in drawn], width)]
         dropped.set_segments([outline(seen.boxes[i]) for i in away])
         dropped.set_color([class_style(seen.labels[i])[0] for i in away] or BLACK)
-        pieces = pieces_of(objects, now.sofa, width)
+        pieces = pieces_of_sofa(objects, now.sofa, width)
         spots = [(box, index) for box, index in drawn if index in pieces][: len(names)]
         for text, spot in zip(names, [*spots, *[None] * len(names)], strict=False):
             text.set_text("" if spot is None else f"sofa {objects.scores[spot[1]]:.1f}")
@@ -156,8 +157,6 @@ def hue_panel(image_bgr: np.ndarray, things: Sequence[TrueObject]) -> Panel:
 
 
 PANELS = {
-    "12 slide the seam": lambda: seam_panel(
-        {percent: cut_sofa(percent) for percent in CUTS}, pieces_of_sofa, best_overlap
-    ),
+    "12 slide the seam": seam_panel,
     "12 hue and saturation": lambda: hue_panel(the_image(), the_pair().upper_objects),
 }

@@ -14,6 +14,7 @@ from course_lib.spherical_stereo.detection.boxes import box_centre, wrapped_box
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.matching.object_matching import match_detections
 from course_lib.spherical_stereo.panorama import direction_from_angles, pixel_to_direction
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.ranging.triangulation import OK, object_position, triangulation_outcome
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
 from course_lib.spherical_stereo.recording import StereoRecording
@@ -111,8 +112,7 @@ def cuboid_range(horizontal_range: float, size: Sequence[float], upper_height: f
 
 def places_in_room(places: np.ndarray, pose: Sequence[float]) -> np.ndarray:
     """Horizontal places `(n, 2)` in the room of places `(n, 3)` in the rig's frame; pose: [x, y, heading]."""
-    c, s = np.cos(pose[2]), np.sin(pose[2])
-    return places[:, :2] @ np.array([[c, s], [-s, c]]) + np.asarray(pose[:2])
+    return Pose2D(*pose).apply(places[:, :2])
 
 
 def ranges_of_one_object(name: str, number: int) -> dict[str, float]:

@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.geometry import wrap_angle
-from course_lib.lessons.kit.room_observations import MatchingScene, room_scenes
+from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_rigid_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation, PenaltyWeights, associate_greedy
@@ -87,10 +86,3 @@ def fitted_pose(observations: list[Observation], pairs: tuple) -> Pose2D | None:
         return fit_rigid_2d(source, room_map().positions[[j for _, j in pairs]])
     except RigidFitError:
         return None
-
-
-def pose_error(scene: MatchingScene, pairs: tuple) -> tuple[float, float]:
-    """How far the pose of these pairs is from the true one: metres, degrees."""
-    pose = fitted_pose(list(scene.observations), pairs)
-    off = np.hypot(pose.x - scene.pose.x, pose.y - scene.pose.y)
-    return float(off), float(np.rad2deg(abs(wrap_angle(pose.theta - scene.pose.theta))))

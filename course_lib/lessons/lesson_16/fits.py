@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.geometry import wrap_angle
-from course_lib.lessons.kit.room_observations import room_scenes
+from course_lib.lessons.kit.room_observations import in_body_frame, room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, fit_rigid_2d
 
@@ -53,7 +53,7 @@ def pose_error(found: Pose2D, true: Pose2D) -> tuple[float, float]:
 
 def noisy_fits(target: np.ndarray, pose: Pose2D, sigma: float, n_trials: int, rng: np.random.Generator) -> np.ndarray:
     """Errors `(n_trials, 3)` of x, y [m] and theta [rad] when each point is measured with noise sigma [m]."""
-    exact = _seen_from(target, pose)
+    exact = in_body_frame(target, pose)
     errors = np.empty((n_trials, 3))
     for k in range(n_trials):
         found = fit_rigid_2d(exact + rng.normal(0.0, sigma, exact.shape), target)
@@ -94,12 +94,6 @@ def landmarks_of(arrangement: str) -> np.ndarray:
     return np.array(LANDMARKS[arrangement])
 
 
-def _seen_from(points: np.ndarray, pose: Pose2D) -> np.ndarray:
-    """World points in the body frame of a pose."""
-    cosine, sine = np.cos(pose.theta), np.sin(pose.theta)
-    return (points - [pose.x, pose.y]) @ np.array([[cosine, -sine], [sine, cosine]])
-
-
 def residual_over_heading(source: np.ndarray, target: np.ndarray, headings: np.ndarray) -> np.ndarray:
     """Root mean square residual [m] for each heading [rad], with the best translation for that heading."""
     a, b = source - source.mean(axis=0), target - target.mean(axis=0)
@@ -114,7 +108,7 @@ def scene_of(
     """The panel's points: exact ones, then noise, then one object moved in the body frame (moved counts from 1)."""
     target = landmarks_of(arrangement)
     pose = Pose2D(*_PLACE, float(wrap_angle(np.deg2rad(heading_deg))))
-    source = _seen_from(target, pose)
+    source = in_body_frame(target, pose)
     if arrangement == MIRRORED:
         source = source * [1.0, -1.0]
     source = source + noise * np.random.default_rng(seed).standard_normal(source.shape)

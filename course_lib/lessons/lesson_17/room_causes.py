@@ -9,6 +9,7 @@ import numpy as np
 
 from course_lib.experiments.room import PairResult
 from course_lib.experiments.room_evaluation import NO_OBJECT, UNABLE, PoseOutcome, outcome
+from course_lib.lessons.kit.room_observations import in_body_frame
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.semantic_map.association import Observation, PenaltyWeights, penalty
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
@@ -51,12 +52,6 @@ def randomly_thinned(
         for _ in range(repeats):
             found.append(thinned(result, np.flatnonzero(rng.random(n) < share_seen), localizer))
     return found
-
-
-def in_body_frame(points: np.ndarray, pose: Sequence[float]) -> np.ndarray:
-    """World points `(n, 2)` as seen from [x, y, theta]: R(theta)' (p - t), metres."""
-    c, s = np.cos(pose[2]), np.sin(pose[2])
-    return (np.asarray(points) - np.asarray(pose[:2])) @ np.array([[c, -s], [s, c]])
 
 
 def greedy_pairs(total: np.ndarray) -> list[tuple[int, int]]:

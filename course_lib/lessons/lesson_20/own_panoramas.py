@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.experiments.room import exact_detections
-from course_lib.paths import data_path
+from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import draw_box, panorama
 from course_lib.spherical_stereo.detection.boxes_file import read_boxes
@@ -18,7 +18,6 @@ from course_lib.spherical_stereo.matching.feature_matching import FeatureMatches
 from course_lib.spherical_stereo.panorama import StereoRig, check_panorama_pair, read_panorama
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_distances import MeasuredObject, measure_objects
-from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 STAND_IN_PAIR = 3  # of the room's experiment 1: most objects in view (chosen)
@@ -86,17 +85,14 @@ def _image(folder: Path, side: str) -> Path:
 
 
 def _stand_in() -> PanoramaPair:
-    recorded = read_stereo_recording(data_path("room/experiment_1"))
+    recorded = room_recording(1)
     pair = recorded.pairs[STAND_IN_PAIR]
     upper, lower = pair.images()
     detections = [
         exact_detections(objects, image)[0]
         for objects, image in ((pair.upper_objects, upper), (pair.lower_objects, lower))
     ]
-    semantic_map = SemanticMap.load(data_path("room/semantic_map.json"))
-    return PanoramaPair(
-        "stand-in: the simulated room", upper, lower, recorded.rig, *detections, semantic_map, pair.pose
-    )
+    return PanoramaPair("stand-in: the simulated room", upper, lower, recorded.rig, *detections, room_map(), pair.pose)
 
 
 def disparity_picture(pair: PanoramaPair, features: FeatureMatches) -> Figure:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -17,6 +16,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import Run, run_sequence
 from course_lib.geometry import rotation_exp
+from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.paths import data_path
 
 STAND_IN_FRAMES = 24  # of the corridor run that was carried by hand: as many as the panel steps through (chosen)
@@ -43,17 +43,12 @@ def recording(folder: str | Path | None = None) -> Recording:
     """
     if folder is None:
         sequence = read_sequence(data_path("corridor/hand"))
-        return Recording("stand-in: the corridor, carried by hand", sequence, _corridor_map())
+        return Recording("stand-in: the corridor, carried by hand", sequence, corridor_map())
     maps = sorted(Path(folder).glob("map.*"))
     if Path(folder).is_dir() and not maps:
         raise MissingMapError(f"no map in {folder}: put the mesh there as map.ply (or .obj, .stl, .glb), in metres")
     sequence = read_sequence(folder)
     return Recording(Path(folder).name, sequence, SceneMap.load(maps[0]))
-
-
-@functools.cache
-def _corridor_map() -> SceneMap:
-    return SceneMap.load(data_path("corridor/map.ply"))
 
 
 class Reading(NamedTuple):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import pose_matrix
-from course_lib.lessons.kit.corridor_views import cut
+from course_lib.lessons.kit.corridor_views import corridor_cut
 from course_lib.lessons.kit.exercises import find_exercise, judge
 from course_lib.lessons.lesson_01.panel import drive_panel
 from course_lib.lessons.lesson_01.poses import matrix_text, turn_per_degree
@@ -43,11 +43,11 @@ def test_a_matrix_is_printed_without_minus_zero():
 
 
 def test_the_corridor_is_cut_into_lines_near_its_walls_and_floor():
-    plan = cut(2, 1.2)
+    plan = corridor_cut(2, 1.2)
     assert plan.shape[1:] == (2, 2)
     near = plan[(plan[:, 0, 0] > 3.5) & (plan[:, 0, 0] < 5.5)]
     assert np.abs(near[..., 1]).min() > 0.9
-    side = cut(1, 0.0)
+    side = corridor_cut(1, 0.0)
     assert np.isclose(side[..., 1], 0, atol=0.05).mean() > 0.2
 
 

@@ -119,7 +119,7 @@ def test_a_crop_goes_around_the_seam_and_says_where_it_is():
 
 
 def test_the_extension_switch_changes_what_the_panel_says_of_the_sofa():
-    panel = seam_panel({50: cut_sofa(50)}, pieces_of_sofa, best_overlap)
+    panel = seam_panel([50])
     off, on = (panel.draw(**(panel.defaults() | {"extension": e, "threshold": 0.3})).summary for e in (False, True))
     overlap = [float(text.split("(IoU) ")[1].split(";")[0]) for text in (off, on)]
     assert overlap[1] > overlap[0]

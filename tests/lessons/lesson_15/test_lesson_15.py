@@ -10,7 +10,8 @@ from course_lib.lessons.kit.exercises import find_exercise, judge
 from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.lessons.lesson_15.panel import match, next_best, weights_panel
-from course_lib.lessons.lesson_15.scores import SOFAS, fitted_pose, hidden_score, pose_error, score
+from course_lib.lessons.lesson_15.scores import SOFAS, fitted_pose, hidden_score, score
+from course_lib.lessons.lesson_16.fits import pose_error
 from course_lib.spherical_stereo.semantic_map.association import (
     PenaltyWeights,
     associate_greedy,
@@ -64,7 +65,7 @@ def test_in_06_a_two_sofas_are_swapped_by_next_to_nothing_and_the_pose_hardly_mo
     total = penalty_table(scene.observations, room_map()).total
     a, b = scene.true_landmarks.index(0), scene.true_landmarks.index(1)
     assert abs(total[a, 0] + total[b, 1] - total[a, 1] - total[b, 0]) < 0.005
-    assert pose_error(scene, pairs)[0] < 0.2
+    assert pose_error(fitted_pose(list(scene.observations), pairs), scene.pose)[0] < 0.2
 
 
 def test_the_least_sum_makes_the_same_mistakes_as_the_greedy_search():

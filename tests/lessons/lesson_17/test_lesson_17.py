@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from course_lib.experiments.room_evaluation import CORRECT, INCORRECT, UNABLE, wrong_pairs
+from course_lib.lessons.kit.room_observations import in_body_frame
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.lessons.lesson_17.experiments import exact_results, failing_places, live_places, nearest_5, table_1
 from course_lib.lessons.lesson_17.figures import outcomes_figure
@@ -16,7 +17,6 @@ from course_lib.lessons.lesson_17.room_causes import (
     CURES,
     cured_by,
     greedy_pairs,
-    in_body_frame,
     is_matched_rightly,
     position_errors,
     randomly_thinned,
