@@ -4,13 +4,28 @@ import os
 import sys
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, settings
+
+# How long an example takes says nothing about the code: the machine may have other work. The same examples every time.
+settings.register_profile("suite", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("suite")
 
 if sys.platform.startswith("linux"):
     os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW") or "vtkEGLRenderWindow"
 
+matplotlib.use("Agg")  # not by MPLBACKEND, which the lessons' kernels would inherit
+
 ROOT = Path(__file__).parents[1]
+
+
+def pytest_collection_modifyitems(items):
+    """Marks what drives a browser, so that a quick run can leave it out."""
+    for item in items:
+        if {"page", "browser"} & set(getattr(item, "fixturenames", ())):
+            item.add_marker("browser")
 
 
 @pytest.fixture

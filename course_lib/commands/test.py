@@ -1,13 +1,12 @@
-"""Run every test: those of tests/ and then every lesson, as a strict nbval test of its stored outputs.
+"""Run every test: those of tests/ and every lesson, as a strict nbval test of its stored outputs.
 
 Arguments that are not listed here go on to pytest: `course.py test tests/test_geometry.py -k wrap`. Paths among them
-choose what runs; without a path everything does.
+choose what runs, in this one process; without a path everything does, on every processor.
 """
 
 from __future__ import annotations
 
 import argparse
-import contextlib
 import os
 import subprocess
 import sys
@@ -21,11 +20,14 @@ PASSES_ARGUMENTS_ON = True
 
 # pytest's exit code when it found no test: an empty run proves nothing, so it counts as a failure.
 NO_TESTS = 5
+# Only what hangs takes so long: no test may fail because the machine has other work to do.
+HANGS_S = 1800
 
 # pytest's options whose value is the next word, which may have the look of a path: `-k data`.
 OPTIONS_WITH_VALUE = (
     "-k",
     "-m",
+    "-n",
     "-p",
     "-c",
     "-o",
@@ -40,78 +42,81 @@ OPTIONS_WITH_VALUE = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     only = parser.add_mutually_exclusive_group()
+    only.add_argument("--fast", action="store_true", help="no lessons, no browser, nothing that is marked slow")
     only.add_argument("--no-notebooks", action="store_true", help="only tests/")
     only.add_argument("--only-notebooks", action="store_true", help="only the lessons")
+    only.add_argument(
+        "--mutations",
+        nargs="*",
+        metavar="NAME",
+        help="break a copy of the code in the ways of tests/mutations.toml, one after the other, and run the tests "
+        "that must notice (NAME: a part of the names to try; default: all)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    parts = choose_parts(arguments.passed_on, arguments.no_notebooks, arguments.only_notebooks)
-    # A -k that fits only one of the two parts leaves the other one without tests; that is meant.
-    chosen = bool(arguments.passed_on)
+    if arguments.mutations is not None:
+        from course_lib.commands import mutations
+
+        if arguments.passed_on:
+            raise ValueError(f"--mutations takes names and nothing else; got {' '.join(arguments.passed_on)}")
+        return mutations.run(ROOT, arguments.mutations)
     started = time.monotonic()
-    codes = {}
     with tempfile.TemporaryDirectory(prefix="course-test-") as home:
-        for name, pytest_arguments in parts.items():
-            print(f"\n=== {name}", flush=True)
-            runs = [pytest_arguments] if chosen or name != "notebooks" else in_two_halves(pytest_arguments)
-            codes[name] = run_side_by_side(runs, part_environment(name, Path(home)))
-    return conclude(codes, chosen, time.monotonic() - started)
+        words = pytest_arguments(
+            arguments.passed_on, arguments.fast, arguments.no_notebooks, arguments.only_notebooks, processors()
+        )
+        write_offline_startup(Path(home))
+        environment = suite_environment(Path(home))
+        code = subprocess.run([sys.executable, "-m", "pytest", *words], cwd=ROOT, env=environment).returncode
+    return conclude(code, time.monotonic() - started)
 
 
-def choose_parts(
-    passed_on: list[str], no_notebooks: bool = False, only_notebooks: bool = False
-) -> dict[str, list[str]]:
-    """pytest's arguments for each part that runs: "tests" and "notebooks"; paths in `passed_on` decide which."""
-    is_path = [
-        looks_like_a_path(word) and (index == 0 or passed_on[index - 1] not in OPTIONS_WITH_VALUE)
+def processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def pytest_arguments(
+    passed_on: list[str],
+    fast: bool = False,
+    no_notebooks: bool = False,
+    only_notebooks: bool = False,
+    workers: int = 1,
+) -> list[str]:
+    """pytest's arguments: what runs, how lessons are compared, and on how many processors.
+
+    Raises `ValueError` where the lessons are wanted and there are none.
+    """
+    paths = chosen_paths(passed_on)
+    words = [] if paths else default_paths(fast, no_notebooks, only_notebooks)
+    if any(is_notebook(path) for path in paths or words):
+        words += nbval_options()
+    if fast:
+        words += ["-m", "not browser and not slow"]
+    if not paths and workers > 1:
+        # A file stays on one processor, with its kernel, its window and its fixtures. In the order given: the lessons,
+        # the longest of all, come first, so that no processor is idle at the end.
+        words += ["-n", str(workers), "--dist", "loadfile", "--no-loadscope-reorder"]
+    return [*words, *passed_on]
+
+
+def default_paths(fast: bool, no_notebooks: bool, only_notebooks: bool) -> list[str]:
+    """What runs where no path is given."""
+    if fast or no_notebooks:
+        return ["tests"]
+    if not any((ROOT / "notebooks").glob("*.ipynb")):
+        raise ValueError(f"no lesson was found in {ROOT / 'notebooks'}: without them a run proves nothing")
+    return ["notebooks"] if only_notebooks else ["notebooks", "tests"]
+
+
+def chosen_paths(passed_on: list[str]) -> list[str]:
+    """The words among pytest's arguments that name tests to run."""
+    return [
+        word
         for index, word in enumerate(passed_on)
+        if looks_like_a_path(word) and (index == 0 or passed_on[index - 1] not in OPTIONS_WITH_VALUE)
     ]
-    paths = [word for word, chosen in zip(passed_on, is_path, strict=True) if chosen]
-    options = [word for word, chosen in zip(passed_on, is_path, strict=True) if not chosen]
-    is_notebook = {
-        word: word.split("::")[0].endswith(".ipynb") or (ROOT / word) == ROOT / "notebooks" for word in paths
-    }
-    tests = [word for word in paths if not is_notebook[word]] if paths else ["tests"]
-    notebooks = [word for word in paths if is_notebook[word]] if paths else ["notebooks"]
-    parts = {}
-    if tests and not only_notebooks:
-        parts["tests"] = [*options, *tests]
-    if notebooks and not no_notebooks:
-        parts["notebooks"] = [*nbval_options(), *options, *notebooks]
-    return parts
-
-
-def in_two_halves(pytest_arguments: list[str], processors: int | None = os.cpu_count()) -> list[list[str]]:
-    """The arguments of all lessons as two lists of every other lesson: a kernel keeps one processor busy, not two.
-
-    With one processor, or a lesson alone, they stay one run.
-    """
-    lessons = sorted((ROOT / "notebooks").glob("*.ipynb"))
-    if (processors or 1) < 2 or len(lessons) < 2:
-        return [pytest_arguments]
-    options = pytest_arguments[:-1]
-    return [[*options, *(str(path.relative_to(ROOT)) for path in lessons[half::2])] for half in (0, 1)]
-
-
-def run_side_by_side(runs: list[list[str]], environment: dict[str, str]) -> int:
-    """Runs pytest once for each list of arguments, all at once; the first exit code that is not 0, or 0.
-
-    The first run prints as it goes; what the others print follows when it has ended, so that lines do not mix.
-    """
-    commands = [[sys.executable, "-m", "pytest", *arguments] for arguments in runs]
-    with contextlib.ExitStack() as stack:
-        others = []
-        for command in commands[1:]:
-            printed = stack.enter_context(tempfile.TemporaryFile("w+"))
-            process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=printed, stderr=subprocess.STDOUT)
-            stack.callback(process.kill)
-            others.append((process, printed))
-        codes = [subprocess.run(commands[0], cwd=ROOT, env=environment).returncode]
-        for process, printed in others:
-            codes.append(process.wait())
-            printed.seek(0)
-            print(printed.read(), flush=True)
-    return next((code for code in codes if code != 0), 0)
 
 
 def looks_like_a_path(word: str) -> bool:
@@ -120,17 +125,31 @@ def looks_like_a_path(word: str) -> bool:
     return not word.startswith("-") and (path.endswith((".py", ".ipynb")) or (ROOT / path).exists())
 
 
+def is_notebook(path: str) -> bool:
+    """Whether a path names a lesson or their folder."""
+    return path.split("::")[0].endswith(".ipynb") or (ROOT / path) == ROOT / "notebooks"
+
+
 def nbval_options() -> list[str]:
     """Strict comparison of stored outputs, with this environment's kernel; one file says what may differ."""
     sanitize = ROOT / "tests" / "nbval_sanitize.cfg"
-    # No cell may take as long as a whole lesson may (60 s); nbval's own limit is 33 minutes.
-    return ["--nbval", "--nbval-current-env", "--nbval-cell-timeout=60"] + (
+    limits = [f"--nbval-cell-timeout={HANGS_S}", f"--nbval-kernel-startup-timeout={HANGS_S}"]
+    return ["--nbval", "--nbval-current-env", *limits] + (
         ["--nbval-sanitize-with", str(sanitize)] if sanitize.exists() else []
     )
 
 
-def part_environment(name: str, home: Path, environment: Mapping[str, str] = os.environ) -> dict[str, str]:
-    """Environment variables of one part: no display, off-screen OpenGL, and none of the user's own Jupyter settings."""
+def write_offline_startup(home: Path) -> None:
+    """Lets every kernel whose settings lie in `home` fail where a lesson reaches for the network."""
+    from course_lib.commands.refresh import OFFLINE_STARTUP
+
+    startup = home / "ipython" / "profile_default" / "startup" / "00-offline.py"
+    startup.parent.mkdir(parents=True)
+    startup.write_text(OFFLINE_STARTUP, encoding="utf-8")
+
+
+def suite_environment(home: Path, environment: Mapping[str, str] = os.environ) -> dict[str, str]:
+    """Environment variables of a run: no display, off-screen OpenGL, and none of the user's own Jupyter settings."""
     result = {
         key: value for key, value in environment.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY", "MPLBACKEND")
     }
@@ -140,28 +159,12 @@ def part_environment(name: str, home: Path, environment: Mapping[str, str] = os.
     for variable, folder in (("JUPYTER_CONFIG_DIR", "config"), ("JUPYTER_DATA_DIR", "data"), ("IPYTHONDIR", "ipython")):
         result[variable] = str(home / folder)
     result["JUPYTER_RUNTIME_DIR"] = str(home / "runtime")
-    if name == "tests":  # in a notebook the kernel chooses its own
-        result["MPLBACKEND"] = "Agg"
     return result
 
 
-def conclude(codes: dict[str, int], chosen: bool, seconds: float) -> int:
-    """Prints the closing line and returns the exit code: 0 only if tests ran and none failed.
-
-    codes: pytest's exit code of each part. chosen: whether the user chose tests, so that one part may be empty.
-    """
-    failures = {name: code for name, code in codes.items() if code not in (0, NO_TESTS)}
-    empty = [name for name, code in codes.items() if code == NO_TESTS]
-    allowed = chosen and any(code == 0 for code in codes.values())
-    print(f"\n=== {seconds:.0f} s", end="; ")
-    for name, code in failures.items():
-        print(f"{name}: FAILED (pytest's exit code {code})", end="; ")
-    if empty and not allowed:
-        print(f"{' and '.join(empty)}: FAILED, because no test was found", end="; ")
-    if not codes:
-        print("FAILED, because nothing was chosen to run", end="; ")
-    if failures or not codes or (empty and not allowed):
-        print("not all tests passed.", flush=True)
-        return next(iter(failures.values()), NO_TESTS)
-    print("all tests passed.", flush=True)
-    return 0
+def conclude(code: int, seconds: float) -> int:
+    """Prints the closing line for pytest's exit code and returns it: 0 only if tests ran and none failed."""
+    said = {0: "all tests passed.", NO_TESTS: "FAILED, because no test was found."}
+    failed = f"FAILED (pytest's exit code {code}); not all tests passed."
+    print(f"\n=== {seconds:.0f} s; {said.get(code, failed)}", flush=True)
+    return code

@@ -1,147 +1,166 @@
-"""`course.py test`: which tests run, and that an empty or failing run never reads as a pass."""
+"""`course.py test`: which tests run, on how many processors, and that an empty or failing run never reads as a pass."""
 
 import argparse
 import os
-import re
 import sys
+from pathlib import Path
 
 import pytest
 
 from course_lib.commands import test as test_command
 
 
-def test_without_arguments_the_tests_and_the_notebooks_run():
-    parts = test_command.choose_parts([])
-    assert list(parts) == ["tests", "notebooks"]
-    assert parts["tests"] == ["tests"]
-    assert parts["notebooks"][-1] == "notebooks"
-    assert "--nbval" in parts["notebooks"]
-    assert "--nbval-lax" not in parts["notebooks"]
+def test_without_arguments_the_lessons_and_the_tests_run_in_one_run():
+    words = test_command.pytest_arguments([])
+    assert words[:2] == ["notebooks", "tests"]
+    assert "--nbval" in words
+    assert "--nbval-lax" not in words
 
 
-def test_options_go_to_both_parts():
-    parts = test_command.choose_parts(["-x", "-k", "wrap"])
-    assert parts["tests"] == ["-x", "-k", "wrap", "tests"]
-    assert parts["notebooks"][-4:] == ["-x", "-k", "wrap", "notebooks"]
+def test_options_are_passed_on():
+    assert test_command.pytest_arguments(["-x", "-k", "wrap"])[-3:] == ["-x", "-k", "wrap"]
 
 
-@pytest.mark.parametrize(
-    ("passed_on", "part", "arguments"),
-    [
-        (["tests/test_geometry.py", "-k", "foo"], "tests", ["-k", "foo", "tests/test_geometry.py"]),
-        (["tests/test_geometry.py::test_a"], "tests", ["tests/test_geometry.py::test_a"]),
-        (["tests/not_there.py"], "tests", ["tests/not_there.py"]),
-        (["notebooks/00_start_here.ipynb"], "notebooks", ["notebooks/00_start_here.ipynb"]),
-        (["notebooks/"], "notebooks", ["notebooks/"]),
-    ],
-)
-def test_a_path_chooses_its_part_alone(passed_on, part, arguments):
-    parts = test_command.choose_parts(passed_on)
-    assert list(parts) == [part]
-    assert parts[part][-len(arguments) :] == arguments
-
-
-def test_one_part_can_be_left_out():
-    assert list(test_command.choose_parts([], no_notebooks=True)) == ["tests"]
-    assert list(test_command.choose_parts([], only_notebooks=True)) == ["notebooks"]
+def test_the_whole_runs_on_every_processor_and_a_file_stays_on_one():
+    words = test_command.pytest_arguments(["-x"], workers=2)
+    assert words[words.index("-n") + 1] == "2"
+    # The cells of a lesson share a kernel: spread over two processes they would fail.
+    assert words[words.index("--dist") + 1] == "loadfile"
+    assert "-n" not in test_command.pytest_arguments(["-x"], workers=1)
+    # One's own -n comes last, so that it counts.
+    assert test_command.pytest_arguments(["-n", "3"], workers=2)[-2:] == ["-n", "3"]
 
 
 @pytest.mark.parametrize(
-    ("codes", "chosen", "passes"),
+    ("passed_on", "lessons"),
     [
-        ({"tests": 0, "notebooks": 0}, False, True),
-        ({"tests": 1, "notebooks": 0}, False, False),
-        ({"tests": 0, "notebooks": 2}, False, False),
-        ({"tests": 0, "notebooks": 5}, False, False),  # no notebook was found
-        ({"tests": 5, "notebooks": 0}, False, False),
-        ({"tests": 0, "notebooks": 5}, True, True),  # -k chose tests of one part
-        ({"tests": 5, "notebooks": 5}, True, False),
-        ({"tests": 5, "notebooks": 1}, True, False),
-        ({}, False, False),
+        (["tests/test_geometry.py", "-k", "foo"], False),
+        (["tests/test_geometry.py::test_a"], False),
+        (["tests/not_there.py"], False),
+        (["notebooks/00_start_here.ipynb"], True),
+        (["notebooks/", "tests/test_geometry.py"], True),
     ],
 )
-def test_only_a_run_with_tests_and_without_failures_passes(codes, chosen, passes, capsys):
-    code = test_command.conclude(codes, chosen, 1.0)
-    assert (code == 0) == passes
+def test_a_path_chooses_what_runs_in_this_one_process(passed_on, lessons):
+    words = test_command.pytest_arguments(passed_on, workers=2)
+    assert words[-len(passed_on) :] == passed_on
+    assert not {"tests", "notebooks", "-n"} & set(words)
+    assert ("--nbval" in words) == lessons
+
+
+@pytest.mark.parametrize("option", ["-k", "--deselect", "-p", "-m", "-n"])
+def test_an_options_value_is_no_path_though_it_may_look_like_one(option):
+    words = test_command.pytest_arguments([option, "data", "-x"])
+    assert words[:2] == ["notebooks", "tests"]
+
+
+def test_parts_can_be_left_out():
+    assert test_command.pytest_arguments([], no_notebooks=True) == ["tests"]
+    only = test_command.pytest_arguments([], only_notebooks=True)
+    assert only[0] == "notebooks"
+    assert "tests" not in only
+    assert test_command.pytest_arguments([], fast=True) == ["tests", "-m", "not browser and not slow"]
+
+
+def test_without_a_lesson_the_whole_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(test_command, "ROOT", tmp_path)
+    (tmp_path / "notebooks").mkdir()
+    with pytest.raises(ValueError, match="no lesson was found"):
+        test_command.pytest_arguments([])
+    assert test_command.pytest_arguments([], no_notebooks=True) == ["tests"]
+
+
+@pytest.mark.parametrize("code", [0, 1, 2, 4, 5])
+def test_only_a_run_with_tests_and_without_failures_passes(code, capsys):
+    assert test_command.conclude(code, 1.0) == code
     closing = capsys.readouterr().out.strip().splitlines()[-1]
-    assert closing.endswith("all tests passed.") == passes or "not all" in closing
-    assert ("FAILED" in closing) == (not passes)
+    assert ("all tests passed." in closing and "not all" not in closing) == (code == 0)
+    assert ("FAILED" in closing) == (code != 0)
 
 
 def run_in(folder, monkeypatch, *passed_on):
-    """Runs the command on another folder's tests/ and notebooks/."""
+    """Runs the command on another folder's tests/ and notebooks/, in two processes."""
     monkeypatch.setattr(test_command, "ROOT", folder)
+    monkeypatch.setattr(test_command, "processors", lambda: 2)
     return test_command.run(
-        argparse.Namespace(passed_on=list(passed_on), no_notebooks=False, only_notebooks=False, debug=False)
+        argparse.Namespace(
+            passed_on=list(passed_on),
+            fast=False,
+            no_notebooks=False,
+            only_notebooks=False,
+            mutations=None,
+            debug=False,
+        )
     )
 
 
-def write_notebook(path, source, printed):
-    """A notebook of one cell with a stored output."""
+def write_notebook(path, *cells):
+    """A notebook of cells (source, what is stored as printed)."""
     import nbformat
 
-    cell = nbformat.v4.new_code_cell(source, execution_count=1)
-    cell.outputs = [nbformat.v4.new_output("stream", name="stdout", text=printed)]
-    notebook = nbformat.v4.new_notebook(cells=[cell], metadata={"language_info": {"name": "python"}})
+    written = [nbformat.v4.new_code_cell(source, execution_count=1) for source, _ in cells]
+    for cell, (_, printed) in zip(written, cells, strict=True):
+        cell.outputs = [nbformat.v4.new_output("stream", name="stdout", text=printed)]
+    notebook = nbformat.v4.new_notebook(cells=written, metadata={"language_info": {"name": "python"}})
     path.parent.mkdir(exist_ok=True)
     nbformat.write(notebook, path)
 
 
-@pytest.mark.parametrize(
-    ("test_body", "printed", "passes"),
-    [("assert True", "2\n", True), ("assert False", "2\n", False), ("assert True", "3\n", False)],
-)
-def test_a_failing_test_and_a_wrong_stored_output_fail_the_run(tmp_path, monkeypatch, test_body, printed, passes):
-    (tmp_path / "tests").mkdir()
-    (tmp_path / "tests" / "test_one.py").write_text(f"def test_one():\n    {test_body}\n")
-    write_notebook(tmp_path / "notebooks" / "00_a.ipynb", "print(1 + 1)", printed)
-    assert (run_in(tmp_path, monkeypatch) == 0) == passes
+CONNECT = """
+import socket
+try:
+    socket.create_connection(("192.0.2.1", 80), timeout=1800)
+except OSError as error:
+    print("offline" in str(error))
+"""
 
 
-@pytest.mark.parametrize("wrong", range(4))
-def test_a_wrong_output_in_either_half_of_the_lessons_fails_the_run(tmp_path, monkeypatch, capfd, wrong):
+@pytest.mark.parametrize("wrong", [None, "a test", "a lesson"])
+def test_a_failing_test_or_a_wrong_stored_output_fails_the_run(tmp_path, monkeypatch, capfd, wrong):
     (tmp_path / "tests").mkdir()
-    (tmp_path / "tests" / "test_one.py").write_text("def test_one():\n    pass\n")
-    for number in range(3):
-        write_notebook(
-            tmp_path / "notebooks" / f"0{number}_a.ipynb", "print(1 + 1)", "3\n" if number == wrong else "2\n"
-        )
-    assert (run_in(tmp_path, monkeypatch) == 0) == (wrong == 3)
+    (tmp_path / "tests" / "test_one.py").write_text(f"def test_one():\n    assert {wrong != 'a test'}\n")
+    # The second cell needs the first one's kernel; the third reaches for the network.
+    second = "7\n" if wrong == "a lesson" else "8\n"
+    write_notebook(
+        tmp_path / "notebooks" / "00_a.ipynb", ("x = 7; print(x)", "7\n"), ("print(x + 1)", second), (CONNECT, "True\n")
+    )
+    write_notebook(tmp_path / "notebooks" / "01_b.ipynb", ("print(2)", "2\n"))
+    assert (run_in(tmp_path, monkeypatch) == 0) == (wrong is None)
     printed = capfd.readouterr().out
-    assert all(f"0{number}_a.ipynb" in printed for number in range(3))
-
-
-def test_with_one_processor_the_lessons_run_one_after_the_other(tmp_path, monkeypatch):
-    monkeypatch.setattr(test_command, "ROOT", tmp_path)
-    for number in range(3):
-        write_notebook(tmp_path / "notebooks" / f"0{number}_a.ipynb", "print(2)", "2\n")
-    assert test_command.in_two_halves(["--nbval", "notebooks"], 1) == [["--nbval", "notebooks"]]
-    first, second = test_command.in_two_halves(["--nbval", "notebooks"], 2)
-    assert first == ["--nbval", os.path.join("notebooks", "00_a.ipynb"), os.path.join("notebooks", "02_a.ipynb")]
-    assert second == ["--nbval", os.path.join("notebooks", "01_a.ipynb")]
+    assert "5 passed" in printed if wrong is None else "1 failed, 4 passed" in printed
 
 
 def test_no_test_at_all_fails_with_a_sentence(tmp_path, monkeypatch, capfd):
     (tmp_path / "tests").mkdir()
-    (tmp_path / "notebooks").mkdir()
-    assert run_in(tmp_path, monkeypatch) == 5
-    assert re.search("tests and notebooks: FAILED, because no test was found", capfd.readouterr().out)
+    assert run_in(tmp_path, monkeypatch, "tests") == 5
+    assert "FAILED, because no test was found" in capfd.readouterr().out
 
 
 def test_no_display_and_none_of_the_users_settings_reach_the_tests(tmp_path):
     user = {"DISPLAY": ":0", "JUPYTER_CONFIG_DIR": "/home/me/.jupyter", "PATH": os.environ["PATH"], "MPLBACKEND": "x"}
-    for part, backend in (("tests", "Agg"), ("notebooks", None)):
-        environment = test_command.part_environment(part, tmp_path, user)
-        assert "DISPLAY" not in environment
-        assert environment["JUPYTER_CONFIG_DIR"].startswith(str(tmp_path))
-        assert environment.get("MPLBACKEND") == backend
-        assert environment["PATH"] == user["PATH"]
-        if sys.platform.startswith("linux"):
-            assert environment["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkEGLRenderWindow"
+    environment = test_command.suite_environment(tmp_path, user)
+    assert "DISPLAY" not in environment
+    assert "MPLBACKEND" not in environment
+    assert environment["JUPYTER_CONFIG_DIR"].startswith(str(tmp_path))
+    assert environment["PATH"] == user["PATH"]
+    if sys.platform.startswith("linux"):
+        assert environment["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkEGLRenderWindow"
 
 
-@pytest.mark.parametrize("option", ["-k", "--deselect", "-p"])
-def test_an_options_value_is_no_path_though_it_may_look_like_one(option):
-    parts = test_command.choose_parts([option, "data", "-x"])
-    assert list(parts) == ["tests", "notebooks"]
-    assert parts["tests"] == [option, "data", "-x", "tests"]
+def test_what_drives_a_browser_is_marked_by_its_fixture(request):
+    conftest = next(
+        plugin
+        for plugin in request.config.pluginmanager.get_plugins()
+        if str(getattr(plugin, "__file__", "")) == str(Path(__file__).parents[1] / "conftest.py")
+    )
+
+    class Item:
+        def __init__(self, *fixtures):
+            self.fixturenames, self.marks = fixtures, []
+
+        def add_marker(self, name):
+            self.marks.append(name)
+
+    items = [Item("browser", "lab"), Item("page"), Item("lab"), Item()]
+    conftest.pytest_collection_modifyitems(items)
+    assert [item.marks for item in items] == [["browser"], ["browser"], [], []]

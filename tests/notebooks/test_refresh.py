@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import subprocess
 import sys
@@ -30,7 +31,7 @@ def run_nbval(path) -> subprocess.CompletedProcess:
     options = ["--nbval", "--nbval-current-env", "--nbval-sanitize-with", str(SANITIZE), "-p", "no:cacheprovider"]
     environment = os.environ | {"PYTHONPATH": str(REPOSITORY)}
     command = [sys.executable, "-m", "pytest", "-q", *options, str(path)]
-    return subprocess.run(command, capture_output=True, text=True, env=environment, cwd=path.parent, timeout=120)
+    return subprocess.run(command, capture_output=True, text=True, env=environment, cwd=path.parent, timeout=1800)
 
 
 PANEL = """
@@ -53,7 +54,7 @@ def refreshed(tmp_path_factory):
     """A notebook with a print, a panel and a progress bar, refreshed."""
     path = written(tmp_path_factory.mktemp("lesson"), "x = 2\nprint('x =', x)", PANEL, PROGRESS)
     seconds, size = refresh.refresh(path)
-    assert 0 < seconds < 60
+    assert seconds > 0
     assert size == path.stat().st_size
     return path
 
@@ -106,21 +107,21 @@ def test_nbval_notices_a_changed_output(refreshed, tmp_path, old, new):
 
 
 @pytest.mark.parametrize(
-    ("sources", "words"),
+    ("sources", "timeout", "words"),
     [
-        (["x = 1", "1 / 0"], "ZeroDivisionError"),
-        (["import time; time.sleep(30)"], "longer than 2 s"),
-        (["import os; os._exit(3)"], "(?i)died|dead"),
-        (["import urllib.request", "urllib.request.urlopen('http://192.0.2.1/', timeout=1)"], "lessons run offline"),
-        (["print('x' * 500_000)"], "501 kB"),
+        (["x = 1", "1 / 0"], 1800, "ZeroDivisionError"),
+        (["import time; time.sleep(100_000)"], 2, "longer than 2 s"),
+        (["import os; os._exit(3)"], 1800, "(?i)died|dead"),
+        (["import urllib.request", "urllib.request.urlopen('http://192.0.2.1/')"], 1800, "lessons run offline"),
+        (["print('x' * 500_000)"], 1800, "501 kB"),
     ],
     ids=["error", "time-out", "dead kernel", "network", "too large"],
 )
-def test_what_fails_leaves_the_file_as_it_was(tmp_path, sources, words):
+def test_what_fails_leaves_the_file_as_it_was(tmp_path, sources, timeout, words):
     path = written(tmp_path, *sources)
     before = path.read_bytes()
     with pytest.raises(RefreshError, match=words):
-        refresh.refresh(path, cell_timeout=2)
+        refresh.refresh(path, cell_timeout=timeout)
     assert path.read_bytes() == before
     assert [p.name for p in tmp_path.iterdir() if p.suffix == ".part"] == []
 
@@ -130,6 +131,12 @@ def test_numbers_choose_lessons_and_unknown_ones_are_named():
     assert len(refresh.select([])) >= 1
     with pytest.raises(ValueError, match=r"no lesson 77; there are: .*03"):
         refresh.select(["03", "77"])
+
+
+@pytest.mark.parametrize("seconds", [0.0, -5.0, float("nan")])
+def test_a_time_out_that_is_none_is_refused(seconds):
+    with pytest.raises(ValueError, match="positive number of seconds"):
+        refresh.run(argparse.Namespace(lessons=["03"], cell_timeout=seconds))
 
 
 def test_only_addresses_and_kernel_paths_are_sanitized():

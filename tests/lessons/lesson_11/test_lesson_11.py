@@ -112,6 +112,7 @@ def page():
     with sync_api.sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": 900, "height": 480})
+        page.set_default_timeout(1_800_000)  # only what hangs takes so long
         page.errors = []
         page.on("pageerror", lambda error: page.errors.append(str(error)))
         page.goto((REPOSITORY / "notebooks" / SCENE).as_uri())
