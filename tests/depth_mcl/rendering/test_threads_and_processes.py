@@ -1,7 +1,8 @@
 """One renderer in several threads, after a fork, and pickled: right images or a named error, never a hang.
 
 Whoever could hang is waited for with a limit and killed, so that a hang is a failure of one test. The limit is no
-measure of speed: it only has to be longer than a slow, busy machine takes.
+measure of speed: it only has to be longer than a slow, busy machine takes, for a forked child (which has all it needs
+in memory) and for a new process.
 """
 
 import copy
@@ -21,6 +22,7 @@ import pytest
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from tests.depth_mcl.shapes import SMALL, random_states, room, room_depth
 
+PATIENCE_WITH_A_CHILD = 60.0
 PATIENCE = 240.0
 CAMERA = SMALL.resized(32, 24)
 
@@ -79,7 +81,7 @@ def in_a_fork(work):
         os._exit(0)
     os.close(write_end)
     try:
-        answered = select.select([read_end], [], [], PATIENCE)[0]
+        answered = select.select([read_end], [], [], PATIENCE_WITH_A_CHILD)[0]
         return os.read(read_end, 10_000).decode() if answered else "HANGS"
     finally:
         os.kill(child, signal.SIGKILL)
