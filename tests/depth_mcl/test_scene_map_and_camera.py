@@ -1,5 +1,7 @@
 """Maps and cameras: what they accept, what they refuse, and the projection."""
 
+import pickle
+
 import numpy as np
 import pytest
 import trimesh
@@ -93,6 +95,54 @@ def test_a_map_is_only_moved_rigidly():
     assert np.allclose(room(2.0).transformed(np.eye(4)).vertices, room(2.0).vertices)
     with pytest.raises(ValueError, match="rigid"):
         room().transformed(np.diag([2.0, 2, 2, 1]))
+
+
+@pytest.mark.parametrize("distance", [1e4, 1e6, 5e6])
+def test_the_origin_is_where_most_of_the_map_is(distance):
+    here = room()
+    vertices = np.concatenate([here.vertices, TRIANGLE + distance])
+    scene = SceneMap(vertices, np.concatenate([here.faces, [[8, 9, 10]]]))
+    assert (np.abs(scene.origin) <= 3.0).all()
+    assert scene.bounds[1].max() > distance
+
+
+def test_the_anchor_is_the_origin_near_it_and_follows_the_cameras_by_whole_steps():
+    here, offset = room(), np.array([1e6, 0, 0])
+    scene = SceneMap(
+        np.concatenate([here.vertices, here.vertices[::-1] + offset, TRIANGLE]),
+        np.concatenate([here.faces, here.faces + 8, [[16, 17, 18]]]),
+    )
+    assert np.array_equal(scene.anchor(scene.origin + np.full((3, 3), 40.0)), scene.origin)
+    there = scene.anchor(np.array([[1e6, 1, 2], [1e6 + 5, 0, 0], [0, 0, 0]]))
+    assert np.abs(there - offset).max() <= 87
+    assert np.array_equal(there, scene.anchor(np.array([[1e6 + 1, 0, 0]])))
+    assert np.array_equal(scene.anchor(np.zeros((0, 3))), scene.origin)
+    # Cameras that have left the map draw its anchor no farther than its edge.
+    assert np.isfinite(scene.anchor(np.array([[1e300, 0, 0]]))).all()
+
+
+@pytest.mark.parametrize("coordinate", [3e7, -1e20, 7.7e37])
+def test_a_triangle_that_cannot_belong_to_a_building_is_named_and_can_be_dropped(coordinate, tmp_path):
+    box = room()
+    vertices = np.concatenate([box.vertices, TRIANGLE])
+    vertices[-1, 1] = coordinate
+    trimesh.Trimesh(vertices, np.concatenate([box.faces, [[8, 9, 10]]]), process=False).export(tmp_path / "map.ply")
+    with pytest.raises(SceneMapError, match=r"map\.ply: 1 of 13 triangles .* triangle 12 has a corner at") as raised:
+        SceneMap.load(tmp_path / "map.ply")
+    assert f"{np.float32(coordinate):g}" in str(raised.value)
+    cure = str(raised.value).split("such triangles: ")[1]
+    exec(cure, {"trimesh": trimesh, "path": tmp_path / "map.ply"})
+    assert np.allclose(SceneMap.load(tmp_path / "map.ply").bounds, box.bounds)
+
+
+def test_a_map_that_travelled_is_the_same_and_as_frozen():
+    scene = room(2.0)
+    again = pickle.loads(pickle.dumps(scene))
+    assert np.array_equal(again.vertices, scene.vertices)
+    assert np.array_equal(again.faces, scene.faces)
+    assert np.array_equal(again.origin, scene.origin)
+    with pytest.raises(ValueError, match="read-only"):
+        again.vertices[0] = 0
 
 
 def test_contains_has_a_margin():

@@ -37,7 +37,7 @@ class RayBackend:
             image[:] = depth.reshape(self.camera.shape)
 
     def _caster_about(self, anchor: np.ndarray) -> embree.EmbreeCaster | _TrimeshCaster:
-        """Caster of the map relative to `anchor` `(3,)`; the last one is kept, as views seldom move by kilometres."""
+        """Caster of the map relative to `anchor` `(3,)`; the last one is kept, as views seldom move on."""
         made_about, caster = self._anchor_and_caster
         if not np.array_equal(anchor, made_about):
             caster = self._new_caster(anchor)

@@ -169,6 +169,54 @@ def test_moving_the_world_and_the_camera_together_changes_nothing(backend, rng):
     assert np.mean(np.abs(a - b) < 1e-4) > 0.999
 
 
+def two_maps(first, second):
+    """One map of the triangles of two."""
+    return SceneMap(
+        np.concatenate([first.vertices, second.vertices]),
+        np.concatenate([first.faces, second.faces + len(first.vertices)]),
+    )
+
+
+@pytest.mark.parametrize("distance", [1e4, 1e6, 5e6, 1.9e7], ids=["10 km", "1,000 km", "5,000 km", "19,000 km"])
+@pytest.mark.parametrize("direction", [(1, 0, 0), (-0.6, 0.6, 0.5)], ids=["ahead", "aslant"])
+def test_a_stray_triangle_far_away_moves_nothing(backend, distance, direction, rng):
+    states = random_states(10, rng, spread=2.5)
+    place = distance * np.array(direction, dtype=float)
+    stray = SceneMap(np.eye(3) + place, np.array([[0, 1, 2]]))
+    with DepthRenderer(two_maps(room(), stray), SMALL, backend) as renderer:
+        images = renderer.render(states)
+    assert np.isfinite(images).all()
+    assert np.abs(images - room_depth(SMALL, states)).max() < HALF_MILLIMETRE
+
+
+@pytest.mark.parametrize("distance", [1e4, 5e6])
+def test_one_corner_carried_far_away_moves_no_other_triangle(backend, distance, rng):
+    """The triangle of that corner becomes a needle, here beyond the wall that is looked at."""
+    needle = SceneMap(np.array([[3.5, 0, 0], [3.5, 0.1, 0], [distance, 0, 0]]), np.array([[0, 1, 2]]))
+    states = random_states(10, rng, spread=2.5)
+    with DepthRenderer(two_maps(room(), needle), SMALL, backend) as renderer:
+        assert np.abs(renderer.render(states) - room_depth(SMALL, states)).max() < HALF_MILLIMETRE
+
+
+@pytest.mark.parametrize("distance", [300.0, 1e4, 1e7])
+def test_two_rooms_far_apart_are_each_exact_where_the_cameras_are(backend, distance, rng):
+    offset = distance * np.array([1.0, -0.4, 0.01])
+    states = random_states(6, rng, spread=2.5)
+    there = states + np.array([*offset, 0, 0, 0])
+    with DepthRenderer(two_maps(room(), room(offset=offset)), SMALL, backend) as renderer:
+        here = renderer.render(states)
+        assert np.abs(here - room_depth(SMALL, states)).max() < HALF_MILLIMETRE
+        # Not less exact than the states themselves, whose float64 has steps of 2 nm there.
+        assert np.abs(renderer.render(there) - room_depth(SMALL, states)).max() < HALF_MILLIMETRE
+        assert np.array_equal(renderer.render(states), here)
+
+
+def test_cameras_lost_in_space_see_nothing(backend):
+    with DepthRenderer(room(), SMALL, backend) as renderer:
+        assert np.isinf(renderer.render([[1e30, 0, 0, 0, 0, 0], [-1e30, 1e9, 0, 1, 1, 1]])).all()
+        assert np.isfinite(renderer.render(np.zeros(6))).all()
+
+
 def test_the_same_states_give_the_same_bytes(backend, rng):
     scene, states = random_triangles(500, rng), random_states(5, rng)
     with DepthRenderer(scene, SMALL, backend) as first, DepthRenderer(scene, SMALL, backend) as second:
