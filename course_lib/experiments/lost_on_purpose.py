@@ -101,7 +101,7 @@ def judged_run(
 def table(
     scene_map: SceneMap, sequence: DepthSequence, dof: Literal["6", "xyyaw"], seed: int, frames: int = 200
 ) -> str:
-    """Every way of `WAYS` on the first frames: of the truly lost frames and of the others, how many were called what."""
+    """Every way of `WAYS` on the first frames: of those truly lost and of the others, how many were called what."""
     heads = [
         f"{'':22}  {'truly lost, called':^27}  {'good, called':^27}",
         f"{'':22}" + "  tracked doubtful   lost  " * 2,
