@@ -18,11 +18,6 @@ if TYPE_CHECKING:  # imported where they are used, so that --help does not wait 
     from course_lib.depth_mcl.sequence import DepthSequence
     from course_lib.experiments.recordings import Run
 
-# Standard deviations of the system noise a frame, metres and degrees (chosen: for six degrees of freedom about the
-# steps of a camera carried by hand, median 0.04 m and 2 degrees in the kitchen recording; for x, y, yaw one and a half
-# of a wagon's longest steps, 0.1 m).
-SIGMA = {"6": (0.05, 2.0), "xyyaw": (0.15, 1.5)}
-
 EPILOG = """\
 the folder of the recording:
   depth/*.png      16-bit depth along the optical axis, 0 = no measurement; the first number in the name is the frame
@@ -75,8 +70,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--start",
         metavar="POSE",
         help="pose of the camera's body (x forward, y left, z up) in the first frame: six numbers, X Y Z in metres in "
-        "the map's own axes, then ROLL PITCH YAW in degrees, level and towards the map's x where they are 0; or a file "
-        "with a 4 x 4 camera-to-world matrix, or whose first row is one of poses.txt (default: that of the recording)",
+        "the map's own axes, then ROLL PITCH YAW in degrees (all 0: level and towards x in a world whose z is up, into "
+        "which --up turns another one); or a file with a 4 x 4 camera-to-world matrix, or whose first row is one of "
+        "poses.txt (default: that of the recording)",
     )
     parser.add_argument(
         "--depth-scale",
@@ -117,7 +113,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
-    from course_lib.experiments.recordings import pose_error_summary, run_sequence
+    from course_lib.experiments.recordings import pose_error_summary, run_sequence, system_noise
 
     require_seed(arguments.seed)
     require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
@@ -148,7 +144,7 @@ def run(arguments: argparse.Namespace) -> int:
         near=arguments.near,
         far=arguments.far,
         progress=progress_bar("localizing"),
-        **_system_noise(arguments),
+        **system_noise(arguments.dof, *_sigma(arguments)),
     )
     summary = {
         **_options(arguments, up),
@@ -194,19 +190,10 @@ def _start(given: str | None, sequence: DepthSequence, up: str) -> np.ndarray:
     return start
 
 
-def _system_noise(arguments: argparse.Namespace) -> dict:
-    """What the filter is told of the motion: sigma `(6,)` and what it is meant of."""
-    from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE
-
-    position, rotation_deg = _sigma(arguments)
-    rotation = np.deg2rad(rotation_deg)
-    if arguments.dof == "6":
-        return {"sigma": [position] * 3 + [rotation] * 3, "motion": TANGENT_SPACE}
-    return {"sigma": [position, position, 0.0, 0.0, 0.0, rotation], "motion": BODY_AXES}
-
-
 def _sigma(arguments: argparse.Namespace) -> tuple[float, float]:
     """System noise a frame: metres, degrees."""
+    from course_lib.experiments.recordings import SIGMA
+
     position, rotation_deg = SIGMA[arguments.dof]
     position = position if arguments.sigma_position is None else arguments.sigma_position
     rotation_deg = rotation_deg if arguments.sigma_rotation is None else arguments.sigma_rotation

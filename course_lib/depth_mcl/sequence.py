@@ -8,6 +8,9 @@ poses.txt           optional, the truth: frame number, then a row-major 4 x 4 ca
 up.txt              optional: which world axis points up (x, -x, y, -y, z, -z); without it nothing is known
 groundtruth.txt     optional: the same poses with time stamps, TUM format (t tx ty tz qx qy qz qw)
 path_on_floor.txt   optional: the surveyed line on the floor below the camera, x y z per row (the paper's truth)
+
+A folder of the TUM RGB-D dataset is read too: depth.txt (a time and a file name a row) then says which images there are
+and when, groundtruth.txt has times of its own, and intrinsics.txt must be added. Its depth has 5000 units a metre.
 """
 
 from __future__ import annotations
@@ -26,6 +29,8 @@ NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) 
 
 
 UNITS_PER_METRE = 1000.0  # of depth images: millimetres (7-Scenes); files of the TUM RGB-D dataset have 5000
+
+TUM_TIME_DIFFERENCE = 0.02  # seconds between an image and its pose, as in the dataset's tool associate.py
 
 
 class SequenceError(ValueError):
@@ -118,11 +123,17 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
     if not folder.is_dir():
         raise FileNotFoundError(f"no sequence at {folder}: give a folder with depth/ and intrinsics.txt")
     require_units(units_per_metre)
-    images = _depth_files(folder)
-    frames, camera_to_world = sorted(images), None
-    if (folder / "poses.txt").exists():
+    if (folder / "depth.txt").is_file():
+        images, times, camera_to_world = _read_tum_folder(folder)
+        frames = sorted(images)
+    elif (folder / "poses.txt").exists():
+        images = _depth_files(folder)
         frames, camera_to_world = _read_poses(folder / "poses.txt")
         _require_same_frames(folder, frames, sorted(images))
+        times = _read_times(folder, camera_to_world)
+    else:
+        images = _depth_files(folder)
+        frames, times, camera_to_world = sorted(images), None, None
     intrinsics = _read_numbers(folder / "intrinsics.txt")
     if intrinsics.shape != (3, 3):
         raise SequenceError(f"{folder / 'intrinsics.txt'} must hold a 3 x 3 matrix; got {intrinsics.shape}")
@@ -137,7 +148,7 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
         raise SequenceError(f"{path_file} must hold x y z per row; got shape {path_on_floor.shape}")
     return DepthSequence(
         folder, frames, [images[f] for f in frames], camera_to_world, intrinsics, image_shape, _read_up(folder),
-        _read_times(folder, camera_to_world), path_on_floor, units_per_metre,
+        times, path_on_floor, units_per_metre,
     )  # fmt: skip
 
 
@@ -330,10 +341,37 @@ def _require_same_frames(folder: Path, pose_frames: list[int], image_frames: lis
     )
 
 
-def _read_times(folder: Path, camera_to_world: np.ndarray | None) -> np.ndarray | None:
-    """Times of groundtruth.txt, which must hold the poses of poses.txt; None where either is missing."""
+def _read_tum_folder(folder: Path) -> tuple[dict[int, Path], np.ndarray, np.ndarray | None]:
+    """Images by their row in depth.txt (1, 2, ...), times `(T,)` in seconds, and poses `(T, 4, 4)` where there are any.
+
+    With groundtruth.txt an image's pose is the one nearest in time, and an image without one within
+    `TUM_TIME_DIFFERENCE` is left out, as the dataset's own tool associate.py does it.
+    """
+    rows = [
+        line.split() for line in (folder / "depth.txt").read_text().splitlines() if line.strip()[:1] not in ("", "#")
+    ]
+    try:
+        times = np.array([float(time) for time, _ in rows])
+    except ValueError as error:
+        raise SequenceError(f"{folder / 'depth.txt'} must hold a time and a file name a row: {error}") from error
+    images = {row: folder / name for row, (_, name) in enumerate(rows, start=1)}
+    if not images:
+        raise SequenceError(f"{folder / 'depth.txt'} names no image")
+    if not (folder / "groundtruth.txt").is_file():
+        return images, times, None
+    true_times, true_poses = read_tum(folder / "groundtruth.txt")
+    nearest = np.abs(times[:, None] - true_times).argmin(axis=1)
+    timed = np.abs(times - true_times[nearest]) <= TUM_TIME_DIFFERENCE
+    if not timed.any():
+        raise SequenceError(f"no time in depth.txt of {folder} is within {TUM_TIME_DIFFERENCE} s of groundtruth.txt")
+    kept = {row: path for (row, path), good in zip(images.items(), timed, strict=True) if good}
+    return kept, times[timed], true_poses[nearest[timed]]
+
+
+def _read_times(folder: Path, camera_to_world: np.ndarray) -> np.ndarray | None:
+    """Times of groundtruth.txt, which must hold the poses of poses.txt; None where it is missing."""
     path = folder / "groundtruth.txt"
-    if camera_to_world is None or not path.is_file():
+    if not path.is_file():
         return None
     times, timed_poses = read_tum(path)
     if len(times) != len(camera_to_world) or not np.allclose(timed_poses, camera_to_world, atol=1e-3):

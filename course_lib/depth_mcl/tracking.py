@@ -6,7 +6,7 @@ judged frame by frame, looking back only. Nothing here knows the truth.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -14,6 +14,12 @@ import numpy as np
 from course_lib.depth_mcl.likelihood import ALPHA, likelihood, paired_pixels
 
 TrackStatus = Literal["tracked", "doubtful", "lost"]
+
+# Chosen on development recordings (experiments/lost_on_purpose.py), in favour of never calling a lost filter tracked.
+TRACKED_SUPPORT = 0.55  # least support, 1 to -1, of a frame that is tracked
+LOST_SUPPORT = 0.45  # support below which it is lost
+_FRAMES_MEANED = 3  # a person who walks through one image must not decide alone
+_FRAMES_TO_RECOVER = 5  # what was lost may agree by chance: so many good frames in a row before it is tracked again
 
 
 class Agreement(NamedTuple):
@@ -24,26 +30,55 @@ class Agreement(NamedTuple):
     score: float
     """Eq. (8) divided by the number of pixels: 1 for perfect agreement."""
     agreeing: float
-    """Within 0.1 m of the map (`ALPHA`)."""
+    """Within `ALPHA`, 0.1 m, of the map."""
     through: float
-    """Measured more than 0.1 m behind the map, or where the map is empty: light went through a wall that is there."""
+    """Measured more than `ALPHA` behind the map: what a person or a moved chair cannot do, but a wrong pose does."""
+
+    @property
+    def support(self) -> float:
+        """What speaks for the pose less what speaks against it, agreeing - through: 1 to -1, NaN without a pixel.
+
+        Pixels in front of the map count for neither (something that the map lacks stands there), nor do holes in it.
+        """
+        return self.agreeing - self.through
 
 
 def agreement(measured: np.ndarray, simulated: np.ndarray) -> Agreement:
-    """How a measured image `(H, W)` agrees with the image `(H, W)` of the map from one pose; metres."""
+    """How a measured image `(H, W)` agrees with the image `(H, W)` of the map from one pose; metres.
+
+    measured: NaN = no measurement; simulated: `inf` = nothing hit, as in `likelihood`, and the same errors.
+    """
     valid, images = paired_pixels(measured, np.asarray(simulated)[None])
     pixels = int(valid.sum())
     if pixels == 0:
         return Agreement(0, np.nan, np.nan, np.nan)
-    difference = np.asarray(measured, dtype=np.float64)[valid] - images[0][valid]
+    behind = np.asarray(measured, dtype=np.float64)[valid] - images[0][valid]  # -inf where the map is empty
     return Agreement(
         pixels,
         float(likelihood(measured, images, ALPHA)[0]) / pixels,
-        float(np.mean(np.abs(difference) <= ALPHA)),
-        float(np.mean(difference > ALPHA)),
+        float(np.mean(np.abs(behind) <= ALPHA)),
+        float(np.mean(behind > ALPHA)),
     )
 
 
-def judge_track(agreements: Iterable[Agreement]) -> list[TrackStatus]:
-    """What each frame of a run is: "tracked", "doubtful" or "lost"."""
-    return ["tracked" for _ in agreements]
+def judge_track(agreements: Sequence[Agreement]) -> list[TrackStatus]:
+    """What each frame of a run is, from the frames so far.
+
+    Lost: the mean support of the last three frames is below `LOST_SUPPORT`. Tracked: it reaches `TRACKED_SUPPORT`, and
+    once lost it has to for five frames in a row. All else is doubtful, a frame without measurement too.
+    Not seen by this: a pose that is wrong where the map looks alike, along a smooth wall or in the next bay.
+    """
+    statuses, lost, good_frames = [], False, 0
+    for index, frame in enumerate(agreements):
+        recent = [a.support for a in agreements[max(0, index + 1 - _FRAMES_MEANED) : index + 1] if a.pixels]
+        support = np.mean(recent) if frame.pixels else np.nan
+        good_frames = good_frames + 1 if support >= TRACKED_SUPPORT else 0
+        if support < LOST_SUPPORT:
+            lost = True
+        elif good_frames >= _FRAMES_TO_RECOVER:
+            lost = False
+        if support < LOST_SUPPORT:
+            statuses.append("lost")
+        else:
+            statuses.append("tracked" if good_frames and not lost else "doubtful")
+    return statuses

@@ -14,7 +14,8 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.tracking import TrackStatus
 from course_lib.plots.figures import BLUE, ORANGE, VERMILION, new_figure
 
-_MARGIN = 0.5  # metres that are drawn around the paths
+_MARGIN = 2.0  # metres that are drawn around the paths (chosen: what a room's walls need)
+_LEAST_SHAPE = 0.5  # of the plan: its shorter side over its longer one (chosen)
 _STYLES = {
     "tracked": {"color": BLUE, "marker": "o", "markersize": 3},
     "doubtful": {"color": ORANGE, "marker": "s", "markersize": 4},
@@ -50,7 +51,7 @@ def track_figure(
     unknown = ", up unknown" if up is None else ""
     plan.set(title=f"Estimated path, map cut at {'xyz'[across]} = {np.median(paths[:, across]):.2f} m{unknown}")
     plan.set(xlabel=f"{'xyz'[shown[0]]} [m]", ylabel=f"{'xyz'[shown[1]]} [m]")
-    plan.legend(fontsize=8, framealpha=0.9)
+    plan.legend(fontsize=8, framealpha=0.9, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
     _draw_scores(score, np.asarray(frames), scores, statuses)
     return figure
 
@@ -63,9 +64,12 @@ def _draw_plan(axes: Axes, scene_map: SceneMap, paths: np.ndarray, across: int) 
     mesh = trimesh.Trimesh(scene_map.vertices, scene_map.faces, process=False)
     walls = np.delete(trimesh.intersections.mesh_plane(mesh, normal, origin), across, axis=2)
     axes.add_collection(LineCollection(walls, colors="0.65", linewidths=0.8, label="map"))
-    seen = np.concatenate([np.delete(paths, across, axis=1), walls.reshape(-1, 2)])
+    seen = np.delete(paths, across, axis=1)
     low, high = seen.min(axis=0) - _MARGIN, seen.max(axis=0) + _MARGIN
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    # The shorter side grows, or a path along a corridor would be drawn as a thread.
+    grow = np.maximum(0, 0.5 * ((high - low).max() * _LEAST_SHAPE - (high - low)))
+    (left, bottom), (right, top) = low - grow, high + grow
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
 
 
 def _draw_statuses(axes: Axes, points: np.ndarray, statuses: Sequence[TrackStatus]) -> None:

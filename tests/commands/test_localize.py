@@ -1,16 +1,19 @@
-"""`localize` on recordings: its JSON, what it writes, and what it refuses."""
+"""`localize` on recordings: its JSON, what it writes, what it believes of its track, and what it refuses."""
 
+import csv
 import json
 
 import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.depth_mcl.sequence import read_tum
+from course_lib.commands.localize import believed, join_words
+from course_lib.depth_mcl.sequence import read_sequence, read_tum, write_sequence
+from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
 
 KEYS = {
     "frames", "median_position_m", "p90_position_m", "median_rotation_deg", "p90_rotation_deg",
-    "within_5cm_5deg_percent", "renders_per_frame", "ms_per_frame", "seed",
+    "within_5cm_5deg_percent", "renders_per_frame", "ms_per_frame", "seed", "believes", "frames_lost", "start",
 }  # fmt: skip
 
 
@@ -31,9 +34,11 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, capsys)
     stored = json.loads((tmp_path / "localize.json").read_text())
     assert stored["median_position_m"] == summary["median_position_m"]
     assert {"numpy", "vtk", "course_lib"} <= stored["versions"].keys()
-    assert len((tmp_path / "localize.csv").read_text().splitlines()) == 7
+    rows = list(csv.DictReader((tmp_path / "localize.csv").open()))
+    assert [row["status"] for row in rows] == ["tracked"] * 6
+    assert all(0.4 < float(row["score"]) < 1 and float(row["position_error_m"]) < 0.3 for row in rows)
     assert read_tum(tmp_path / "trajectory.txt")[1].shape == (6, 4, 4)
-    assert (tmp_path / "errors.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "track.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_hand_carried_run_is_followed_in_six_degrees(corridor_folder, capsys):
@@ -80,9 +85,6 @@ def test_a_turned_world_gives_the_same_errors(corridor_folder, tmp_path, capsys,
     """The corridor's map and poses turned so that another axis points up, and told so with --up."""
     import trimesh
 
-    from course_lib.depth_mcl.sequence import read_sequence, write_sequence
-    from course_lib.geometry import rotation_to_z_up
-
     turn = np.linalg.inv(rotation_to_z_up(up))
     mesh = trimesh.load(corridor_folder / "map.ply", process=False)
     mesh.apply_transform(turn)
@@ -98,9 +100,133 @@ def test_a_turned_world_gives_the_same_errors(corridor_folder, tmp_path, capsys,
     assert turned["median_position_m"] == pytest.approx(upright["median_position_m"], abs=0.02)
 
 
+@pytest.fixture
+def blind(corridor_folder, tmp_path):
+    """Four frames of the wagon without their truth, and what the truth is: the folder, the first pose's numbers."""
+    run = read_sequence(corridor_folder / "wagon")
+    write_sequence(
+        tmp_path / "blind", run.intrinsics, run.frames[:4], [run.depth(i) for i in range(4)], run.camera_to_world[:4],
+        up="z",
+    )  # fmt: skip
+    (tmp_path / "blind" / "poses.txt").rename(tmp_path / "truth.txt")
+    state = state_from_optical_pose(run.camera_to_world[0])
+    return tmp_path, [f"{v:.9f}" for v in (*state[:3], *np.rad2deg(state[3:]))]
+
+
+def test_a_recording_without_truth_is_localized_from_a_pose_that_is_given(corridor_folder, blind, capsys):
+    """As numbers, as one quoted word, from a file, and as with the truth: the same trajectory; and no errors."""
+    folder, numbers = blind
+    words = [
+        "localize",
+        "--map",
+        str(corridor_folder / "map.ply"),
+        "--dof",
+        "xyyaw",
+        "--seed",
+        "3",
+        "--particles",
+        "30",
+    ]
+    given = (numbers, [" ".join(numbers)], [str(folder / "truth.txt")])
+    tracks = []
+    for index, start in enumerate(given):
+        out = folder / f"out{index}"
+        assert main([*words, "--sequence", str(folder / "blind"), "--out", str(out), "--start", *start]) == 0
+        said = capsys.readouterr().out
+        assert "errors are not known" in said
+        assert "position error" not in said
+        assert said.splitlines()[-1] == "tracked in all 4 frames"
+        tracks.append(read_tum(out / "trajectory.txt")[1])
+        assert (out / "track.png").is_file()
+        assert "position_error_m" not in (out / "localize.csv").read_text()
+        assert "median_position_m" not in json.loads((out / "localize.json").read_text())
+    with_truth = ["--sequence", str(corridor_folder / "wagon"), "--frames", "4", "--out", str(folder / "out")]
+    assert main([*words, *with_truth]) == 0
+    tracks.append(read_tum(folder / "out" / "trajectory.txt")[1])
+    assert all(np.allclose(track, tracks[0], atol=1e-5) for track in tracks)
+
+
+def test_a_start_is_meant_in_the_map_s_own_axes_and_its_angles_as_upright(corridor_folder, tmp_path, capsys):
+    """In a world whose y points up: the position as the mesh has it, yaw about the vertical."""
+    import trimesh
+
+    turn = np.linalg.inv(rotation_to_z_up("y"))
+    trimesh.load(corridor_folder / "map.ply", process=False).apply_transform(turn).export(tmp_path / "map.ply")
+    run = read_sequence(corridor_folder / "wagon")
+    poses = turn @ run.camera_to_world[:2]
+    write_sequence(tmp_path / "run", run.intrinsics, [0, 1], [run.depth(0), run.depth(1)], poses, up="y")
+    state = state_from_optical_pose(run.camera_to_world[0])
+    start = [f"{v:.9f}" for v in (*poses[0, :3, 3], *np.rad2deg(state[3:]))]
+    assert main([*arguments(tmp_path, "run", dof="xyyaw", particles=40, json=True), "--start", *start]) == 0
+    assert json.loads(capsys.readouterr().out)["median_position_m"] < 0.15
+
+
+@pytest.mark.parametrize("wrong", [{"start": "20 0 1.4 0 0 120"}, {"depth-scale": "5000"}])
+def test_a_filter_that_is_wrong_from_the_start_says_so_and_ends_well(corridor_folder, tmp_path, capsys, wrong):
+    words = arguments(corridor_folder, dof="xyyaw", frames=5, particles=30, out=tmp_path, **wrong)
+    assert main(words) == 0
+    assert capsys.readouterr().out.splitlines()[-1].startswith("lost from the first frame on (5 of 5 frames")
+    assert {row["status"] for row in csv.DictReader((tmp_path / "localize.csv").open())} == {"lost"}
+
+
+@pytest.mark.parametrize(
+    ("statuses", "line"),
+    [
+        ("TTTT", "tracked in all 4 frames"),
+        ("TDTD", "tracked in 2 of 4 frames, doubtful in 2"),
+        ("TLLD", "lost from frame 20 on (2 of 4 frames; tracked 1, doubtful 1)"),
+        ("LLLL", "lost from the first frame on (4 of 4 frames; tracked 0, doubtful 0)"),
+        ("TLLDT", "lost from frame 20 to 30 (2 of 5 frames; tracked 2, doubtful 1)"),
+        ("TLTLLT", "lost in 2 stretches between frames 20 and 50 (3 of 6 frames; tracked 3, doubtful 0)"),
+    ],
+)
+def test_one_line_says_what_is_believed(statuses, line):
+    names = {"T": "tracked", "D": "doubtful", "L": "lost"}
+    assert believed([10 * (i + 1) for i in range(len(statuses))], [names[s] for s in statuses]) == line
+
+
+@pytest.mark.parametrize(
+    ("typed", "joined"),
+    [
+        ("--start 1 -2 .5 0 -1e-3 -90 --up -y", ["--start=1 -2 .5 0 -1e-3 -90", "--up=-y"]),
+        ("--start file.txt --seed 3", ["--start", "file.txt", "--seed", "3"]),
+        ("--start=-1,2,3,0,0,0 --up z", ["--start=-1,2,3,0,0,0", "--up", "z"]),
+        ("--json --start", ["--json", "--start"]),
+    ],
+)
+def test_negative_numbers_are_no_options(typed, joined):
+    assert join_words(typed.split()) == joined
+
+
+def test_without_truth_and_without_a_start_it_asks_for_one(corridor_folder, blind, capsys):
+    assert main(["localize", "--map", str(corridor_folder / "map.ply"), "--sequence", str(blind[0] / "blind")]) == 2
+    error = capsys.readouterr().err
+    assert "where does the camera start" in error
+    assert "--start" in error
+
+
+def test_near_and_far_bound_what_is_seen(corridor_folder, capsys):
+    """Nothing of a corridor lies between 0.1 and 0.3 m from a camera in its middle: no frame has a measurement."""
+    words = arguments(corridor_folder, dof="xyyaw", frames=2, particles=5, near=0.1, far=0.3, json=True)
+    assert main(words) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["frames_without_measurement"], summary["frames_doubtful"]) == (2, 2)
+    assert (summary["near_m"], summary["far_m"]) == (0.1, 0.3)
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [
+        ({"start": "1 2 3"}, "six finite numbers"),
+        ({"start": "1 2 nan 0 0 0"}, "six finite numbers"),
+        ({"start": "nowhere.txt"}, "no file nowhere.txt"),
+        ({"start": "500 0 1 0 0 0"}, "outside the map"),
+        ({"depth-scale": "0"}, "--depth-scale"),
+        ({"depth-scale": "nan"}, "--depth-scale"),
+        ({"near": "-1"}, "--near"),
+        ({"far": "inf"}, "--far"),
+        ({"near": "5", "far": "2"}, "--near must be below --far"),
+        ({"sigma-rotation": "nan"}, "--sigma-rotation"),
         ({"map": "nowhere.ply"}, "no map at"),
         ({"sequence": "nowhere"}, "no sequence at"),
         ({"particles": "0"}, "particles"),

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.sequence import (
     SequenceError,
     read_depth_png,
@@ -136,10 +135,49 @@ def test_depth_counts_in_the_units_that_are_told(folder):
             read_sequence(folder, units_per_metre=bad)
 
 
+@pytest.fixture
+def tum_folder(folder):
+    """The same recording as the TUM RGB-D dataset has it; the third image was taken while nobody saw the camera."""
+    rows = [f"{1305031102 + i / 30:.6f} depth/{1305031102 + i / 30:.6f}.png" for i in range(4)]
+    for name, row in zip(("000002", "000005", "000007", "000009"), rows, strict=True):
+        (folder / "depth" / f"{name}.png").rename(folder / row.split()[1])
+    (folder / "depth.txt").write_text("# depth maps\n" + "\n".join(rows))
+    poses = read_tum(folder / "groundtruth.txt")[1]
+    write_tum(folder / "groundtruth.txt", 1305031102 + np.array([-0.01, 0.034, 0.5, 0.11]), poses)
+    (folder / "poses.txt").unlink()
+    return folder, poses
+
+
+def test_a_folder_of_the_tum_dataset_is_read_by_its_times(tum_folder):
+    folder, poses = tum_folder
+    sequence = read_sequence(folder, units_per_metre=5000)
+    assert sequence.frames == [1, 2, 4]
+    assert np.allclose(sequence.camera_to_world, poses[[0, 1, 3]], atol=1e-6)
+    assert np.allclose(sequence.times - 1305031102, [0, 1 / 30, 0.1], atol=1e-5)
+    assert sequence.depth(2).shape == SMALL.shape
+    (folder / "groundtruth.txt").unlink()
+    sequence = read_sequence(folder)
+    assert (len(sequence), len(sequence.times), sequence.has_poses) == (4, 4, False)
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        (lambda f: (f / "depth.txt").write_text("one line too few words\n"), "a time and a file name"),
+        (lambda f: (f / "depth.txt").write_text("# nothing\n"), "names no image"),
+        (lambda f: write_tum(f / "groundtruth.txt", [7.0], np.eye(4)[None]), "within 0.02 s"),
+    ],
+)
+def test_a_damaged_tum_folder_is_named(tum_folder, damage, said):
+    damage(tum_folder[0])
+    with pytest.raises(SequenceError, match=said):
+        read_sequence(tum_folder[0])
+
+
 def test_a_recording_names_its_camera(folder):
-    assert read_sequence(folder).camera(near=0.3, far=7.0) == DepthCamera.from_matrix(
-        SMALL.matrix, SMALL.width, SMALL.height, 0.3, 7.0
-    )
+    camera = read_sequence(folder).camera(near=0.3, far=7.0)
+    assert (camera.near, camera.far, camera.shape) == (0.3, 7.0, SMALL.shape)
+    assert np.allclose(camera.matrix, SMALL.matrix, atol=1e-6)
 
 
 def test_a_pose_is_read_from_a_matrix_from_poses_and_from_a_trajectory(folder, tmp_path):
