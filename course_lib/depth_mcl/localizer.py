@@ -30,6 +30,7 @@ from course_lib.depth_mcl.likelihood import (
 from course_lib.depth_mcl.motion import BODY_AXES, Motion, checked_sigma
 from course_lib.depth_mcl.particle_filter import Scheme, effective_sample_size, initial_particles, resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.uncertainty import error_covariance
 
 # Standard deviations of the system noise a frame for the paper's experiment (x, y, yaw), metres and radians: x is
 # forward and y left where the body's axes count, as they do unless another motion is given. Chosen on tuning seeds; the
@@ -51,7 +52,7 @@ class Weighting(NamedTuple):
     weights: np.ndarray
     """`(N,)`, summing to one."""
     scores: np.ndarray
-    """`(N,)`, the raw score of every particle, larger is better, not normalized over particles."""
+    """`(N,)`, the raw score of every particle: a mean over pixels, larger is better, not normalized over particles."""
 
 
 WeightingRule = Callable[[np.ndarray, np.ndarray], Weighting]
@@ -78,7 +79,9 @@ class Estimate(NamedTuple):
     state: np.ndarray
     """`(6,)` the weighted mean of the particles."""
     covariance: np.ndarray
-    """`(6, 6)` of the weighted particles about it, metres and radians; with tangent noise about the body's own axes."""
+    """`(6, 6)` of the weighted particles about it, metres along the world's axes and radians, as the motion measures
+    deviations. It is the spread of the paper's weights, and *not* how far off the state may be: with the paper's beta
+    they leave about one particle, and the spread of one is nothing. `error_covariance` answers that."""
     score: float
     """Raw score of the best particle; unlike its weight it falls when the filter is lost."""
     ess: float
@@ -89,6 +92,8 @@ class Estimate(NamedTuple):
     """`(N,)` of these particles."""
     status: Literal["ok", "no measurement"]
     """"no measurement" where the frame held none: the particles were moved by system noise, and all weigh the same."""
+    error_covariance: np.ndarray
+    """`(6, 6)`, the same units and axes: of the error to expect while the filter follows (uncertainty.py)."""
 
 
 class MonteCarloLocalizer:
@@ -169,10 +174,10 @@ class MonteCarloLocalizer:
             )
             self.particles = particles.copy()
             w = np.full(self.n_particles, 1.0 / self.n_particles)
-            return self._estimate(particles, w, float("nan"), "no measurement")
-        w, scores = self.weighting(measured, self.renderer.render(particles))
-        self.particles = particles[resample(w, self.rng, self.resampling)]
-        return self._estimate(particles, w, float(scores.max()), "ok")
+            return self._estimate(particles, Weighting(w, np.full(self.n_particles, np.nan)), "no measurement")
+        weighting = self.weighting(measured, self.renderer.render(particles))
+        self.particles = particles[resample(weighting.weights, self.rng, self.resampling)]
+        return self._estimate(particles, weighting, "ok")
 
     def _measure(self, depth: np.ndarray) -> np.ndarray:
         """Eq. (7): the camera's own points through the projection and z-buffer of the simulated views."""
@@ -184,8 +189,17 @@ class MonteCarloLocalizer:
             )
         return self.renderer.render_points(camera.points(depth))
 
-    def _estimate(self, particles: np.ndarray, w: np.ndarray, score: float, status: str) -> Estimate:
+    def _estimate(self, particles: np.ndarray, weighting: Weighting, status: str) -> Estimate:
+        w, scores = weighting
         state = self.motion.mean(particles, w)
         deviations = self.motion.deviations(particles, state)
-        covariance = (w[:, None] * deviations).T @ deviations
-        return Estimate(state, covariance, score, effective_sample_size(w), particles, w, status)
+        return Estimate(
+            state,
+            (w[:, None] * deviations).T @ deviations,
+            float(scores.max()),
+            effective_sample_size(w),
+            particles,
+            w,
+            status,
+            error_covariance(deviations, np.nan_to_num(scores)),
+        )

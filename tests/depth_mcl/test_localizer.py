@@ -62,12 +62,20 @@ def test_the_filter_follows_a_walk(renderer, motion, weighting, bound):
         assert np.linalg.eigvalsh(estimate.covariance).min() > -1e-12
 
 
+@pytest.mark.parametrize(("left", "least", "most"), [(0.01, 0.3, 2.0), (0.06, 0.0, 0.15)])
+def test_a_camera_that_is_carried_sideways_needs_as_much_noise_to_the_left_as_forward(renderer, left, least, most):
+    """A wagon's noise, wide along where the camera looks and narrow across, falls behind a metre's walk to the left."""
+    true = START + np.arange(25)[:, None] * np.array([-0.04 * np.sin(0.4), 0.04 * np.cos(0.4), 0, 0, 0, 0])
+    estimates = run(MonteCarloLocalizer(renderer, 150, [0.06, left, 0, 0, 0, 0.03]), true)
+    assert least < np.hypot(*(estimates[-1].state[:2] - true[-1, :2])) < most
+
+
 @pytest.mark.parametrize("motion", [BODY_AXES, WORLD_AXES])
 def test_components_without_noise_stay_at_their_start(renderer, motion):
     tilted = START + np.array([0, 0, 0, 0.02, -0.1, 0])
     localizer = MonteCarloLocalizer(renderer, 50, SIGMA, motion=motion)
     localizer.initialize(tilted)
-    estimates = [localizer.step(room_depth(SMALL, s)[0]) for s in walk(3) + np.array([0, 0, 0, 0.02, -0.1, 0])]
+    estimates = [localizer.step(room_depth(SMALL, s)[0]) for s in walk(3)]
     assert estimates[-1].state[2:5] == pytest.approx(tilted[2:5])
     assert (estimates[-1].state[[0, 1, 5]] != tilted[[0, 1, 5]]).all()
 
@@ -87,7 +95,9 @@ def test_moving_world_and_particles_together_changes_nothing():
         with DepthRenderer(room(offset=offset), SMALL, "vtk") as renderer:
             localizer = MonteCarloLocalizer(renderer, 100, SIGMA, seed=3)
             localizer.initialize(START + np.array([*offset, 0, 0, 0]))
-            estimates.append([localizer.step(room_depth(SMALL, s)[0]).state for s in true][-1])
+            for state in true:
+                estimate = localizer.step(room_depth(SMALL, state)[0])
+            estimates.append(estimate.state)
     assert estimates[1] - [*shift, 0, 0, 0] == pytest.approx(estimates[0], abs=1e-4)
     assert estimates[0][:2] == pytest.approx(true[-1, :2], abs=0.15)  # the walk is half a metre long
 
@@ -123,14 +133,15 @@ def test_a_frame_without_measurement_moves_the_particles_says_so_and_the_filter_
 
 
 @pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
-@pytest.mark.parametrize("seed", range(3))
-def test_after_a_gap_in_a_walk_the_filter_is_there_at_once(renderer, seed):
-    """Ten blank frames and 0.4 m later; particles that had been kept would need several frames to catch up."""
-    localizer, true = MonteCarloLocalizer(renderer, 400, SIGMA, seed=seed), walk(16)
-    localizer.initialize(START)
-    blank = np.full(SMALL.shape, np.nan)
-    estimates = [localizer.step(blank if 4 <= i < 14 else room_depth(SMALL, s)[0]) for i, s in enumerate(true)]
-    assert np.hypot(*(estimates[14].state[:2] - true[14, :2])) < 0.15
+def test_after_a_gap_in_a_walk_the_filter_is_soon_there_again(renderer):
+    """Ten blank frames, 0.4 m: particles that had been kept all the while are still 0.18 m behind after four more."""
+    true, blank, errors = walk(18), np.full(SMALL.shape, np.nan), []
+    for seed in range(5):
+        localizer = MonteCarloLocalizer(renderer, 300, SIGMA, seed=seed)
+        localizer.initialize(START)
+        estimates = [localizer.step(blank if 4 <= i < 14 else room_depth(SMALL, s)[0]) for i, s in enumerate(true)]
+        errors.append(np.hypot(*(estimates[-1].state[:2] - true[-1, :2])))
+    assert np.median(errors) < 0.1
 
 
 @pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")

@@ -1,0 +1,78 @@
+"""The covariance that covers: its weights, and that errors in a corridor are about as large as it says."""
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.localizer import MonteCarloLocalizer
+from course_lib.depth_mcl.motion import BODY_AXES
+from course_lib.depth_mcl.particle_filter import effective_sample_size
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.depth_mcl.sensor import subsample_depth
+from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.depth_mcl.uncertainty import INDEPENDENT_PIXELS, error_covariance, tempered_weights
+from course_lib.experiments.corridor import sequence_camera
+from course_lib.geometry import state_from_optical_pose
+
+MOVING = [0, 1, 5]  # x, y, yaw
+
+
+def test_many_particles_are_weighed_as_if_the_image_were_worth_a_number_of_pixels(rng):
+    scores = 0.6 - 0.01 * rng.random(500)
+    expected = np.exp(INDEPENDENT_PIXELS * scores)
+    assert tempered_weights(scores, 5.0) == pytest.approx(expected / expected.sum())
+
+
+@pytest.mark.parametrize("spread", [0.5, 5.0, 500.0])
+def test_where_that_leaves_too_few_particles_so_many_are_left(spread, rng):
+    w = tempered_weights(spread * rng.random(200), 5.0)
+    assert w.sum() == pytest.approx(1)
+    assert effective_sample_size(w) == pytest.approx(5, rel=1e-6)
+
+
+@pytest.mark.parametrize("scores", [np.zeros(40), np.array([0.1, 0.9, 0.3])])
+def test_equal_scores_or_hardly_any_particles_all_count_the_same(scores):
+    assert tempered_weights(scores, 5.0) == pytest.approx(np.full(len(scores), 1 / len(scores)))
+
+
+def test_a_quadratic_score_gives_the_gaussian_that_it_describes(rng):
+    """s = -d^2 / (2 b^2): exp(kappa s) is normal with variance b^2 / kappa, cut by the cloud's own."""
+    deviations = np.zeros((200_000, 6))
+    deviations[:, 0] = rng.normal(0, 0.2, 200_000)
+    scores = 0.8 - deviations[:, 0] ** 2 / (2 * 0.3**2)
+    expected = 1 / (1 / 0.2**2 + INDEPENDENT_PIXELS / 0.3**2)
+    assert error_covariance(deviations, scores)[0, 0] == pytest.approx(expected, rel=0.02)
+    assert np.count_nonzero(error_covariance(deviations, scores)) == 1
+
+
+def test_an_estimate_beside_the_best_particles_is_told(rng):
+    """The spread is about the estimate: one that its weights drew aside by 0.3 m has a variance of that at least."""
+    deviations = rng.normal(0, 0.05, (300, 6))
+    deviations[:, 1] += 0.3
+    assert error_covariance(deviations, np.zeros(300))[1, 1] > 0.3**2
+
+
+def normalized_errors(estimates, true, name):
+    """e' C^-1 e / d of every frame, d = 3."""
+    values = []
+    for estimate, state in zip(estimates, true, strict=True):
+        error = BODY_AXES.deviations(state[None], estimate.state)[0][MOVING]
+        covariance = getattr(estimate, name)[np.ix_(MOVING, MOVING)]
+        values.append(error @ np.linalg.pinv(covariance, rcond=1e-30) @ error / 3)
+    return np.array(values)
+
+
+@pytest.mark.parametrize("seed", [10_001, 10_002])
+def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_folder, seed):
+    """Between 0.5 and 2 in the mean; by the spread of the paper's weights they are beyond any number."""
+    sequence = read_sequence(corridor_folder / "wagon")
+    camera = sequence_camera(sequence)
+    small, frames = camera.resized(44, 36), range(40)
+    true = state_from_optical_pose(sequence.camera_to_world[: len(frames)])
+    with DepthRenderer(SceneMap.load(corridor_folder / "map.ply"), small, "ray") as renderer:
+        localizer = MonteCarloLocalizer(renderer, 100, seed=seed)
+        localizer.initialize(true[0])
+        estimates = [localizer.step(subsample_depth(sequence.depth(i), camera, small)) for i in frames]
+    # The first frame's particles all stand at the given start, but for one step of noise.
+    assert 0.5 < normalized_errors(estimates[1:], true[1:], "error_covariance").mean() < 2
+    assert normalized_errors(estimates[1:], true[1:], "covariance").mean() > 100
