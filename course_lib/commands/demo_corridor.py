@@ -48,6 +48,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help=f"measure instead what the simulator's kindnesses are worth, on small images (seeds {KINDNESS_SEEDS})",
     )
+    parser.add_argument(
+        "--methods",
+        metavar="NAMES",
+        help="with --seeds: rows of the table by name, with commas, among them proposed and fallon (default: all)",
+    )
     parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
     parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames (default: all)")
     parser.add_argument("--data", type=Path, metavar="FOLDER", help="corridor data (default: data/corridor)")
@@ -71,9 +76,27 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.frames is not None and arguments.frames < 1:
         raise ValueError(f"--frames must be at least 1; got {arguments.frames}")
     require_output_folder(arguments.out)
+    _require_methods(arguments)
     if arguments.kindnesses:
         return _run_kindnesses(arguments, seeds or parse_seeds(KINDNESS_SEEDS))
     return _run_seed(arguments) if seeds is None else _run_seeds(arguments, seeds)
+
+
+def _require_methods(arguments: argparse.Namespace) -> None:
+    from course_lib.experiments.corridor import METHODS
+    from course_lib.experiments.corridor_seeds import METHODS_BY_HAND
+
+    if arguments.methods is None:
+        arguments.methods = list(METHODS)
+        return
+    if arguments.seeds is None:
+        raise ValueError("--methods goes with --seeds: a single seed runs every row of the table")
+    arguments.methods = arguments.methods.split(",")
+    if not set(METHODS_BY_HAND) <= set(arguments.methods) <= set(METHODS):
+        raise ValueError(
+            f"--methods must name {' and '.join(METHODS_BY_HAND)}, and besides them only rows of "
+            f"{', '.join(METHODS)}; got {','.join(arguments.methods)}"
+        )
 
 
 def _run_seed(arguments: argparse.Namespace) -> int:
@@ -160,12 +183,12 @@ def _rows_of(arguments: argparse.Namespace, seed: int, temporary: Path) -> tuple
     else:
         even, by_hand = own_recordings(data, temporary, seed, arguments.frames, progress_bar)
     options = {"n_particles": arguments.particles, "backend": arguments.backend, "frames": arguments.frames}
-    return maps, even, run_rows(maps, even, by_hand, progress_bar, seed=seed, **options)
+    return maps, even, run_rows(maps, even, by_hand, arguments.methods, progress_bar, seed=seed, **options)
 
 
 def _settings(arguments: argparse.Namespace, seed: int) -> dict:
     """What decides a seed's result."""
-    names = ("particles", "frames", "recording", "backend")
+    names = ("particles", "frames", "recording", "backend", "methods")
     return {"seed": seed, "data": str(_data(arguments)), **{name: getattr(arguments, name) for name in names}}
 
 

@@ -9,7 +9,7 @@ import argparse
 import json
 from pathlib import Path
 
-from course_lib.commands.arguments import require_seed
+from course_lib.commands.arguments import require_output_folder, require_seed
 
 SEED = 4  # the shipped data's
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "corridor"
@@ -18,19 +18,28 @@ FOLDER = Path(__file__).resolve().parents[2] / "data" / "corridor"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds this command's options to its parser."""
     parser.add_argument("--seed", type=int, default=SEED, metavar="N", help=f"default {SEED}, the shipped data's")
-    parser.add_argument("--out", type=Path, default=FOLDER, metavar="FOLDER", help="default: data/corridor")
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER", help="where the data go; another seed needs it (default: data/corridor)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Makes the data and prints the measured numbers; returns the exit code."""
     require_seed(arguments.seed)
+    if arguments.out is None and arguments.seed != SEED:
+        raise ValueError(
+            f"--seed {arguments.seed} makes other data than the shipped ones (seed {SEED}): "
+            "give --out FOLDER, or data/corridor would be replaced"
+        )
+    out = arguments.out or FOLDER
+    require_output_folder(out)
     from tqdm import tqdm
 
     from course_lib.simulation.corridor.data import make_corridor_data
 
     summary = make_corridor_data(
-        arguments.out, arguments.seed, progress=lambda items, text: tqdm(items, desc=f"{text:28s}", ascii=True)
+        out, arguments.seed, progress=lambda items, text: tqdm(items, desc=f"{text:28s}", ascii=True)
     )
     print(json.dumps(summary["measured"], indent=2))
-    print(f"wrote {arguments.out}")
+    print(f"wrote {out}")
     return 0

@@ -69,12 +69,17 @@ def own_recordings(
 
 
 def run_rows(
-    maps: Maps, even: DepthSequence, by_hand: DepthSequence | None, bar: Bar = no_bar, **options: object
+    maps: Maps,
+    even: DepthSequence,
+    by_hand: DepthSequence | None,
+    methods: Collection[str] = tuple(METHODS),
+    bar: Bar = no_bar,
+    **options: object,
 ) -> dict[str, Row]:
     """Every row of table 1; names of those on the less kind recording end in BY_HAND. options: `run_method`'s."""
-    rows = {key: _row(key, maps, even, bar(method.name), **options) for key, method in METHODS.items()}
+    rows = {key: _row(key, maps, even, bar(METHODS[key].name), **options) for key in METHODS if key in methods}
     if by_hand is not None:
-        for key in METHODS_BY_HAND:
+        for key in [key for key in METHODS_BY_HAND if key in methods]:
             rows[key + BY_HAND] = _row(key, maps, by_hand, bar(f"{METHODS[key].name}, by hand"), **options)
     return rows
 

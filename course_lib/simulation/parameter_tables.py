@@ -20,7 +20,7 @@ def parameter_tables(models: object, world: str) -> str:
     for field in dataclasses.fields(models):
         model = getattr(models, field.name)
         if dataclasses.is_dataclass(model):
-            parts.append(_table(model))
+            parts.append(parameter_table(model))
     return "\n".join(parts)
 
 
@@ -34,7 +34,8 @@ def field_comments(model: object) -> dict[str, str]:
     return comments
 
 
-def _table(model: object) -> str:
+def parameter_table(model: object) -> str:
+    """The table of one dataclass instance, as Markdown."""
     comments = field_comments(model)
     title = (type(model).__doc__ or "").split("\n\n")[0].strip()
     rows = [

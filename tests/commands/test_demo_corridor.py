@@ -3,12 +3,18 @@
 import csv
 import json
 import os
+import shutil
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from course_lib.cli import main
+from course_lib.commands import demo_corridor
+from course_lib.commands.corridor_tables import table_1, table_over_recordings
+from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
 
 KEYS = {
     "seed", "n_particles", "frames", "median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "ms_per_frame",
@@ -59,9 +65,105 @@ def test_the_filter_keeps_to_the_path(demo):
     assert json.loads((demo / "corridor.json").read_text())["median_timed_m"] < 0.15
 
 
-def test_a_folder_without_the_data_is_named(tmp_path, capsys):
-    assert main(["demo", "corridor", "--data", str(tmp_path)]) == 2
-    assert "no sequence" in capsys.readouterr().err
+def test_a_seeds_own_recording_has_a_less_kind_one_beside_it(demo):
+    stored = json.loads((demo / "corridor.json").read_text())
+    assert list(stored["methods_by_hand"]) == ["proposed", "fallon"]
+    assert stored["methods_by_hand"]["proposed"]["median_timed_m"] < 0.3
+    assert "with calibration and mount errors, pushed by hand:" in table_1(stored)
+
+
+def test_the_shipped_recording_is_still_there_for_the_lessons(tmp_path, corridor_folder):
+    words = ["demo", "corridor", "--recording", "shipped", "--frames", "3", "--particles", "20", "--out", str(tmp_path)]
+    assert main(words) == 0
+    stored = json.loads((tmp_path / "corridor.json").read_text())
+    assert "methods_by_hand" not in stored
+    x, y = (float(next(csv.DictReader((tmp_path / "corridor.csv").open()))[f"proposed_{axis}_m"]) for axis in "xy")
+    start = read_sequence(corridor_folder / "wagon").camera_to_world[0, :2, 3]
+    assert np.hypot(x - start[0], y - start[1]) < 0.2
+
+
+@pytest.mark.parametrize(("recording", "missing"), [("own", "map.ply"), ("shipped", "map.ply")])
+def test_a_folder_without_the_data_is_named(recording, missing, tmp_path, capsys):
+    assert main(["demo", "corridor", "--data", str(tmp_path), "--recording", recording]) == 2
+    assert missing in capsys.readouterr().err
+
+
+SMALL = ["--frames", "2", "--particles", "6", "--methods", "proposed,fallon"]
+
+
+@pytest.fixture(scope="module")
+def two_seeds(tmp_path_factory):
+    """Two seeds, finished: their folder."""
+    out = tmp_path_factory.mktemp("seeds")
+    assert main(["demo", "corridor", "--seeds", "10040-10041", *SMALL, "--out", str(out)]) == 0
+    return out
+
+
+def test_several_seeds_give_a_table_over_recordings(two_seeds, capsys):
+    assert main(["demo", "corridor", "--seeds", "10040-10041", *SMALL, "--out", str(two_seeds), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["seeds"] == [summary["seed"] for summary in result["recordings"]] == [10040, 10041]
+    medians = [summary["median_timed_m"] for summary in result["recordings"]]
+    told = result["over_recordings"]["methods"]["proposed"]["median_timed_m"]
+    assert told == {"median": pytest.approx(sum(medians) / 2), "least": min(medians), "greatest": max(medians)}
+    assert medians[0] != medians[1]
+    table = table_over_recordings(result)
+    assert "Table 1 over 2 recordings, seeds 10040 to 10041" in table
+    assert f"({min(medians):.3f} to {max(medians):.3f})" in table
+
+
+def test_finished_seeds_are_not_run_again_and_others_are(two_seeds, tmp_path, capsys, monkeypatch):
+    ran = []
+    real = demo_corridor._rows_of
+    monkeypatch.setattr(demo_corridor, "_rows_of", lambda a, seed, t: ran.append(seed) or real(a, seed, t))
+    out = tmp_path / "seeds"
+    shutil.copytree(two_seeds, out)
+    (out / "seed_10041.json").unlink()
+    assert main(["demo", "corridor", "--seeds", "10040-10041", *SMALL, "--out", str(out)]) == 0
+    assert ran == [10041]
+    assert "seed 10040: finished before" in capsys.readouterr().err
+    other = ["--frames", "2", "--particles", "5", "--methods", "proposed,fallon"]
+    assert main(["demo", "corridor", "--seeds", "10040", *other, "--out", str(out)]) == 0
+    assert ran == [10041, 10040]
+
+
+def test_a_seed_is_written_when_it_is_done(tmp_path, monkeypatch):
+    real = demo_corridor._rows_of
+
+    def stopped(arguments, seed, temporary):
+        if seed == 10041:
+            raise KeyboardInterrupt
+        return real(arguments, seed, temporary)
+
+    monkeypatch.setattr(demo_corridor, "_rows_of", stopped)
+    assert main(["demo", "corridor", "--seeds", "10040-10041", *SMALL, "--out", str(tmp_path)]) == 130
+    assert json.loads((tmp_path / "seed_10040.json").read_text())["seed"] == 10040
+    assert not (tmp_path / "seed_10041.json").exists()
+
+
+def test_the_kindnesses_are_measured_one_by_one(tmp_path, capsys):
+    words = ["--seeds", "10042", "--frames", "2", "--particles", "4", "--backend", "ray", "--out", str(tmp_path)]
+    assert main(["demo", "corridor", "--kindnesses", *words]) == 0
+    table = capsys.readouterr().out
+    result = json.loads((tmp_path / "kindnesses.json").read_text())
+    assert list(result["hardships"]) == ["none", *HARDSHIPS, "all"]
+    assert len({row["median_timed_m"]["median"] for row in result["hardships"].values()}) > 4
+    assert all(name in table for name in result["hardships"])
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (["--seeds", "5-1"], "--seeds must be"),
+        (["--seeds", "1-"], "--seeds must be"),
+        (["--frames", "0"], "--frames must be at least 1"),
+        (["--methods", "proposed"], "--methods goes with --seeds"),
+        (["--seeds", "1", "--methods", "proposed,miracle"], "--methods must name proposed and fallon"),
+    ],
+)
+def test_options_that_do_not_fit_are_told_before_the_work(words, named, capsys):
+    assert main(["demo", "corridor", *words]) == 2
+    assert named in capsys.readouterr().err
 
 
 def test_another_process_with_the_same_seed_writes_the_same_bytes(tmp_path):

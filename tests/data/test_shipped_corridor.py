@@ -12,8 +12,9 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import optical_pose, rotation_angle, state_from_optical_pose
-from course_lib.simulation.corridor.data import PRODUCTS, CorridorModels, parameter_tables
+from course_lib.simulation.corridor.data import PRODUCTS, CorridorModels
 from course_lib.simulation.corridor.mesh_files import read_world_ply
+from course_lib.simulation.corridor.parameters import corridor_parameters
 from course_lib.simulation.corridor.world import CLUTTER, make_corridor
 from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.sensors.ray_casting import WorldCaster
@@ -169,7 +170,7 @@ def test_the_images_have_the_no_return_rate_that_the_summary_tells(run, summary)
 def test_parameters_and_seed_are_those_of_the_code(summary):
     assert summary["seed"] == 4
     assert summary["models"] == json.loads(json.dumps(dataclasses.asdict(CorridorModels())))
-    assert (FOLDER / "PARAMETERS.md").read_text() == parameter_tables(CorridorModels(), "corridor")
+    assert (FOLDER / "PARAMETERS.md").read_text() == corridor_parameters(CorridorModels())
 
 
 def test_the_true_world_is_the_one_that_the_seed_makes():

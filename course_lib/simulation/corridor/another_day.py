@@ -33,15 +33,14 @@ BESIDE = 0.35
 class DayModel:
     """What changes from one day of recording to the next in one building."""
 
-    as_surveyed: float = (
-        0.3  # probability that a left door stands as on the survey day; chosen, 2 of 7 in data/corridor
-    )
+    as_surveyed: float = 0.3  # probability that a left door stands as on the survey day; chosen, shipped: 2 of 7
     closed: float = 0.4  # probability that any other left door is closed; chosen
     open_deg: tuple[float, float] = (10.0, 90.0)  # degrees by which a door stands open that is not closed; chosen
     things: tuple[int, int] = (8, 12)  # how many things stand in the way, least and most; chosen, 10 in data/corridor
     people: float = 0.3  # probability that a thing is a standing person; chosen, 3 of 10 in data/corridor
     apart: float = 2.1  # m along x between the middles of two things, so that a wagon gets past; chosen
     stretch: tuple[float, float] = (4.5, 37.0)  # m along x where things may stand; chosen
+    starts: tuple[float, float] = (1.8, 6.0)  # m along x, from where to where the wagon may start; chosen
 
 
 def another_day(building: Building, model: DayModel, rng: np.random.Generator) -> RunDay:

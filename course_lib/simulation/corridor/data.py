@@ -20,6 +20,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.simulation.corridor.measurements import hole_share, map_error, noise_on_a_wall
 from course_lib.simulation.corridor.mesh_building import WorldMesh
 from course_lib.simulation.corridor.mesh_files import write_ply, write_world_ply
+from course_lib.simulation.corridor.parameters import corridor_parameters
 from course_lib.simulation.corridor.planar_map import planar_simplification
 from course_lib.simulation.corridor.recorded_runs import (
     FRAME_RATE,
@@ -34,7 +35,6 @@ from course_lib.simulation.corridor.recording import record
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
 from course_lib.simulation.corridor.world import LENGTH, make_corridor
 from course_lib.simulation.data_folder import checksums, move_products, require_folder
-from course_lib.simulation.parameter_tables import parameter_tables
 from course_lib.simulation.sensors.laser_survey import STATIONS, ScannerModel, registration_error, survey
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
@@ -94,7 +94,7 @@ def make_corridor_data(
         }
         summary = {"seed": seed, "models": asdict(models), "measured": _rounded(measured)}
         (folder / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
-        (folder / "PARAMETERS.md").write_text(parameter_tables(models, "corridor"))
+        (folder / "PARAMETERS.md").write_text(corridor_parameters(models))
         (folder / "SHA256SUMS").write_text(checksums(folder, PRODUCTS))
         move_products(folder, out, PRODUCTS)
     return summary

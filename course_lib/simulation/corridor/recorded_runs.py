@@ -183,8 +183,8 @@ def survey_floor_line(states: np.ndarray, model: FloorSurveyModel, rng: np.rando
     """Points `(P, 3)` on the line on the floor below the camera, as a laser survey, registered to the map, has them."""
     xy = states[:, :2]
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=1))])
-    # A wagon that stands still is at one place of the line for many frames.
-    moved = np.concatenate([[True], np.diff(arc) > 1e-6])
+    # A wagon that stands still is at one place of the line for many frames: a spline through them would loop.
+    moved = np.concatenate([[True], np.diff(arc) > 0.005])
     line = CubicSpline(arc[moved], xy[moved])(np.arange(0.0, arc[-1], model.spacing))
     points = np.column_stack([line, np.zeros(len(line))])
     offset = model.registration * rng.normal(size=3)

@@ -48,7 +48,6 @@ class SeedModels:
     camera: TimeOfFlightModel = field(default_factory=TimeOfFlightModel)
     calibration: CalibrationModel = field(default_factory=CalibrationModel)
     floor_survey: FloorSurveyModel = field(default_factory=FloorSurveyModel)
-    starts: tuple[float, float] = (1.8, 6.0)  # m along x, from where to where the run may start; chosen
 
 
 def building_of_data(folder: str | Path) -> Building:
@@ -90,7 +89,7 @@ def record_seed(
     streams = np.random.default_rng([seed, 1]).spawn(6)
     day_rng, path_rng, push_rng, calibration_rng, pattern_rng, noise_rng = streams
     day = another_day(building, models.day, day_rng)
-    wagon = dataclasses.replace(models.wagon, start=path_rng.uniform(*models.starts))
+    wagon = dataclasses.replace(models.wagon, start=path_rng.uniform(*models.day.starts))
     pushing = draw_pushing(models.push, wagon.frames, push_rng) if "pushed by hand" in hardships else None
     errors = _only(models.calibration.draw(calibration_rng), hardships)
     instrument = TimeOfFlightCamera(camera or DepthCamera.sr4000(), models.camera, pattern_rng, errors)

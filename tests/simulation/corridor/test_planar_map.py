@@ -75,6 +75,18 @@ def test_pieces_of_one_plane_are_judged_one_by_one():
     assert kept.bounds[1][0] == pytest.approx(2.0)
 
 
+def test_a_plane_is_fitted_by_area_and_not_by_the_number_of_triangles():
+    """Nine square metres in 18 triangles outweigh one in thousands, 40 mm above: the plane stays near the large one."""
+    coarse, fine = (
+        trimesh.Trimesh([[x, x, z], [y, x, z], [y, y, z], [x, y, z]], [[0, 1, 2], [0, 2, 3]])
+        for x, y, z in ((0.0, 3.0, 0.0), (1.0, 2.0, 0.04))
+    )
+    both = trimesh.util.concatenate([coarse.subdivide_to_size(1.5), fine.subdivide_to_size(0.04)])
+    kept = planar_simplification(SceneMap(both.vertices, both.faces), np.random.default_rng(0), reduction=0.0)
+    assert len(both.faces) > 1000
+    assert np.abs(kept.vertices[:, 2]).max() < 0.012
+
+
 def test_the_seed_decides(planar):
     again = planar_simplification(rough_room(np.random.default_rng(0)), np.random.default_rng(1))
     assert np.array_equal(planar.vertices, again.vertices)

@@ -8,7 +8,9 @@ import pytest
 from course_lib.simulation.corridor.recorded_runs import (
     FloorSurveyModel,
     HandModel,
+    PushModel,
     WagonModel,
+    draw_pushing,
     hand_run,
     steps_and_turns,
     survey_floor_line,
@@ -84,3 +86,38 @@ def test_the_floor_line_is_dense_and_millimetres_from_the_path(boxes):
     nearest = np.min(np.linalg.norm(states[::20, None, :2] - line[None, :, :2], axis=2), axis=1)
     assert nearest.max() < 0.02
     assert np.abs(line[:, 2]).max() < 0.03
+
+
+def pushed(boxes, seed):
+    pushing = draw_pushing(PushModel(), WagonModel().frames, np.random.default_rng(seed + 100))
+    return wagon_run(WagonModel(), boxes, np.random.default_rng(seed), pushing)[0]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_pushed_wagon_varies_its_speed_by_tens_of_percent_and_stops(boxes, seed):
+    even = steps_and_turns(wagon_run(WagonModel(), boxes, np.random.default_rng(seed))[0])[0]
+    step = steps_and_turns(pushed(boxes, seed))[0]
+    standing = step < 0.003
+    assert standing.sum() >= 4
+    assert np.std(step[~standing]) / np.mean(step[~standing]) > 0.2
+    assert np.std(even) / np.mean(even) < 0.03
+    assert 0.12 < step.max() < 0.19
+    # It never rolls back, and stays in the corridor of 40 m from wherever a seed's run may start.
+    assert step.sum() < 1.15 * even.sum()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_pushed_wagon_sways_while_it_moves_and_not_while_it_stands(boxes, seed):
+    even, hard = wagon_run(WagonModel(), boxes, np.random.default_rng(seed))[0], pushed(boxes, seed)
+    turn = np.rad2deg(np.abs(np.diff(hard[:, 5])))
+    standing = steps_and_turns(hard)[0] < 0.003
+    assert np.percentile(turn[~standing], 90) > 1.3 * np.percentile(np.rad2deg(np.abs(np.diff(even[:, 5]))), 90)
+    assert turn.max() < 3.0
+    assert np.array_equal(hard[:, 2:5], even[:, 2:5])  # height and tilt are the wheels'
+
+
+def test_the_line_of_a_wagon_that_stood_still_is_as_dense_as_any(boxes):
+    states = pushed(boxes, 1)
+    line = survey_floor_line(states, FloorSurveyModel(noise=0.0, registration=0.0), np.random.default_rng(1))
+    assert np.linalg.norm(np.diff(line[:, :2], axis=0), axis=1) == pytest.approx(0.01, abs=1e-3)
+    assert np.linalg.norm(states[:, None, :2] - line[None, :, :2], axis=2).min(axis=1).max() < 0.01

@@ -8,7 +8,12 @@ import pytest
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.simulation.corridor.measurements import noise_on_a_wall
 from course_lib.simulation.sensors.ray_casting import WorldCaster
-from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
+from course_lib.simulation.sensors.time_of_flight import (
+    CalibrationErrors,
+    CalibrationModel,
+    TimeOfFlightCamera,
+    TimeOfFlightModel,
+)
 
 CAMERA = DepthCamera.sr4000().resized(44, 36)
 MODEL = TimeOfFlightModel()
@@ -27,9 +32,9 @@ def walls(*distances_and_edges, reflectivity=0.8):
     return WorldCaster(np.array(vertices), np.array(faces), reflectivity)
 
 
-def capture(world, model=MODEL, seed=0):
+def capture(world, model=MODEL, seed=0, errors=None):
     rng = np.random.default_rng(seed)
-    return TimeOfFlightCamera(CAMERA, model, rng).capture(world, np.zeros(6), rng)
+    return TimeOfFlightCamera(CAMERA, model, rng, errors).capture(world, np.zeros(6), rng)
 
 
 def test_a_wall_at_two_metres_reads_two_metres():
@@ -111,3 +116,46 @@ def test_the_camera_looks_along_body_x_with_left_at_the_left():
     depth = capture(walls((3.0, 0.0)), QUIET).depth
     assert np.isfinite(depth[:, 0]).all()  # y > 0 is left, column 0
     assert np.isnan(depth[:, -1]).all()
+
+
+def columns_of_the_wall(errors=None):
+    """How many columns a wall to the left of y = 0.6 m at 3 m covers: those of its pixels in the middle row."""
+    return np.isfinite(capture(walls((3.0, 0.6)), QUIET, errors=errors).depth[18]).sum()
+
+
+def test_a_longer_focal_length_shows_things_farther_from_the_middle():
+    """The edge lies 0.2 fx = 11 pixels left of the middle; a tenth more is one pixel farther."""
+    told = columns_of_the_wall()
+    assert told == columns_of_the_wall(CalibrationErrors())
+    assert told - columns_of_the_wall(CalibrationErrors(focal_length=0.2)) in (2, 3)
+    assert columns_of_the_wall(CalibrationErrors(focal_length=-0.2)) - told in (2, 3)
+
+
+def test_distortion_moves_the_corners_and_leaves_the_middle():
+    """A pixel that looks farther out than told sees a tilted wall nearer or farther; square walls show it by range."""
+    frame = capture(walls((3.0, -20.0)), QUIET, errors=CalibrationErrors(radial=0.5))
+    # Range grows with the angle, and depth by the told rays keeps the excess: 3 m sqrt(1 + r'^2) / sqrt(1 + r^2).
+    r = np.hypot(*np.moveaxis(CAMERA.rays()[..., :2], -1, 0))
+    expected = 3.0 * np.sqrt((1 + (r * (1 + 0.5 * r**2)) ** 2) / (1 + r**2))
+    assert frame.depth == pytest.approx(expected, abs=2e-3)
+    assert frame.depth[0, 0] > 3.05
+    assert frame.depth[18, 22] == pytest.approx(3.0, abs=1e-3)
+
+
+def test_the_mount_moves_and_turns_the_camera():
+    nearer = capture(walls((3.0, -20.0)), QUIET, errors=CalibrationErrors(mount=(0.1, 0, 0, 0, 0, 0))).depth
+    assert nearer == pytest.approx(np.full(CAMERA.shape, 2.9), abs=1e-3)
+    turned = capture(walls((3.0, -20.0)), QUIET, errors=CalibrationErrors(mount=(0, 0, 0, 0, 0, 0.1))).depth[18]
+    # Turned to the left by 0.1 rad, the axis meets the wall at 3 / cos(0.1), and the left columns meet it farther off.
+    assert turned[21:23].mean() == pytest.approx(3.0 / np.cos(0.1), abs=0.005)
+    assert turned[0] > turned[-1] + 0.1
+
+
+def test_drawn_errors_have_the_sizes_of_the_model_and_signs_of_their_own():
+    drawn = [CalibrationModel().draw(np.random.default_rng(seed)) for seed in range(20)]
+    assert {abs(errors.focal_length) for errors in drawn} == {0.01}
+    numbers = np.array([(errors.focal_length, errors.radial, *errors.mount) for errors in drawn])
+    sizes = [0.01, 0.02, *[0.005] * 3, *[np.deg2rad(0.3)] * 3]
+    assert np.abs(numbers) == pytest.approx(np.tile(sizes, (20, 1)))
+    assert (np.abs(np.sign(numbers).mean(axis=0)) < 0.8).all()
+    assert np.abs(np.corrcoef(np.sign(numbers).T) - np.eye(8)).max() < 0.99

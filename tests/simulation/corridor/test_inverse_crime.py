@@ -1,0 +1,115 @@
+"""No inverse crime, asked of the code that makes data: a small world through `make_corridor_data`, start to end.
+
+The map must come from the survey day and from where registration believes the stations stood; the recording from the
+run day. What the shipped files hold is asked in tests/data.
+"""
+
+import dataclasses
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.simulation.corridor import data
+from course_lib.simulation.corridor.materials import WALL_PAINT
+from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement
+from course_lib.simulation.corridor.recorded_runs import HandModel, WagonModel
+from course_lib.simulation.corridor.surface_fusion import FusionModel
+from course_lib.simulation.corridor.world import TrueWorld
+from course_lib.simulation.sensors.laser_survey import ScannerModel
+from course_lib.simulation.sensors.ray_casting import WorldCaster
+
+LONG = 8.0  # m: a box of 8 x 2.4 x 2.4 m instead of the corridor
+SCREEN = 5.0  # m along x: a screen across the box, there on the run day only
+MODELS = data.CorridorModels(
+    scanner=ScannerModel(step_deg=1.0),
+    fusion=FusionModel(voxel=0.1, truncation=0.3, triangles=3000, least_component=10),
+    wagon=WagonModel(frames=2, start=1.0),
+    hand=HandModel(frames=2, start=1.0),
+    stations=((2.0, 0.2), (4.0, -0.2)),
+)
+
+
+class Made(NamedTuple):
+    """What was made, and the scans that fusion was given."""
+
+    folder: Path
+    summary: dict
+    fused: list
+
+
+def box_world(rng):
+    """A box without and with the screen, in place of `make_corridor`."""
+    built = []
+    for screen in (False, True):
+        b = MeshBuilder()
+        b.box(Placement(), (0, -1.2, 0), (LONG, 1.2, 2.4), WALL_PAINT)
+        if screen:
+            b.box(Placement(), (SCREEN, -1.1, 0.1), (SCREEN + 0.1, 1.1, 2.3), WALL_PAINT)
+        built.append(b.build())
+    return TrueWorld(*built, clutter_boxes=np.zeros((0, 2, 2)))
+
+
+@pytest.fixture(scope="module")
+def make(tmp_path_factory):
+    """Makes the data of the box with scanner parameters changed."""
+
+    def make_data(**scanner):
+        fused = []
+        fuse = data.fuse
+        folder = tmp_path_factory.mktemp("box") / "data"
+        models = dataclasses.replace(MODELS, scanner=dataclasses.replace(MODELS.scanner, **scanner))
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(data, "make_corridor", box_world)
+            patch.setattr(data, "PLANAR_LEAST_AREA", 0.5)
+            patch.setattr(data, "fuse", lambda scans, *rest: fused.extend(scans) or fuse(scans, *rest))
+            return Made(folder, data.make_corridor_data(folder, 3, models), fused)
+
+    return make_data
+
+
+@pytest.fixture(scope="module")
+def made(make):
+    return make()
+
+
+def ahead(path):
+    """Distance from the middle of the box, 2 m from its end, to the first surface along +x."""
+    scene_map = SceneMap.load(path)
+    caster = WorldCaster(scene_map.vertices, scene_map.faces)
+    return float(caster.cast(np.array([2.0, 0.05, 1.0]), np.array([[1.0, 0.0, 0.0]])).distance[0])
+
+
+def test_the_map_is_of_the_survey_day(made):
+    assert ahead(made.folder / "map.ply") == pytest.approx(LONG - 2.0, abs=0.1)
+    assert ahead(made.folder / "planar_map.ply") == pytest.approx(LONG - 2.0, abs=0.1)
+
+
+def test_the_recordings_are_of_the_run_day(made):
+    assert ahead(made.folder / "true_world.ply") == pytest.approx(SCREEN - 2.0, abs=0.01)
+    for name in ("wagon", "hand"):
+        sequence = read_sequence(made.folder / name)
+        middle = sequence.depth(0)[62:82, 78:98]
+        assert np.nanmedian(middle) < SCREEN - sequence.camera_to_world[0, 0, 3] + 0.6
+
+
+def test_the_map_is_fused_where_registration_believes_the_stations_stood(make):
+    """Stations believed 0.2 m from where they stood bend the map; fused with their true poses it would not be bent."""
+    exact, bent = (
+        make(registration_position=sigma, registration_tilt_deg=0.0, registration_heading_deg=0.0).summary["measured"][
+            "map"
+        ]
+        for sigma in (0.0, 0.2)
+    )
+    assert exact["registration"]["rms_station_position_error_m"] == 0.0
+    assert bent["registration"]["rms_station_position_error_m"] > 0.1
+    assert bent["distance_to_surveyed_world"]["median_m"] > 0.03
+    assert bent["distance_to_surveyed_world"]["median_m"] > 5 * exact["distance_to_surveyed_world"]["median_m"]
+
+
+def test_fusion_is_given_no_true_pose(made):
+    assert len(made.fused) == 2
+    assert not any(hasattr(scan, "true_pose") for scan in made.fused)

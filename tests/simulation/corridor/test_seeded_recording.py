@@ -1,0 +1,81 @@
+"""A seed's own recording: what the seed decides, what a hardship changes, and what the filter is told."""
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.simulation.corridor.mesh_files import read_world_ply
+from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
+from course_lib.simulation.corridor.world import run_day
+
+CAMERA = DepthCamera.sr4000().resized(22, 18)
+
+
+@pytest.fixture(scope="module")
+def building(corridor_folder):
+    return building_of_data(corridor_folder)
+
+
+@pytest.fixture(scope="module")
+def record(building, tmp_path_factory):
+    """Records the first three frames of a seed and reads them."""
+
+    def make(seed, hardships=()):
+        folder = tmp_path_factory.mktemp("recording") / "run"
+        record_seed(folder, building, seed, hardships, camera=CAMERA, frames=3)
+        return read_sequence(folder)
+
+    return make
+
+
+@pytest.fixture(scope="module")
+def plain(record):
+    return record(10_010)
+
+
+def images(sequence):
+    return np.stack([sequence.depth(i) for i in range(len(sequence))])
+
+
+def test_the_building_is_the_shipped_one(building, corridor_folder):
+    shipped = read_world_ply(corridor_folder / "true_world.ply")[0]
+    mine = run_day(building, [0.0] * 7, [], np.random.default_rng(0)).mesh
+    walls = mine.vertices[np.unique(mine.faces[mine.faces_of("radiator")])]
+    found = {tuple(vertex) for vertex in np.round(shipped, 4).tolist()}
+    assert np.mean([tuple(vertex) in found for vertex in np.round(walls, 4).tolist()]) > 0.9
+
+
+def test_a_seed_gives_one_recording_and_another_seed_another(record, plain):
+    again, other = record(10_010), record(10_011)
+    assert np.array_equal(images(again), images(plain), equal_nan=True)
+    assert np.array_equal(again.camera_to_world, plain.camera_to_world)
+    assert abs(other.camera_to_world[0, 0, 3] - plain.camera_to_world[0, 0, 3]) > 0.1
+    assert np.ptp([len(s.path_on_floor) for s in (plain, other)]) > 0
+
+
+@pytest.mark.parametrize("hardship", [h for h in HARDSHIPS if h != "pushed by hand"])
+def test_an_error_of_the_camera_changes_the_images_and_not_what_is_told(hardship, record, plain):
+    harder = record(10_010, (hardship,))
+    assert not np.array_equal(images(harder), images(plain), equal_nan=True)
+    assert np.nanmedian(np.abs(images(harder) - images(plain))) < 0.1
+    assert np.array_equal(harder.camera_to_world, plain.camera_to_world)
+    assert np.array_equal(harder.intrinsics, plain.intrinsics)
+    assert harder.intrinsics == pytest.approx(CAMERA.matrix, abs=1e-5)
+
+
+def test_pushing_changes_the_way_and_nothing_else_of_the_seed(record, plain):
+    pushed = record(10_010, ("pushed by hand",))
+    assert not np.allclose(pushed.camera_to_world[1:, :3, 3], plain.camera_to_world[1:, :3, 3], atol=1e-3)
+    assert pushed.camera_to_world[0, 0, 3] == pytest.approx(plain.camera_to_world[0, 0, 3], abs=0.02)
+    assert np.nanmedian(np.abs(images(pushed)[0] - images(plain)[0])) < 0.1
+
+
+def test_an_unknown_hardship_is_named(building, tmp_path):
+    with pytest.raises(ValueError, match="unknown hardship 'rain'"):
+        record_seed(tmp_path / "run", building, 1, ("rain",))
+
+
+def test_a_folder_without_the_seed_of_its_building_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"no summary\.json"):
+        building_of_data(tmp_path)
