@@ -40,9 +40,10 @@ def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
 def chosen_detector(arguments: argparse.Namespace) -> YoloDetector:
     """The detector that the options name, loaded.
 
-    Raises `ValueError` for an input size or a threshold that no network can have, and what `load_detector` raises.
+    Raises `ValueError` for an input size or a threshold that no network can have, and what `YoloDetector.load` raises.
     """
-    from course_lib.lessons.kit.shipped_detector import load_detector
+    from course_lib.lessons.kit.paths import data_path
+    from course_lib.spherical_stereo.detection.detector import YoloDetector
 
     options: dict = {}
     if arguments.input_size is not None:
@@ -54,4 +55,4 @@ def chosen_detector(arguments: argparse.Namespace) -> YoloDetector:
         if not 0 <= arguments.score_threshold <= 1:
             raise ValueError(f"--score-threshold must be between 0 and 1; got {arguments.score_threshold}")
         options["score_threshold"] = arguments.score_threshold
-    return load_detector(arguments.detector, **options)
+    return YoloDetector.load(arguments.detector or data_path("detector"), **options)

@@ -51,7 +51,9 @@ The steps of figure 2, in order:
 Images are BGR uint8 arrays, as OpenCV reads them. Boxes and points on them are in edge coordinates (`sphere`).
 """
 
-from course_lib.spherical_stereo.detection.detector import Detection, DetectionError, DetectorError, YoloDetector
+from course_lib.spherical_stereo.detection.boxes import DetectionError
+from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detector import DetectorError, YoloDetector
 from course_lib.spherical_stereo.detection.seam import extend_seam
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
 from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError
@@ -59,22 +61,15 @@ from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, ma
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,
     StereoRig,
+    View,
     direction_to_pixel,
+    open_pair,
+    open_view,
     pixel_to_direction,
     read_panorama,
 )
 from course_lib.spherical_stereo.pose.localization import Localization
-from course_lib.spherical_stereo.pose.rigid_fit import (
-    CoincidentPoints,
-    MirroredPoints,
-    NotFinite,
-    Pose2D,
-    RigidFitError,
-    TooFewPairs,
-    UndeterminedRotation,
-    fit_covariance,
-    fit_rigid_2d,
-)
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
 from course_lib.spherical_stereo.ranging.triangulation import (
     TriangulationError,
     triangulate,
@@ -97,15 +92,12 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, Sema
 __all__ = [
     "Association",
     "AssociationError",
-    "CoincidentPoints",
     "Detection",
     "DetectionError",
     "DetectorError",
     "Landmark",
     "Localization",
     "LocalizerError",
-    "MirroredPoints",
-    "NotFinite",
     "ObjectMatch",
     "Observation",
     "PanoramaError",
@@ -118,9 +110,8 @@ __all__ = [
     "SemanticMapError",
     "StereoRig",
     "SwappedImagesError",
-    "TooFewPairs",
     "TriangulationError",
-    "UndeterminedRotation",
+    "View",
     "YoloDetector",
     "associate_greedy",
     "direction_to_pixel",
@@ -129,6 +120,8 @@ __all__ = [
     "fit_covariance",
     "fit_rigid_2d",
     "match_objects",
+    "open_pair",
+    "open_view",
     "penalty",
     "penalty_table",
     "pixel_to_direction",

@@ -23,7 +23,7 @@ from course_lib.spherical_stereo.matching.epipolar import (
 from course_lib.spherical_stereo.matching.feature_matching import RATIO
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, inside_box
 from course_lib.spherical_stereo.matching.object_matching import pair_by_most_matches
-from course_lib.spherical_stereo.panorama import StereoRig, azimuth_elevation_of_pixel
+from course_lib.spherical_stereo.panorama import StereoRig, View, azimuth_elevation_of_pixel, open_view
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, read_stereo_recording
 
 EXPERIMENT, PLACE = "room/experiment_2", "09_a"  # a chair stands before another, and a table lies across the seam
@@ -33,7 +33,7 @@ EVERYWHERE = 1.57  # radians: a tolerance that lets everything through
 ALL_BITS = 486  # of an AKAZE descriptor: no two differ in more
 
 
-class View(NamedTuple):
+class Side(NamedTuple):
     """One panorama: its picture, what is on it, and its features."""
 
     image: np.ndarray
@@ -44,12 +44,18 @@ class View(NamedTuple):
     """Line of each object in the map."""
     features: PanoramaFeatures
 
+    def view(self, objects: Sequence[Detection] | None = None) -> View:
+        """The panorama as the library hands it on; objects: others than its own."""
+        return open_view(self.image).having(
+            detections=self.objects if objects is None else objects, features=self.features
+        )
+
 
 class Scene(NamedTuple):
     """Both panoramas of one place."""
 
-    upper: View
-    lower: View
+    upper: Side
+    lower: Side
     rig: StereoRig
 
 
@@ -65,7 +71,7 @@ def scene(name: str = PLACE) -> Scene:
     recording = read_stereo_recording(data_path(EXPERIMENT))
     pair = pair_of(recording, name)
     views = [
-        View(image, *exact_detections(things, image), detect_features(image))
+        Side(image, *exact_detections(things, image), detect_features(image))
         for image, things in zip(pair.images(), (pair.upper_objects, pair.lower_objects), strict=True)
     ]
     return Scene(*views, recording.rig)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_elevation_of_pixel, check_panorama
+from course_lib.spherical_stereo.panorama import PanoramaError, View, azimuth_elevation_of_pixel, open_view
 
 # Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
 # 1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none, for half as much time again; on a real pair as
@@ -49,18 +49,26 @@ class PanoramaFeatures:
         return azimuth_elevation_of_pixel(self.keypoints, self.width, self.height)
 
 
+def find_features(view: View) -> View:
+    """The panorama with its features, found unless they are there already: the first step of section 2.3.
+
+    Source: paper 2, section 2.3.
+    """
+    return view if view.features is not None else view.having(features=detect_features(view))
+
+
 def detect_features(
-    image: np.ndarray, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES
+    image: np.ndarray | View, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES
 ) -> PanoramaFeatures:
     """AKAZE features of a whole panorama, those on the seam included, each once.
 
-    image: uint8 BGR `(H, W, 3)`, W = 2 H. threshold: smallest response, lower means more and weaker features. The image
-    is extended by its own other end on both sides, and only features whose place is in the image proper are kept: a
-    feature on the seam is found whole, and its copy in the extension is left out.
-    Raises `check_panorama`'s errors, and `PanoramaError` for a threshold that is not positive or octaves below one.
+    image: uint8 BGR `(H, W, 3)`, W = 2 H, or a `View` of it. threshold: smallest response, lower means more and weaker
+    features. The image is extended by its own other end on both sides, and only features whose place is in the image
+    proper are kept: a feature on the seam is found whole, and its copy in the extension is left out.
+    Raises `PanoramaError` as `open_view` does, and for a threshold that is not positive or octaves below one.
     Source: paper 2, section 2.3.
     """
-    check_panorama(image)
+    image = open_view(image).image
     if not threshold > 0 or int(octaves) != octaves or octaves < 1:
         raise PanoramaError(f"threshold must be positive and octaves at least 1; got {threshold!r} and {octaves!r}")
     height, width = image.shape[:2]
