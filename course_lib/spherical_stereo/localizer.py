@@ -105,10 +105,11 @@ class SemanticLocalizer:
         Raises `SwappedImagesError`, `DetectionError` for boxes that are none, `PanoramaError` for views of two sizes.
         Source: paper 2, figure 2.
         """
-        blank = [name for name, view in (("upper", upper), ("lower", lower)) if view.is_blank]
-        if blank:
-            explanation = f"the {' and the '.join(blank)} image is black: is a lens covered?"
-            return Localization(None, UNABLE, outcomes.BLANK, explanation, **_seen(upper, lower))
+        seen = Localization(None, UNABLE, upper_detections=upper.detections, lower_detections=lower.detections)
+        if upper.is_blank or lower.is_blank:
+            which = [name for name, view in (("upper", upper), ("lower", lower)) if view.is_blank]
+            explanation = f"the {' and the '.join(which)} image is black: is a lens covered?"
+            return replace(seen, reason=outcomes.BLANK, explanation=explanation)
         turn = None
         if self.reject_implausible and upper.detections and lower.detections:
             upper, lower = find_features(upper), find_features(lower)
@@ -118,9 +119,10 @@ class SemanticLocalizer:
                 "the lower camera is turned against the upper one, by {:.1f} degrees of roll, {:.1f} of pitch and "
                 f"{{:.1f}} of yaw; {np.degrees(GREATEST_TURN):.1f} are allowed: mend or calibrate the rig"
             ).format(*np.degrees(turn))
-            return Localization(None, UNABLE, outcomes.TURNED, explanation, turn=turn, **_seen(upper, lower))
+            return replace(seen, reason=outcomes.TURNED, explanation=explanation, turn=turn)
         matching = match_views(upper, lower, self.rig, fewest_features=FEWEST_MATCHES if self.reject_implausible else 1)
-        found = self._localize(upper, lower, matching.matches)
+        pairs = [(match.upper, match.lower) for match in matching.matches]
+        found = self._localize(upper, lower, matching.matches, pairs)
         return replace(found, unmatched=tuple(matching.unmatched), turn=turn)
 
     def localize_detections(
@@ -140,14 +142,23 @@ class SemanticLocalizer:
         """
         size = self.image_size if size is None else size
         upper, lower = (View.of_detections(side, size) for side in (upper_detections, lower_detections))
-        return self._localize(upper, lower, list(matches))
-
-    def _localize(self, upper: View, lower: View, matches: list) -> Localization:
         for name, view in (("upper", upper), ("lower", lower)):
             boxes_on(view, name)
-        objects, observations = self._place(matches, upper, lower)
-        found = self.localize_observations(observations)
-        found = replace(found, matches=tuple(matches), objects=objects, **_seen(upper, lower))
+        matches = list(matches)
+        return self._localize(upper, lower, matches, matched_indices(matches, upper, lower))
+
+    def _localize(self, upper: View, lower: View, matches: list, pairs: list[tuple[int, int]]) -> Localization:
+        """Sections 2.4 to 2.6. pairs: indices (upper, lower) of the detections that matches join."""
+        furthest = greatest_range(self.rig.baseline) if self.reject_implausible else np.inf
+        places = place_objects(matches, pairs, upper, lower, self.rig, self.distance, furthest=furthest)
+        objects, observations = self._observations(pairs, places, upper.detections)
+        found = replace(
+            self.localize_observations(observations),
+            matches=tuple(matches),
+            objects=objects,
+            upper_detections=upper.detections,
+            lower_detections=lower.detections,
+        )
         return found if found.status == OK else _with_first_cause(found)
 
     def localize_observations(self, observations: Sequence[Observation]) -> Localization:
@@ -194,14 +205,13 @@ class SemanticLocalizer:
         covariance = fit_covariance(pose, source, target, covariances=covariances, noise=noise)
         return replace(found, pose=pose, status=OK, covariance=covariance, statistics=statistics)
 
-    def _place(self, matches: list, upper: View, lower: View) -> tuple[tuple[PlacedObject, ...], list[Observation]]:
-        """X = d x_hat of every match, and the observations of those with a place and a class of the map."""
-        pairs = matched_indices(matches, upper, lower)
-        furthest = greatest_range(self.rig.baseline) if self.reject_implausible else np.inf
-        places = place_objects(matches, pairs, upper, lower, self.rig, self.distance, furthest=furthest)
+    def _observations(
+        self, pairs: list[tuple[int, int]], places: list, detections: Sequence
+    ) -> tuple[tuple[PlacedObject, ...], list[Observation]]:
+        """What became of every match, and the observations: those with a place and a class of the map."""
         objects, observations = [], []
         for (i, j), (outcome, position, covariance) in zip(pairs, places, strict=True):
-            one = upper.detections[i]
+            one = detections[i]
             label, index = canonical_label(one.label), None
             if outcome == OK and label not in self.semantic_map.labels:
                 outcome = outcomes.UNMAPPED
@@ -211,10 +221,6 @@ class SemanticLocalizer:
                 observations.append(Observation(label, x, y, one.hue, one.saturation, covariance))
             objects.append(PlacedObject(i, j, label, outcome, position, index))
         return tuple(objects), observations
-
-
-def _seen(upper: View, lower: View) -> dict[str, tuple]:
-    return {"upper_detections": tuple(upper.detections), "lower_detections": tuple(lower.detections)}
 
 
 def _with_first_cause(found: Localization) -> Localization:

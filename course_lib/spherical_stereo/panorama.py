@@ -169,6 +169,8 @@ class View:
     """Section 2.2: anything with `label` and `box`, and for the map `hue` and `saturation`."""
     features: Any = None
     """Section 2.3: `PanoramaFeatures`, once they were looked for."""
+    is_blank: bool = False
+    """Whether the image shows nothing at all: a covered lens, or an exposure that failed."""
 
     def __post_init__(self) -> None:
         try:
@@ -193,11 +195,6 @@ class View:
     def size(self) -> tuple[int, int]:
         """(width, height), pixels."""
         return self.width, self.height
-
-    @property
-    def is_blank(self) -> bool:
-        """Whether the image shows nothing at all: a covered lens, or an exposure that failed."""
-        return self.image is not None and _is_blank(self.image)
 
     def having(self, **found: Any) -> View:
         """The same panorama with what a section found: `detections` or `features`."""
@@ -230,18 +227,15 @@ def open_view(image: np.ndarray | View, name: str = "image") -> View:
             f"{name} is {width} x {height} pixels; an equirectangular panorama is twice as wide as high"
             f" ({2 * height} x {height})"
         )
+    is_blank = int(image.max()) <= BLANK_LEVEL
     # Nearly every colour image shows its colour in a few pixels; only what may be grey is looked at as a whole.
-    if _is_grey(image[::16, ::16]) and _is_grey(image) and not _is_blank(image):
+    if _is_grey(image[::16, ::16]) and _is_grey(image) and not is_blank:
         raise PanoramaError(f"{name} is a grey image (its three channels are equal); a colour image is needed")
-    return View(width, height, image)
+    return View(width, height, image, is_blank=is_blank)
 
 
 def _is_grey(image: np.ndarray) -> bool:
     return bool((image == image[..., :1]).all())
-
-
-def _is_blank(image: np.ndarray) -> bool:
-    return int(image.max()) <= BLANK_LEVEL
 
 
 def open_pair(upper_image: np.ndarray | View, lower_image: np.ndarray | View) -> tuple[View, View]:

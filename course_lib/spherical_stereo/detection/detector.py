@@ -47,7 +47,8 @@ def find_objects(view: View, detector) -> View:
     detector: a `YoloDetector`, or anything else with `detect(image_bgr)` giving detections. Source: paper 2, section
     2.2.
     """
-    return view.having(detections=detector.detect(view if isinstance(detector, YoloDetector) else view.image))
+    found = detector.find(view) if isinstance(detector, YoloDetector) else detector.detect(view.image)
+    return view.having(detections=found)
 
 
 class YoloDetector:
@@ -148,14 +149,16 @@ class YoloDetector:
         """(width, height) of the network's input, pixels."""
         return self._network.input_size
 
-    def detect(self, image_bgr: np.ndarray | View) -> list[Detection]:
+    def detect(self, image_bgr: np.ndarray) -> list[Detection]:
         """Every object of a panorama once, the greatest score first.
 
-        image_bgr: (H, 2 H, 3) uint8 of any size, or a `View` of one, which was checked already. Boxes have
-        0 <= u_min < W, and u_max > W across the seam.
+        image_bgr: (H, 2 H, 3) uint8 of any size. Boxes have 0 <= u_min < W, and u_max > W across the seam.
         Raises PanoramaError as `open_view` does. Source: paper 2, section 2.2.
         """
-        view = open_view(image_bgr)
+        return self.find(open_view(image_bgr))
+
+    def find(self, view: View) -> list[Detection]:
+        """`detect` on a panorama that came through the door already. Source: paper 2, section 2.2."""
         image_bgr, width = view.image, view.width
         if self.use_seam_extension:
             boxes, scores, classes = self.detect_in_plane(extend_seam(image_bgr))

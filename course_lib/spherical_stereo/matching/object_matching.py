@@ -105,7 +105,8 @@ def match_views(
     Raises `DetectionError` for a box that is none, `SwappedImagesError`, and `PanoramaError` for unlike sizes or a
     number of features below one. Source: paper 2, section 2.3.
     """
-    open_pair(upper, lower)
+    if upper.size != lower.size:
+        raise PanoramaError(f"the two images must have one size; got {upper.size} (upper) and {lower.size} (lower)")
     if fewest_features < 1:
         raise PanoramaError(f"fewest_features must be at least 1; got {fewest_features!r}")
     boxes = boxes_on(upper, "upper"), boxes_on(lower, "lower")
