@@ -116,6 +116,7 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
             detector,
             association=arguments.association,
             image_size=(recording.width, recording.height),
+            reject_implausible=False,  # the paper's method
         )
         results[f"experiment_{number}"] = {
             source: run_experiment(

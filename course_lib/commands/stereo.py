@@ -42,12 +42,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Matches, measures, prints; 0 when the two images could be matched."""
     from course_lib.commands.arguments import require_output_folder
-    from course_lib.spherical_stereo.detection.boxes_file import read_boxes
-    from course_lib.spherical_stereo.matching.feature_matching import match_detected_features
-    from course_lib.spherical_stereo.matching.features import detect_features
-    from course_lib.spherical_stereo.matching.object_matching import match_detections
-    from course_lib.spherical_stereo.panorama import StereoRig, check_panorama_pair, read_panorama
-    from course_lib.spherical_stereo.ranging.object_distances import measure_objects
+    from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
+    from course_lib.spherical_stereo.matching.feature_matching import match_features
+    from course_lib.spherical_stereo.matching.features import find_features
+    from course_lib.spherical_stereo.matching.object_matching import match_views
+    from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
+    from course_lib.spherical_stereo.ranging.object_places import measure_objects
 
     if not (np.isfinite(arguments.baseline) and arguments.baseline > 0):
         raise ValueError(f"--baseline must be a positive number of metres; got {arguments.baseline}")
@@ -56,18 +56,16 @@ def run(arguments: argparse.Namespace) -> int:
         raise ValueError(f"--sigma-pixels must be a positive number of pixels; got {arguments.sigma_pixels}")
     if arguments.out:
         require_output_folder(arguments.out)
-    boxes = read_boxes(arguments.boxes) if arguments.boxes else None
-    upper_image, lower_image = read_panorama(arguments.upper), read_panorama(arguments.lower)
-    width, height = check_panorama_pair(upper_image, lower_image)
-    upper_detections, lower_detections = boxes.detections(upper_image, lower_image) if boxes else ([], [])
+    boxes = read_stereo_boxes(arguments.boxes) if arguments.boxes else None
+    upper, lower = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
+    if boxes:
+        upper, lower = boxes.on(upper, lower)
     started = time.perf_counter()
-    upper, lower = detect_features(upper_image), detect_features(lower_image)
-    features = match_detected_features(upper, lower, rig)
-    matching = match_detections(upper, upper_detections, lower, lower_detections, rig)
+    upper, lower = find_features(upper), find_features(lower)
+    features = match_features(upper.features, lower.features)
+    matching = match_views(upper, lower, rig)
     seconds = time.perf_counter() - started
-    objects = measure_objects(
-        matching.matches, upper_detections, lower_detections, (width, height), rig, arguments.sigma_pixels
-    )
+    objects = measure_objects(matching.matches, upper, lower, rig, arguments.sigma_pixels)
     summary = {
         "upper": str(arguments.upper),
         "lower": str(arguments.lower),
@@ -75,17 +73,15 @@ def run(arguments: argparse.Namespace) -> int:
         "matches": len(features),
         "epipolar_percent": 100 * features.epipolar_share,
         "epipolar_tolerance_deg": float(np.degrees(features.tolerance)),
-        "median_disparity_px": _median(features.vertical_disparity[features.epipolar]) * height / np.pi,
-        "median_azimuth_difference_px": _median(np.abs(features.azimuth_difference)) * width / (2 * np.pi),
+        "median_disparity_px": _median(features.vertical_disparity[features.epipolar]) * upper.height / np.pi,
+        "median_azimuth_difference_px": _median(np.abs(features.azimuth_difference)) * upper.width / (2 * np.pi),
         "sigma_pixels": arguments.sigma_pixels,
         "seconds": seconds,
         "objects": [_row(measured, boxes) for measured in objects],
         "unmatched": [_unmatched_row(item, boxes) for item in matching.unmatched],
     }
     if arguments.out:
-        _write(
-            arguments.out, summary, (upper_image, lower_image), features, (upper_detections, lower_detections), objects
-        )
+        _write(arguments.out, summary, (upper, lower), features, objects)
     # NaN is no JSON: what has no value is null.
     print(json.dumps(_nan_to_none(summary)) if arguments.json else _table(summary, boxes is not None))
     if arguments.out and not arguments.json:
@@ -109,8 +105,17 @@ def _row(measured, boxes) -> dict:
         "lower": measured.lower,
         "matches": measured.n_matches,
         "azimuth_deg": measured.azimuth_deg,
-        "box_centre": vars(measured.box_centre),
-        "disparity": vars(measured.disparity),
+        "box_centre": _distance(measured.box_centre),
+        "disparity": _distance(measured.disparity),
+    }
+
+
+def _distance(place) -> dict:
+    return {
+        "outcome": place.outcome,
+        "distance_m": place.distance_m,
+        "horizontal_range_m": place.horizontal_range_m,
+        "horizontal_sigma_m": place.horizontal_sigma_m,
     }
 
 
@@ -169,7 +174,7 @@ def _cell(measured: dict) -> str:
     return f"{horizontal:>14} {measured['distance_m']:>10.2f}"
 
 
-def _write(folder: Path, summary: dict, images, features, detections, objects) -> None:
+def _write(folder: Path, summary: dict, views, features, objects) -> None:
     from course_lib.experiments.results import write_results
     from course_lib.plots.stereo_figures import disparity_figure, distances_figure, room_figure
 
@@ -188,8 +193,8 @@ def _write(folder: Path, summary: dict, images, features, detections, objects) -
         for row in summary["objects"]
     ]
     write_results(folder / "stereo.json", _nan_to_none(summary), rows)
-    disparity_figure(images[0], features).savefig(folder / "disparity.png", dpi=130)
+    disparity_figure(views[0].image, features).savefig(folder / "disparity.png", dpi=130)
     if objects:
         names = [row["name"] or row["label"] for row in summary["objects"]]
-        distances_figure(images, detections, objects, names).savefig(folder / "distances.png", dpi=130)
+        distances_figure(views, objects, names).savefig(folder / "distances.png", dpi=130)
         room_figure(objects, names).savefig(folder / "room.png", dpi=130)

@@ -1,4 +1,4 @@
-"""Darknet `.weights` files of a `DarknetNetwork`: written after the training, read to go on from one.
+"""Darknet `.weights` files of a `TrainableNetwork`: written after the training, read to go on from one.
 
 The file: major, minor, revision (int32) = 0, 2, 5; images seen (int64); then for each convolution, in order, as
 float32: with batch normalization beta, gamma, running mean, running variance, without it the bias; then the kernel.
@@ -12,13 +12,13 @@ import numpy as np
 import torch
 from torch import nn
 
-from course_lib.detector_training.network import DarknetNetwork
+from course_lib.detector_training.network import TrainableNetwork
 from course_lib.spherical_stereo.detection.darknet import check_weights, header_bytes
 
 VERSION = (0, 2, 5)
 
 
-def write_weights(network: DarknetNetwork, path: str | Path, images_seen: int = 0) -> Path:
+def write_weights(network: TrainableNetwork, path: str | Path, images_seen: int = 0) -> Path:
     """Writes the network's weights as a Darknet file that OpenCV reads; returns its path.
 
     The file appears whole or not at all: a training that is killed while it writes leaves the older one.
@@ -36,10 +36,10 @@ def write_weights(network: DarknetNetwork, path: str | Path, images_seen: int = 
 
 
 @torch.no_grad()
-def read_weights(network: DarknetNetwork, path: str | Path) -> int:
+def read_weights(network: TrainableNetwork, path: str | Path) -> int:
     """Puts the weights of a Darknet file into the network; returns the number of images it has seen.
 
-    Raises `DarknetError` when the file is missing or its length is not what the network's cfg implies.
+    Raises `DetectorError` when the file is missing or its length is not what the network's cfg implies.
     """
     check_weights(network.sections, path)
     data = Path(path).read_bytes()
@@ -53,7 +53,7 @@ def read_weights(network: DarknetNetwork, path: str | Path) -> int:
     return images_seen
 
 
-def _tensors_in_file_order(network: DarknetNetwork):
+def _tensors_in_file_order(network: TrainableNetwork):
     for layer in network.layers:
         if not (isinstance(layer, nn.Sequential) and isinstance(layer[0], nn.Conv2d)):
             continue

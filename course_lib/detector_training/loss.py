@@ -69,7 +69,7 @@ def yolo_loss(
     input_width: int,
     weights: LossWeights | None = None,
 ) -> Loss:
-    """The loss of the raw maps of a batch (as `DarknetNetwork` gives them) against its objects.
+    """The loss of the raw maps of a batch (as `TrainableNetwork` gives them) against its objects.
 
     `input_width` is the width of the input images in pixels. Boxes that overlap an object well without being assigned
     to it, and boxes inside ignored objects, are left out of the objectness term.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import torch
 from torch import nn
 
-from course_lib.spherical_stereo.detection.darknet import DarknetError, Section, layer_channels
+from course_lib.spherical_stereo.detection.darknet import DetectorError, Section, layer_channels
 
 # Darknet divides by sqrt(variance + 1e-6), and so does OpenCV for Darknet files.
 BATCH_NORM_EPSILON = 1e-6
@@ -40,11 +40,11 @@ class YoloHead:
     """A box that overlaps an object by more than this IoU is not background, though another anchor is responsible."""
 
 
-class DarknetNetwork(nn.Module):
+class TrainableNetwork(nn.Module):
     """The layers of a cfg in order; `forward` gives the raw map of every `[yolo]` section.
 
     `generator` draws the first weights (a generator seeded with 0 when it is left out), so one seed gives one network.
-    Raises `DarknetError` for a section or an option that the training cannot build.
+    Raises `DetectorError` for a section or an option that the training cannot build.
     """
 
     def __init__(self, sections: list[Section], generator: torch.Generator | None = None):
@@ -58,7 +58,7 @@ class DarknetNetwork(nn.Module):
             if section.kind == "yolo":
                 self.heads.append(yolo_head(section))
         if not self.heads:
-            raise DarknetError("the cfg has no [yolo] section, so there is nothing to train")
+            raise DetectorError("the cfg has no [yolo] section, so there is nothing to train")
         self.layers = nn.ModuleList(layers)
         self._needed = _needed_later(sections)
         self._start_from_prior(generator)
@@ -110,11 +110,11 @@ class ChannelGroup(nn.Module):
 
 
 def yolo_head(section: Section) -> YoloHead:
-    """The anchors and thresholds of a `[yolo]` section; raises `DarknetError` for anchors that do not fit its mask."""
+    """The anchors and thresholds of a `[yolo]` section; raises `DetectorError` for anchors that do not fit its mask."""
     numbers = section.integers("anchors")
     mask = section.integers("mask")
     if len(numbers) % 2 or not all(0 <= index < len(numbers) // 2 for index in mask):
-        raise DarknetError(
+        raise DetectorError(
             f"[yolo] at line {section.line}: mask={mask} does not choose from {len(numbers) / 2:g} anchors (pairs)"
         )
     anchors = torch.tensor(numbers, dtype=torch.float32).view(-1, 2)[mask]
@@ -168,7 +168,7 @@ def _build(section: Section, incoming: int, generator: torch.Generator) -> nn.Mo
     if section.kind == "maxpool":
         size, stride = section.integer("size", section.integer("stride", 1)), section.integer("stride", 1)
         if stride == 1 and size % 2 == 0:
-            raise DarknetError(f"[maxpool] at line {section.line}: size={size} with stride=1 needs an odd size")
+            raise DetectorError(f"[maxpool] at line {section.line}: size={size} with stride=1 needs an odd size")
         return nn.MaxPool2d(size, stride, padding=(size - 1) // 2)
     if section.kind == "upsample":
         return nn.Upsample(scale_factor=section.integer("stride", 2), mode="nearest")
@@ -177,7 +177,7 @@ def _build(section: Section, incoming: int, generator: torch.Generator) -> nn.Mo
         return nn.Identity() if groups == 1 else ChannelGroup(groups, section.integer("group_id", 0))
     if section.kind == "yolo":
         return nn.Identity()
-    raise DarknetError(
+    raise DetectorError(
         f"the training cannot build [{section.kind}] (line {section.line}); it knows convolutional, maxpool, upsample, "
         "route and yolo"
     )
@@ -197,7 +197,7 @@ def _convolution(section: Section, incoming: int, generator: torch.Generator) ->
     if activation == "leaky":
         parts.append(nn.LeakyReLU(LEAKY_SLOPE, inplace=True))
     elif activation != "linear":
-        raise DarknetError(
+        raise DetectorError(
             f"[convolutional] at line {section.line}: activation={activation} is not known; use leaky or linear"
         )
     return nn.Sequential(*parts)

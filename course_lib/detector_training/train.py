@@ -17,7 +17,7 @@ from course_lib.detector_training.checkpoints import Position, load_checkpoint, 
 from course_lib.detector_training.export import read_weights, write_weights
 from course_lib.detector_training.images import PanoramaFolders, TrainingDataError
 from course_lib.detector_training.loss import Loss, yolo_loss
-from course_lib.detector_training.network import DarknetNetwork
+from course_lib.detector_training.network import TrainableNetwork
 from course_lib.detector_training.schedule import AveragedNetwork, learning_rate
 from course_lib.detector_training.validation import Validation, every_nth, network_detector, validate
 from course_lib.detector_training.workers import (
@@ -91,7 +91,7 @@ def train(
 
     New images in the folders are taken up at the start of each epoch. Checkpoints are written between epochs; `resume`
     goes on from the one in `output`, `initial_weights` starts from a `.weights` file. `progress(batches, count)` may
-    draw a bar. Raises `DarknetError`, `TrainingDataError`, `CheckpointError`.
+    draw a bar. Raises `DetectorError`, `TrainingDataError`, `CheckpointError`.
     """
     plan = plan or TrainingPlan()
     check_names(read_cfg(cfg), read_names(names_file))
@@ -118,7 +118,7 @@ def train(
 
 
 def training_step(
-    network: DarknetNetwork,
+    network: TrainableNetwork,
     optimiser: torch.optim.Optimizer,
     batch: Batch,
     bfloat16: bool = False,
@@ -168,7 +168,7 @@ def _train(
     training = PanoramaFolders(images, names, plan.panorama_width, (workers.rank, workers.count))
     first = workers.rank == 0
     validating = PanoramaFolders(validation_images, names, plan.panorama_width) if first else None
-    network = DarknetNetwork(sections, torch.Generator().manual_seed(plan.seed))
+    network = TrainableNetwork(sections, torch.Generator().manual_seed(plan.seed))
     if initial_weights is not None:
         read_weights(network, initial_weights)
     network = network.to(memory_format=torch.channels_last).train()
@@ -251,7 +251,7 @@ def _progress(plan: TrainingPlan, position: Position, steps_per_epoch: int) -> f
     return max(by_time, by_step)
 
 
-def _optimiser(network: DarknetNetwork, plan: TrainingPlan) -> torch.optim.Optimizer:
+def _optimiser(network: TrainableNetwork, plan: TrainingPlan) -> torch.optim.Optimizer:
     """AdamW; weight decay only for kernels, since scales and biases are not what over-fits."""
     kernels = [p for p in network.parameters() if p.ndim > 1]
     others = [p for p in network.parameters() if p.ndim == 1]

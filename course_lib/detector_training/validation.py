@@ -11,7 +11,7 @@ import torch
 from course_lib.detector_training.augmentation import panorama_window
 from course_lib.detector_training.batches import images_to_tensor
 from course_lib.detector_training.images import LabelledPanorama, PanoramaFolders
-from course_lib.detector_training.network import DarknetNetwork, decode
+from course_lib.detector_training.network import TrainableNetwork, decode
 from course_lib.experiments.detection_scores import (
     Boxes,
     Matching,
@@ -82,7 +82,7 @@ def validate(
     return Validation(len(found), chosen, *scores_at(curve, chosen), average_precision(curve), by_class)
 
 
-def network_detector(network: DarknetNetwork, names: list[str]) -> Callable[[LabelledPanorama], Boxes]:
+def network_detector(network: TrainableNetwork, names: list[str]) -> Callable[[LabelledPanorama], Boxes]:
     """A function that finds the objects of a panorama with the PyTorch network, for validation between epochs.
 
     It does what the detector does (section 2.2 of paper 2): the left quarter appended, boxes whose centre is outside

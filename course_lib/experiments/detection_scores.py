@@ -69,8 +69,8 @@ def match_detections(
     A detection takes the free object of its class that it overlaps most, if IoU >= `iou_threshold`. One that finds
     none is left out of the count when it overlaps an ignored object of its class that much; else it is a false alarm:
     another class, or a small box inside a large ignored object, says what is not so. `width` is the panorama's, in
-    pixels. Raises `DetectionScoreError` for detections without scores or lists of unequal length, `BoxError` for what
-    is no box.
+    pixels. Raises `DetectionScoreError` for detections without scores or lists of unequal length, `DetectionError`
+    for what is no box.
     """
     for name, given in (("detections", detections), ("objects", objects), ("ignored", ignored)):
         if len(given.labels) != len(given.boxes):

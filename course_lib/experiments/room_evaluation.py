@@ -94,7 +94,7 @@ def identify_detections(
     object is shown once, by the detection that overlaps it most. An object half hidden has two boxes, around what is
     seen of it and around all of it, and a detector may give either: the greater overlap counts. detections: anything
     with `label` and `box`. true_objects: (label, visible box, unoccluded box) of everything that can be seen. width: of
-    the panorama, pixels. Raises `BoxError` for a box that is none.
+    the panorama, pixels. Raises `DetectionError` for a box that is none.
     Source: paper 2, section 3 (whose truth was told by eye).
     """
     found = [NO_OBJECT] * len(detections)

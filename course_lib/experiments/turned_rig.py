@@ -80,6 +80,7 @@ def weigh_by_covariance(pairs: Sequence[RolledPair], localizer: SemanticLocalize
         weights=localizer.weights,
         distance_term=localizer.distance_term,
         weighted_fit=True,
+        reject_implausible=localizer.reject_implausible,
     )
 
     def refit(found: Localization) -> Localization:

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from course_lib.plots.figures import BLUE, ORANGE, VERMILION, new_figure
 from course_lib.plots.panorama_drawing import add_list, draw_box, draw_numbers, panorama
+from course_lib.spherical_stereo.panorama import View
 
 # Share of the disparities that the colours span; a few wild matches would else use up the scale.
 _COLOUR_PERCENTILES = (2, 98)
@@ -32,19 +33,17 @@ def disparity_figure(upper_image: np.ndarray, features) -> Figure:
     return figure
 
 
-def distances_figure(
-    images: Sequence[np.ndarray], detections: Sequence[Sequence], objects: Sequence, names: Sequence[str]
-) -> Figure:
+def distances_figure(views: Sequence[View], objects: Sequence, names: Sequence[str]) -> Figure:
     """Both panoramas, one above the other, with the boxes of matched objects, numbered; their distances below.
 
-    images, detections: (upper, lower). objects: `MeasuredObject` of each match. names: of the objects.
+    views: (upper, lower). objects: `MeasuredObject` of each match. names: of the objects.
     """
-    boxes = np.array([d.box for found in detections for d in found])
-    margin = 0.06 * images[0].shape[0]
+    boxes = np.array([d.box for view in views for d in view.detections])
+    margin = 0.06 * views[0].height
     labels = [measured.label for measured in objects]
     figure, rows = new_figure(2, 1, size=(13, 8.4))
-    for axes, image, side in zip(rows, images, ("Upper", "Lower"), strict=True):
-        panorama(axes, image, f"{side} camera")
+    for axes, view, side in zip(rows, views, ("Upper", "Lower"), strict=True):
+        panorama(axes, view.image, f"{side} camera")
         axes.set_ylim(boxes[:, 3].max() + margin, boxes[:, 1].min() - margin)
     longest = max(map(len, names))
     lines = [
@@ -53,11 +52,11 @@ def distances_figure(
     ]
     title = "number, object, horizontal range from disparities (from box centres)"
     add_list(figure, lines, 3, title, labels)
-    for axes, image, found, side in zip(rows, images, detections, ("upper", "lower"), strict=True):
-        shown = [found[getattr(measured, side)].box for measured in objects]
+    for axes, view, side in zip(rows, views, ("upper", "lower"), strict=True):
+        shown = [view.detections[getattr(measured, side)].box for measured in objects]
         for box, label in zip(shown, labels, strict=True):
-            draw_box(axes, box, image.shape[1], label)
-        draw_numbers(axes, shown, labels, image.shape[1])
+            draw_box(axes, box, view.width, label)
+        draw_numbers(axes, shown, labels, view.width)
     return figure
 
 

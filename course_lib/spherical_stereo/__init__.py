@@ -1,57 +1,35 @@
 """Paper 2: Onozeki, Iriyama, Ogasa, Pathak, Umeda, "Localization in a 2D semantic map using object recognition from a
 spherical stereo camera". A module for each step.
 
-The steps of figure 2, in order:
+The walk of an image, figure 2 in order; each folder imports only those above it:
 
-  2.1 what is given: two panoramas, one camera above the other
-    sphere               pixels, directions, angles; images that are no panoramas; the rig
-    stereo_recording     a folder of stereo panoramas with the truth beside them
-  2.2 objects in each panorama
-    detection            the detector: network, seam, and each object's hue and saturation
-    detected_object      what it says about one object
-    darknet              .cfg, .weights and .names, checked before OpenCV reads them
-    darknet_cfg          the text of a cfg
-    darknet_network      a Darknet network, run by OpenCV
-    onnx_network         an ONNX network, run by OpenCV
-    letterbox            an image into the network's input, boxes back again
-    suppression          of boxes that show one object, the best one
-    seam                 figure 3: every object whole once, and counted once
-    boxes                boxes on the circle of columns: wrapping and overlap
-    boxes_file           boxes drawn by hand, in place of a network
-    labels               one name for one kind of object
-    colour               hue and saturation inside a box
-  2.3 the same object in both images
-    stereo_matching      objects to objects, by their matched features
-    features             AKAZE on a panorama
-    epipolar             which features may be one point
-    feature_matching     whole images: do they belong together, were they swapped
-  2.4 from two directions to a place
-    triangulation        X = d x_hat, how sure it is, and when there is none
-    vertical_disparity   a second distance, from the matched features
-    object_distances     both distances side by side
-    object_places        the place of every matched object
-  2.5 observed objects to landmarks of the map
-    semantic_map         the map: class, place, hue and saturation of every object
-    semantic_map_files   maps as JSON and CSV
-    association          eq. (1), and the greedy search
-  2.6 from pairs to a pose
-    rigid_fit            the least-squares fit
-  all of it
-    localizer            figure 2 from images, or from detections, to a pose
-    localizer_input      what it may be asked
-    localization         what it answers
-  3 how good it is
-    experiment           the room experiment
-    evaluation           tables 2 to 5: correct, incorrect, unable, and errors
-    turned_rig           the same place with the images rolled: does the pose stay?
-    paper_tables         the paper's own numbers
-    detection_scores     precision and recall of a detector, and its threshold
-    detector_evaluation  a finished detector on panoramas whose objects are known
+  panorama             2.1, 2.4. The door. Two images come in and are looked at once: panoramas, in colour, of one size?
+                       From here on each is a `View`, a record of the image and of what is found in it.
+  detection/           2.2. `find_objects` gives the view its detections.
+    detector, detected_object, labels
+    darknet, darknet_cfg, darknet_network, onnx_network, letterbox, suppression: one network and its files
+    seam               figure 3: every object whole once, and counted once
+    colour             hue and saturation inside a box
+    boxes, boxes_file  boxes on the circle of columns; boxes drawn by hand, in place of a network
+  matching/            2.3. `find_features` gives the view its features, and `match_views` leaves two views with pairs.
+    features, epipolar, feature_matching, object_matching
+    alignment          was the lower camera turned against the upper one? Asked at the door of this folder
+  ranging/             2.4. `place_objects` takes pairs of boxes; from here on there are places, and no image.
+    triangulation      X = d x_hat, how sure it is, and when there is none
+    vertical_disparity a second distance, from the matched features
+    object_places      the place of every matched object
+  semantic_map/        2.5. The map, its files, eq. (1) and the greedy search: observations to landmarks
+  pose/                2.6. The least-squares fit, whether its residuals contradict it, and what is answered
+  localizer            the walk itself
 
-Images are BGR uint8 arrays, as OpenCV reads them. Boxes and points on them are in edge coordinates (`sphere`).
+Beside it: recording, a folder of stereo panoramas with the truth beside them.
+
+Images are BGR uint8 arrays, as OpenCV reads them. Boxes and points on them are in edge coordinates (`panorama`).
 """
 
-from course_lib.spherical_stereo.detection.detector import Detection, DetectionError, DetectorError, YoloDetector
+from course_lib.spherical_stereo.detection.boxes import DetectionError
+from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detector import DetectorError, YoloDetector
 from course_lib.spherical_stereo.detection.seam import extend_seam
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
 from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError
@@ -59,22 +37,15 @@ from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, ma
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,
     StereoRig,
+    View,
     direction_to_pixel,
+    open_pair,
+    open_view,
     pixel_to_direction,
     read_panorama,
 )
 from course_lib.spherical_stereo.pose.localization import Localization
-from course_lib.spherical_stereo.pose.rigid_fit import (
-    CoincidentPoints,
-    MirroredPoints,
-    NotFinite,
-    Pose2D,
-    RigidFitError,
-    TooFewPairs,
-    UndeterminedRotation,
-    fit_covariance,
-    fit_rigid_2d,
-)
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
 from course_lib.spherical_stereo.ranging.triangulation import (
     TriangulationError,
     triangulate,
@@ -97,15 +68,12 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, Sema
 __all__ = [
     "Association",
     "AssociationError",
-    "CoincidentPoints",
     "Detection",
     "DetectionError",
     "DetectorError",
     "Landmark",
     "Localization",
     "LocalizerError",
-    "MirroredPoints",
-    "NotFinite",
     "ObjectMatch",
     "Observation",
     "PanoramaError",
@@ -118,9 +86,8 @@ __all__ = [
     "SemanticMapError",
     "StereoRig",
     "SwappedImagesError",
-    "TooFewPairs",
     "TriangulationError",
-    "UndeterminedRotation",
+    "View",
     "YoloDetector",
     "associate_greedy",
     "direction_to_pixel",
@@ -129,6 +96,8 @@ __all__ = [
     "fit_covariance",
     "fit_rigid_2d",
     "match_objects",
+    "open_pair",
+    "open_view",
     "penalty",
     "penalty_table",
     "pixel_to_direction",

@@ -11,28 +11,20 @@ from dataclasses import replace
 
 import numpy as np
 
+from course_lib.spherical_stereo.detection.boxes import boxes_on
+from course_lib.spherical_stereo.detection.detector import find_objects
 from course_lib.spherical_stereo.detection.labels import canonical_label
-from course_lib.spherical_stereo.detection.localizer_input import (
-    LocalizerError,
-    check_boxes_fit,
-    checked_matches,
-    checked_size,
-)
-from course_lib.spherical_stereo.matching.object_matching import stereo_matching
-from course_lib.spherical_stereo.panorama import StereoRig, check_panorama_pair
+from course_lib.spherical_stereo.matching.alignment import GREATEST_TURN, camera_turn
+from course_lib.spherical_stereo.matching.features import find_features
+from course_lib.spherical_stereo.matching.object_matching import match_views, matched_indices
+from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 from course_lib.spherical_stereo.pose import localization as outcomes
 from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Localization, PlacedObject
-from course_lib.spherical_stereo.pose.rigid_fit import (
-    CoincidentPoints,
-    MirroredPoints,
-    RigidFitError,
-    TooFewPairs,
-    UndeterminedRotation,
-    fit_covariance,
-    fit_rigid_2d,
-)
-from course_lib.spherical_stereo.ranging.object_places import DISTANCES, place_objects
+from course_lib.spherical_stereo.pose.plausibility import residual_statistics
+from course_lib.spherical_stereo.pose.rigid_fit import TOO_FEW_PAIRS, RigidFitError, fit_covariance, fit_rigid_2d
+from course_lib.spherical_stereo.ranging.object_places import DISTANCES, Distance, greatest_range, place_objects
 from course_lib.spherical_stereo.ranging.triangulation import DIVERGING
+from course_lib.spherical_stereo.ranging.vertical_disparity import FEWEST_MATCHES
 from course_lib.spherical_stereo.semantic_map.association import (
     ASSOCIATIONS,
     DISTANCE_TERMS,
@@ -45,6 +37,10 @@ IMAGE_SIZE = (1280, 640)
 """Width and height in pixels of the panoramas under data/room."""
 
 
+class LocalizerError(ValueError):
+    """A localizer set up, or called, with what cannot go together; the message says what to do."""
+
+
 class SemanticLocalizer:
     """Pose of a spherical stereo camera on a semantic map.
 
@@ -54,6 +50,9 @@ class SemanticLocalizer:
     distance_term: of eq. (1). weighted_fit: False, the paper's way, counts all pairs alike; True weighs each by the
     covariance of its observation. image_size: (width, height) of the panoramas that detections given without their
     images come from; boxes are in pixels and mean nothing without it.
+    reject_implausible: True, and what the paper does not ask is asked: whether the cameras are turned against each
+    other (`camera_turn`), an object has at least three matched features and stands nearer than `greatest_range`, and
+    the residuals can be those of a right pose (`residual_statistics`). False is the paper's method.
     Raises `LocalizerError` for a name that does not exist or a size that is no panorama's.
     Source: paper 2, figure 2.
     """
@@ -64,11 +63,12 @@ class SemanticLocalizer:
         semantic_map: SemanticMap,
         detector=None,
         association: str = "greedy",
-        distance: str = "box_centre",
+        distance: Distance = "box_centre",
         weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008 (it cannot change)
         distance_term: str = "absolute",
         weighted_fit: bool = False,
         image_size: tuple[int, int] = IMAGE_SIZE,
+        reject_implausible: bool = True,
     ):
         for name, value, allowed in (
             ("association", association, tuple(ASSOCIATIONS)),
@@ -84,21 +84,46 @@ class SemanticLocalizer:
         self.rig, self.semantic_map, self.detector = rig, semantic_map, detector
         self.association, self.distance = association, distance
         self.weights, self.distance_term, self.weighted_fit = PenaltyWeights(*weights), distance_term, weighted_fit
-        self.image_size = checked_size(image_size)
+        self.image_size = View.of_detections([], image_size).size
+        self.reject_implausible = bool(reject_implausible)
 
     def localize(self, upper_image: np.ndarray, lower_image: np.ndarray) -> Localization:
         """Pose from two panoramas: uint8 BGR `(H, W, 3)`, W = 2 H, one size.
 
-        Raises the errors of `check_panorama_pair` for images that are none, `SwappedImagesError` for upper and lower
+        Raises `PanoramaError` for images that are none (`open_pair`), `SwappedImagesError` for upper and lower
         exchanged, `LocalizerError` without a detector. Source: paper 2, figure 2.
         """
-        size = check_panorama_pair(upper_image, lower_image)
         if self.detector is None:
             raise LocalizerError("this localizer has no detector; give one, or call localize_detections")
-        upper, lower = self.detector.detect(upper_image), self.detector.detect(lower_image)
-        matching = stereo_matching(upper_image, upper, lower_image, lower, self.rig)
-        found = self.localize_detections(upper, lower, matching.matches, size)
-        return replace(found, unmatched=tuple(matching.unmatched))
+        upper, lower = open_pair(upper_image, lower_image)
+        upper, lower = find_objects(upper, self.detector), find_objects(lower, self.detector)
+        return self.localize_views(upper, lower)
+
+    def localize_views(self, upper: View, lower: View) -> Localization:
+        """Pose from two panoramas whose objects are known, by a detector or by hand: section 2.3 and what follows.
+
+        Raises `SwappedImagesError`, `DetectionError` for boxes that are none, `PanoramaError` for views of two sizes.
+        Source: paper 2, figure 2.
+        """
+        seen = Localization(None, UNABLE, upper_detections=upper.detections, lower_detections=lower.detections)
+        if upper.is_blank or lower.is_blank:
+            which = [name for name, view in (("upper", upper), ("lower", lower)) if view.is_blank]
+            explanation = f"the {' and the '.join(which)} image is black: is a lens covered?"
+            return replace(seen, reason=outcomes.BLANK, explanation=explanation)
+        turn = None
+        if self.reject_implausible and upper.detections and lower.detections:
+            upper, lower = find_features(upper), find_features(lower)
+            turn = camera_turn(upper.features, lower.features)
+        if turn is not None and np.linalg.norm(turn) > GREATEST_TURN:
+            explanation = (
+                "the lower camera is turned against the upper one, by {:.1f} degrees of roll, {:.1f} of pitch and "
+                f"{{:.1f}} of yaw; {np.degrees(GREATEST_TURN):.1f} are allowed: mend or calibrate the rig"
+            ).format(*np.degrees(turn))
+            return replace(seen, reason=outcomes.TURNED, explanation=explanation, turn=turn)
+        matching = match_views(upper, lower, self.rig, fewest_features=FEWEST_MATCHES if self.reject_implausible else 1)
+        pairs = [(match.upper, match.lower) for match in matching.matches]
+        found = self._localize(upper, lower, matching.matches, pairs)
+        return replace(found, unmatched=tuple(matching.unmatched), turn=turn)
 
     def localize_detections(
         self,
@@ -111,22 +136,28 @@ class SemanticLocalizer:
 
         matches: `ObjectMatch`es, or pairs of indices (upper, lower), which carry no features and so serve "box_centre"
         only. size: (width, height) of the panoramas in pixels; None: the localizer's `image_size`.
-        Raises `LocalizerError` for matches that name no detection, or one twice, or join two classes, or lack features
-        that are asked for, and for boxes that do not fit on a panorama of that size; `BoxError` for boxes that are
-        none. Source: paper 2, sections 2.4 to 2.6.
+        Raises `DetectionError` for matches that name no detection, or one twice, or join two classes, or lack features
+        that are asked for, and for boxes that are none or do not fit on a panorama of that size; `PanoramaError` for a
+        size that no panorama has. Source: paper 2, sections 2.4 to 2.6.
         """
-        width, height = self.image_size if size is None else checked_size(size)
-        upper, lower, matches = list(upper_detections), list(lower_detections), list(matches)
-        pairs = checked_matches(matches, upper, lower)
-        for name, detections in (("upper", upper), ("lower", lower)):
-            check_boxes_fit(detections, width, height, name)
-        objects, observations = self._place(matches, pairs, upper, lower, width, height)
+        size = self.image_size if size is None else size
+        upper, lower = (View.of_detections(side, size) for side in (upper_detections, lower_detections))
+        for name, view in (("upper", upper), ("lower", lower)):
+            boxes_on(view, name)
+        matches = list(matches)
+        return self._localize(upper, lower, matches, matched_indices(matches, upper, lower))
+
+    def _localize(self, upper: View, lower: View, matches: list, pairs: list[tuple[int, int]]) -> Localization:
+        """Sections 2.4 to 2.6. pairs: indices (upper, lower) of the detections that matches join."""
+        furthest = greatest_range(self.rig.baseline) if self.reject_implausible else np.inf
+        places = place_objects(matches, pairs, upper, lower, self.rig, self.distance, furthest=furthest)
+        objects, observations = self._observations(pairs, places, upper.detections)
         found = replace(
             self.localize_observations(observations),
             matches=tuple(matches),
-            upper_detections=tuple(upper),
-            lower_detections=tuple(lower),
             objects=objects,
+            upper_detections=upper.detections,
+            lower_detections=lower.detections,
         )
         return found if found.status == OK else _with_first_cause(found)
 
@@ -142,7 +173,7 @@ class SemanticLocalizer:
             if canonical_label(one.label) not in self.semantic_map.labels:
                 raise LocalizerError(f"observation {i} is a {one.label}, and the map has none: leave it out")
         if not observations:
-            return Localization(None, UNABLE, outcomes.TOO_FEW_PAIRS, "there is no observation to match to the map")
+            return Localization(None, UNABLE, TOO_FEW_PAIRS, "there is no observation to match to the map")
         association = ASSOCIATIONS[self.association](
             observations, self.semantic_map, weights=self.weights, distance_term=self.distance_term
         )
@@ -157,39 +188,39 @@ class SemanticLocalizer:
         covariances = noise if self.weighted_fit else None
         try:
             pose = fit_rigid_2d(source, target, covariances=covariances)
-        except tuple(_REASON_OF_ERROR) as error:
-            return replace(found, reason=_REASON_OF_ERROR[type(error)], explanation=str(error))
-        covariance = None
-        if noise is not None:
-            covariance = fit_covariance(pose, source, target, covariances=covariances, noise=noise)
-        return replace(
-            found, pose=pose, status=OK, reason=None, covariance=covariance, residuals=pose.apply(source) - target
-        )
+        except RigidFitError as error:
+            return replace(found, reason=error.reason, explanation=str(error))
+        found = replace(found, residuals=pose.apply(source) - target)
+        if noise is None:
+            return replace(found, pose=pose, status=OK)
+        statistics = residual_statistics(pose, source, target, noise, covariances)
+        if self.reject_implausible and statistics.contradict_the_pose:
+            explanation = (
+                f"the {len(used)} objects miss their landmarks by {found.rms_residual:.2f} m (root mean square), and "
+                f"{statistics.expected_rms:.2f} m may be expected: wrong pairs, a wrong baseline, or another map"
+            )
+            return replace(
+                found, reason=outcomes.IMPLAUSIBLE, explanation=explanation, statistics=statistics, rejected_pose=pose
+            )
+        covariance = fit_covariance(pose, source, target, covariances=covariances, noise=noise)
+        return replace(found, pose=pose, status=OK, covariance=covariance, statistics=statistics)
 
-    def _place(
-        self, matches: list, pairs: list[tuple[int, int]], upper: list, lower: list, width: int, height: int
+    def _observations(
+        self, pairs: list[tuple[int, int]], places: list, detections: Sequence
     ) -> tuple[tuple[PlacedObject, ...], list[Observation]]:
-        """X = d x_hat of every match, and the observations of those with a place and a class of the map."""
-        places = place_objects(matches, pairs, upper, lower, self.rig, self.distance, width, height)
+        """What became of every match, and the observations: those with a place and a class of the map."""
         objects, observations = [], []
         for (i, j), (outcome, position, covariance) in zip(pairs, places, strict=True):
-            label, index = canonical_label(upper[i].label), None
+            one = detections[i]
+            label, index = canonical_label(one.label), None
             if outcome == OK and label not in self.semantic_map.labels:
                 outcome = outcomes.UNMAPPED
             elif outcome == OK:
                 index = len(observations)
                 x, y = (float(value) for value in position[:2])
-                observations.append(Observation(label, x, y, upper[i].hue, upper[i].saturation, covariance))
+                observations.append(Observation(label, x, y, one.hue, one.saturation, covariance))
             objects.append(PlacedObject(i, j, label, outcome, position, index))
         return tuple(objects), observations
-
-
-_REASON_OF_ERROR: dict[type[RigidFitError], str] = {
-    TooFewPairs: outcomes.TOO_FEW_PAIRS,
-    CoincidentPoints: outcomes.COINCIDENT,
-    MirroredPoints: outcomes.MIRRORED,
-    UndeterminedRotation: outcomes.UNDETERMINED,
-}
 
 
 def _with_first_cause(found: Localization) -> Localization:

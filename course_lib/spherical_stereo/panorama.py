@@ -1,4 +1,4 @@
-"""The sphere behind an equirectangular image: pixels, directions, angles, and the rig of two cameras (paper 2, 2.4).
+"""The door: the sphere behind an equirectangular image, the rig, and the record in which an image walks (paper 2, 2.4).
 
 A panorama is twice as wide as high. Its centre looks along body +x, columns run to the right as azimuth decreases, row
 0 is straight up, and the seam is behind. Coordinates are edge coordinates: pixel i spans [i, i + 1), so 0.5 is added to
@@ -12,8 +12,10 @@ A direction is the unit vector (cos e cos a, cos e sin a, sin e) in the body fra
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -25,28 +27,10 @@ class PanoramaError(ValueError):
     """A panorama, a pair of them, or a coordinate on one that cannot be used."""
 
 
-class UnreadableImageError(PanoramaError):
-    """A file that is missing or that OpenCV cannot decode."""
-
-
-class EmptyImageError(PanoramaError):
-    """An image without pixels."""
-
-
-class GreyImageError(PanoramaError):
-    """An image without colour, one channel or three equal ones: hue and saturation are needed."""
-
-
-class NotPanoramaError(PanoramaError):
-    """An image that is not twice as wide as high, or not 8 bits a channel."""
-
-
-class ImageSizeError(PanoramaError):
-    """Two images of one rig whose sizes differ."""
-
-
-class RigError(PanoramaError):
-    """A rig that no two cameras can have: a baseline or a height that is not a usable number of metres."""
+GREATEST_BASELINE = 10.0
+"""Metres: no rig that is carried is longer, and a baseline in millimetres or centimetres is."""
+BLANK_LEVEL = 12
+"""Brightest value, of 255, of a frame that shows nothing: the noise of a covered lens stays below it."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +39,8 @@ class StereoRig:
 
     baseline: metres, the upper camera's height minus the lower's, positive. upper_height: metres above the floor, or
     nan where nobody measured it (only heights need it).
-    Raises `RigError` for a baseline that is not positive and finite, or an upper height that leaves the lower camera
-    below the floor. Source: paper 2, section 3 (0.30 m; 1.32 m and 1.44 m).
+    Raises `PanoramaError` for a baseline that is not positive and finite or above `GREATEST_BASELINE`, or an upper
+    height that leaves the lower camera below the floor. Source: paper 2, section 3 (0.30 m; 1.32 m and 1.44 m).
     """
 
     baseline: float
@@ -66,16 +50,20 @@ class StereoRig:
         try:
             baseline, upper_height = float(self.baseline), float(self.upper_height)
         except (TypeError, ValueError):
-            raise RigError(
+            raise PanoramaError(
                 f"baseline and upper_height must be metres; got {self.baseline!r} and {self.upper_height!r}"
             ) from None
         if not (np.isfinite(baseline) and baseline > 0):
-            raise RigError(
+            raise PanoramaError(
                 f"baseline must be a positive number of metres (upper height minus lower height); got {baseline!r}."
                 " A negative one means that upper and lower were swapped"
             )
+        if baseline > GREATEST_BASELINE:
+            raise PanoramaError(
+                f"baseline must be metres, at most {GREATEST_BASELINE:g}; got {baseline:g}. Is it in millimetres?"
+            )
         if np.isinf(upper_height) or upper_height < baseline:
-            raise RigError(
+            raise PanoramaError(
                 f"upper_height must be metres above the floor, at least the baseline {baseline:g}; got {upper_height:g}"
             )
         object.__setattr__(self, "baseline", baseline)
@@ -165,66 +153,115 @@ def azimuth_difference(first: np.ndarray | float, second: np.ndarray | float) ->
     return wrap_angle(np.asarray(first, dtype=np.float64) - np.asarray(second, dtype=np.float64))
 
 
-def check_panorama(image: np.ndarray, name: str = "image") -> np.ndarray:
-    """`image` itself when it is a panorama: uint8 BGR `(H, W, 3)` with W = 2 H.
+@dataclass(frozen=True, eq=False)
+class View:
+    """One panorama on its walk through the method: the image, checked once, and what each section finds in it.
 
-    Raises `EmptyImageError` (None, or no pixels), `GreyImageError` (one channel, or three equal ones),
-    `NotPanoramaError` (another shape, not 2:1, not 8 bits); the message begins with `name`.
+    Raises `PanoramaError` for a size that no panorama has.
     """
+
+    width: int
+    """Pixels; twice the height."""
+    height: int
+    image: np.ndarray | None = None
+    """`(H, W, 3)` uint8 BGR; None where only its detections were handed in."""
+    detections: Sequence = ()
+    """Section 2.2: anything with `label` and `box`, and for the map `hue` and `saturation`."""
+    features: Any = None
+    """Section 2.3: `PanoramaFeatures`, once they were looked for."""
+    is_blank: bool = False
+    """Whether the image shows nothing at all: a covered lens, or an exposure that failed."""
+
+    def __post_init__(self) -> None:
+        try:
+            width, height = int(self.width), int(self.height)
+        except (TypeError, ValueError):
+            raise PanoramaError(f"size must be whole pixels; got {self.width!r} and {self.height!r}") from None
+        if height < 1 or width != 2 * height:
+            raise PanoramaError(f"a panorama is twice as wide as high; got size {width} x {height}")
+        for name, value in (("width", width), ("height", height), ("detections", tuple(self.detections))):
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def of_detections(cls, detections: Sequence, size: tuple[int, int]) -> View:
+        """A panorama of which only the detections are known. size: (width, height), pixels."""
+        try:
+            width, height = size
+        except (TypeError, ValueError):
+            raise PanoramaError(f"size must be (width, height) in pixels; got {size!r}") from None
+        return cls(width, height, detections=detections)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """(width, height), pixels."""
+        return self.width, self.height
+
+    def having(self, **found: Any) -> View:
+        """The same panorama with what a section found: `detections` or `features`."""
+        return replace(self, **found)
+
+
+def open_view(image: np.ndarray | View, name: str = "image") -> View:
+    """The door: an image that is a panorama, uint8 BGR `(H, W, 3)` with W = 2 H; a `View` has been here already.
+
+    A black frame is let in: that is nothing the caller did wrong, and nothing will be found in it.
+    Raises `PanoramaError`, beginning with `name`: no image or no pixels, one channel or three equal ones (hue and
+    saturation are needed), another shape, not 2:1, not 8 bits.
+    """
+    if isinstance(image, View):
+        return image
     if image is None or np.size(image) == 0:
-        raise EmptyImageError(f"{name} is empty; an equirectangular colour image was expected")
+        raise PanoramaError(f"{name} is empty; an equirectangular colour image was expected")
     if not isinstance(image, np.ndarray) or image.ndim not in (2, 3):
         shape = getattr(image, "shape", type(image).__name__)
-        raise NotPanoramaError(f"{name} must be an array (height, width, 3) of BGR values; got {shape}")
+        raise PanoramaError(f"{name} must be an array (height, width, 3) of BGR values; got {shape}")
     if image.ndim == 2 or image.shape[2] == 1:
-        raise GreyImageError(f"{name} is a grey image of shape {image.shape}; colour (height, width, 3) is needed")
+        raise PanoramaError(f"{name} is a grey image of shape {image.shape}; colour (height, width, 3) is needed")
     if image.shape[2] != 3 or image.dtype != np.uint8:
-        raise NotPanoramaError(
+        raise PanoramaError(
             f"{name} must have 3 channels (BGR) of 8 bits; got {image.shape[2]} of {image.dtype}. Convert it first"
         )
     height, width = image.shape[:2]
     if width != 2 * height:
-        raise NotPanoramaError(
+        raise PanoramaError(
             f"{name} is {width} x {height} pixels; an equirectangular panorama is twice as wide as high"
             f" ({2 * height} x {height})"
         )
+    is_blank = int(image.max()) <= BLANK_LEVEL
     # Nearly every colour image shows its colour in a few pixels; only what may be grey is looked at as a whole.
-    if _is_grey(image[::16, ::16]) and _is_grey(image):
-        raise GreyImageError(f"{name} is a grey image (its three channels are equal); a colour image is needed")
-    return image
+    if _is_grey(image[::16, ::16]) and _is_grey(image) and not is_blank:
+        raise PanoramaError(f"{name} is a grey image (its three channels are equal); a colour image is needed")
+    return View(width, height, image, is_blank=is_blank)
 
 
 def _is_grey(image: np.ndarray) -> bool:
     return bool((image == image[..., :1]).all())
 
 
-def check_panorama_pair(upper_image: np.ndarray, lower_image: np.ndarray) -> tuple[int, int]:
-    """(width, height) of two panoramas of one size.
-
-    Raises `check_panorama`'s errors, and `ImageSizeError` when the sizes differ.
-    """
-    check_panorama(upper_image, "upper image")
-    check_panorama(lower_image, "lower image")
-    if upper_image.shape != lower_image.shape:
-        (h_upper, w_upper), (h_lower, w_lower) = upper_image.shape[:2], lower_image.shape[:2]
-        raise ImageSizeError(
-            f"the two images must have one size; got {w_upper} x {h_upper} (upper) and {w_lower} x {h_lower} (lower)"
+def open_pair(upper_image: np.ndarray | View, lower_image: np.ndarray | View) -> tuple[View, View]:
+    """The door for the two panoramas of a rig. Raises `PanoramaError` as `open_view`, and where the sizes differ."""
+    upper, lower = open_view(upper_image, "upper image"), open_view(lower_image, "lower image")
+    if upper.size != lower.size:
+        raise PanoramaError(
+            f"the two images must have one size; got {upper.width} x {upper.height} (upper) and "
+            f"{lower.width} x {lower.height} (lower)"
         )
-    return upper_image.shape[1], upper_image.shape[0]
+    return upper, lower
 
 
 def read_panorama(path: str | os.PathLike) -> np.ndarray:
     """The panorama in an image file, uint8 BGR `(H, W, 3)`; an alpha channel is left out.
 
-    Raises `UnreadableImageError` (no such file, or not an image), and `check_panorama`'s errors.
+    Raises `PanoramaError`: no such file, not an image, or one that `open_view` refuses.
     """
     path = Path(path)
     if not path.is_file():
-        raise UnreadableImageError(f"there is no image file {path}")
+        raise PanoramaError(f"there is no image file {path}")
     data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
     image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
     if image is None:
-        raise UnreadableImageError(f"{path} cannot be read as an image; PNG or JPEG is expected")
+        raise PanoramaError(f"{path} cannot be read as an image; PNG or JPEG is expected")
     if image.ndim == 3 and image.shape[2] == 4:
         image = np.ascontiguousarray(image[..., :3])
-    return check_panorama(image, str(path))
+    open_view(image, str(path))
+    return image

@@ -12,14 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.spherical_stereo.panorama import StereoRig, check_panorama_pair, read_panorama
+from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, read_panorama
 
 VERSION = 1
 POSES_FILE = "poses.json"
-
-
-class StereoRecordingError(ValueError):
-    """A folder of stereo panoramas that cannot be used; the message names the file and what is wrong with it."""
 
 
 @dataclass(frozen=True)
@@ -50,9 +46,7 @@ class StereoPair:
 
     def images(self) -> tuple[np.ndarray, np.ndarray]:
         """The upper and the lower panorama, `(H, W, 3)` uint8 BGR. Raises `PanoramaError` when one cannot be used."""
-        upper, lower = read_panorama(self.upper_file), read_panorama(self.lower_file)
-        check_panorama_pair(upper, lower)
-        return upper, lower
+        return read_panorama(self.upper_file), read_panorama(self.lower_file)
 
 
 @dataclass(frozen=True)
@@ -70,7 +64,7 @@ class StereoRecording:
 def read_stereo_recording(folder: str | Path) -> StereoRecording:
     """The recording of a folder; images are read only when a pair is asked for them.
 
-    Raises `StereoRecordingError` when poses.json or an image it names is missing, or a field is missing or of another
+    Raises `PanoramaError` when poses.json or an image it names is missing, or a field is missing or of another
     kind than expected.
     """
     folder = Path(folder)
@@ -78,26 +72,24 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
     try:
         content = json.loads(path.read_text())
     except OSError as error:
-        raise StereoRecordingError(
-            f"cannot read {path}: {error.strerror}; expected a folder with {POSES_FILE}"
-        ) from None
+        raise PanoramaError(f"cannot read {path}: {error.strerror}; expected a folder with {POSES_FILE}") from None
     except json.JSONDecodeError as error:
-        raise StereoRecordingError(f"{path} is not JSON: {error}") from None
+        raise PanoramaError(f"{path} is not JSON: {error}") from None
     version = content.get("version") if isinstance(content, dict) else None
     if version != VERSION:
-        raise StereoRecordingError(f"{path} has version {version!r}; this program reads version {VERSION}")
+        raise PanoramaError(f"{path} has version {version!r}; this program reads version {VERSION}")
     try:
         pairs = tuple(_pair(folder, entry) for entry in content["pairs"])
         heights = {entry["rig"]["upper_height"] for entry in content["pairs"]}
         rig = StereoRig(float(content["baseline"]), float(min(heights, default=np.nan)))
         width, height = int(content["width"]), int(content["height"])
     except (KeyError, TypeError, IndexError) as error:
-        raise StereoRecordingError(f"{path}: a field is missing or of the wrong kind ({error!r})") from None
+        raise PanoramaError(f"{path}: a field is missing or of the wrong kind ({error!r})") from None
     if len(heights) != 1:
-        raise StereoRecordingError(f"{path}: pairs with upper cameras at {sorted(heights)} m; expected one height")
+        raise PanoramaError(f"{path}: pairs with upper cameras at {sorted(heights)} m; expected one height")
     missing = [file.name for pair in pairs for file in (pair.upper_file, pair.lower_file) if not file.is_file()]
     if missing:
-        raise StereoRecordingError(f"{folder} lacks {len(missing)} images that {POSES_FILE} names, {missing[0]} first")
+        raise PanoramaError(f"{folder} lacks {len(missing)} images that {POSES_FILE} names, {missing[0]} first")
     return StereoRecording(folder, rig, width, height, content.get("seed"), pairs)
 
 

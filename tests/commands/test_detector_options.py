@@ -6,6 +6,7 @@ import pytest
 
 from course_lib.cli import main
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+from course_lib.paths import data_path
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 
 
@@ -15,26 +16,23 @@ def options(*words):
     return parser.parse_args(words)
 
 
-@pytest.fixture
-def folder(tmp_path):
-    """A detector's folder with a threshold of its own."""
-    (tmp_path / "training.json").write_text('{"score_threshold": 0.3}')
-    return tmp_path
-
-
 @pytest.fixture(autouse=True)
 def loaded(monkeypatch):
     """YoloDetector.load gives back what it was asked for."""
     monkeypatch.setattr(YoloDetector, "load", lambda folder, **options: (folder, options))
 
 
-def test_what_is_not_given_is_left_to_the_folder(folder):
-    assert chosen_detector(options("--detector", str(folder))) == (folder, {"score_threshold": 0.3})
+def test_what_is_not_given_is_left_to_the_folder(tmp_path):
+    assert chosen_detector(options("--detector", str(tmp_path))) == (tmp_path, {})
 
 
-def test_size_and_threshold_reach_the_detector(folder):
-    words = ["--detector", str(folder), "--input-size", "1280", "512", "--score-threshold", "0.7"]
-    assert chosen_detector(options(*words)) == (folder, {"input_size": (1280, 512), "score_threshold": 0.7})
+def test_the_course_s_detector_is_taken_when_none_is_named():
+    assert chosen_detector(options()) == (data_path("detector"), {})
+
+
+def test_size_and_threshold_reach_the_detector(tmp_path):
+    words = ["--detector", str(tmp_path), "--input-size", "1280", "512", "--score-threshold", "0.7"]
+    assert chosen_detector(options(*words)) == (tmp_path, {"input_size": (1280, 512), "score_threshold": 0.7})
 
 
 @pytest.mark.parametrize("command", [["demo", "room"], ["score-detector"]])

@@ -9,11 +9,11 @@ import pytest
 from course_lib.experiments.detector_evaluation import labelled_panoramas, score_detector
 from course_lib.experiments.room import localize_pair
 from course_lib.experiments.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
-from course_lib.lessons.kit.shipped_detector import load_detector
 from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.room.training_images import labelled_images, make_room_images
 from course_lib.spherical_stereo.detection.boxes import box_iou
 from course_lib.spherical_stereo.detection.darknet import check_weights, read_cfg
+from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.labels import CANONICAL_LABELS
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.recording import read_stereo_recording
@@ -26,7 +26,7 @@ TEST_ROOM = 200  # the first of the rooms that neither training nor validation h
 
 @pytest.fixture(scope="module")
 def detector():
-    return load_detector()
+    return YoloDetector.load(FOLDER)
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +36,9 @@ def recording():
 
 @pytest.fixture(scope="module")
 def localizer(detector, recording):
-    return SemanticLocalizer(recording.rig, SemanticMap.load(ROOM / "semantic_map.json"), detector)
+    return SemanticLocalizer(
+        recording.rig, SemanticMap.load(ROOM / "semantic_map.json"), detector, reject_implausible=False
+    )
 
 
 @pytest.fixture(scope="module")

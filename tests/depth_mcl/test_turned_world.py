@@ -10,7 +10,6 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import pose_matrix, state_from_matrix, state_from_optical_pose
 
 FRAMES = 90
@@ -21,7 +20,7 @@ LOST = 0.5  # metres; the wagon goes 8.6 m
 def stretch(corridor_folder):
     """Map, camera, depth images `(T, 26, 32)` and true states of the wagon's first 90 frames."""
     sequence = read_sequence(corridor_folder / "wagon")
-    camera = sequence_camera(sequence)
+    camera = sequence.camera()
     small = camera.resized(32, 26)
     depths = [subsample_depth(sequence.depth(i), camera, small) for i in range(FRAMES)]
     scene_map = SceneMap.load(corridor_folder / "map.ply")

@@ -11,7 +11,6 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.depth_mcl.uncertainty import INDEPENDENT_PIXELS, error_covariance, tempered_weights
-from course_lib.experiments.corridor import sequence_camera
 from course_lib.geometry import state_from_optical_pose
 
 MOVING = [0, 1, 5]  # x, y, yaw
@@ -66,7 +65,7 @@ def normalized_errors(estimates, true, name):
 def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_folder, seed):
     """Between 0.5 and 2 in the mean; by the spread of the paper's weights they are beyond any number."""
     sequence = read_sequence(corridor_folder / "wagon")
-    camera = sequence_camera(sequence)
+    camera = sequence.camera()
     small, frames = camera.resized(44, 36), range(40)
     true = state_from_optical_pose(sequence.camera_to_world[: len(frames)])
     with DepthRenderer(SceneMap.load(corridor_folder / "map.ply"), small, "ray") as renderer:

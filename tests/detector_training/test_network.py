@@ -7,8 +7,8 @@ import pytest
 torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
 
 from course_lib.detector_training.export import read_weights, write_weights  # noqa: E402
-from course_lib.detector_training.network import PRIOR_OBJECTNESS, DarknetNetwork, decode, decode_boxes  # noqa: E402
-from course_lib.spherical_stereo.detection.darknet import DarknetError, expected_weight_floats, parse_cfg, read_cfg  # noqa: E402
+from course_lib.detector_training.network import PRIOR_OBJECTNESS, TrainableNetwork, decode, decode_boxes  # noqa: E402
+from course_lib.spherical_stereo.detection.darknet import DetectorError, expected_weight_floats, parse_cfg, read_cfg  # noqa: E402
 from tests.detector_training.toy_panoramas import ROOM_CFG, TINY_CFG  # noqa: E402
 
 
@@ -45,7 +45,7 @@ def tiny(tmp_path_factory):
 def test_pytorch_and_opencv_compute_the_same_boxes_and_scores(which, tiny, tmp_path):
     cfg = ROOM_CFG if which == "room" else tiny
     sections = read_cfg(cfg)
-    network = randomized(DarknetNetwork(sections))
+    network = randomized(TrainableNetwork(sections))
     weights = write_weights(network, tmp_path / "a.weights")
     shape = (1, 3, sections[0].integer("height"), sections[0].integer("width"))
     images = np.random.default_rng(1).random(shape, dtype=np.float32)
@@ -60,9 +60,9 @@ def test_the_room_network_is_small():
 
 def test_weights_read_back_give_the_same_network(tmp_path):
     sections = parse_cfg(TINY_CFG)
-    network = randomized(DarknetNetwork(sections))
+    network = randomized(TrainableNetwork(sections))
     write_weights(network, tmp_path / "a.weights", images_seen=1234)
-    other = DarknetNetwork(sections, torch.Generator().manual_seed(5)).eval()
+    other = TrainableNetwork(sections, torch.Generator().manual_seed(5)).eval()
     assert read_weights(other, tmp_path / "a.weights") == 1234
     images = torch.rand(1, 3, 64, 160, generator=torch.Generator().manual_seed(2))
     with torch.no_grad():
@@ -71,14 +71,14 @@ def test_weights_read_back_give_the_same_network(tmp_path):
 
 
 def test_weights_of_another_network_are_refused(tmp_path):
-    write_weights(DarknetNetwork(parse_cfg(TINY_CFG)), tmp_path / "a.weights")
-    with pytest.raises(DarknetError, match="too short"):
-        read_weights(DarknetNetwork(read_cfg(ROOM_CFG)), tmp_path / "a.weights")
+    write_weights(TrainableNetwork(parse_cfg(TINY_CFG)), tmp_path / "a.weights")
+    with pytest.raises(DetectorError, match="too short"):
+        read_weights(TrainableNetwork(read_cfg(ROOM_CFG)), tmp_path / "a.weights")
 
 
 def test_one_seed_gives_one_network():
     first, second, third = (
-        DarknetNetwork(parse_cfg(TINY_CFG), torch.Generator().manual_seed(seed)).layers[0][0].weight
+        TrainableNetwork(parse_cfg(TINY_CFG), torch.Generator().manual_seed(seed)).layers[0][0].weight
         for seed in (1, 1, 2)
     )
     assert torch.equal(first, second)
@@ -86,25 +86,25 @@ def test_one_seed_gives_one_network():
 
 
 def test_an_untrained_network_expects_hardly_any_object():
-    network = DarknetNetwork(parse_cfg(TINY_CFG)).eval()
+    network = TrainableNetwork(parse_cfg(TINY_CFG)).eval()
     with torch.no_grad():
         table = decode(network(torch.rand(1, 3, 64, 160)), network.heads, 160)
     assert float(table[..., 4].mean()) == pytest.approx(PRIOR_OBJECTNESS, rel=0.5)
 
 
 def test_a_zero_map_puts_an_anchor_in_the_middle_of_every_cell():
-    head = DarknetNetwork(parse_cfg(TINY_CFG)).heads[0]
+    head = TrainableNetwork(parse_cfg(TINY_CFG)).heads[0]
     boxes = decode_boxes(torch.zeros(1, len(head.anchors), 12, 2, 3), head, stride=16.0)
     assert boxes[0, 0, 1, 2, :2].tolist() == [40.0, 24.0]
     torch.testing.assert_close(boxes[0, :, 0, 0, 2:], head.anchors)
 
 
 def test_sections_that_cannot_be_trained_are_named():
-    with pytest.raises(DarknetError, match=r"cannot build \[reorg\]"):
-        DarknetNetwork(parse_cfg(TINY_CFG.replace("[yolo]", "[reorg]\nstride=2\n[yolo]")))
-    with pytest.raises(DarknetError, match="mish is not known"):
-        DarknetNetwork(parse_cfg(TINY_CFG.replace("leaky", "mish")))
-    with pytest.raises(DarknetError, match=r"no \[yolo\]"):
-        DarknetNetwork(parse_cfg(TINY_CFG.split("[yolo]")[0]))
-    with pytest.raises(DarknetError, match="does not choose from"):
-        DarknetNetwork(parse_cfg(TINY_CFG.replace("mask=0,1,2", "mask=0,1,3")))
+    with pytest.raises(DetectorError, match=r"cannot build \[reorg\]"):
+        TrainableNetwork(parse_cfg(TINY_CFG.replace("[yolo]", "[reorg]\nstride=2\n[yolo]")))
+    with pytest.raises(DetectorError, match="mish is not known"):
+        TrainableNetwork(parse_cfg(TINY_CFG.replace("leaky", "mish")))
+    with pytest.raises(DetectorError, match=r"no \[yolo\]"):
+        TrainableNetwork(parse_cfg(TINY_CFG.split("[yolo]")[0]))
+    with pytest.raises(DetectorError, match="does not choose from"):
+        TrainableNetwork(parse_cfg(TINY_CFG.replace("mask=0,1,2", "mask=0,1,3")))

@@ -14,7 +14,7 @@ from course_lib.detector_training.batches import QUEUE_LENGTH, _made_ahead  # no
 from course_lib.detector_training.checkpoints import CheckpointError, Position  # noqa: E402
 from course_lib.detector_training.export import read_weights  # noqa: E402
 from course_lib.detector_training.images import PanoramaFolders, TrainingDataError  # noqa: E402
-from course_lib.detector_training.network import DarknetNetwork  # noqa: E402
+from course_lib.detector_training.network import TrainableNetwork  # noqa: E402
 from course_lib.detector_training.report import write_report  # noqa: E402
 from course_lib.detector_training.schedule import AveragedNetwork, learning_rate  # noqa: E402
 from course_lib.detector_training.train import TrainingPlan, TrainingResult, train  # noqa: E402
@@ -78,7 +78,7 @@ def test_it_learns_toy_panoramas(toy, tmp_path):
     assert result.validation.precision > 0.9
     # What was written finds them too.
     check_weights(toy / "tiny.cfg", result.weights)
-    network = DarknetNetwork(parse_cfg(TINY_CFG)).eval()
+    network = TrainableNetwork(parse_cfg(TINY_CFG)).eval()
     read_weights(network, result.weights)
     names = list(CLASSES)
     again = validate(network_detector(network, names), PanoramaFolders([toy / "images"], names, 256).panoramas, names)

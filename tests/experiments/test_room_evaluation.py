@@ -20,7 +20,7 @@ from course_lib.experiments.room_evaluation import (
     wrong_pairs,
 )
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES
-from course_lib.spherical_stereo.detection.boxes import BoxError
+from course_lib.spherical_stereo.detection.boxes import DetectionError
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.pose.localization import Localization, PlacedObject
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
@@ -146,7 +146,7 @@ def test_nothing_detected_or_nothing_there_shows_nothing():
 
 
 def test_a_true_box_that_is_none_is_named():
-    with pytest.raises(BoxError):
+    with pytest.raises(DetectionError):
         identify_detections([detection("sofa", 500)], [("sofa", (5, 5, 1, 1), (5, 5, 1, 1))], WIDTH)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,12 +12,12 @@ from course_lib.experiments.room import exact_detections
 from course_lib.lessons.kit.room_photographs import pair_of, room_recording
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features
-from course_lib.spherical_stereo.panorama import StereoRig
+from course_lib.spherical_stereo.panorama import StereoRig, View, open_view
 
 EXPERIMENT, PLACE = 2, "09_a"  # a chair stands before another, and a table lies across the seam
 
 
-class View(NamedTuple):
+class Side(NamedTuple):
     """One panorama: its picture, what is on it, and its features."""
 
     image: np.ndarray
@@ -27,12 +28,18 @@ class View(NamedTuple):
     """Line of each object in the map."""
     features: PanoramaFeatures
 
+    def view(self, objects: Sequence[Detection] | None = None) -> View:
+        """The panorama as the library hands it on; objects: others than its own."""
+        return open_view(self.image).having(
+            detections=self.objects if objects is None else objects, features=self.features
+        )
+
 
 class Scene(NamedTuple):
     """Both panoramas of one place."""
 
-    upper: View
-    lower: View
+    upper: Side
+    lower: Side
     rig: StereoRig
 
 
@@ -42,7 +49,7 @@ def scene(name: str = PLACE) -> Scene:
     recording = room_recording(EXPERIMENT)
     pair = pair_of(recording, name)
     views = [
-        View(image, *exact_detections(things, image), detect_features(image))
+        Side(image, *exact_detections(things, image), detect_features(image))
         for image, things in zip(pair.images(), (pair.upper_objects, pair.lower_objects), strict=True)
     ]
     return Scene(*views, recording.rig)

@@ -10,7 +10,6 @@ import numpy as np
 
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.kit.room_photographs import the_image, the_pair
-from course_lib.lessons.kit.shipped_detector import load_detector
 from course_lib.paths import data_path
 from course_lib.spherical_stereo.detection.boxes import box_area, shared_area, wrapped_box
 from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -26,13 +25,13 @@ WHOLE_IOU = 0.7  # overlap with the exact box from which a sofa counts as found 
 @functools.cache
 def detector() -> YoloDetector:
     """The course's detector with the threshold of its training."""
-    return load_detector()
+    return YoloDetector.load(data_path("detector"))
 
 
 @functools.cache
 def keen_detector() -> YoloDetector:
     """The same with a very low threshold, so that sliders can choose theirs afterwards."""
-    return load_detector(score_threshold=LOWEST)
+    return YoloDetector.load(data_path("detector"), score_threshold=LOWEST)
 
 
 def chosen_threshold() -> float:

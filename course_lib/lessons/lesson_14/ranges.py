@@ -12,7 +12,7 @@ from course_lib.lessons.kit.panorama_features import scene
 from course_lib.lessons.kit.room_photographs import pair_of, room_map, room_recording
 from course_lib.spherical_stereo.detection.boxes import box_centre, wrapped_box
 from course_lib.spherical_stereo.detection.detected_object import Detection
-from course_lib.spherical_stereo.matching.object_matching import match_detections
+from course_lib.spherical_stereo.matching.object_matching import match_views
 from course_lib.spherical_stereo.panorama import direction_from_angles, pixel_to_direction
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.ranging.triangulation import OK, object_position, triangulation_outcome
@@ -73,7 +73,7 @@ def both_ranges(
         one, pair = scene(name), pair_of(recording, name)
         size = (one.upper.features.width, one.upper.features.height)
         upper, lower = (_shaken(view.objects, sigma_pixels, size, rng) for view in (one.upper, one.lower))
-        found = match_detections(one.upper.features, upper, one.lower.features, lower, one.rig)
+        found = match_views(one.upper.view(upper), one.lower.view(lower), one.rig)
         for match in found.matches:
             number = one.upper.numbers[match.upper]
             if number == one.lower.numbers[match.lower]:
@@ -124,7 +124,7 @@ def ranges_of_one_object(name: str, number: int) -> dict[str, float]:
     one, pair = scene(name), pair_of(room_recording(2), name)
     size, baseline = (one.upper.features.width, one.upper.features.height), one.rig.baseline
     upper, lower = (view.numbers.index(number) for view in (one.upper, one.lower))
-    found = match_detections(one.upper.features, one.upper.objects, one.lower.features, one.lower.objects, one.rig)
+    found = match_views(one.upper.view(), one.lower.view(), one.rig)
     (match,) = [m for m in found.matches if (m.upper, m.lower) == (upper, lower)]
     seen = [{t.number: t for t in things}[number] for things in (pair.upper_objects, pair.lower_objects)]
     return {

@@ -67,7 +67,7 @@ def fit_panel() -> Panel:
             for artist in (landed, found_pose, best):
                 artist.set_data([], [])
             rests.set_segments([])
-            summary = f"no pose. {type(error).__name__}: {error}"
+            summary = f"no pose. {error.reason}: {error}"
         else:
             fitted = found.apply(points.source)
             landed.set_data(*fitted.T)

@@ -44,7 +44,7 @@ def judge_panel() -> Panel:
         total = len(result.localization.observations)
         hidden = np.random.default_rng(int(choice)).permutation(total)[: int(missed)]
         keep = np.setdiff1d(np.arange(total), hidden)
-        localizer = SemanticLocalizer(room_recording(int(experiment)).rig, room)
+        localizer = SemanticLocalizer(room_recording(int(experiment)).rig, room, reject_implausible=False)
         one = thinned(result, keep, localizer)
         _set_pose(true, one.true_pose)
         _set_pose(found, one.found.pose)

@@ -13,11 +13,11 @@ from course_lib.experiments.room import exact_detections
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import draw_box, panorama
-from course_lib.spherical_stereo.detection.boxes_file import read_boxes
+from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
 from course_lib.spherical_stereo.matching.feature_matching import FeatureMatches
-from course_lib.spherical_stereo.panorama import StereoRig, check_panorama_pair, read_panorama
+from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair, read_panorama
 from course_lib.spherical_stereo.pose.localization import Localization
-from course_lib.spherical_stereo.ranging.object_distances import MeasuredObject, measure_objects
+from course_lib.spherical_stereo.ranging.object_places import MeasuredObject, measure_objects
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 STAND_IN_PAIR = 3  # of the room's experiment 1: most objects in view (chosen)
@@ -54,6 +54,11 @@ class PanoramaPair(NamedTuple):
         """Width and height, pixels."""
         return self.upper.shape[1], self.upper.shape[0]
 
+    def views(self) -> tuple[View, View]:
+        """Both as the library hands them on, with their detections."""
+        upper, lower = open_pair(self.upper, self.lower)
+        return upper.having(detections=self.upper_detections), lower.having(detections=self.lower_detections)
+
 
 def panorama_pair(
     folder: str | Path | None = None, baseline: float | None = None, boxes: str | Path | None = None
@@ -67,11 +72,12 @@ def panorama_pair(
         return _stand_in()
     folder = Path(folder)
     upper, lower = (read_panorama(_image(folder, side)) for side in ("upper", "lower"))
-    check_panorama_pair(upper, lower)
+    open_pair(upper, lower)
     if baseline is None:
         raise MissingBaselineError(f"how many metres is the upper camera of {folder.name} above the lower one?")
     boxes = Path(boxes) if boxes is not None else folder / "boxes.json"
-    detections = read_boxes(boxes).detections(upper, lower) if boxes.is_file() else ([], [])
+    views = read_stereo_boxes(boxes).on(upper, lower) if boxes.is_file() else ()
+    detections = [view.detections for view in views] or ([], [])
     maps = [folder / name for name in MAP_FILES if (folder / name).is_file()]
     semantic_map = SemanticMap.load(maps[0]) if maps else None
     return PanoramaPair(folder.name, upper, lower, StereoRig(baseline), *detections, semantic_map, None)
@@ -113,7 +119,7 @@ def disparity_picture(pair: PanoramaPair, features: FeatureMatches) -> Figure:
 def measured_objects(pair: PanoramaPair, matches: Sequence, baseline: float | None = None) -> list[MeasuredObject]:
     """Both distances of every matched object. baseline: metres, in place of the rig's."""
     rig = pair.rig if baseline is None else StereoRig(baseline)
-    return measure_objects(matches, pair.upper_detections, pair.lower_detections, pair.size, rig)
+    return measure_objects(matches, *pair.views(), rig)
 
 
 def distances_table(objects: Sequence[MeasuredObject], most: int = 8) -> str:

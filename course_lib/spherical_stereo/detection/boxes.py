@@ -8,38 +8,61 @@ from __future__ import annotations
 
 import numpy as np
 
+from course_lib.spherical_stereo.panorama import View
 
-class BoxError(ValueError):
-    """A box that is none: not four finite numbers, edges in the wrong order, or wider than the panorama."""
+
+class DetectionError(ValueError):
+    """Boxes, colours, detections or matches of them that cannot be, or do not belong together."""
 
 
 def checked_boxes(boxes: np.ndarray, width: float, name: str = "boxes") -> np.ndarray:
-    """Boxes `(..., 4)` as float64; raises `BoxError` for another shape, NaN, edges out of order, or too wide a box."""
+    """Boxes `(..., 4)` as float64; raises `DetectionError` for another shape, NaN, edges in another order, too wide."""
     if not (np.isfinite(width) and width > 0):
-        raise BoxError(f"the width of the panorama must be a positive number of pixels; got {width!r}")
+        raise DetectionError(f"the width of the panorama must be a positive number of pixels; got {width!r}")
     array = np.asarray(boxes, dtype=np.float64)
     if array.size == 0:
         return array.reshape(0, 4)
     if array.shape[-1] != 4:
-        raise BoxError(f"{name} must have shape (..., 4) [u_min, v_min, u_max, v_max]; got {array.shape}")
+        raise DetectionError(f"{name} must have shape (..., 4) [u_min, v_min, u_max, v_max]; got {array.shape}")
     if not np.isfinite(array).all():
-        raise BoxError(f"{name} must be finite; got NaN or infinity in {array[~np.isfinite(array).all(axis=-1)][0]}")
+        raise DetectionError(
+            f"{name} must be finite; got NaN or infinity in {array[~np.isfinite(array).all(axis=-1)][0]}"
+        )
     wrong = (array[..., 2] <= array[..., 0]) | (array[..., 3] <= array[..., 1])
     if wrong.any():
-        raise BoxError(
+        raise DetectionError(
             f"{name}: u_min < u_max and v_min < v_max are needed; got {array[wrong][0].tolist()}. "
             f"A box across the seam has u_max above the width ({width:g})"
         )
     too_wide = array[..., 2] - array[..., 0] > width
     if too_wide.any():
-        raise BoxError(f"{name}: no box is wider than the panorama ({width:g} px); got {array[too_wide][0].tolist()}")
+        raise DetectionError(
+            f"{name}: no box is wider than the panorama ({width:g} px); got {array[too_wide][0].tolist()}"
+        )
     return array
+
+
+def boxes_on(view: View, name: str) -> np.ndarray:
+    """The boxes `(n, 4)` of a panorama's detections.
+
+    Raises `DetectionError` for what is no box, or sticks out of the panorama; the message begins with `name`.
+    """
+    boxes = checked_boxes([one.box for one in view.detections], view.width, f"boxes of the {name} image")
+    # A millionth of a pixel: boxes come from sums and remainders, which round.
+    low, right, bottom = -1e-6, view.width + 1e-6, view.height + 1e-6
+    outside = (boxes[:, 0] < low) | (boxes[:, 0] >= right) | (boxes[:, 1] < low) | (boxes[:, 3] > bottom)
+    if outside.any():
+        raise DetectionError(
+            f"{name} box {boxes[outside][0].tolist()} is not on a panorama of {view.width} x {view.height} pixels: "
+            "give size=(width, height) of the image it comes from"
+        )
+    return boxes
 
 
 def wrapped_box(box: np.ndarray, width: float) -> np.ndarray:
     """Boxes `(..., 4)` moved by whole turns so that 0 <= u_min < width; u_max may pass the width.
 
-    Raises `BoxError` for what is no box.
+    Raises `DetectionError` for what is no box.
     """
     box = checked_boxes(box, width)
     turns = np.floor(box[..., 0] / width)
@@ -63,7 +86,7 @@ def box_iou(boxes_a: np.ndarray, boxes_b: np.ndarray, width: float) -> np.ndarra
 
     IoU = |A and B| / (|A| + |B| - |A and B|)
 
-    Raises `BoxError` for what is no box.
+    Raises `DetectionError` for what is no box.
     """
     shared = shared_area(boxes_a, boxes_b, width)
     areas_a, areas_b = (box_area(np.asarray(boxes, np.float64).reshape(-1, 4)) for boxes in (boxes_a, boxes_b))
@@ -74,7 +97,7 @@ def shared_area(boxes_a: np.ndarray, boxes_b: np.ndarray, width: float) -> np.nd
     """Area `(n, m)`, square pixels, that boxes `(n, 4)` and `(m, 4)` share on the circle of columns.
 
     B is laid against A where it is and one turn to either side, so boxes on both sides of the seam meet, and two very
-    wide boxes may overlap at both ends. Raises `BoxError` for what is no box.
+    wide boxes may overlap at both ends. Raises `DetectionError` for what is no box.
     """
     a = wrapped_box(checked_boxes(boxes_a, width, "boxes_a"), width).reshape(-1, 1, 4)
     b = wrapped_box(checked_boxes(boxes_b, width, "boxes_b"), width).reshape(1, -1, 4)

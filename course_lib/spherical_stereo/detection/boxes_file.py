@@ -14,17 +14,13 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.spherical_stereo.detection.boxes import BoxError, checked_boxes, wrapped_box
+from course_lib.spherical_stereo.detection.boxes import DetectionError, checked_boxes, wrapped_box
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.detection.labels import canonical_label
-from course_lib.spherical_stereo.panorama import check_panorama_pair
+from course_lib.spherical_stereo.panorama import View, open_pair
 
 VERSION = 1
-
-
-class BoxesFileError(ValueError):
-    """A boxes file that is missing, malformed, or made for images of another size."""
 
 
 @dataclass(frozen=True)
@@ -57,84 +53,84 @@ class StereoBoxes:
         lower = {item.name: index for index, item in enumerate(self.lower) if item.name is not None}
         return [(item.name, index, lower[item.name]) for index, item in enumerate(self.upper) if item.name in lower]
 
-    def detections(self, upper_image: np.ndarray, lower_image: np.ndarray) -> tuple[list[Detection], list[Detection]]:
-        """The boxes as detections (upper, lower) of score 1, hue and saturation measured in the images.
+    def on(self, upper_image: np.ndarray | View, lower_image: np.ndarray | View) -> tuple[View, View]:
+        """Both panoramas with the boxes as their detections of score 1, hue and saturation measured in the images.
 
-        Raises BoxesFileError: images of another size than the boxes'; PanoramaError as `check_panorama_pair`.
+        Raises DetectionError: images of another size than the boxes'; PanoramaError as `open_pair`.
         """
-        size = check_panorama_pair(upper_image, lower_image)
-        if size != (self.width, self.height):
-            raise BoxesFileError(
-                f"the boxes were drawn on images of {self.width} x {self.height}, these are {size[0]} x {size[1]}: "
-                "scale the images, or draw the boxes again"
+        views = open_pair(upper_image, lower_image)
+        if views[0].size != (self.width, self.height):
+            raise DetectionError(
+                f"the boxes were drawn on images of {self.width} x {self.height}, these are {views[0].width} x "
+                f"{views[0].height}: scale the images, or draw the boxes again"
             )
-        return (
-            [_detection(item, upper_image) for item in self.upper],
-            [_detection(item, lower_image) for item in self.lower],
+        upper, lower = (
+            view.having(detections=[_detection(item, view) for item in items])
+            for view, items in zip(views, (self.upper, self.lower), strict=True)
         )
+        return upper, lower
 
 
-def _detection(item: LabelledBox, image: np.ndarray) -> Detection:
-    hue, saturation = mean_hue_saturation(image, item.box)
-    return Detection(item.label, 1.0, item.box, hue, saturation)
+def _detection(item: LabelledBox, view: View) -> Detection:
+    return Detection(item.label, 1.0, item.box, *mean_hue_saturation(view.image, item.box))
 
 
-def read_boxes(path: str | Path) -> StereoBoxes:
+def read_stereo_boxes(path: str | Path) -> StereoBoxes:
     """Read a boxes file (format: see the module).
 
-    Raises BoxesFileError: the file is missing or not JSON, another version, a field that is missing or of the wrong
+    Raises DetectionError: the file is missing or not JSON, another version, a field that is missing or of the wrong
     kind, a box that is none or leaves the image, a name that is given twice on one side or to two classes.
     """
     path = Path(path)
     if not path.is_file():
-        raise BoxesFileError(f"there is no boxes file {path}")
+        raise DetectionError(f"there is no boxes file {path}")
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise BoxesFileError(f"{path} is not JSON: {error}") from None
+        raise DetectionError(f"{path} is not JSON: {error}") from None
     if not isinstance(content, dict) or content.get("version") != VERSION:
         version = content.get("version") if isinstance(content, dict) else None
-        raise BoxesFileError(f"{path} must be an object with version {VERSION}; got version {version!r}")
+        raise DetectionError(f"{path} must be an object with version {VERSION}; got version {version!r}")
     width, height = content.get("width"), content.get("height")
     if not (isinstance(width, int) and isinstance(height, int) and height > 0 and width == 2 * height):
-        raise BoxesFileError(f"{path} must have whole numbers width = 2 height; got {width!r} and {height!r}")
+        raise DetectionError(f"{path} must have whole numbers width = 2 height; got {width!r} and {height!r}")
     upper, lower = (_read_side(content, side, (width, height), path) for side in ("upper", "lower"))
     labels = {item.name: item.label for item in upper if item.name is not None}
     for item in lower:
         if labels.get(item.name, item.label) != item.label:
-            raise BoxesFileError(f"{path}: {item.name!r} is a {labels[item.name]} above and a {item.label} below")
+            raise DetectionError(f"{path}: {item.name!r} is a {labels[item.name]} above and a {item.label} below")
     return StereoBoxes(width, height, upper, lower)
 
 
 def _read_side(content: dict, side: str, size: tuple[int, int], path: Path) -> list[LabelledBox]:
     items = content.get(side)
     if not isinstance(items, list):
-        raise BoxesFileError(f'{path} must have a list "{side}"; got {type(items).__name__}')
+        raise DetectionError(f'{path} must have a list "{side}"; got {type(items).__name__}')
     boxes = [_read_box(item, size, f"{path}, {side}[{index}]") for index, item in enumerate(items)]
     names = [item.name for item in boxes if item.name is not None]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise BoxesFileError(f"{path}: names must be given once a side; {side} has these twice: {', '.join(twice)}")
+        raise DetectionError(f"{path}: names must be given once a side; {side} has these twice: {', '.join(twice)}")
     return boxes
 
 
 def _read_box(item: object, size: tuple[int, int], where: str) -> LabelledBox:
     if not isinstance(item, dict) or "label" not in item or "box" not in item:
-        raise BoxesFileError(f"{where} must be an object with label and box; got {item!r}")
+        raise DetectionError(f"{where} must be an object with label and box; got {item!r}")
     name = item.get("name")
     if name is not None and not (isinstance(name, str) and name.strip()):
-        raise BoxesFileError(f"{where}: name must be a text that is not empty, or be left out; got {name!r}")
+        raise DetectionError(f"{where}: name must be a text that is not empty, or be left out; got {name!r}")
     try:
         box = checked_boxes(np.array(item["box"], dtype=np.float64), size[0], where)
         label = canonical_label(item["label"])
-    except BoxError as error:
-        raise BoxesFileError(str(error)) from None
+    except DetectionError:
+        raise
     except (TypeError, ValueError) as error:
-        raise BoxesFileError(f"{where}: {error}") from None
+        raise DetectionError(f"{where}: {error}") from None
     if box.shape != (4,):
-        raise BoxesFileError(f"{where}: box must be [u_min, v_min, u_max, v_max]; got {item['box']!r}")
+        raise DetectionError(f"{where}: box must be [u_min, v_min, u_max, v_max]; got {item['box']!r}")
     if box[1] < 0 or box[3] > size[1]:
-        raise BoxesFileError(
+        raise DetectionError(
             f"{where}: box leaves the image at the top or bottom, v from 0 to {size[1]}; got {item['box']}"
         )
     return LabelledBox(label, tuple(wrapped_box(box, size[0]).tolist()), name)

@@ -8,6 +8,9 @@ says little about hue, so each pixel weighs as much as its saturation.
 import cv2
 import numpy as np
 
+from course_lib.geometry import circular_mean
+from course_lib.spherical_stereo.detection.boxes import DetectionError
+
 GREY_SATURATION_PERCENT = 10.0
 """Mean saturation below which a thing counts as grey: a white balance that is off by as much gives white this tint."""
 
@@ -18,10 +21,6 @@ DARKEST_VALUE = 1 / 16
 """Brightness (0 to 1) below which a pixel has no say in hue: one grey level of noise may turn it by 60 degrees."""
 
 Box = tuple[float, float, float, float]
-
-
-class ColourError(ValueError):
-    """Colours asked of no pixels, or of something that is no image."""
 
 
 def central_half(box: Box) -> Box:
@@ -46,20 +45,20 @@ def mean_hue_saturation(
     The box may cross the seam. Hue is NaN when the mean saturation is below GREY_SATURATION_PERCENT or when hues point
     in all directions (MIXED_HUES_RESULTANT). The paper takes plain means of H; on the circle that has no meaning.
 
-    image_bgr: (H, W, 3) uint8. Raises `ColourError`: no such image, a mask of another shape, or no pixel left.
+    image_bgr: (H, W, 3) uint8. Raises `DetectionError`: no such image, a mask of another shape, or no pixel left.
     Source: paper 2, section 2.2.
     """
     image_bgr = np.asarray(image_bgr)
     if image_bgr.ndim != 3 or image_bgr.shape[2] != 3 or image_bgr.dtype != np.uint8:
-        raise ColourError(f"image must be (H, W, 3) uint8 BGR; got shape {image_bgr.shape}, {image_bgr.dtype}")
+        raise DetectionError(f"image must be (H, W, 3) uint8 BGR; got shape {image_bgr.shape}, {image_bgr.dtype}")
     if mask is not None and np.shape(mask) != image_bgr.shape[:2]:
-        raise ColourError(f"mask must have the image's shape {image_bgr.shape[:2]}; got {np.shape(mask)}")
+        raise DetectionError(f"mask must have the image's shape {image_bgr.shape[:2]}; got {np.shape(mask)}")
     selected = None if mask is None else np.asarray(mask, dtype=bool)
     if box is not None:
         image_bgr, selected = _crop(image_bgr, selected, central_half(box))
     pixels = (image_bgr.reshape(-1, 3) if selected is None else image_bgr[selected]).reshape(-1, 1, 3)
     if len(pixels) == 0:
-        raise ColourError(f"no pixel is left of the image for box {box} and the mask: give a box or mask inside it")
+        raise DetectionError(f"no pixel is left of the image for box {box} and the mask: give a box or mask inside it")
     # 8-bit HSV would round hue to 2 degrees; float input gives H in degrees and S from 0 to 1.
     hsv = cv2.cvtColor(pixels.astype(np.float32) / 255, cv2.COLOR_BGR2HSV).reshape(-1, 3).astype(np.float64)
     return _mean_hue(hsv), float(100 * hsv[:, 1].mean())
@@ -71,10 +70,9 @@ def _mean_hue(hsv: np.ndarray) -> float:
     if weight.sum() == 0 or 100 * hsv[:, 1].mean() < GREY_SATURATION_PERCENT:
         return float("nan")
     angle = np.radians(hsv[:, 0])
-    x, y = weight @ np.cos(angle), weight @ np.sin(angle)
-    if np.hypot(x, y) < MIXED_HUES_RESULTANT * weight.sum():
+    if np.abs(weight @ np.exp(1j * angle)) < MIXED_HUES_RESULTANT * weight.sum():
         return float("nan")
-    hue = float(np.degrees(np.arctan2(y, x)) % 360)
+    hue = float(np.degrees(circular_mean(angle, weight)) % 360)
     return 0.0 if hue >= 360 else hue  # the remainder of a tiny negative number rounds up to 360
 
 
@@ -82,7 +80,7 @@ def _crop(image: np.ndarray, mask: np.ndarray | None, box: Box) -> tuple[np.ndar
     """The pixels whose centres lie in the box, at least one a direction, columns taken around the seam."""
     height, width = image.shape[:2]
     if not np.isfinite(box).all() or box[2] <= box[0] or box[3] <= box[1]:
-        raise ColourError(f"box must be finite with u_min < u_max and v_min < v_max; got {box} (its central half)")
+        raise DetectionError(f"box must be finite with u_min < u_max and v_min < v_max; got {box} (its central half)")
     columns = _centres_between(box[0], min(box[2], box[0] + width)) % width
     rows = _centres_between(max(box[1], 0), min(box[3], height))
     rows = rows[(rows >= 0) & (rows < height)]

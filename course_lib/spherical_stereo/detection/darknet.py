@@ -17,7 +17,7 @@ from pathlib import Path
 
 from course_lib.spherical_stereo.detection.darknet_cfg import (
     DETECTION_KINDS,
-    DarknetError,
+    DetectorError,
     Section,
     parse_cfg,
     read_cfg,
@@ -27,7 +27,7 @@ from course_lib.spherical_stereo.detection.darknet_cfg import (
 
 __all__ = [
     "DETECTION_KINDS",
-    "DarknetError",
+    "DetectorError",
     "Section",
     "check_names",
     "check_weights",
@@ -46,7 +46,7 @@ __all__ = [
 def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
     """(channels in, channels out) of every layer, that is of every section after `[net]`.
 
-    Raises DarknetError: a route or shortcut to a layer that does not come before it, or groups that do not divide.
+    Raises DetectorError: a route or shortcut to a layer that does not come before it, or groups that do not divide.
     """
     channels: list[tuple[int, int]] = []
     previous = sections[0].integer("channels", 3)
@@ -61,12 +61,12 @@ def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
             incoming = sum(sources)
             outgoing = _divide(section, incoming, section.integer("groups", 1))
             if not 0 <= section.integer("group_id", 0) < section.integer("groups", 1):
-                raise DarknetError(f"[route] at line {section.line}: group_id is not one of its groups, from 0")
+                raise DetectorError(f"[route] at line {section.line}: group_id is not one of its groups, from 0")
         elif section.kind in ("shortcut", "sam", "scale_channels"):
             sources = [channels[_layer_index(section, source, index)][1] for source in section.integers("from")]
             outgoing = sources[0] if section.kind == "scale_channels" else previous
         if outgoing < 1:
-            raise DarknetError(
+            raise DetectorError(
                 f"[{section.kind}] at line {section.line} has {outgoing} output channels, expected 1 or more"
             )
         channels.append((incoming, outgoing))
@@ -78,7 +78,7 @@ def _layer_index(section: Section, source: int, index: int) -> int:
     """A layer counted from the start, or backwards from this one when negative, as an index from 0."""
     absolute = source if source >= 0 else index + source
     if not 0 <= absolute < index:
-        raise DarknetError(
+        raise DetectorError(
             f"[{section.kind}] at line {section.line}, layer {index}: points to layer {source}, expected one before it"
         )
     return absolute
@@ -86,7 +86,7 @@ def _layer_index(section: Section, source: int, index: int) -> int:
 
 def _divide(section: Section, channels: int, groups: int) -> int:
     if groups < 1 or channels % groups:
-        raise DarknetError(
+        raise DetectorError(
             f"[{section.kind}] at line {section.line}: groups={groups} does not divide {channels} channels"
         )
     return channels // groups
@@ -97,7 +97,7 @@ def expected_weight_floats(sections: list[Section]) -> int:
 
         sum over convolutions of  filters * (4 if batch_normalize else 1) + filters * channels / groups * size^2
 
-    Raises DarknetError as `layer_channels` does. Source: paper 2, section 2.2 (YOLOv4).
+    Raises DetectorError as `layer_channels` does. Source: paper 2, section 2.2 (YOLOv4).
     """
     floats = 0
     for section, (incoming, filters) in zip(sections[1:], layer_channels(sections), strict=True):
@@ -112,23 +112,23 @@ def expected_weight_floats(sections: list[Section]) -> int:
 def check_weights(cfg: str | Path | list[Section], weights: str | Path) -> None:
     """Refuse a `.weights` file that does not hold exactly the floats its cfg implies.
 
-    `cfg` is a path or the sections of one. Raises DarknetError: a file is missing, the header is incomplete, or the
+    `cfg` is a path or the sections of one. Raises DetectorError: a file is missing, the header is incomplete, or the
     number of floats differs (the message has both counts). Source: paper 2, section 2.2 (YOLOv4).
     """
     sections = cfg if isinstance(cfg, list) else read_cfg(cfg)
     weights = Path(weights)
     if not weights.is_file():
-        raise DarknetError(f"weights file {weights} is missing: give the path of an existing file")
+        raise DetectorError(f"weights file {weights} is missing: give the path of an existing file")
     with weights.open("rb") as file:
         start = file.read(12)
     size = weights.stat().st_size
     header = header_bytes(start) if len(start) == 12 else 20
     if size < header:
-        raise DarknetError(f"weights file {weights} has {size} bytes, less than its header of {header}: it is cut off")
+        raise DetectorError(f"weights file {weights} has {size} bytes, less than its header of {header}: it is cut off")
     expected = expected_weight_floats(sections)
     if size != header + 4 * expected:
         problem = "is too short: was the download or copy cut off?" if size < header + 4 * expected else "is too long"
-        raise DarknetError(
+        raise DetectorError(
             f"weights file {weights} {problem} It holds {(size - header) / 4:.10g} floats, the cfg needs {expected}; "
             "give the cfg and the weights of the same network"
         )
@@ -143,7 +143,7 @@ def header_bytes(start: bytes) -> int:
 def class_count(sections: list[Section]) -> int:
     """The number of classes of the detection layers (`[yolo]` or `[region]`).
 
-    Raises DarknetError: no such layer, layers that disagree, or a layer whose input does not have
+    Raises DetectorError: no such layer, layers that disagree, or a layer whose input does not have
     anchors * (5 + classes) channels.
     """
     layers = [
@@ -152,15 +152,15 @@ def class_count(sections: list[Section]) -> int:
         if section.kind in DETECTION_KINDS
     ]
     if not layers:
-        raise DarknetError("the cfg has no [yolo] or [region] section: it is not a detector")
+        raise DetectorError("the cfg has no [yolo] or [region] section: it is not a detector")
     counts = {section.integer("classes") for section, _ in layers}
     if len(counts) > 1:
-        raise DarknetError(f"the cfg's detection layers disagree about the number of classes: {sorted(counts)}")
+        raise DetectorError(f"the cfg's detection layers disagree about the number of classes: {sorted(counts)}")
     (classes,) = counts
     for section, incoming in layers:
         anchors = len(section.integers("mask")) if "mask" in section.options else section.integer("num")
         if incoming != anchors * (5 + classes):
-            raise DarknetError(
+            raise DetectorError(
                 f"[{section.kind}] at line {section.line} gets {incoming} channels, "
                 f"expected {anchors} anchors * (5 + {classes} classes) = {anchors * (5 + classes)}"
             )
@@ -168,31 +168,33 @@ def class_count(sections: list[Section]) -> int:
 
 
 def input_size(sections: list[Section]) -> tuple[int, int]:
-    """(width, height) of the network's input in pixels. Raises DarknetError: missing or not positive."""
+    """(width, height) of the network's input in pixels. Raises DetectorError: missing or not positive."""
     width, height = sections[0].integer("width"), sections[0].integer("height")
     if width < 1 or height < 1:
-        raise DarknetError(f"[{sections[0].kind}] at line {sections[0].line}: input {width} x {height} is not positive")
+        raise DetectorError(
+            f"[{sections[0].kind}] at line {sections[0].line}: input {width} x {height} is not positive"
+        )
     return width, height
 
 
 def read_names(path: str | Path) -> list[str]:
     """The class names of a `.names` file, one a line; empty lines at the end do not count.
 
-    Raises DarknetError: the file is missing or not text, or an empty line stands between names.
+    Raises DetectorError: the file is missing or not text, or an empty line stands between names.
     """
     names = [line.strip() for line in read_text(path, "names file").rstrip().splitlines()]
     for number, name in enumerate(names, start=1):
         if not name:
-            raise DarknetError(f"names file {path}, line {number} is empty: every line names one class")
+            raise DetectorError(f"names file {path}, line {number} is empty: every line names one class")
     if not names:
-        raise DarknetError(f"names file {path} is empty: it has one class name a line")
+        raise DetectorError(f"names file {path} is empty: it has one class name a line")
     return names
 
 
 def check_names(sections: list[Section], names: list[str]) -> None:
-    """Refuse class names whose number is not the cfg's. Raises DarknetError with both counts."""
+    """Refuse class names whose number is not the cfg's. Raises DetectorError with both counts."""
     classes = class_count(sections)
     if len(names) != classes:
-        raise DarknetError(
+        raise DetectorError(
             f"the cfg has {classes} classes, the names file {len(names)}: give the names of that network"
         )

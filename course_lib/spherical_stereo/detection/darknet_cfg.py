@@ -16,8 +16,8 @@ SAME_CHANNELS = ("maxpool", "avgpool", "upsample", "dropout", "softmax", "shortc
 LAYER_KINDS = ("convolutional", "route", "reorg", "scale_channels", *SAME_CHANNELS)
 
 
-class DarknetError(ValueError):
-    """A Darknet file that is missing, malformed, or does not fit the others."""
+class DetectorError(ValueError):
+    """A detector that cannot be set up: a file that is missing, malformed or does not fit the others, or an option."""
 
 
 @dataclass(frozen=True)
@@ -32,51 +32,51 @@ class Section:
     """Line of the bracket, from 1; for messages."""
 
     def integer(self, key: str, default: int | None = None) -> int:
-        """The option as a whole number. Raises DarknetError: missing with no default, or no whole number."""
+        """The option as a whole number. Raises DetectorError: missing with no default, or no whole number."""
         text = self.options.get(key)
         if text is None:
             if default is None:
-                raise DarknetError(f"[{self.kind}] at line {self.line} has no {key}: add {key}=...")
+                raise DetectorError(f"[{self.kind}] at line {self.line} has no {key}: add {key}=...")
             return default
         try:
             return int(text)
         except ValueError:
-            raise DarknetError(f"[{self.kind}] at line {self.line}: {key}={text} is not a whole number") from None
+            raise DetectorError(f"[{self.kind}] at line {self.line}: {key}={text} is not a whole number") from None
 
     def integers(self, key: str) -> list[int]:
-        """The option as a list of whole numbers separated by commas. Raises DarknetError."""
+        """The option as a list of whole numbers separated by commas. Raises DetectorError."""
         text = self.options.get(key, "")
         try:
             numbers = [int(part) for part in text.split(",") if part.strip()]
         except ValueError:
             numbers = []
         if not numbers:
-            raise DarknetError(f"[{self.kind}] at line {self.line}: {key}={text} is not a list of whole numbers")
+            raise DetectorError(f"[{self.kind}] at line {self.line}: {key}={text} is not a list of whole numbers")
         return numbers
 
 
 def read_text(path: str | Path, what: str) -> str:
-    """The text of a file. Raises DarknetError: missing, a folder, or not text; `what` names it in the message."""
+    """The text of a file. Raises DetectorError: missing, a folder, or not text; `what` names it in the message."""
     path = Path(path)
     if not path.is_file():
-        raise DarknetError(f"{what} {path} is missing: give the path of an existing file")
+        raise DetectorError(f"{what} {path} is missing: give the path of an existing file")
     try:
         return path.read_text(encoding="utf-8")
     except UnicodeDecodeError:
-        raise DarknetError(f"{what} {path} is not a text file: was another file given in its place?") from None
+        raise DetectorError(f"{what} {path} is not a text file: was another file given in its place?") from None
 
 
 def read_cfg(path: str | Path) -> list[Section]:
     """Read a Darknet cfg: the `[net]` section first, then one section per layer, in order.
 
-    Raises DarknetError: the file is missing or not text, a line is neither `[kind]`, `key=value` nor a comment, a
+    Raises DetectorError: the file is missing or not text, a line is neither `[kind]`, `key=value` nor a comment, a
     section is unknown or empty, or the file does not start with `[net]`. Messages give the line number.
     """
     return parse_cfg(read_text(path, "cfg file"), str(path))
 
 
 def parse_cfg(text: str, name: str = "cfg") -> list[Section]:
-    """The sections of a cfg given as text; `name` is used in messages. Raises DarknetError as `read_cfg` does."""
+    """The sections of a cfg given as text; `name` is used in messages. Raises DetectorError as `read_cfg` does."""
     sections: list[Section] = []
     for number, raw in enumerate(text.splitlines(), start=1):
         line = raw.split("#", 1)[0].split(";", 1)[0].strip()
@@ -87,9 +87,9 @@ def parse_cfg(text: str, name: str = "cfg") -> list[Section]:
             continue
         key, equals, value = (part.strip() for part in line.partition("="))
         if not (key and equals and value):
-            raise DarknetError(f"{name}, line {number}: '{line}' is neither [section] nor key=value")
+            raise DetectorError(f"{name}, line {number}: '{line}' is neither [section] nor key=value")
         if not sections:
-            raise DarknetError(f"{name}, line {number}: '{line}' comes before any [section]; a cfg starts with [net]")
+            raise DetectorError(f"{name}, line {number}: '{line}' comes before any [section]; a cfg starts with [net]")
         sections[-1].options[key] = value
     _check_sections(sections, name)
     return sections
@@ -97,19 +97,19 @@ def parse_cfg(text: str, name: str = "cfg") -> list[Section]:
 
 def _check_sections(sections: list[Section], name: str) -> None:
     if not sections:
-        raise DarknetError(f"{name} has no [section]: a Darknet cfg starts with [net]")
+        raise DetectorError(f"{name} has no [section]: a Darknet cfg starts with [net]")
     if sections[0].kind not in INPUT_KINDS:
-        raise DarknetError(f"{name}, line {sections[0].line}: starts with [{sections[0].kind}], expected [net]")
+        raise DetectorError(f"{name}, line {sections[0].line}: starts with [{sections[0].kind}], expected [net]")
     for section in sections[1:]:
         if section.kind not in LAYER_KINDS:
             known = ", ".join(sorted(LAYER_KINDS))
-            raise DarknetError(f"{name}, line {section.line}: unknown section [{section.kind}], known are {known}")
+            raise DetectorError(f"{name}, line {section.line}: unknown section [{section.kind}], known are {known}")
     for section in sections:
         # These three work without options, as they stand in published cfgs; any other empty block is a slip.
         if not section.options and section.kind not in ("avgpool", "softmax", "maxpool"):
-            raise DarknetError(f"{name}, line {section.line}: section [{section.kind}] is empty")
+            raise DetectorError(f"{name}, line {section.line}: section [{section.kind}] is empty")
     if len(sections) == 1:
-        raise DarknetError(f"{name} has a [net] section and no layer")
+        raise DetectorError(f"{name} has a [net] section and no layer")
 
 
 def render_cfg(sections: list[Section]) -> str:

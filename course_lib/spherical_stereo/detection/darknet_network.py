@@ -12,7 +12,7 @@ import numpy as np
 
 from course_lib.spherical_stereo.detection.darknet import (
     DETECTION_KINDS,
-    DarknetError,
+    DetectorError,
     Section,
     check_weights,
     class_count,
@@ -29,7 +29,7 @@ class DarknetNetwork:
         """Check and load a network.
 
         size: (width, height) of the input in pixels instead of the cfg's; YOLOv4 takes any multiples of 32.
-        Raises DarknetError: what `read_cfg`, `class_count` and `check_weights` refuse, or a size that does not suit.
+        Raises DetectorError: what `read_cfg`, `class_count` and `check_weights` refuse, or a size that does not suit.
         Source: paper 2, section 2.2.
         """
         sections = read_cfg(cfg)
@@ -45,7 +45,7 @@ class DarknetNetwork:
             # One run now: sizes that do not fit are found here, and the first image is as fast as the second.
             self.infer(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
         except cv2.error as error:
-            raise DarknetError(
+            raise DetectorError(
                 f"OpenCV cannot run {cfg} at an input of {self.input_size[0]} x {self.input_size[1]}: {error.err}. "
                 "Width and height must be multiples of the network's stride (32 for YOLOv4)"
             ) from error

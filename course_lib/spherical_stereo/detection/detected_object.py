@@ -5,12 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from course_lib.spherical_stereo.detection.boxes import wrapped_box
+from course_lib.spherical_stereo.detection.boxes import DetectionError, wrapped_box
 from course_lib.spherical_stereo.detection.labels import canonical_label
-
-
-class DetectionError(ValueError):
-    """A detection that cannot be: no label, or a box, score, hue or saturation that is no number or out of range."""
 
 
 @dataclass(frozen=True)

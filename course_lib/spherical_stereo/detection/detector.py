@@ -7,6 +7,7 @@ The order: extend the panorama past its seam (`seam`), fit it into the network's
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Protocol
 
@@ -14,7 +15,7 @@ import cv2
 import numpy as np
 
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
-from course_lib.spherical_stereo.detection.darknet import DarknetError, read_names
+from course_lib.spherical_stereo.detection.darknet import DetectorError, read_names
 from course_lib.spherical_stereo.detection.darknet_network import DarknetNetwork
 from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
 from course_lib.spherical_stereo.detection.labels import canonical_label
@@ -22,16 +23,12 @@ from course_lib.spherical_stereo.detection.letterbox import boxes_to_image, lett
 from course_lib.spherical_stereo.detection.onnx_network import OnnxNetwork
 from course_lib.spherical_stereo.detection.seam import extend_seam, select_on_circle
 from course_lib.spherical_stereo.detection.suppression import VOTE_SCORE, suppress_in_image, vote_on_boxes
-from course_lib.spherical_stereo.panorama import check_panorama
+from course_lib.spherical_stereo.panorama import View, open_view
 
 __all__ = ["Detection", "DetectionError", "DetectorError", "YoloDetector"]
 
 MOST_CANDIDATES = 1000
 """Boxes kept before suppression, the best by score: a bound on time when the threshold is very low."""
-
-
-class DetectorError(ValueError):
-    """A detector that cannot be set up from what was given."""
 
 
 class Network(Protocol):
@@ -42,6 +39,16 @@ class Network(Protocol):
 
     def infer(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Boxes (n, 4) in input pixels and scores (n, classes) for a blob (1, 3, H, W), RGB, 0 to 1."""
+
+
+def find_objects(view: View, detector) -> View:
+    """The panorama with what a detector finds in it: section 2.2 of the walk.
+
+    detector: a `YoloDetector`, or anything else with `detect(image_bgr)` giving detections. Source: paper 2, section
+    2.2.
+    """
+    found = detector.find(view) if isinstance(detector, YoloDetector) else detector.detect(view.image)
+    return view.having(detections=found)
 
 
 class YoloDetector:
@@ -64,13 +71,13 @@ class YoloDetector:
         input_size: (width, height) in pixels, multiples of 32, instead of the cfg's: YOLOv4 as published has a square
         input, in which a panorama fills two fifths; (1280, 512) suits better. use_seam_extension=False shows what
         happens at the seam without it.
-        Raises DarknetError (a file that is missing, malformed or does not fit), DetectorError (a threshold outside
-        [0, 1]). Source: paper 2, section 2.2.
+        Raises DetectorError: a file that is missing, malformed or does not fit, a threshold outside [0, 1].
+        Source: paper 2, section 2.2.
         """
         class_names = read_names(names)
         network = DarknetNetwork(cfg, weights, input_size)
         if len(class_names) != network.n_classes:
-            raise DarknetError(
+            raise DetectorError(
                 f"{cfg} has {network.n_classes} classes, {names} {len(class_names)} names: give that network's names"
             )
         self._set_up(network, class_names, score_threshold, iou_threshold, use_seam_extension)
@@ -89,7 +96,7 @@ class YoloDetector:
     ) -> YoloDetector:
         """A detector from an ONNX file; layout "yolov5", "yolov8" or "yolov4" (`onnx_network`).
 
-        Raises OnnxError, DarknetError (the names file), DetectorError. Source: paper 2, section 2.2.
+        Raises DetectorError. Source: paper 2, section 2.2.
         """
         class_names = read_names(names)
         detector = cls.__new__(cls)
@@ -101,7 +108,10 @@ class YoloDetector:
     def load(cls, folder: str | Path, **options) -> YoloDetector:
         """A detector from a folder with one `.cfg`, one `.weights` and one `.names`; options as in the constructor.
 
-        Raises DetectorError: no folder, or not exactly one of each; and the constructor's errors.
+        The score threshold is the one that training chose on its validation images, `score_threshold` of a
+        `training.json` beside them; a network that came without gets the constructor's, unless `options` say another.
+        Raises DetectorError: no folder, not exactly one of each, or a `training.json` without a threshold from 0 to 1;
+        and the constructor's errors.
         """
         folder = Path(folder)
         if not folder.is_dir():
@@ -113,6 +123,8 @@ class YoloDetector:
                 listed = ", ".join(path.name for path in found) or "none"
                 raise DetectorError(f"{folder} must hold exactly one {ending} file; found {listed}")
             paths += found
+        if "score_threshold" not in options:
+            options |= _trained_options(folder / "training.json")
         return cls(*paths, **options)
 
     def _set_up(
@@ -141,10 +153,13 @@ class YoloDetector:
         """Every object of a panorama once, the greatest score first.
 
         image_bgr: (H, 2 H, 3) uint8 of any size. Boxes have 0 <= u_min < W, and u_max > W across the seam.
-        Raises PanoramaError (not 2:1, grey, empty). Source: paper 2, section 2.2.
+        Raises PanoramaError as `open_view` does. Source: paper 2, section 2.2.
         """
-        check_panorama(image_bgr)
-        width = image_bgr.shape[1]
+        return self.find(open_view(image_bgr))
+
+    def find(self, view: View) -> list[Detection]:
+        """`detect` on a panorama that came through the door already. Source: paper 2, section 2.2."""
+        image_bgr, width = view.image, view.width
         if self.use_seam_extension:
             boxes, scores, classes = self.detect_in_plane(extend_seam(image_bgr))
             boxes, scores, classes = select_on_circle(boxes, scores, classes, width, self.iou_threshold)
@@ -178,3 +193,16 @@ class YoloDetector:
         sure = np.flatnonzero(scores >= self.score_threshold)
         kept = sure[suppress_in_image(boxes[sure], scores[sure], classes[sure], self.iou_threshold)]
         return vote_on_boxes(boxes, scores, classes, kept), scores[kept], classes[kept]
+
+
+def _trained_options(path: Path) -> dict[str, float]:
+    """The constructor's options that a training wrote down."""
+    if not path.is_file():
+        return {}
+    try:
+        threshold = float(json.loads(path.read_text(encoding="utf-8"))["score_threshold"])
+    except (ValueError, TypeError, KeyError):
+        raise DetectorError(
+            f"{path} must be JSON with a number score_threshold; mend or remove it, or give score_threshold yourself"
+        ) from None
+    return {"score_threshold": threshold}

@@ -15,11 +15,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
+
 LAYOUTS = ("yolov5", "yolov8", "yolov4")
-
-
-class OnnxError(ValueError):
-    """An ONNX file that cannot be used as a detector: missing, unreadable, or with another layout than was said."""
 
 
 def decode_onnx(
@@ -27,17 +25,17 @@ def decode_onnx(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Boxes (n, 4) in edge coordinates of the input and scores (n, classes) from a network's outputs.
 
-    layout: see the module. input_size: (width, height) in pixels. Raises OnnxError: an unknown layout, or outputs whose
-    number or shapes do not fit it; the message has them. Source: paper 2, section 2.2.
+    layout: see the module. input_size: (width, height) in pixels. Raises DetectorError: an unknown layout, or outputs
+    whose number or shapes do not fit it; the message has them. Source: paper 2, section 2.2.
     """
     if layout not in LAYOUTS:
-        raise OnnxError(f"layout {layout!r} is not known; known are {', '.join(LAYOUTS)}")
+        raise DetectorError(f"layout {layout!r} is not known; known are {', '.join(LAYOUTS)}")
     shapes = [output.shape for output in outputs]
     if layout == "yolov4":
         boxes = [output for output in outputs if output.ndim == 4 and output.shape[2:] == (1, 4)]
         scores = [output for output in outputs if output.ndim == 3 and output.shape[2] == n_classes]
         if len(outputs) != 2 or not boxes or not scores or boxes[0].shape[1] != scores[0].shape[1]:
-            raise OnnxError(
+            raise DetectorError(
                 f"layout yolov4 needs outputs (1, n, 1, 4) and (1, n, {n_classes}); the file gives {shapes}"
             )
         return boxes[0].reshape(-1, 4) * np.tile(input_size, 2), scores[0].reshape(-1, n_classes)
@@ -45,7 +43,7 @@ def decode_onnx(
     axis = 2 if layout == "yolov5" else 1
     if len(outputs) != 1 or outputs[0].ndim != 3 or outputs[0].shape[0] != 1 or outputs[0].shape[axis] != columns:
         expected = f"(1, n, {columns})" if layout == "yolov5" else f"(1, {columns}, n)"
-        raise OnnxError(
+        raise DetectorError(
             f"layout {layout} with {n_classes} names needs one output {expected}; the file gives {shapes}. "
             "Is it another layout, or are these the names of another network?"
         )
@@ -61,25 +59,25 @@ class OnnxNetwork:
     def __init__(self, path: str | Path, layout: str, n_classes: int, input_size: tuple[int, int]) -> None:
         """Load a network and run it once, so that what does not fit is found now.
 
-        input_size: (width, height) in pixels that it was exported for. Raises OnnxError: a missing or unreadable file,
-        an input size that the file does not take, or what `decode_onnx` refuses. Source: paper 2, section 2.2.
+        input_size: (width, height) in pixels that it was exported for. Raises DetectorError: a missing or unreadable
+        file, an input size that the file does not take, or what `decode_onnx` refuses. Source: paper 2, section 2.2.
         """
         path = Path(path)
         if not path.is_file():
-            raise OnnxError(f"ONNX file {path} is missing: give the path of an existing file")
+            raise DetectorError(f"ONNX file {path} is missing: give the path of an existing file")
         self.input_size: tuple[int, int] = (int(input_size[0]), int(input_size[1]))
         self.n_classes = n_classes
         self._layout = layout
         try:
             self._net = cv2.dnn.readNetFromONNX(str(path))
         except cv2.error as error:
-            raise OnnxError(f"OpenCV cannot read {path} as an ONNX network: {error.err}") from error
+            raise DetectorError(f"OpenCV cannot read {path} as an ONNX network: {error.err}") from error
         self._outputs = self._net.getUnconnectedOutLayersNames()
         try:
             self.infer(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
         except cv2.error as error:
             width, height = self.input_size
-            raise OnnxError(
+            raise DetectorError(
                 f"OpenCV cannot run {path} at an input of {width} x {height}: {error.err}. "
                 "Give the input_size (width, height) that the file was exported for"
             ) from error

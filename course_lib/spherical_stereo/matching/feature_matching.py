@@ -8,14 +8,8 @@ import cv2
 import numpy as np
 
 from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE, epipolar_residual
-from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features
-from course_lib.spherical_stereo.panorama import (
-    ImageSizeError,
-    PanoramaError,
-    StereoRig,
-    azimuth_difference,
-    check_panorama_pair,
-)
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures
+from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_difference
 
 # Hamming distance of the best candidate over that of the second best, at most (Lowe's value for distances).
 RATIO = 0.8
@@ -53,40 +47,36 @@ class FeatureMatches:
 
 
 def match_features(
-    upper_image: np.ndarray, lower_image: np.ndarray, rig: StereoRig, tolerance: float = EPIPOLAR_TOLERANCE
+    upper: PanoramaFeatures, lower: PanoramaFeatures, tolerance: float = EPIPOLAR_TOLERANCE
 ) -> FeatureMatches:
-    """Matches of AKAZE features over two whole panoramas, found without the epipolar constraint and then tested by it.
+    """Matches of the features of two whole panoramas, found without the epipolar constraint and then tested by it.
 
     Nearest neighbour in Hamming distance, mutual and with the ratio test (`RATIO`). As the constraint has no part in
     the search, the share that obeys it tells how well the images are aligned.
-    Raises `check_panorama_pair`'s errors and `SwappedImagesError`. Source: paper 2, section 2.3.
+    Raises `SwappedImagesError`, and `PanoramaError` for unlike sizes. Source: paper 2, section 2.3.
     """
-    check_panorama_pair(upper_image, lower_image)
-    return match_detected_features(detect_features(upper_image), detect_features(lower_image), rig, tolerance)
+    if (upper.width, upper.height) != (lower.width, lower.height):
+        raise PanoramaError(
+            f"the two images must have one size; got {upper.width} x {upper.height} (upper) and "
+            f"{lower.width} x {lower.height} (lower)"
+        )
+    matches = nearest_features(upper, lower, tolerance)
+    check_not_swapped(matches.vertical_disparity[matches.epipolar])
+    return matches
 
 
-def match_detected_features(
-    upper: PanoramaFeatures, lower: PanoramaFeatures, rig: StereoRig, tolerance: float = EPIPOLAR_TOLERANCE
-) -> FeatureMatches:
-    """`match_features` from the features on. Raises `SwappedImagesError`, and `ImageSizeError` for unlike sizes."""
-    check_same_size(upper, lower)
+def nearest_features(upper: PanoramaFeatures, lower: PanoramaFeatures, tolerance: float) -> FeatureMatches:
+    """`match_features` of images that may well be swapped, or turned against each other."""
     first, second = _mutual_matches(upper.descriptors, lower.descriptors)
-    (azimuth_u, elevation_u), (azimuth_l, elevation_l) = upper.angles(), lower.angles()
-    azimuth_u, elevation_u, azimuth_l, elevation_l = (
-        azimuth_u[first],
-        elevation_u[first],
-        azimuth_l[second],
-        elevation_l[second],
+    (azimuth_u, elevation_u), (azimuth_l, elevation_l) = (
+        (angles[0][chosen], angles[1][chosen]) for angles, chosen in ((upper.angles(), first), (lower.angles(), second))
     )
-    epipolar = epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l) <= tolerance
-    disparity = elevation_l - elevation_u
-    check_not_swapped(disparity[epipolar])
     return FeatureMatches(
         upper.keypoints[first],
         lower.keypoints[second],
         np.atleast_1d(azimuth_difference(azimuth_l, azimuth_u)),
-        disparity,
-        epipolar,
+        elevation_l - elevation_u,
+        epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l) <= tolerance,
         tolerance,
     )
 
@@ -104,15 +94,6 @@ def _mutual_matches(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, 
     ]
     rows, columns = np.array(kept, dtype=int).reshape(-1, 2).T
     return rows, columns
-
-
-def check_same_size(upper: PanoramaFeatures, lower: PanoramaFeatures) -> None:
-    """Raises `ImageSizeError` when features come from panoramas of two sizes."""
-    if (upper.width, upper.height) != (lower.width, lower.height):
-        raise ImageSizeError(
-            f"the two images must have one size; got {upper.width} x {upper.height} (upper) and "
-            f"{lower.width} x {lower.height} (lower)"
-        )
 
 
 def check_not_swapped(disparity: np.ndarray) -> None:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_elevation_of_pixel, check_panorama
+from course_lib.spherical_stereo.panorama import PanoramaError, View, azimuth_elevation_of_pixel, open_view
 
 # Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
 # 1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none, for half as much time again; on a real pair as
@@ -52,18 +52,23 @@ class PanoramaFeatures:
 def detect_features(
     image: np.ndarray, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES
 ) -> PanoramaFeatures:
-    """AKAZE features of a whole panorama, those on the seam included, each once.
+    """`find_features` of an image, uint8 BGR `(H, W, 3)`, W = 2 H; raises `PanoramaError` as that and `open_view` do."""
+    return find_features(open_view(image), threshold, octaves).features
 
-    image: uint8 BGR `(H, W, 3)`, W = 2 H. threshold: smallest response, lower means more and weaker features. The image
-    is extended by its own other end on both sides, and only features whose place is in the image proper are kept: a
-    feature on the seam is found whole, and its copy in the extension is left out.
-    Raises `check_panorama`'s errors, and `PanoramaError` for a threshold that is not positive or octaves below one.
-    Source: paper 2, section 2.3.
+
+def find_features(view: View, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES) -> View:
+    """The panorama with its AKAZE features, found unless they are there already; those on the seam too, each once.
+
+    threshold: smallest response, lower means more and weaker features. The image is extended by its own other end on
+    both sides, and only features whose place is in the image proper are kept: a feature on the seam is found whole, and
+    its copy in the extension is left out.
+    Raises `PanoramaError` for a threshold that is not positive or octaves below one. Source: paper 2, section 2.3.
     """
-    check_panorama(image)
+    if view.features is not None:
+        return view
     if not threshold > 0 or int(octaves) != octaves or octaves < 1:
         raise PanoramaError(f"threshold must be positive and octaves at least 1; got {threshold!r} and {octaves!r}")
-    height, width = image.shape[:2]
+    image, height, width = view.image, view.height, view.width
     margin = min(SEAM_MARGIN, width // 2)
     grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
     extended = np.concatenate([grey[:, -margin:], grey, grey[:, :margin]], axis=1)
@@ -72,12 +77,13 @@ def detect_features(
     )
     keypoints, descriptors = akaze.detectAndCompute(extended, None)
     if not keypoints:
-        return PanoramaFeatures(np.zeros((0, 2)), np.zeros((0, 61), np.uint8), width, height)
+        nothing = PanoramaFeatures(np.zeros((0, 2)), np.zeros((0, 61), np.uint8), width, height)
+        return view.having(features=nothing)
     # OpenCV's keypoints have pixel centres at integers; edge coordinates have them half a pixel on.
     places = np.array([keypoint.pt for keypoint in keypoints], dtype=np.float64) + 0.5 - [margin, 0]
     proper = (places[:, 0] >= 0) & (places[:, 0] < width)
     places[:, 1] = np.clip(places[:, 1], 0, height)
-    return PanoramaFeatures(places[proper], descriptors[proper], width, height)
+    return view.having(features=PanoramaFeatures(places[proper], descriptors[proper], width, height))
 
 
 def inside_box(points: np.ndarray, box: np.ndarray, width: int) -> np.ndarray:

@@ -4,26 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
+from course_lib.spherical_stereo.pose.plausibility import Residuals
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.ranging.triangulation import OK as OK
 from course_lib.spherical_stereo.semantic_map.association import Association, Observation
 
-OK, UNABLE = "ok", "unable"
+Status = Literal["ok", "unable"]
+UNABLE: Status = "unable"
 
-# Reasons why there is no pose: all of them things that the world does.
+# Reasons why there is no pose: all of them things that the world does. The fit's own are in `rigid_fit`.
+BLANK = "blank image"
 NO_DETECTIONS = "no detections"
 ONE_DETECTION = "one detection"
+TURNED = "cameras turned against each other"
 TOO_FEW_MATCHED = "fewer than two objects in both images"
 SWAPPED = "images seem swapped"
 TOO_FEW_PLACED = "fewer than two objects with a distance"
 UNMAPPED_ONLY = "only unmapped classes"
-TOO_FEW_PAIRS = "fewer than two pairs"
-COINCIDENT = "coincident points"
-MIRRORED = "mirrored points"
-UNDETERMINED = "undetermined rotation"
+IMPLAUSIBLE = "implausible"
 
 # An outcome of an object beside those of `triangulation` and `vertical_disparity`.
 UNMAPPED = "class not on the map"
@@ -38,7 +40,7 @@ class PlacedObject(NamedTuple):
     """Index of its detection in the lower image."""
     label: str
     outcome: str
-    """ "ok", or why there is no place: "parallel", "diverging", "azimuth gap", "too few matches"."""
+    """ "ok", or why there is no place: "parallel", "diverging", "azimuth gap", "too few matches", "too far"."""
     position: np.ndarray
     """X = d x_hat `(3,)`, metres, body frame with the origin at the upper camera; NaN where there is no place."""
     observation: int | None
@@ -51,7 +53,7 @@ class Localization:
 
     pose: Pose2D | None
     """s = [x, y, theta], or None."""
-    status: str
+    status: Status
     """ "ok" or "unable"."""
     reason: str | None = None
     """Why there is no pose, one of the names above; None when there is one."""
@@ -73,6 +75,17 @@ class Localization:
     """How the observations were matched to the map; None without observations."""
     residuals: np.ndarray | None = None
     """`(n, 2)` metres, world: where the used observations land, minus their landmarks."""
+    statistics: Residuals | None = None
+    """How large the residuals may be under the observations' covariances; None without these."""
+    rejected_pose: Pose2D | None = None
+    """What was fitted, where the reason is "implausible"; None otherwise."""
+    turn: np.ndarray | None = None
+    """`(3,)` radians about x, y, z: of the lower camera against the upper one, as the images tell; None: not known."""
+
+    @property
+    def rms_residual(self) -> float | None:
+        """Root mean square of the residuals, metres; None without a fit. `statistics.expected_rms` is its measure."""
+        return None if self.residuals is None else float(np.sqrt((self.residuals**2).sum(axis=1).mean()))
 
     @property
     def pairs(self) -> tuple[tuple[int, int], ...]:

@@ -37,28 +37,19 @@ class Pose2D(NamedTuple):
         return np.asarray(points, dtype=np.float64) @ rotation_2d(self.theta).T + np.array([self.x, self.y])
 
 
+TOO_FEW_PAIRS = "fewer than two pairs"  # one point says where, not which way
+COINCIDENT = "coincident points"  # all points of one side are the same: no heading
+MIRRORED = "mirrored points"  # one side is the mirror image of the other, which no rotation makes: wrong pairs
+UNDETERMINED = "undetermined rotation"  # every heading fits equally badly: wrong pairs
+NO_POINTS = "not points"  # other shapes, NaN or infinity: a slip of the caller's
+
+
 class RigidFitError(ValueError):
-    """Points through which no rigid transform can be put."""
+    """Points through which no rigid transform can be put; `reason` says why, one of the five names above."""
 
-
-class TooFewPairs(RigidFitError):
-    """Fewer than two pairs: one point says where, not which way."""
-
-
-class CoincidentPoints(RigidFitError):
-    """All points of one side are the same: no heading."""
-
-
-class MirroredPoints(RigidFitError):
-    """One side is the mirror image of the other, which no rotation makes: the pairs are wrong."""
-
-
-class UndeterminedRotation(RigidFitError):
-    """Every heading fits equally badly: the pairs are wrong."""
-
-
-class NotFinite(RigidFitError):
-    """NaN or infinity among the points, weights or covariances."""
+    def __init__(self, message: str, reason: str = NO_POINTS):
+        super().__init__(message)
+        self.reason = reason
 
 
 def rotation_2d(theta: float) -> np.ndarray:
@@ -81,11 +72,11 @@ def fit_rigid_2d(
     source: `(n, 2)` body frame, target: `(n, 2)` world, metres. weights: `(n,)`, not negative; a pair of weight 0 is
     left out. covariances: `(n, 2, 2)` of the source points in the body frame; then sum_i r_i^T (R C_i R^T)^-1 r_i is
     made smallest by Gauss-Newton steps from the closed form. The paper uses neither: all pairs count the same.
-    Raises `TooFewPairs`, `CoincidentPoints`, `MirroredPoints` (three or more pairs that are no line, and the fit with
-    a reflection clearly better), `UndeterminedRotation`, `NotFinite` (all `RigidFitError`), and `RigidFitError` for
-    shapes that do not fit. Source: paper 2, section 2.6.
+    Raises `RigidFitError`, whose reason is `TOO_FEW_PAIRS`, `COINCIDENT`, `MIRRORED` (three or more pairs that are no
+    line, and the fit with a reflection clearly better), `UNDETERMINED`, or `NO_POINTS` for shapes that do not fit and
+    for NaN. Source: paper 2, section 2.6.
     """
-    source, target, w, covariances = _checked(source, target, weights, covariances)
+    source, target, w, covariances = checked_pairs(source, target, weights, covariances)
     start_weights = w if covariances is None else w / np.trace(covariances, axis1=1, axis2=2)
     pose = _closed_form(source, target, start_weights)
     return pose if covariances is None else _gauss_newton(pose, source, target, w, covariances)
@@ -98,8 +89,9 @@ def _closed_form(source: np.ndarray, target: np.ndarray, w: np.ndarray) -> Pose2
     spread_a, spread_b = w @ (a**2).sum(axis=1), w @ (b**2).sum(axis=1)
     for name, spread in (("source", spread_a), ("target", spread_b)):
         if np.sqrt(spread) < LEAST_SPREAD:
-            raise CoincidentPoints(
-                f"the {len(w)} {name} points lie within {np.sqrt(spread):.2g} m of their centroid: no heading"
+            raise RigidFitError(
+                f"the {len(w)} {name} points lie within {np.sqrt(spread):.2g} m of their centroid: no heading",
+                COINCIDENT,
             )
     u, d, vt = np.linalg.svd((w[:, None] * b).T @ a)
     sign = np.linalg.det(u) * np.linalg.det(vt)
@@ -107,7 +99,9 @@ def _closed_form(source: np.ndarray, target: np.ndarray, w: np.ndarray) -> Pose2
     squared = np.maximum(0.0, spread_a + spread_b - 2 * np.array([d[0] + sign * d[1], d[0] - sign * d[1]]))
     _refuse_mirrored(a, b, w, np.sqrt(squared))
     if d[0] + sign * d[1] < 1e-9 * np.sqrt(spread_a * spread_b):
-        raise UndeterminedRotation(f"every heading fits these {len(w)} pairs equally badly: the pairs must be wrong")
+        raise RigidFitError(
+            f"every heading fits these {len(w)} pairs equally badly: the pairs must be wrong", UNDETERMINED
+        )
     rotation = u @ np.diag([1.0, sign]) @ vt
     x, y = target_mean - rotation @ source_mean
     return Pose2D(float(x), float(y), wrap_angle(np.arctan2(rotation[1, 0], rotation[0, 0])))
@@ -121,9 +115,10 @@ def _refuse_mirrored(a: np.ndarray, b: np.ndarray, w: np.ndarray, residuals: np.
         length, width = np.linalg.svd(np.sqrt(w)[:, None] * points, compute_uv=False)
         if width < LEAST_WIDTH * length:
             return
-    raise MirroredPoints(
+    raise RigidFitError(
         f"the target points are a mirror image of the source points: with a reflection the residual is "
-        f"{reflected:.3f} m, with a rotation {rotated:.3f} m; the pairs, or an axis, must be wrong"
+        f"{reflected:.3f} m, with a rotation {rotated:.3f} m; the pairs, or an axis, must be wrong",
+        MIRRORED,
     )
 
 
@@ -131,7 +126,7 @@ def _gauss_newton(
     pose: Pose2D, source: np.ndarray, target: np.ndarray, w: np.ndarray, covariances: np.ndarray
 ) -> Pose2D:
     for _ in range(GAUSS_NEWTON_STEPS):
-        residuals, jacobians, information = _linearized(pose, source, target, w, covariances)
+        residuals, jacobians, information = linearized(pose, source, target, w, covariances)
         normal = np.einsum("nki,nkl,nlj->ij", jacobians, information, jacobians)
         gradient = np.einsum("nki,nkl,nl->i", jacobians, information, residuals)
         step = -np.linalg.solve(normal, gradient)
@@ -141,7 +136,7 @@ def _gauss_newton(
     return pose
 
 
-def _linearized(
+def linearized(
     pose: Pose2D, source: np.ndarray, target: np.ndarray, w: np.ndarray, covariances: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Residuals `(n, 2)`, their derivatives by [x, y, theta] `(n, 2, 3)`, and their weight matrices `(n, 2, 2)`."""
@@ -176,21 +171,22 @@ def fit_covariance(
     """
     if noise is None:
         noise = covariances
-    source, target, w, covariances = _checked(source, target, weights, covariances)
-    residuals, jacobians, information = _linearized(pose, source, target, w, covariances)
+    source, target, w, covariances = checked_pairs(source, target, weights, covariances)
+    residuals, jacobians, information = linearized(pose, source, target, w, covariances)
     inverse = np.linalg.inv(np.einsum("nki,nkl,nlj->ij", jacobians, information, jacobians))
     if noise is None:
         return inverse * (w @ (residuals**2).sum(axis=1)) / (2 * len(source) - 3)
     rotation = rotation_2d(pose.theta)
     kept = slice(None) if weights is None else np.asarray(weights, dtype=np.float64) > 0
-    in_world = rotation @ _checked_covariances(noise, kept, len(source)) @ rotation.T
+    in_world = rotation @ checked_covariances(noise, kept, len(source)) @ rotation.T
     middle = np.einsum("nki,nkl,nlm,nmo,noj->ij", jacobians, information, in_world, information, jacobians)
     return inverse @ middle @ inverse
 
 
-def _checked(
+def checked_pairs(
     source: np.ndarray, target: np.ndarray, weights: np.ndarray | None, covariances: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
+    """What `fit_rigid_2d` was given, as arrays, without pairs of weight 0. Raises `RigidFitError` as that does."""
     source, target = (np.asarray(points, dtype=np.float64).reshape(-1, 2) if np.size(points) == 0 else
                       np.asarray(points, dtype=np.float64) for points in (source, target))  # fmt: skip
     if source.ndim != 2 or source.shape[1] != 2 or source.shape != target.shape:
@@ -200,26 +196,27 @@ def _checked(
         raise RigidFitError(f"weights must have shape ({len(source)},), one a pair; got {w.shape}")
     for name, array in (("source", source), ("target", target), ("weights", w)):
         if not np.isfinite(array).all():
-            raise NotFinite(
+            raise RigidFitError(
                 f"{name} must be finite; got NaN or infinity in entry {np.argwhere(~np.isfinite(array))[0][0]}"
             )
     if (w < 0).any():
         raise RigidFitError(f"weights must not be negative; got {w.min():g}")
     kept = w > 0
     if kept.sum() < 2:
-        raise TooFewPairs(f"a pose needs at least two pairs of points; got {kept.sum()}")
+        raise RigidFitError(f"a pose needs at least two pairs of points; got {kept.sum()}", TOO_FEW_PAIRS)
     if covariances is not None:
-        covariances = _checked_covariances(covariances, kept, int(kept.sum()))
+        covariances = checked_covariances(covariances, kept, int(kept.sum()))
     return source[kept], target[kept], w[kept], covariances
 
 
-def _checked_covariances(covariances: np.ndarray, kept: np.ndarray | slice, n: int) -> np.ndarray:
+def checked_covariances(covariances: np.ndarray, kept: np.ndarray | slice, n: int) -> np.ndarray:
+    """The `(n, 2, 2)` covariances of the kept pairs. Raises `RigidFitError` for others than symmetric positive ones."""
     array = np.asarray(covariances, dtype=np.float64)
     array = array[kept] if array.ndim == 3 and (isinstance(kept, slice) or len(array) == len(kept)) else array
     if array.shape != (n, 2, 2):
         raise RigidFitError(f"covariances must be one (2, 2) matrix a pair; got shape {np.shape(covariances)}")
     if not np.isfinite(array).all():
-        raise NotFinite("covariances must be finite; got NaN or infinity")
+        raise RigidFitError("covariances must be finite; got NaN or infinity")
     if not np.allclose(array, np.swapaxes(array, 1, 2)) or (np.linalg.eigvalsh(array) <= 0).any():
         raise RigidFitError("every covariance must be symmetric with positive eigenvalues (square metres)")
     return array

@@ -7,13 +7,20 @@ place and a covariance.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.spherical_stereo.detection.boxes import box_centre
-from course_lib.spherical_stereo.detection.localizer_input import LocalizerError
-from course_lib.spherical_stereo.panorama import StereoRig, azimuth_elevation, pixel_to_direction
+from course_lib.spherical_stereo.detection.boxes import DetectionError, box_centre
+from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.panorama import (
+    PanoramaError,
+    StereoRig,
+    View,
+    azimuth_elevation,
+    direction_from_angles,
+    pixel_to_direction,
+)
 from course_lib.spherical_stereo.ranging.triangulation import (
     OK,
     triangulate,
@@ -22,7 +29,8 @@ from course_lib.spherical_stereo.ranging.triangulation import (
 )
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
 
-DISTANCES = ("box_centre", "disparity")
+Distance = Literal["box_centre", "disparity"]
+DISTANCES: tuple[Distance, ...] = ("box_centre", "disparity")
 BOX_CENTRE_SIGMA = 0.0075
 """Radians, standard deviation of a box centre's azimuth and elevation (chosen: 1.5 pixels at a width of 1280)."""
 CENTROID_SIGMA = 0.1
@@ -31,71 +39,149 @@ box is of the visible side (chosen). Without it, objects close by would seem cer
 SURFACE_SIGMA = 0.15
 """Metres, how far an object's centroid is from the surface that its features lie on, as a standard deviation (chosen:
 about a quarter of a sofa's depth). It is added to what the disparities say, which know nothing of the inside."""
+TOO_FAR = "too far"
+"""Outcome of an object beyond `greatest_range`."""
+
+
+class Noise(NamedTuple):
+    """What makes a place uncertain: standard deviations."""
+
+    box_centre: float = BOX_CENTRE_SIGMA
+    """Radians, of a box centre's azimuth and elevation."""
+    centroid: float = CENTROID_SIGMA
+    """Metres, of the object's centroid about the point that the box's centre shows."""
+    surface: float = SURFACE_SIGMA
+    """Metres, of the centroid about the surface that the features lie on."""
 
 
 class Place(NamedTuple):
     """Place of one object, body frame with the origin at the upper camera."""
 
     outcome: str
-    """ "ok", "parallel", "diverging", "azimuth gap" or "too few matches"."""
+    """ "ok", "parallel", "diverging", "azimuth gap", "too few matches" or "too far"."""
     position: np.ndarray
     """X `(3,)`, metres; NaN unless the outcome is "ok"."""
     covariance: np.ndarray
     """`(2, 2)` of its horizontal part, square metres; NaN unless the outcome is "ok"."""
 
+    @property
+    def distance_m(self) -> float:
+        """d, along the upper camera's direction of the box centre."""
+        return float(np.linalg.norm(self.position))
+
+    @property
+    def horizontal_range_m(self) -> float:
+        """d cos e, from the rig's axis."""
+        return float(np.hypot(*self.position[:2]))
+
+    @property
+    def horizontal_sigma_m(self) -> float:
+        """One standard deviation of the horizontal range: sqrt(h' C h), h the unit vector towards the object."""
+        towards = self.position[:2] / self.horizontal_range_m
+        return float(np.sqrt(towards @ self.covariance @ towards))
+
+
+class MeasuredObject(NamedTuple):
+    """A matched object with both its distances."""
+
+    upper: int
+    lower: int
+    label: str
+    n_matches: int
+    azimuth_deg: float
+    box_centre: Place
+    disparity: Place
+
+
+def greatest_range(baseline: float) -> float:
+    """The horizontal range in metres at which one standard deviation of the parallax is all of it.
+
+    rho = baseline / (sqrt(2) s), s = `BOX_CENTRE_SIGMA`; 28 m at a baseline of 0.3 m. Nothing is known of the distance
+    of what seems further away. Source: paper 2, section 2.4 (which draws no line).
+    """
+    return baseline / (2**0.5 * BOX_CENTRE_SIGMA)
+
 
 def place_objects(
     matches: Sequence,
     pairs: Sequence[tuple[int, int]],
-    upper_detections: Sequence,
-    lower_detections: Sequence,
+    upper: View,
+    lower: View,
     rig: StereoRig,
-    distance: str,
-    width: int,
-    height: int,
+    distance: Distance = "box_centre",
+    noise: Noise = Noise(),  # noqa: B008 (it cannot change)
+    furthest: float = np.inf,
 ) -> list[Place]:
     """The place of every match: X = d x_hat, x_hat the direction of the box centre in the upper image.
 
-    pairs: indices (upper, lower) of the matches' detections. distance: "box_centre", d from both box centres, or
-    "disparity", d from the matched features, for which the matches must carry them (else `LocalizerError`).
-    width, height: of the panoramas, pixels. Source: paper 2, section 2.4.
+    pairs: indices (upper, lower) of the matches' detections (`matched_indices`). distance: "box_centre", d from both
+    box centres, or "disparity", d from the matched features, for which the matches must carry them (else
+    `DetectionError`). furthest: metres, horizontal; what seems further away has the outcome "too far" and no place.
+    Source: paper 2, section 2.4.
     """
     if not pairs:
         return []
-    upper_centres = box_centre([upper_detections[i].box for i, _ in pairs])
-    from_upper = pixel_to_direction(upper_centres, width, height)
+    from_upper = pixel_to_direction(box_centre([upper.detections[i].box for i, _ in pairs]), *upper.size)
     if distance == "disparity":
-        return [
-            _from_features(match, direction, rig.baseline, width, height)
+        places = [
+            _from_features(match, direction, rig.baseline, upper.size, noise)
             for match, direction in zip(matches, from_upper, strict=True)
         ]
-    from_lower = pixel_to_direction(box_centre([lower_detections[j].box for _, j in pairs]), width, height)
-    return _from_box_centres(from_upper, from_lower, rig.baseline)
+    else:
+        from_lower = pixel_to_direction(box_centre([lower.detections[j].box for _, j in pairs]), *lower.size)
+        places = _from_box_centres(from_upper, from_lower, rig.baseline, noise)
+    return [_nowhere(TOO_FAR) if one.horizontal_range_m > furthest else one for one in places]
 
 
-def _from_box_centres(from_upper: np.ndarray, from_lower: np.ndarray, baseline: float) -> list[Place]:
+def measure_objects(
+    matches: Sequence, upper: View, lower: View, rig: StereoRig, sigma_pixels: float = 1.0
+) -> list[MeasuredObject]:
+    """Every matched object with both its distances, in the order of the upper detections.
+
+    matches: `ObjectMatch`es. sigma_pixels: standard deviation of a box centre's u and v, pixels; of the disparities,
+    the spread of the features themselves tells. What neither knows, where the centroid is, is left out here.
+    Raises `PanoramaError` for a sigma that is negative. Source: paper 2, section 2.4.
+    """
+    if not sigma_pixels >= 0:
+        raise PanoramaError(f"sigma_pixels must not be negative; got {sigma_pixels!r}")
+    matches = sorted(matches, key=lambda m: m.upper)
+    pairs = [(match.upper, match.lower) for match in matches]
+    noise = Noise(2 * np.pi / upper.width * sigma_pixels, 0.0, 0.0)
+    by_boxes, by_features = (place_objects(matches, pairs, upper, lower, rig, way, noise) for way in DISTANCES)
+    measured = []
+    for match, *places in zip(matches, by_boxes, by_features, strict=True):
+        box = upper.detections[match.upper].box
+        azimuth, _ = azimuth_elevation(pixel_to_direction(box_centre(box), *upper.size))
+        label = canonical_label(match.label)
+        measured.append(
+            MeasuredObject(match.upper, match.lower, label, match.n_matches, float(np.degrees(azimuth)), *places)
+        )
+    return measured
+
+
+def _from_box_centres(from_upper: np.ndarray, from_lower: np.ndarray, baseline: float, noise: Noise) -> list[Place]:
     """Places of directions `(n, 3)`, all that have one at once."""
     outcomes = triangulation_outcome(from_upper, from_lower)
     positions, covariances = np.full((len(outcomes), 3), np.nan), np.full((len(outcomes), 2, 2), np.nan)
     ok = outcomes == OK
     directions = from_upper[ok], from_lower[ok]
     positions[ok] = triangulate(*directions, baseline)[:, None] * directions[0]
-    noise = triangulation_covariance(*directions, baseline, BOX_CENTRE_SIGMA, BOX_CENTRE_SIGMA)
-    covariances[ok] = noise[:, :2, :2] + CENTROID_SIGMA**2 * np.eye(2)
+    of_angles = triangulation_covariance(*directions, baseline, noise.box_centre, noise.box_centre)
+    covariances[ok] = of_angles[:, :2, :2] + noise.centroid**2 * np.eye(2)
     return [Place(str(outcome), *place) for outcome, *place in zip(outcomes, positions, covariances, strict=True)]
 
 
-def _from_features(match, from_upper: np.ndarray, baseline: float, width: int, height: int) -> Place:
+def _from_features(match, from_upper: np.ndarray, baseline: float, size: tuple[int, int], noise: Noise) -> Place:
     if not hasattr(match, "keypoints_upper"):
-        raise LocalizerError('distance="disparity" needs ObjectMatch with its features, not a pair of indices')
-    measured = disparity_distance(match, width, height, baseline)
+        raise DetectionError('distance="disparity" needs ObjectMatch with its features, not a pair of indices')
+    measured = disparity_distance(match, *size, baseline)
     if measured.outcome != OK:
         return _nowhere(measured.outcome)
     azimuth, _ = azimuth_elevation(from_upper)
-    along = np.array([np.cos(azimuth), np.sin(azimuth)])
+    along = direction_from_angles(azimuth, 0.0)[:2]
     across = np.array([-along[1], along[0]])
-    variance_along = measured.sigma**2 + SURFACE_SIGMA**2
-    variance_across = (measured.horizontal_range * BOX_CENTRE_SIGMA) ** 2 + CENTROID_SIGMA**2
+    variance_along = measured.sigma**2 + noise.surface**2
+    variance_across = (measured.horizontal_range * noise.box_centre) ** 2 + noise.centroid**2
     covariance = variance_along * np.outer(along, along) + variance_across * np.outer(across, across)
     return Place(OK, measured.position(from_upper), covariance)
 

@@ -30,19 +30,11 @@ OK, PARALLEL, DIVERGING, AZIMUTH_GAP = "ok", "parallel", "diverging", "azimuth g
 
 
 class TriangulationError(ValueError):
-    """Two directions that give no distance."""
+    """Two directions that give no distance; `outcome` says why: "parallel", "diverging" or "azimuth gap"."""
 
-
-class ParallelDirections(TriangulationError):
-    """Directions without usable parallax: the object is too far away for this baseline, or straight up or down."""
-
-
-class DivergingDirections(TriangulationError):
-    """The lower camera's direction points below the upper one's: the rays move apart."""
-
-
-class AzimuthGap(TriangulationError):
-    """Directions at different azimuths: they cannot show one object."""
+    def __init__(self, message: str, outcome: str):
+        super().__init__(message)
+        self.outcome = outcome
 
 
 def triangulation_outcome(
@@ -81,16 +73,17 @@ def triangulate(
     d = baseline cos e_l / sin(e_l - e_u)
 
     Directions `(..., 3)` in the body frame, broadcast together; baseline in metres. A rotation about the vertical
-    leaves d as it is. Raises `ParallelDirections`, `DivergingDirections` or `AzimuthGap` (all `TriangulationError`)
-    when any pair of directions has that outcome (`triangulation_outcome` tells which), `RigError` for a baseline that
-    is not positive, `PanoramaError` for directions that are none. Source: paper 2, section 2.4.
+    leaves d as it is. Raises `TriangulationError` when any pair of directions has another outcome than "ok"
+    (`triangulation_outcome` tells which), `PanoramaError` for directions that are none, or a baseline that is not
+    positive. Source: paper 2, section 2.4.
     """
     baseline = StereoRig(baseline).baseline
     outcome = triangulation_outcome(direction_upper, direction_lower, parallel_tolerance, azimuth_gap_tolerance)
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
-    for name, error in ((AZIMUTH_GAP, AzimuthGap), (DIVERGING, DivergingDirections), (PARALLEL, ParallelDirections)):
+    for name in (AZIMUTH_GAP, DIVERGING, PARALLEL):
         if (outcome == name).any():
-            raise error(_explanation(name, tuple(np.argwhere(outcome == name)[0]), upper, lower, residual))
+            first = tuple(np.argwhere(outcome == name)[0])
+            raise TriangulationError(_explanation(name, first, upper, lower, residual), name)
     return _distance(upper, lower, baseline)
 
 

@@ -70,9 +70,8 @@ def horizontal_ranges(
 ) -> np.ndarray:
     """Horizontal ranges `(k,)` in metres of matched features `(k, 2)`: rho = baseline / (tan e_l - tan e_u).
 
-    Edge coordinates, pixels. A match whose disparity is not positive gives infinity. Raises `RigError` for a baseline
-    that is not positive, `PanoramaError` for keypoints of two numbers or outside the image. Source: paper 2, section
-    2.4.
+    Edge coordinates, pixels. A match whose disparity is not positive gives infinity. Raises `PanoramaError`
+    for a baseline that is not positive, keypoints of two numbers or outside the image. Source: paper 2, section 2.4.
     """
     slope = _slopes(keypoints_upper, keypoints_lower, width, height)
     return np.where(slope > 0, StereoRig(baseline).baseline / np.where(slope > 0, slope, 1.0), np.inf)
@@ -85,7 +84,7 @@ def disparity_distance(match, width: int, height: int, baseline: float) -> Dispa
 
     match: an `ObjectMatch`. width, height: of the panoramas, pixels. baseline: metres. The median is taken of the
     slopes, which the noise of pixels moves evenly to both sides, and not of the ranges, which it does not.
-    Raises `RigError` and `PanoramaError` as `horizontal_ranges` does. Source: paper 2, section 2.4.
+    Raises `PanoramaError` as `horizontal_ranges` does. Source: paper 2, section 2.4.
     """
     baseline = StereoRig(baseline).baseline
     slope = _slopes(match.keypoints_upper, match.keypoints_lower, width, height)

@@ -23,8 +23,8 @@ from course_lib.lessons.lesson_13.matching import (
 from course_lib.lessons.lesson_13.panel import band, matching_panel
 from course_lib.spherical_stereo.matching.epipolar import epipolar_pairs, epipolar_residual
 from course_lib.spherical_stereo.matching.features import inside_box
-from course_lib.spherical_stereo.matching.object_matching import NO_MATCHES, match_detections, stereo_matching
-from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel
+from course_lib.spherical_stereo.matching.object_matching import NO_MATCHES, match_views
+from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel, open_view
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,7 @@ def columns(degrees: float) -> float:
 
 def test_counting_both_ways_at_once_is_what_the_library_does(one):
     counts = count_table(one, "both")
-    found = match_detections(one.upper.features, one.upper.objects, one.lower.features, one.lower.objects, one.rig)
+    found = match_views(one.upper.view(), one.lower.view(), one.rig)
     assert len(found.matches) == 12
     assert all(counts[match.upper, match.lower] == match.n_matches for match in found.matches)
 
@@ -89,8 +89,11 @@ def test_right_pairs_come_from_wrong_matches(one):
 
 
 def test_an_object_painted_plain_has_no_match(one):
-    painted = [plain_object(view.image, view.objects[0].box) for view in (one.upper, one.lower)]
-    result = stereo_matching(painted[0], one.upper.objects, painted[1], one.lower.objects, one.rig)
+    painted = [
+        open_view(plain_object(side.image, side.objects[0].box)).having(detections=side.objects)
+        for side in (one.upper, one.lower)
+    ]
+    result = match_views(*painted, one.rig)
     assert [(left.index, left.reason) for left in result.unmatched if left.side == "upper"] == [(0, NO_MATCHES)]
 
 

@@ -44,7 +44,7 @@ def room():
 
 @pytest.fixture(scope="module")
 def localizer(room):
-    return SemanticLocalizer(room_recording(1).rig, room)
+    return SemanticLocalizer(room_recording(1).rig, room, reject_implausible=False)
 
 
 @pytest.fixture(scope="module")

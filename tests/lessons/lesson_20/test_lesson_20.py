@@ -134,9 +134,9 @@ def test_a_wrong_baseline_shows_in_the_residuals_and_nowhere_else(pair):
         if above.label == below.label and abs(np.mean(above.box[::2]) - np.mean(below.box[::2])) < 10
     ]
     found = {
-        baseline: SemanticLocalizer(StereoRig(baseline), pair.semantic_map).localize_detections(
-            pair.upper_detections, pair.lower_detections, matches
-        )
+        baseline: SemanticLocalizer(
+            StereoRig(baseline), pair.semantic_map, reject_implausible=False
+        ).localize_detections(pair.upper_detections, pair.lower_detections, matches)
         for baseline in (0.3, 0.2)
     }
     residuals = {key: np.median(np.linalg.norm(one.residuals, axis=1)) for key, one in found.items()}

@@ -14,7 +14,8 @@ from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.survey import RoomSurveyModel
 from course_lib.simulation.room.training_images import BOXES_FILE, OtherImagesPerRoom, make_room_images, read_image_list
-from course_lib.spherical_stereo.recording import StereoRecordingError, read_stereo_recording
+from course_lib.spherical_stereo.panorama import PanoramaError
+from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 SMALL = RoomModels(width=320, places=(3,), survey=RoomSurveyModel(places=3, width=320, fewest_pixels=10))
@@ -101,15 +102,15 @@ def test_a_damaged_recording_is_named(small, tmp_path, change, message):
     content = json.loads((tmp_path / "poses.json").read_text())
     change(content)
     (tmp_path / "poses.json").write_text(json.dumps(content))
-    with pytest.raises(StereoRecordingError, match=message):
+    with pytest.raises(PanoramaError, match=message):
         read_stereo_recording(tmp_path)
 
 
 def test_a_folder_without_a_recording_is_named(tmp_path):
-    with pytest.raises(StereoRecordingError, match="cannot read"):
+    with pytest.raises(PanoramaError, match="cannot read"):
         read_stereo_recording(tmp_path)
     (tmp_path / "poses.json").write_text("{")
-    with pytest.raises(StereoRecordingError, match="not JSON"):
+    with pytest.raises(PanoramaError, match="not JSON"):
         read_stereo_recording(tmp_path)
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course_lib.spherical_stereo.detection.boxes import BoxError, box_centre, box_iou, wrapped_box
+from course_lib.spherical_stereo.detection.boxes import DetectionError, box_centre, box_iou, wrapped_box
 
 WIDTH = 1280.0
 
@@ -76,10 +76,10 @@ def test_the_centre_of_a_box_across_the_seam_lies_past_the_width():
     ],
 )
 def test_what_is_no_box_is_named(bad, says):
-    with pytest.raises(BoxError, match=says):
+    with pytest.raises(DetectionError, match=says):
         box_iou(bad, [[0, 0, 1, 1]], WIDTH)
 
 
 def test_a_width_of_zero_is_refused():
-    with pytest.raises(BoxError, match="width"):
+    with pytest.raises(DetectionError, match="width"):
         wrapped_box([0, 0, 1, 1], 0)

@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.boxes_file import BoxesFileError, read_boxes
-from course_lib.spherical_stereo.panorama import ImageSizeError
+from course_lib.spherical_stereo.detection.boxes import DetectionError
+from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
+from course_lib.spherical_stereo.panorama import PanoramaError
 
 GOOD = {
     "version": 1,
@@ -38,7 +39,7 @@ def images():
 
 
 def test_boxes_become_detections_with_the_colours_of_their_images(tmp_path):
-    upper, lower = read_boxes(write(tmp_path / "boxes.json", GOOD)).detections(*images())
+    upper, lower = (view.detections for view in read_stereo_boxes(write(tmp_path / "boxes.json", GOOD)).on(*images()))
     assert [d.label for d in upper] == ["chair", "television", "chair"]
     assert [d.label for d in lower] == ["television", "chair"]
     assert upper[1].box == (240, 30, 280, 50)
@@ -50,27 +51,27 @@ def test_boxes_become_detections_with_the_colours_of_their_images(tmp_path):
 
 
 def test_names_pair_the_objects_of_both_images(tmp_path):
-    boxes = read_boxes(write(tmp_path / "boxes.json", GOOD))
+    boxes = read_stereo_boxes(write(tmp_path / "boxes.json", GOOD))
     assert boxes.named_pairs() == [("left chair", 0, 1), ("screen", 1, 0)]
 
 
 def test_a_box_a_turn_too_far_is_moved_back(tmp_path):
     content = GOOD | {"upper": [{"label": "chair", "box": [-10, 20, 30, 60]}]}
-    assert read_boxes(write(tmp_path / "boxes.json", content)).upper[0].box == (246, 20, 286, 60)
+    assert read_stereo_boxes(write(tmp_path / "boxes.json", content)).upper[0].box == (246, 20, 286, 60)
 
 
 def test_images_of_another_size_are_refused(tmp_path):
-    boxes = read_boxes(write(tmp_path / "boxes.json", GOOD))
+    boxes = read_stereo_boxes(write(tmp_path / "boxes.json", GOOD))
     small = images()[0][:64, :128]
-    with pytest.raises(BoxesFileError, match="drawn on images of 256 x 128, these are 128 x 64"):
-        boxes.detections(small, small)
-    with pytest.raises(ImageSizeError):
-        boxes.detections(images()[0], small)
+    with pytest.raises(DetectionError, match="drawn on images of 256 x 128, these are 128 x 64"):
+        boxes.on(small, small)
+    with pytest.raises(PanoramaError, match="one size"):
+        boxes.on(images()[0], small)
 
 
 def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(BoxesFileError, match="no boxes file"):
-        read_boxes(tmp_path / "none.json")
+    with pytest.raises(DetectionError, match="no boxes file"):
+        read_stereo_boxes(tmp_path / "none.json")
 
 
 def side(**change):
@@ -103,5 +104,5 @@ def side(**change):
     ],
 )
 def test_a_file_that_does_not_fit_is_refused(tmp_path, content, message):
-    with pytest.raises(BoxesFileError, match=message):
-        read_boxes(write(tmp_path / "boxes.json", content))
+    with pytest.raises(DetectionError, match=message):
+        read_stereo_boxes(write(tmp_path / "boxes.json", content))

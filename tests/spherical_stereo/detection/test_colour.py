@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.colour import ColourError, central_half, mean_hue_saturation
+from course_lib.spherical_stereo.detection.boxes import DetectionError
+from course_lib.spherical_stereo.detection.colour import central_half, mean_hue_saturation
 
 
 def bgr(hue, saturation_percent, value=0.8):
@@ -102,12 +103,12 @@ def test_a_box_of_less_than_a_pixel_takes_the_pixel_that_it_lies_on():
     ],
 )
 def test_no_colour_is_made_up_where_there_is_none(arguments, message):
-    with pytest.raises(ColourError, match=message):
+    with pytest.raises(DetectionError, match=message):
         mean_hue_saturation(plain((1, 2, 3)), **arguments)
 
 
 def test_what_is_no_colour_image_is_refused():
-    with pytest.raises(ColourError, match=r"\(H, W, 3\) uint8"):
+    with pytest.raises(DetectionError, match=r"\(H, W, 3\) uint8"):
         mean_hue_saturation(np.zeros((4, 8), dtype=np.uint8))
-    with pytest.raises(ColourError, match="float64"):
+    with pytest.raises(DetectionError, match="float64"):
         mean_hue_saturation(np.zeros((4, 8, 3)))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from course_lib.spherical_stereo.detection.darknet import (
-    DarknetError,
+    DetectorError,
     check_names,
     check_weights,
     class_count,
@@ -123,7 +123,7 @@ def test_a_cfg_written_and_read_again_is_the_same():
     ],
 )
 def test_a_malformed_cfg_is_refused_with_its_line(text, message):
-    with pytest.raises(DarknetError, match=message):
+    with pytest.raises(DetectorError, match=message):
         parse_cfg(text)
 
 
@@ -141,15 +141,15 @@ def test_a_malformed_cfg_is_refused_with_its_line(text, message):
     ],
 )
 def test_a_layer_that_cannot_be_built_is_named(old, new, message):
-    with pytest.raises(DarknetError, match=message):
+    with pytest.raises(DetectorError, match=message):
         expected_weight_floats(parse_cfg(SMALL.replace(old, new)))
 
 
 def test_a_missing_cfg_and_one_that_is_no_text_are_named(tmp_path):
-    with pytest.raises(DarknetError, match=r"nothing\.cfg is missing"):
+    with pytest.raises(DetectorError, match=r"nothing\.cfg is missing"):
         read_cfg(tmp_path / "nothing.cfg")
     (tmp_path / "weights.cfg").write_bytes(bytes([0xFF, 0xFE, 0x80]))
-    with pytest.raises(DarknetError, match="not a text file"):
+    with pytest.raises(DetectorError, match="not a text file"):
         read_cfg(tmp_path / "weights.cfg")
 
 
@@ -163,7 +163,7 @@ def test_weights_of_the_right_length_pass_with_both_headers(tmp_path):
 @pytest.mark.parametrize(("change", "message"), [(-1, "too short"), (1, "too long")])
 def test_weights_of_another_length_are_refused_with_both_counts(tmp_path, change, message):
     path = write_weights(tmp_path / "some.weights", SMALL_FLOATS + change)
-    with pytest.raises(DarknetError, match=f"{message}.*{SMALL_FLOATS + change} floats.*{SMALL_FLOATS}"):
+    with pytest.raises(DetectorError, match=f"{message}.*{SMALL_FLOATS + change} floats.*{SMALL_FLOATS}"):
         check_weights(parse_cfg(SMALL), path)
 
 
@@ -172,25 +172,25 @@ def test_weights_cut_inside_a_float_or_inside_the_header_are_refused(tmp_path):
     whole = write_weights(path, SMALL_FLOATS).read_bytes()
     for length in (len(whole) - 2, 19, 5, 0):
         path.write_bytes(whole[:length])
-        with pytest.raises(DarknetError, match=r"too short|cut off"):
+        with pytest.raises(DetectorError, match=r"too short|cut off"):
             check_weights(parse_cfg(SMALL), path)
 
 
 def test_missing_weights_are_named(tmp_path):
-    with pytest.raises(DarknetError, match=r"none\.weights is missing"):
+    with pytest.raises(DetectorError, match=r"none\.weights is missing"):
         check_weights(parse_cfg(SMALL), tmp_path / "none.weights")
 
 
 def test_detection_layers_must_agree_with_their_input():
-    with pytest.raises(DarknetError, match=r"gets 14 channels, expected 2 anchors \* \(5 \+ 3 classes\) = 16"):
+    with pytest.raises(DetectorError, match=r"gets 14 channels, expected 2 anchors \* \(5 \+ 3 classes\) = 16"):
         class_count(parse_cfg(SMALL.replace("classes=2", "classes=3")))
-    with pytest.raises(DarknetError, match=r"no \[yolo\] or \[region\]"):
+    with pytest.raises(DetectorError, match=r"no \[yolo\] or \[region\]"):
         class_count(parse_cfg(SMALL.split("[yolo]")[0]))
 
 
 def test_names_are_as_many_as_the_classes():
     check_names(parse_cfg(SMALL), ["sofa", "chair"])
-    with pytest.raises(DarknetError, match="2 classes, the names file 3"):
+    with pytest.raises(DetectorError, match="2 classes, the names file 3"):
         check_names(parse_cfg(SMALL), ["sofa", "chair", "table"])
 
 
@@ -199,8 +199,8 @@ def test_names_end_at_the_last_name_and_have_no_gaps(tmp_path):
     path.write_text("sofa\npotted plant\n\n\n")
     assert read_names(path) == ["sofa", "potted plant"]
     path.write_text("sofa\n\nchair\n")
-    with pytest.raises(DarknetError, match="line 2 is empty"):
+    with pytest.raises(DetectorError, match="line 2 is empty"):
         read_names(path)
     path.write_text("\n")
-    with pytest.raises(DarknetError, match="is empty"):
+    with pytest.raises(DetectorError, match="is empty"):
         read_names(path)

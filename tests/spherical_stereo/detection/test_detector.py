@@ -6,9 +6,11 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.darknet import DarknetError, expected_weight_floats, read_cfg
-from course_lib.spherical_stereo.detection.detector import Detection, DetectionError, DetectorError, YoloDetector
-from course_lib.spherical_stereo.panorama import EmptyImageError, GreyImageError, NotPanoramaError
+from course_lib.spherical_stereo.detection.boxes import DetectionError
+from course_lib.spherical_stereo.detection.darknet import expected_weight_floats, read_cfg
+from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detector import DetectorError, YoloDetector, find_objects
+from course_lib.spherical_stereo.panorama import PanoramaError, open_view
 from tests.spherical_stereo.detection.blob_networks import (
     GREEN,
     INPUT_SIZE,
@@ -119,19 +121,25 @@ def test_opencv_s_own_threshold_of_two_tenths_does_not_decide(files, rng):
 
 
 @pytest.mark.parametrize(
-    ("image", "error"),
+    ("image", "says"),
     [
-        (np.zeros((0, 0, 3), dtype=np.uint8), EmptyImageError),
-        (None, EmptyImageError),
-        (np.zeros((128, 256), dtype=np.uint8), GreyImageError),
-        (np.full((128, 256, 3), 90, dtype=np.uint8), GreyImageError),
-        (np.zeros((128, 255, 3), dtype=np.uint8), NotPanoramaError),
-        (np.zeros((128, 256, 3)), NotPanoramaError),
+        (np.zeros((0, 0, 3), dtype=np.uint8), "empty"),
+        (None, "empty"),
+        (np.zeros((128, 256), dtype=np.uint8), "grey"),
+        (np.full((128, 256, 3), 90, dtype=np.uint8), "grey"),
+        (np.zeros((128, 255, 3), dtype=np.uint8), "twice as wide"),
+        (np.zeros((128, 256, 3)), "float64"),
     ],
 )
-def test_an_image_that_is_no_colour_panorama_is_refused(detector, image, error):
-    with pytest.raises(error):
+def test_an_image_that_is_no_colour_panorama_is_refused(detector, image, says):
+    with pytest.raises(PanoramaError, match=says):
         detector.detect(image)
+
+
+def test_a_view_that_was_checked_is_taken_as_it_is(detector, rng):
+    image = panorama(rng, (10, 50, RED))
+    assert detector.find(open_view(image)) == detector.detect(image)
+    assert find_objects(open_view(image), detector).detections == tuple(detector.detect(image))
 
 
 def test_truncated_weights_that_opencv_would_take_are_refused(files, tmp_path):
@@ -139,14 +147,14 @@ def test_truncated_weights_that_opencv_would_take_are_refused(files, tmp_path):
     cut = tmp_path / "cut.weights"
     cut.write_bytes(weights.read_bytes()[:-4000])
     cv2.dnn.readNetFromDarknet(str(cfg), str(cut))  # not a word
-    with pytest.raises(DarknetError, match="too short"):
+    with pytest.raises(DetectorError, match="too short"):
         YoloDetector(cfg, cut, names)
 
 
 def test_names_of_another_network_are_refused(files, tmp_path):
     cfg, weights, _ = files
     (tmp_path / "other.names").write_text("a\nb\nc\n")
-    with pytest.raises(DarknetError, match=r"2 classes.*3 names"):
+    with pytest.raises(DetectorError, match=r"2 classes.*3 names"):
         YoloDetector(cfg, weights, tmp_path / "other.names")
 
 
@@ -154,7 +162,7 @@ def test_a_missing_file_is_named(files, tmp_path):
     cfg, weights, names = files
     nothing = tmp_path / "nothing"
     for arguments in ((nothing, weights, names), (cfg, nothing, names), (cfg, weights, nothing)):
-        with pytest.raises(DarknetError, match="nothing is missing"):
+        with pytest.raises(DetectorError, match="nothing is missing"):
             YoloDetector(*arguments)
 
 
@@ -170,7 +178,7 @@ def test_a_yolov4_with_the_80_classes_of_coco_runs_at_the_shape_of_a_panorama(tm
     assert (boxes >= 0).all()
     assert (boxes <= [256, 128, 256, 128]).all()
     assert "table" in detector.labels
-    with pytest.raises(DarknetError, match="multiples of the network's stride"):
+    with pytest.raises(DetectorError, match="multiples of the network's stride"):
         YoloDetector.load(tmp_path, input_size=(330, 128))
 
 
@@ -184,6 +192,24 @@ def test_a_folder_with_one_file_of_each_kind_is_loaded(files, rng):
     detector = YoloDetector.load(files[0].parent, score_threshold=0.4)
     assert (detector.input_size, detector.score_threshold) == (INPUT_SIZE, 0.4)
     assert len(detector.detect(panorama(rng, (10, 50, RED)))) == 1
+
+
+def test_the_threshold_that_training_chose_is_taken_unless_another_is_given(files, tmp_path):
+    for path in files:
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    assert YoloDetector.load(tmp_path).score_threshold == 0.5
+    chosen = tmp_path / "training.json"
+    chosen.write_text('{"score_threshold": 0.31}')
+    assert YoloDetector.load(tmp_path).score_threshold == 0.31
+    assert YoloDetector.load(tmp_path, score_threshold=0.4).score_threshold == 0.4
+    for content in ("{", "[]", "{}", '{"score_threshold": "high"}', '{"score_threshold": null}'):
+        chosen.write_text(content)
+        with pytest.raises(DetectorError, match=r"training\.json must be JSON with a number"):
+            YoloDetector.load(tmp_path)
+        assert YoloDetector.load(tmp_path, score_threshold=0.4).score_threshold == 0.4
+    chosen.write_text('{"score_threshold": 31}')
+    with pytest.raises(DetectorError, match="score_threshold must be between 0 and 1"):
+        YoloDetector.load(tmp_path)
 
 
 def test_a_folder_that_lacks_or_doubles_a_file_is_refused(files, tmp_path):

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
-from course_lib.spherical_stereo.detection.onnx_network import LAYOUTS, OnnxError, decode_onnx
+from course_lib.spherical_stereo.detection.onnx_network import LAYOUTS, decode_onnx
 from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, panorama, write_darknet
 from tests.spherical_stereo.detection.onnx_files import blob_onnx
 
@@ -51,25 +52,25 @@ def test_boxes_are_shares_of_the_input_in_the_yolov4_layout_whatever_the_order_o
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_outputs_of_another_layout_are_refused_with_their_shapes(layout):
-    with pytest.raises(OnnxError, match=r"the file gives \[\(1, 9, 8\)\]"):
+    with pytest.raises(DetectorError, match=r"the file gives \[\(1, 9, 8\)\]"):
         decode_onnx([np.zeros((1, 9, 8))], layout, 2, (100, 80))
 
 
 def test_an_unknown_layout_is_refused():
-    with pytest.raises(OnnxError, match="known are yolov5, yolov8, yolov4"):
+    with pytest.raises(DetectorError, match="known are yolov5, yolov8, yolov4"):
         decode_onnx([], "yolov9", 2, (100, 80))
 
 
 def test_files_and_sizes_that_do_not_fit_are_named(names, tmp_path):
-    with pytest.raises(OnnxError, match="is missing"):
+    with pytest.raises(DetectorError, match="is missing"):
         YoloDetector.from_onnx(tmp_path / "none.onnx", names, layout="yolov8", input_size=INPUT_SIZE)
     broken = tmp_path / "broken.onnx"
     broken.write_bytes(b"this is no network")
-    with pytest.raises(OnnxError, match="cannot read"):
+    with pytest.raises(DetectorError, match="cannot read"):
         YoloDetector.from_onnx(broken, names, layout="yolov8", input_size=INPUT_SIZE)
     path = tmp_path / "blobs.onnx"
     path.write_bytes(blob_onnx("yolov8"))
-    with pytest.raises(OnnxError, match="at an input of 200 x 128"):
+    with pytest.raises(DetectorError, match="at an input of 200 x 128"):
         YoloDetector.from_onnx(path, names, layout="yolov8", input_size=(200, 128))
-    with pytest.raises(OnnxError, match="layout yolov5"):
+    with pytest.raises(DetectorError, match="layout yolov5"):
         YoloDetector.from_onnx(path, names, layout="yolov5", input_size=INPUT_SIZE)

@@ -11,7 +11,7 @@ from course_lib.spherical_stereo.matching.epipolar import (
     hamming,
 )
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, inside_box
-from course_lib.spherical_stereo.panorama import GreyImageError, PanoramaError
+from course_lib.spherical_stereo.panorama import PanoramaError
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
 
@@ -65,7 +65,7 @@ def test_an_image_without_structure_has_no_features():
 
 
 def test_what_is_no_panorama_or_no_threshold_is_refused(image):
-    with pytest.raises(GreyImageError):
+    with pytest.raises(PanoramaError):
         detect_features(image[..., 0])
     for threshold, octaves in ((0, 3), (-1, 3), (1e-3, 0), (1e-3, 1.5)):
         with pytest.raises(PanoramaError, match="threshold"):

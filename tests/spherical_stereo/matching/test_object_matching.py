@@ -6,22 +6,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from course_lib.spherical_stereo.detection.boxes import BoxError
-from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE, epipolar_residual
+from course_lib.spherical_stereo.detection.boxes import DetectionError
+from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError, check_not_swapped, match_features
-from course_lib.spherical_stereo.matching.features import detect_features, inside_box
+from course_lib.spherical_stereo.matching.features import detect_features, find_features, inside_box
 from course_lib.spherical_stereo.matching.object_matching import (
     CLASS_NOT_IN_OTHER,
     NO_MATCHES,
     PARTNER_TAKEN,
     TIE,
+    TOO_FEW,
     Unmatched,
-    match_detections,
     match_objects,
+    match_views,
     pair_by_most_matches,
-    stereo_matching,
 )
-from course_lib.spherical_stereo.panorama import ImageSizeError, StereoRig, azimuth_elevation_of_pixel
+from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, azimuth_elevation_of_pixel, open_pair
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import BASELINE, HEIGHT, WIDTH, Seen, rolled
 
@@ -30,18 +30,25 @@ LAST = 7  # the lower detections are in reverse order: partner of i is LAST - i
 IN_THE_AIR = Seen("chair", (200.0, 10.0, 230.0, 30.0))  # where the scene has nothing at all
 
 
+def views_of(upper, upper_detections, lower, lower_detections):
+    upper, lower = open_pair(upper, lower)
+    return upper.having(detections=upper_detections), lower.having(detections=lower_detections)
+
+
 @pytest.fixture(scope="module")
 def features():
-    _, upper, lower, _, _ = scene()
-    return detect_features(upper), detect_features(lower)
+    """Both views of the scene, with their features."""
+    _, upper, lower, upper_detections, lower_detections = scene()
+    return [find_features(view) for view in views_of(upper, upper_detections, lower, lower_detections)]
 
 
-def match_scene(features, upper=None, lower=None):
+def match_scene(features, upper=None, lower=None, **options):
     """The scene's matching, with its own detections unless others are given."""
-    *_, own_upper, own_lower = scene()
-    return match_detections(
-        features[0], own_upper if upper is None else upper, features[1], own_lower if lower is None else lower, RIG
-    )
+    given = [
+        view if found is None else view.having(detections=found)
+        for view, found in zip(features, (upper, lower), strict=True)
+    ]
+    return match_views(*given, RIG, **options)
 
 
 def partners(matches):
@@ -51,7 +58,7 @@ def partners(matches):
 def test_every_object_finds_itself_in_the_other_image():
     """Look-alikes, a repeated texture, a half-hidden chair and a table across the seam among them."""
     _, upper, lower, upper_detections, lower_detections = scene()
-    matching = stereo_matching(upper, upper_detections, lower, lower_detections, RIG)
+    matching = match_views(*views_of(upper, upper_detections, lower, lower_detections), RIG)
     assert partners(matching.matches) == {(i, LAST - i) for i in range(8)}
     assert matching.unmatched == []
     assert [m.label for m in matching.matches] == [upper_detections[m.upper].label for m in matching.matches]
@@ -59,7 +66,7 @@ def test_every_object_finds_itself_in_the_other_image():
     assert counts == sorted(counts, reverse=True)
 
 
-def test_match_objects_gives_the_matches_of_stereo_matching(features):
+def test_match_objects_gives_the_matches_of_the_views(features):
     _, upper, lower, upper_detections, lower_detections = scene()
     matches = match_objects(upper, upper_detections, lower, lower_detections, RIG)
     expected = match_scene(features).matches
@@ -74,7 +81,7 @@ def test_matched_features_lie_in_their_boxes_and_obey_the_epipolar_constraint(fe
         assert inside_box(match.keypoints_lower, lower_detections[match.lower].box, WIDTH).all()
         azimuth_u, elevation_u = azimuth_elevation_of_pixel(match.keypoints_upper, WIDTH, HEIGHT)
         azimuth_l, elevation_l = azimuth_elevation_of_pixel(match.keypoints_lower, WIDTH, HEIGHT)
-        assert epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l).max() <= EPIPOLAR_TOLERANCE
+        assert epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l).max() <= 0.0151
         assert (elevation_l > elevation_u).all(), "the lower camera sees every point higher"
         assert len(np.unique(match.keypoints_lower, axis=0)) == match.n_matches, "features are matched one-to-one"
 
@@ -149,7 +156,7 @@ def test_objects_of_unlike_classes_are_never_paired(features):
 @pytest.mark.parametrize(("n_upper", "n_lower"), [(0, 0), (0, 8), (8, 0)])
 def test_no_detections_give_no_matches_and_no_error(n_upper, n_lower):
     _, upper, lower, upper_detections, lower_detections = scene()
-    matching = stereo_matching(upper, upper_detections[:n_upper], lower, lower_detections[:n_lower], RIG)
+    matching = match_views(*views_of(upper, upper_detections[:n_upper], lower, lower_detections[:n_lower]), RIG)
     assert matching.matches == []
     assert {item.reason for item in matching.unmatched} <= {CLASS_NOT_IN_OTHER}
     assert len(matching.unmatched) == n_upper + n_lower
@@ -165,12 +172,12 @@ def test_swapped_images_are_told_from_the_sign_of_the_disparity():
     with pytest.raises(SwappedImagesError, match="swapped"):
         match_objects(lower, lower_detections, upper, upper_detections, RIG)
     with pytest.raises(SwappedImagesError, match="Swap the two images"):
-        match_features(lower, upper, RIG)
+        match_features(detect_features(lower), detect_features(upper))
 
 
 def test_one_image_given_twice_is_neither_swapped_nor_matched():
     _, upper, _, upper_detections, _ = scene()
-    matching = stereo_matching(upper, upper_detections, upper, upper_detections, RIG)
+    matching = match_views(*views_of(upper, upper_detections, upper, upper_detections), RIG)
     assert matching.matches == []
     assert {item.reason for item in matching.unmatched} == {NO_MATCHES}
 
@@ -183,29 +190,40 @@ def test_disparities_of_either_sign_do_not_count_as_swapped(rng):
         check_not_swapped(np.full(40, -0.1))
 
 
+def test_an_object_needs_as_many_features_as_are_asked_for(features):
+    counts = {m.upper: m.n_matches for m in match_scene(features).matches}
+    fewest = min(counts.values()) + 1
+    matching = match_scene(features, fewest_features=fewest)
+    assert {m.upper for m in matching.matches} == {i for i, n in counts.items() if n >= fewest}
+    assert {item.reason for item in matching.unmatched} == {TOO_FEW}
+    with pytest.raises(PanoramaError, match="fewest_features"):
+        match_scene(features, fewest_features=0)
+
+
 def test_images_of_unlike_size_and_boxes_that_are_none_are_refused():
     _, upper, lower, upper_detections, lower_detections = scene()
-    with pytest.raises(ImageSizeError):
+    with pytest.raises(PanoramaError):
         match_objects(upper, upper_detections, lower[::2, ::2].copy(), lower_detections, RIG)
-    with pytest.raises(BoxError, match="upper"):
+    with pytest.raises(DetectionError, match="upper"):
         match_objects(upper, [Seen("chair", (5.0, 5.0, 4.0, 9.0))], lower, lower_detections, RIG)
 
 
 def test_whole_panoramas_match_mostly_at_equal_azimuth():
     """The search knows nothing of the constraint, so the share that obeys it is a finding."""
     _, upper, lower, _, _ = scene()
-    matches = match_features(upper, lower, RIG)
+    matches = match_features(detect_features(upper), detect_features(lower))
     assert len(matches) > 100
     assert matches.epipolar_share > 0.9
     assert np.median(matches.vertical_disparity[matches.epipolar]) > 0.03
     assert np.median(np.abs(matches.azimuth_difference)) < 0.5 * 2 * np.pi / WIDTH
-    assert not match_features(upper, np.roll(lower, 100, axis=1), RIG).epipolar_share > 0.1
+    assert not match_features(detect_features(upper), detect_features(np.roll(lower, 100, axis=1))).epipolar_share > 0.1
 
 
 def test_panoramas_without_any_feature_match_nothing():
     plain = np.full((HEIGHT, WIDTH, 3), (80, 90, 100), np.uint8)
-    assert len(match_features(plain, plain, RIG)) == 0
-    assert np.isnan(match_features(plain, plain, RIG).epipolar_share)
+    matches = match_features(detect_features(plain), detect_features(plain))
+    assert len(matches) == 0
+    assert np.isnan(matches.epipolar_share)
 
 
 COUNTS = [

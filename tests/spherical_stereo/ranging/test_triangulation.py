@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,
-    RigError,
     azimuth_elevation,
     direction_from_angles,
     direction_to_pixel,
@@ -16,10 +15,6 @@ from course_lib.spherical_stereo.panorama import (
 )
 from course_lib.spherical_stereo.ranging.triangulation import (
     AZIMUTH_GAP_TOLERANCE,
-    PARALLEL_TOLERANCE,
-    AzimuthGap,
-    DivergingDirections,
-    ParallelDirections,
     TriangulationError,
     object_position,
     triangulate,
@@ -98,45 +93,45 @@ def test_a_pixel_pair_by_hand():
 
 
 OUTCOMES = [
-    ((0.3, -0.2), (0.3, -0.2), "parallel", ParallelDirections),
-    ((0.3, -0.2), (0.3, -0.2 + 0.9 * PARALLEL_TOLERANCE), "parallel", ParallelDirections),
-    ((0.3, -0.2), (0.3, -0.2 - 0.9 * PARALLEL_TOLERANCE), "parallel", ParallelDirections),
-    ((0.0, -np.pi / 2), (0.0, -1.5), "parallel", ParallelDirections),
-    ((0.0, 1.2), (0.0, np.pi / 2), "parallel", ParallelDirections),
-    ((0.3, -0.2), (0.3, -0.25), "diverging", DivergingDirections),
-    ((0.0, -0.2), (0.15, -0.1), "azimuth gap", AzimuthGap),
-    ((3.1, -0.2), (-0.04, -0.1), "azimuth gap", AzimuthGap),
-    ((3.13, -0.2), (-3.13, -0.1), "ok", None),  # across the seam
+    ((0.3, -0.2), (0.3, -0.2), "parallel"),
+    ((0.3, -0.2), (0.3, -0.2 + 0.0009), "parallel"),
+    ((0.3, -0.2), (0.3, -0.2 - 0.0009), "parallel"),
+    ((0.0, -np.pi / 2), (0.0, -1.5), "parallel"),
+    ((0.0, 1.2), (0.0, np.pi / 2), "parallel"),
+    ((0.3, -0.2), (0.3, -0.25), "diverging"),
+    ((0.0, -0.2), (0.15, -0.1), "azimuth gap"),
+    ((3.1, -0.2), (-0.04, -0.1), "azimuth gap"),
+    ((3.13, -0.2), (-3.13, -0.1), "ok"),  # across the seam
 ]
 
 
-@pytest.mark.parametrize(("upper", "lower", "name", "error"), OUTCOMES)
-def test_directions_without_a_distance_have_a_named_outcome(upper, lower, name, error):
+@pytest.mark.parametrize(("upper", "lower", "name"), OUTCOMES)
+def test_directions_without_a_distance_have_a_named_outcome(upper, lower, name):
     upper, lower = direction_from_angles(*upper), direction_from_angles(*lower)
     assert triangulation_outcome(upper, lower) == name
-    if error is None:
+    if name == "ok":
         assert np.isfinite(triangulate(upper, lower, BASELINE))
     else:
-        with pytest.raises(error) as caught:
+        with pytest.raises(TriangulationError) as caught:
             triangulate(upper, lower, BASELINE)
-        assert isinstance(caught.value, TriangulationError)
+        assert caught.value.outcome == name
 
 
 def test_outcomes_of_many_directions_come_as_an_array():
     upper = direction_from_angles(np.array([u[0] for u, *_ in OUTCOMES]), np.array([u[1] for u, *_ in OUTCOMES]))
     lower = direction_from_angles(np.array([o[1][0] for o in OUTCOMES]), np.array([o[1][1] for o in OUTCOMES]))
-    assert list(triangulation_outcome(upper, lower)) == [name for *_, name, _ in OUTCOMES]
-    with pytest.raises(AzimuthGap, match="element 6"):
+    assert list(triangulation_outcome(upper, lower)) == [name for *_, name in OUTCOMES]
+    with pytest.raises(TriangulationError, match="element 6"):
         triangulate(upper, lower, BASELINE)
 
 
 @QUICK
 @given(upper=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)), lower=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)))
 def test_a_distance_is_never_a_huge_number(upper, lower):
-    """Whatever the directions, the outcome is named or the distance is below baseline / tolerance."""
+    """Whatever the directions, the outcome is named or the distance is below baseline / a thousandth of a radian."""
     upper, lower = direction_from_angles(*upper), direction_from_angles(*lower)
     if triangulation_outcome(upper, lower) == "ok":
-        assert 0 < triangulate(upper, lower, BASELINE) < 1.01 * BASELINE / PARALLEL_TOLERANCE
+        assert 0 < triangulate(upper, lower, BASELINE) < 303
 
 
 @QUICK
@@ -187,7 +182,7 @@ def test_a_covariance_is_symmetric_and_not_negative(rng):
 
 @pytest.mark.parametrize("baseline", [0.0, -0.3, np.nan])
 def test_a_baseline_that_is_not_positive_is_refused(baseline):
-    with pytest.raises(RigError):
+    with pytest.raises(PanoramaError):
         triangulate(*seen(np.array([2.0, 0, 0])), baseline)
 
 

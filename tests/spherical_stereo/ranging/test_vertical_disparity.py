@@ -3,19 +3,20 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.matching.features import detect_features
-from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_detections
+from course_lib.spherical_stereo.matching.features import find_features
+from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_views
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,
-    RigError,
     StereoRig,
+    View,
     direction_from_angles,
     direction_to_pixel,
+    open_pair,
 )
-from course_lib.spherical_stereo.ranging.object_distances import measure_box_centres, measure_objects
+from course_lib.spherical_stereo.ranging.object_places import measure_objects
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance, horizontal_ranges
 from tests.spherical_stereo.stereo_scene import scene
-from tests.spherical_stereo.vertical_pair import BASELINE, HEIGHT, WIDTH
+from tests.spherical_stereo.vertical_pair import BASELINE, Seen
 
 SIZE = (1280, 640)
 
@@ -99,7 +100,7 @@ def test_features_without_disparity_are_parallel_and_not_at_infinity(rng):
 
 def test_bad_input_is_named(rng):
     match = match_of(face(rng, 5, 2.0))
-    with pytest.raises(RigError):
+    with pytest.raises(PanoramaError):
         disparity_distance(match, *SIZE, 0.0)
     with pytest.raises(PanoramaError, match="one length"):
         horizontal_ranges(match.keypoints_upper, match.keypoints_lower[:3], *SIZE, BASELINE)
@@ -109,9 +110,9 @@ def test_both_distances_of_rendered_boards_are_right():
     """A board is flat and faces the rig, so here surface and centre are nearly one."""
     boards, upper, lower, upper_detections, lower_detections = scene()
     rig = StereoRig(BASELINE)
-    features = detect_features(upper), detect_features(lower)
-    matching = match_detections(features[0], upper_detections, features[1], lower_detections, rig)
-    measured = measure_objects(matching.matches, upper_detections, lower_detections, (WIDTH, HEIGHT), rig)
+    upper, lower = open_pair(upper, lower)
+    upper, lower = upper.having(detections=upper_detections), lower.having(detections=lower_detections)
+    measured = measure_objects(match_views(find_features(upper), find_features(lower), rig).matches, upper, lower, rig)
     assert [m.upper for m in measured] == list(range(8))
     ranges = np.array([board.range for board in boards])
     from_features = np.array([m.disparity.horizontal_range_m for m in measured])
@@ -125,11 +126,28 @@ def test_both_distances_of_rendered_boards_are_right():
         assert m.box_centre.distance_m >= m.box_centre.horizontal_range_m
 
 
-def test_box_centres_without_a_distance_keep_the_name_of_their_outcome():
-    rig = StereoRig(BASELINE)
-    directions = direction_from_angles(0.0, -0.3), direction_from_angles(0.0, -0.4)
-    measurement = measure_box_centres(*directions, SIZE, rig, 1.0)
-    assert measurement.outcome == "diverging"
-    assert np.isnan(measurement.distance_m)
+def boxed(elevation):
+    """A view of one box whose centre is straight ahead at an elevation (radians)."""
+    u, v = direction_to_pixel(direction_from_angles(0.0, elevation), *SIZE)
+    return View.of_detections([Seen("chair", (u - 9, v - 5, u + 9, v + 5))], SIZE)
+
+
+def test_box_centres_without_a_distance_keep_the_name_of_their_outcome(rng):
+    rig, match = StereoRig(BASELINE), match_of(face(rng, 20, 2.5))
+    (measured,) = measure_objects([match], boxed(-0.3), boxed(-0.4), rig)
+    assert (measured.box_centre.outcome, measured.disparity.outcome) == ("diverging", "ok")
+    assert np.isnan(measured.box_centre.distance_m)
     with pytest.raises(PanoramaError, match="sigma_pixels"):
-        measure_box_centres(*directions[::-1], SIZE, rig, -1.0)
+        measure_objects([match], boxed(-0.4), boxed(-0.3), rig, -1.0)
+
+
+def test_the_sigma_of_a_range_is_that_of_the_pixels():
+    """d rho = rho^2 sec^2 e / B per radian of either elevation: a pixel each, at 0.4 and 0.3 radians down."""
+    (measured,) = measure_objects(
+        [match_of(np.array([[2.0, 0, -1]] * 3))], boxed(-0.4), boxed(-0.3), StereoRig(BASELINE)
+    )
+    rho = BASELINE / (np.tan(-0.3) - np.tan(-0.4))
+    pixel = 2 * np.pi / 1280
+    expected = rho**2 / BASELINE * pixel * np.hypot(1 / np.cos(0.4) ** 2, 1 / np.cos(0.3) ** 2)
+    assert measured.box_centre.horizontal_range_m == pytest.approx(rho)
+    assert measured.box_centre.horizontal_sigma_m == pytest.approx(expected)

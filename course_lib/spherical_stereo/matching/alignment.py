@@ -1,0 +1,65 @@
+"""How the lower camera is turned against the upper one, told from the features of the two images (paper 2, 2.3).
+
+The paper's rig is one of two upright cameras, so that a point has one azimuth in both. A lower camera turned by small
+angles w = (w_x, w_y, w_z) about x, y and z sees it at another one:
+
+    a_l - a_u = -w_z + tan e_l (w_x cos a_l + w_y sin a_l)
+
+Yaw moves every feature alike, tilt moves what is above the horizon one way and what is below it the other. A tilt that
+nobody knows of is added to every parallax: at 3 m a degree is a sixth of it. So the rig is asked first. Small angles
+are not corrected here; a rig that is turned wants to be calibrated.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE
+from course_lib.spherical_stereo.matching.feature_matching import nearest_features
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures
+from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel
+
+GREATEST_TURN = EPIPOLAR_TOLERANCE
+"""Radians: a lower camera turned further than this moves true matches out of the epipolar tolerance."""
+MOST_FEATURES = 1500
+"""Upper features that are looked for below, every k-th of all: enough for a hundredth of a degree."""
+FEWEST_AGREEING = 30
+"""Matches that must agree on the turn; fewer tell nothing."""
+_NEAR, _STEPS = 0.1, 10
+
+
+def camera_turn(upper: PanoramaFeatures, lower: PanoramaFeatures) -> np.ndarray | None:
+    """The turn w `(3,)` of the lower camera against the upper one about x, y, z, radians; None: too little agrees.
+
+    The commonest azimuth difference is taken first, and then least squares of what lies within 0.1 radian of it, each
+    match weighed by Cauchy's function of its residual, so strangers have no say. Exact for small tilts and any yaw.
+    Source: paper 2, section 2.3 gives none.
+    """
+    every = slice(None, None, max(1, len(upper) // MOST_FEATURES))
+    thinned = PanoramaFeatures(upper.keypoints[every], upper.descriptors[every], upper.width, upper.height)
+    matches = nearest_features(thinned, lower, EPIPOLAR_TOLERANCE)
+    gap = matches.azimuth_difference
+    if len(gap) < FEWEST_AGREEING:
+        return None
+    counts, edges = np.histogram(gap, bins=90, range=(-np.pi, np.pi))
+    peak = int(np.argmax(np.roll(counts, 1) + counts + np.roll(counts, -1)))
+    middle = (edges[peak] + edges[peak + 1]) / 2
+    azimuth, elevation = azimuth_elevation_of_pixel(matches.keypoints_lower, lower.width, lower.height)
+    # On the sphere an azimuth difference is as long as the cosine of the elevation.
+    rows = np.column_stack(
+        [np.sin(elevation) * np.cos(azimuth), np.sin(elevation) * np.sin(azimuth), -np.cos(elevation)]
+    )
+    beyond = np.cos(elevation) * wrap_angle(gap - middle)
+    near = np.abs(beyond) < _NEAR
+    if near.sum() < FEWEST_AGREEING:
+        return None
+    rows, beyond, turn = rows[near], beyond[near], np.zeros(3)
+    for _ in range(_STEPS):
+        residual = beyond - rows @ turn
+        scale = max(1.4826 * float(np.median(np.abs(residual))), 1e-4)
+        weight = 1 / (1 + (residual / scale) ** 2)
+        turn = np.linalg.lstsq(np.sqrt(weight)[:, None] * rows, np.sqrt(weight) * beyond, rcond=None)[0]
+    if (np.abs(beyond - rows @ turn) < EPIPOLAR_TOLERANCE).sum() < FEWEST_AGREEING:
+        return None
+    return np.array([turn[0], turn[1], wrap_angle(turn[2] - middle)])
