@@ -16,7 +16,10 @@ class EmbreeCaster:
 
     def __init__(self, corners: np.ndarray) -> None:
         if EmbreeScene is None:
-            raise ImportError("embreex is missing: it has wheels for x86-64 and for macOS")
+            raise ImportError(
+                "embreex is missing, which has wheels for x86-64 and for macOS: the simulated world needs it, so make "
+                "data there (the shipped data and the lessons do not need it)"
+            )
         # robust: no ray slips through the edge that two triangles share.
         self._scene = EmbreeScene(robust=True)
         self._mesh = TriangleMesh(self._scene, np.ascontiguousarray(corners, dtype=np.float32))

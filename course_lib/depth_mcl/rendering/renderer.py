@@ -13,13 +13,17 @@ that it cannot. Pickled, as "spawn" does it, a renderer takes its map and camera
 from __future__ import annotations
 
 from types import TracebackType
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.geometry import as_states, is_rotation, optical_pose
+
+if TYPE_CHECKING:  # imported when asked for: VTK takes its time, and needs OpenGL's libraries
+    from course_lib.depth_mcl.rendering.ray_backend import RayBackend
+    from course_lib.depth_mcl.rendering.vtk_backend import VtkBackend
 
 # Pixels of one off-screen window: 200 tiles of the SR4000, about 80 MB with colour and depth.
 MAX_BATCH_PIXELS = 200 * 176 * 144
@@ -62,7 +66,7 @@ class DepthRenderer:
         self._closed = False
         self._open_backend = self._new_backend()
 
-    def _new_backend(self):
+    def _new_backend(self) -> VtkBackend | RayBackend:
         if self.backend == "vtk":
             from course_lib.depth_mcl.rendering.vtk_backend import VtkBackend
 
@@ -127,7 +131,7 @@ class DepthRenderer:
             self._open_backend.close()
             self._open_backend = None
 
-    def _backend(self):
+    def _backend(self) -> VtkBackend | RayBackend:
         """What draws; after a journey to another process it is opened here, at first use.
 
         Not on arrival, where an error would kill a pool's worker and leave the pool waiting for its answer.

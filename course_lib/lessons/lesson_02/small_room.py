@@ -7,6 +7,7 @@ import functools
 from typing import NamedTuple
 
 import numpy as np
+import trimesh
 
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.lessons.kit.box_world import Box, BoxWorld
@@ -123,7 +124,7 @@ def quality(scene_map: SceneMap, door_open: bool = False) -> MapQuality:
 def distances(scene_map: SceneMap, door_open: bool = False, n: int = 4000) -> np.ndarray:
     """Distances [m] from `n` places on the map, drawn by area, to the nearest surface of the room."""
     corners = scene_map.vertices[scene_map.faces]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    area = trimesh.triangles.area(corners)
     rng = np.random.default_rng(0)
     face = rng.choice(len(area), n, p=area / area.sum())
     # Equal chances all over a triangle: Dirichlet shares of its corners.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import trimesh
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.simulation.corridor.mesh_building import WorldMesh
@@ -16,7 +17,7 @@ def map_error(
 ) -> dict[str, float]:
     """Distance in metres from points drawn on the map, by area, to the surface of the surveyed world."""
     corners = map_vertices[map_faces].astype(np.float64)
-    areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    areas = trimesh.triangles.area(corners)
     face = rng.choice(len(areas), n_points, p=areas / areas.sum())
     u, v = np.sort(rng.random((2, n_points)), axis=0)
     points = np.einsum("nk,nkd->nd", np.stack([u, v - u, 1 - v], axis=1), corners[face])

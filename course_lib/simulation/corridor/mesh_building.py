@@ -83,8 +83,7 @@ class MeshBuilder:
         """Add triangles given in world coordinates; those of a closed solid are turned to face outward."""
         vertices, faces = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
         if closed:
-            corners = (vertices - vertices.mean(axis=0))[faces]
-            signed_volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum()
+            signed_volume = trimesh.Trimesh(vertices - vertices.mean(axis=0), faces, process=False).volume
             faces = faces if signed_volume > 0 else faces[:, ::-1]
         self._pieces.append((vertices, faces, material, self.part))
 
@@ -170,6 +169,5 @@ def _bevelled_faces() -> np.ndarray:
     points = _bevelled_corners(np.ones(3), 0.2)
     faces = ConvexHull(points).simplices
     corners = points[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    inward = np.einsum("ij,ij->i", normals, corners.mean(axis=1) - 0.5) < 0
+    inward = np.einsum("ij,ij->i", trimesh.triangles.cross(corners), corners.mean(axis=1) - 0.5) < 0
     return np.where(inward[:, None], faces[:, ::-1], faces)

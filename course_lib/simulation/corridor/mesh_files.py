@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from pathlib import Path
 
 import numpy as np
 
+import course_lib.depth_mcl.rendering.off_screen  # noqa: F401 - before pyvista: no display is needed
 from course_lib.simulation.corridor.mesh_building import WorldMesh
-
-# A display is never needed, and the variable must be set before vtk is imported for the first time.
-if sys.platform.startswith("linux"):
-    os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW") or "vtkEGLRenderWindow"
 
 _FACE = np.dtype([("count", "u1"), ("index", "<i4", 3)])
 

@@ -6,27 +6,18 @@ scenes live side by side: one lit and textured, one in which every object is pai
 
 from __future__ import annotations
 
-import os
-import sys
-
 import cv2
 import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkTexture
+from vtkmodules.vtkRenderingOpenGL2 import vtkPanoramicProjectionPass, vtkRenderStepsPass
 
+from course_lib.depth_mcl.rendering.off_screen import off_screen_window
 from course_lib.geometry import pose_matrix
 from course_lib.simulation.room.scene import Room
 from course_lib.simulation.textured_mesh import TexturedMesh
-
-if sys.platform.startswith("linux"):
-    # Before VTK makes a window: no display is needed. An empty value would crash VTK.
-    os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW") or "vtkEGLRenderWindow"
-
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - registers the OpenGL classes behind the names below
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints, vtkUnsignedCharArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTexture
-from vtkmodules.vtkRenderingOpenGL2 import vtkPanoramicProjectionPass, vtkRenderStepsPass
 
 NEAR, FAR = 0.05, 30.0  # m: nothing stands nearer to the rig than its clearance; no room is 30 m across
 FEATURE_ANGLE_DEG = 40.0  # chosen: edges sharper than this stay sharp, cushions look round
@@ -125,9 +116,7 @@ class _Scene:
         panoramic.SetDelegatePass(vtkRenderStepsPass())
         self._renderer.SetPass(panoramic)
         self._pass = panoramic
-        self._window = vtkRenderWindow()
-        self._window.SetOffScreenRendering(True)
-        self._window.SetMultiSamples(0)
+        self._window = off_screen_window()
         self._window.SetSize(width, width // 2)
         self._window.AddRenderer(self._renderer)
         self._pixels = vtkUnsignedCharArray()
@@ -189,26 +178,13 @@ class _Scene:
 
 
 def _poly_data(mesh: TexturedMesh) -> vtkPolyData:
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(mesh.vertices, np.float32), deep=True))
-    faces = np.asarray(mesh.faces, np.int64)
-    cells = vtkCellArray()
-    cells.ImportLegacyFormat(
-        numpy_to_vtkIdTypeArray(np.column_stack([np.full(len(faces), 3), faces]).ravel(), deep=True)
+    import pyvista
+
+    data = pyvista.PolyData.from_regular_faces(np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.int64))
+    data.active_texture_coordinates = np.asarray(mesh.texture_coordinates, np.float32)
+    return data.compute_normals(
+        cell_normals=False, split_vertices=True, feature_angle=FEATURE_ANGLE_DEG, consistent_normals=False
     )
-    data = vtkPolyData()
-    data.SetPoints(points)
-    data.SetPolys(cells)
-    coordinates = numpy_to_vtk(np.ascontiguousarray(mesh.texture_coordinates, np.float32), deep=True)
-    coordinates.SetName("texture")
-    data.GetPointData().SetTCoords(coordinates)
-    normals = vtkPolyDataNormals()
-    normals.SetInputData(data)
-    normals.SetFeatureAngle(FEATURE_ANGLE_DEG)
-    normals.SplittingOn()
-    normals.ConsistencyOff()
-    normals.Update()
-    return normals.GetOutput()
 
 
 def _actor(data: vtkPolyData) -> vtkActor:

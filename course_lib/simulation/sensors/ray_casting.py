@@ -1,4 +1,4 @@
-"""Rays through the true world, with what they meet: distance, incidence and reflectivity. Embree through embreex."""
+"""Rays through the true world, with what they meet: distance, incidence and reflectivity."""
 
 from __future__ import annotations
 

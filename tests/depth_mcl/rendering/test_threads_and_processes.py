@@ -22,7 +22,7 @@ import pytest
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from tests.depth_mcl.shapes import SMALL, random_states, room, room_depth
 
-PATIENCE_WITH_A_CHILD = 60.0
+PATIENCE_WITH_A_CHILD = 30.0
 PATIENCE = 240.0
 CAMERA = SMALL.resized(32, 24)
 
