@@ -20,6 +20,7 @@ TRACKED_SUPPORT = 0.55  # least support, 1 to -1, of a frame that is tracked
 LOST_SUPPORT = 0.45  # support below which it is lost
 RECOVERED_SUPPORT = 0.7  # least support after it was lost: then it agrees by chance with walls that look alike
 _FRAMES_TO_RECOVER = 3  # in a row with such support
+_LEAST_PIXELS = 30  # with fewer a frame says nothing: a few stray returns are no view (chosen)
 _FRAMES_MEANED = 3  # a person who walks through one image must not decide alone
 
 
@@ -67,13 +68,14 @@ def judge_track(agreements: Sequence[Agreement]) -> list[TrackStatus]:
 
     Lost: the mean support of the last three frames is below `LOST_SUPPORT`. Tracked: it reaches `TRACKED_SUPPORT`; once
     lost, only after it reached `RECOVERED_SUPPORT` in three frames one after the other. All else is doubtful, a frame
-    without measurement too. Not seen by this: a pose that is wrong where the map looks alike, along a smooth wall or in
-    the next bay.
+    with hardly any measurement too. Not seen by this: a pose that is wrong where the map looks alike, along a smooth
+    wall or in the next bay.
     """
     statuses, lost, good_frames = [], False, 0
     for index, frame in enumerate(agreements):
-        recent = [a.support for a in agreements[max(0, index + 1 - _FRAMES_MEANED) : index + 1] if a.pixels]
-        support = np.mean(recent) if frame.pixels else np.nan
+        last = agreements[max(0, index + 1 - _FRAMES_MEANED) : index + 1]
+        recent = [a.support for a in last if a.pixels >= _LEAST_PIXELS]
+        support = np.mean(recent) if frame.pixels >= _LEAST_PIXELS else np.nan
         good_frames = good_frames + 1 if support >= RECOVERED_SUPPORT else 0
         lost = support < LOST_SUPPORT or (lost and good_frames < _FRAMES_TO_RECOVER)
         if support < LOST_SUPPORT:

@@ -62,6 +62,7 @@ def test_images_that_do_not_fit_are_named():
         ([BAD] * 3 + [GOOD] * 8, "LLLL" + "D" * 7),  # what was lost is not tracked for agreeing as well as usual
         ([BAD] * 3 + [VERY_GOOD] * 6 + [GOOD], "LLLDDDDTTT"),  # two frames until the mean is good, three good in a row
         ([BAD] * 3 + [BLIND] * 9 + [GOOD] * 3, "LLL" + "D" * 12),  # blind frames do not heal
+        ([Agreement(3, 1.0, 1.0, 0.0)] * 4 + [BAD], "DDDDL"),  # a few stray returns are no view
         ([], ""),
     ],
 )
