@@ -18,8 +18,10 @@ TrackStatus = Literal["tracked", "doubtful", "lost"]
 # Chosen on development recordings (experiments/lost_on_purpose.py), in favour of never calling a lost filter tracked.
 TRACKED_SUPPORT = 0.55  # least support, 1 to -1, of a frame that is tracked
 LOST_SUPPORT = 0.45  # support below which it is lost
+RECOVERED_SUPPORT = 0.7  # least support after it was lost: then it agrees by chance with walls that look alike
+_FRAMES_TO_RECOVER = 3  # in a row with such support
+_LEAST_PIXELS = 30  # with fewer a frame says nothing: a few stray returns are no view (chosen)
 _FRAMES_MEANED = 3  # a person who walks through one image must not decide alone
-_FRAMES_TO_RECOVER = 5  # what was lost may agree by chance: so many good frames in a row before it is tracked again
 
 
 class Agreement(NamedTuple):
@@ -64,21 +66,20 @@ def agreement(measured: np.ndarray, simulated: np.ndarray) -> Agreement:
 def judge_track(agreements: Sequence[Agreement]) -> list[TrackStatus]:
     """What each frame of a run is, from the frames so far.
 
-    Lost: the mean support of the last three frames is below `LOST_SUPPORT`. Tracked: it reaches `TRACKED_SUPPORT`, and
-    once lost it has to for five frames in a row. All else is doubtful, a frame without measurement too.
-    Not seen by this: a pose that is wrong where the map looks alike, along a smooth wall or in the next bay.
+    Lost: the mean support of the last three frames is below `LOST_SUPPORT`. Tracked: it reaches `TRACKED_SUPPORT`; once
+    lost, only after it reached `RECOVERED_SUPPORT` in three frames one after the other. All else is doubtful, a frame
+    with hardly any measurement too. Not seen by this: a pose that is wrong where the map looks alike, along a smooth
+    wall or in the next bay.
     """
     statuses, lost, good_frames = [], False, 0
     for index, frame in enumerate(agreements):
-        recent = [a.support for a in agreements[max(0, index + 1 - _FRAMES_MEANED) : index + 1] if a.pixels]
-        support = np.mean(recent) if frame.pixels else np.nan
-        good_frames = good_frames + 1 if support >= TRACKED_SUPPORT else 0
-        if support < LOST_SUPPORT:
-            lost = True
-        elif good_frames >= _FRAMES_TO_RECOVER:
-            lost = False
+        last = agreements[max(0, index + 1 - _FRAMES_MEANED) : index + 1]
+        recent = [a.support for a in last if a.pixels >= _LEAST_PIXELS]
+        support = np.mean(recent) if frame.pixels >= _LEAST_PIXELS else np.nan
+        good_frames = good_frames + 1 if support >= RECOVERED_SUPPORT else 0
+        lost = support < LOST_SUPPORT or (lost and good_frames < _FRAMES_TO_RECOVER)
         if support < LOST_SUPPORT:
             statuses.append("lost")
         else:
-            statuses.append("tracked" if good_frames and not lost else "doubtful")
+            statuses.append("tracked" if support >= TRACKED_SUPPORT and not lost else "doubtful")
     return statuses

@@ -4,11 +4,19 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood
-from course_lib.depth_mcl.tracking import LOST_SUPPORT, TRACKED_SUPPORT, Agreement, agreement, judge_track
+from course_lib.depth_mcl.tracking import (
+    LOST_SUPPORT,
+    RECOVERED_SUPPORT,
+    TRACKED_SUPPORT,
+    Agreement,
+    agreement,
+    judge_track,
+)
 
-GOOD, MIDDLING, BAD = (
+MIDDLE = (TRACKED_SUPPORT + LOST_SUPPORT) / 2
+VERY_GOOD, GOOD, MIDDLING, BAD = (
     Agreement(100, support, support, 0.0)
-    for support in (TRACKED_SUPPORT + 0.1, (TRACKED_SUPPORT + LOST_SUPPORT) / 2, LOST_SUPPORT - 0.15)
+    for support in (RECOVERED_SUPPORT + 0.1, TRACKED_SUPPORT + 0.1, MIDDLE, LOST_SUPPORT - 0.15)
 )
 BLIND = Agreement(0, np.nan, np.nan, np.nan)
 
@@ -51,8 +59,10 @@ def test_images_that_do_not_fit_are_named():
         ([BAD] * 3, "LLL"),
         ([BLIND, GOOD, BLIND, GOOD], "DTDT"),
         ([GOOD, GOOD, GOOD, BAD, GOOD], "TTTDD"),  # one image alone does not decide: a person walked through
-        ([BAD] * 3 + [GOOD] * 8, "LLLLDDDDDTT"),  # two frames until the mean is good, five good in a row
-        ([BAD] * 3 + [BLIND] * 9 + [GOOD] * 6, "LLL" + "D" * 9 + "DDDDTT"),  # blind frames do not heal
+        ([BAD] * 3 + [GOOD] * 8, "LLLL" + "D" * 7),  # what was lost is not tracked for agreeing as well as usual
+        ([BAD] * 3 + [VERY_GOOD] * 6 + [GOOD], "LLLDDDDTTT"),  # two frames until the mean is good, three good in a row
+        ([BAD] * 3 + [BLIND] * 9 + [GOOD] * 3, "LLL" + "D" * 12),  # blind frames do not heal
+        ([Agreement(3, 1.0, 1.0, 0.0)] * 4 + [BAD], "DDDDL"),  # a few stray returns are no view
         ([], ""),
     ],
 )
