@@ -22,7 +22,7 @@ def test_many_particles_are_weighed_as_if_the_image_were_worth_a_number_of_pixel
     assert tempered_weights(scores, 5.0) == pytest.approx(expected / expected.sum())
 
 
-@pytest.mark.parametrize("spread", [0.5, 5.0, 500.0])
+@pytest.mark.parametrize("spread", [2.0, 5.0, 500.0])
 def test_where_that_leaves_too_few_particles_so_many_are_left(spread, rng):
     w = tempered_weights(spread * rng.random(200), 5.0)
     assert w.sum() == pytest.approx(1)
@@ -51,14 +51,10 @@ def test_an_estimate_beside_the_best_particles_is_told(rng):
     assert error_covariance(deviations, np.zeros(300))[1, 1] > 0.3**2
 
 
-def normalized_errors(estimates, true, name):
-    """e' C^-1 e / d of every frame, d = 3."""
-    values = []
-    for estimate, state in zip(estimates, true, strict=True):
-        error = BODY_AXES.deviations(state[None], estimate.state)[0][MOVING]
-        covariance = getattr(estimate, name)[np.ix_(MOVING, MOVING)]
-        values.append(error @ np.linalg.pinv(covariance, rcond=1e-30) @ error / 3)
-    return np.array(values)
+def normalized_error(estimate, state):
+    """e' C^-1 e / d of a frame, d = 3."""
+    error = BODY_AXES.deviations(state[None], estimate.state)[0][MOVING]
+    return error @ np.linalg.solve(estimate.error_covariance[np.ix_(MOVING, MOVING)], error) / 3
 
 
 @pytest.mark.parametrize("seed", [10_001, 10_002])
@@ -72,6 +68,7 @@ def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_
         localizer = MonteCarloLocalizer(renderer, 100, seed=seed)
         localizer.initialize(true[0])
         estimates = [localizer.step(subsample_depth(sequence.depth(i), camera, small)) for i in frames]
-    # The first frame's particles all stand at the given start, but for one step of noise.
-    assert 0.5 < normalized_errors(estimates[1:], true[1:], "error_covariance").mean() < 2
-    assert normalized_errors(estimates[1:], true[1:], "covariance").mean() > 100
+    pairs = list(zip(estimates, true, strict=True))
+    assert 0.5 < np.mean([normalized_error(*pair) for pair in pairs]) < 2
+    # The spread of the paper's own weights is no answer: beyond ten sigma in more than half of the frames.
+    assert np.median([abs(e.state[0] - state[0]) / np.sqrt(e.covariance[0, 0] + 1e-30) for e, state in pairs]) > 10

@@ -31,11 +31,14 @@ def test_a_stretch_of_the_corridor_meets_the_targets_of_the_whole(corridor):
 
 
 @pytest.mark.parametrize("key", [key for key in METHODS if key != "proposed"])
-def test_every_fallon_row_runs_on_the_same_recording(corridor, key):
-    run = run_method(METHODS[key], *corridor, seed=3, frames=4, n_particles=40)
-    assert run.states.shape == (4, 6)
-    assert np.isfinite(run.states).all()
-    assert path_errors(run, corridor[2])[0].median < 0.5
+def test_every_fallon_row_goes_along_with_the_same_recording(corridor, key):
+    """In 25 frames the wagon goes 2.3 m. A filter that stays behind is off by half of it in the median, all at last."""
+    run = run_method(METHODS[key], *corridor, seed=10_001, frames=25, n_particles=40, backend="ray")
+    travelled = np.linalg.norm(np.diff(corridor[2].camera_to_world[:25, :3, 3], axis=0), axis=1).sum()
+    nearest, timed = path_errors(run, corridor[2])
+    assert nearest.median < 0.3
+    assert timed.median < 0.3 * travelled
+    assert timed.errors[-1] < 0.6 * travelled
 
 
 def test_particles_could_keep_up_with_one_and_a_half_of_the_longest_step(corridor):
