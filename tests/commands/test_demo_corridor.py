@@ -142,7 +142,7 @@ def test_a_seed_is_written_when_it_is_done(tmp_path, monkeypatch):
 
 
 def test_the_kindnesses_are_measured_one_by_one(tmp_path, capsys):
-    words = ["--seeds", "10042", "--frames", "2", "--particles", "4", "--backend", "ray", "--out", str(tmp_path)]
+    words = ["--seeds", "10042", "--frames", "5", "--particles", "40", "--backend", "ray", "--out", str(tmp_path)]
     assert main(["demo", "corridor", "--kindnesses", *words]) == 0
     table = capsys.readouterr().out
     result = json.loads((tmp_path / "kindnesses.json").read_text())
