@@ -181,7 +181,10 @@ def _rows_of(arguments: argparse.Namespace, seed: int, temporary: Path) -> tuple
     if arguments.recording == "shipped":
         even, by_hand = read_sequence(data / "wagon"), None
     else:
-        even, by_hand = own_recordings(data, temporary, seed, arguments.frames, progress_bar)
+        try:
+            even, by_hand = own_recordings(data, temporary, seed, arguments.frames, progress_bar)
+        except ImportError as error:
+            raise ImportError(f"{error}; --recording shipped makes none") from error
     options = {"n_particles": arguments.particles, "backend": arguments.backend, "frames": arguments.frames}
     return maps, even, run_rows(maps, even, by_hand, arguments.methods, progress_bar, seed=seed, **options)
 

@@ -88,6 +88,15 @@ def test_a_folder_without_the_data_is_named(recording, missing, tmp_path, capsys
     assert missing in capsys.readouterr().err
 
 
+def test_where_no_recording_can_be_made_the_shipped_one_is_named(monkeypatch, capsys):
+    def fail(*_, **__):
+        raise ImportError("the simulated world needs embreex")
+
+    monkeypatch.setattr("course_lib.experiments.corridor_seeds.record_seed", fail)
+    assert main(["demo", "corridor", "--frames", "2"]) == 1
+    assert "needs embreex; --recording shipped makes none" in capsys.readouterr().err
+
+
 SMALL = ["--frames", "2", "--particles", "6", "--methods", "proposed,fallon"]
 
 
@@ -142,7 +151,7 @@ def test_a_seed_is_written_when_it_is_done(tmp_path, monkeypatch):
 
 
 def test_the_kindnesses_are_measured_one_by_one(tmp_path, capsys):
-    words = ["--seeds", "10042", "--frames", "2", "--particles", "4", "--backend", "ray", "--out", str(tmp_path)]
+    words = ["--seeds", "10042", "--frames", "5", "--particles", "40", "--backend", "ray", "--out", str(tmp_path)]
     assert main(["demo", "corridor", "--kindnesses", *words]) == 0
     table = capsys.readouterr().out
     result = json.loads((tmp_path / "kindnesses.json").read_text())

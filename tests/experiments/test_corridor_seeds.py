@@ -18,7 +18,7 @@ def shipped_maps(corridor_folder):
 
 @pytest.fixture(scope="module")
 def recordings(corridor_folder, tmp_path_factory):
-    return own_recordings(corridor_folder, tmp_path_factory.mktemp("seed"), 10_030, frames=12)
+    return own_recordings(corridor_folder, tmp_path_factory.mktemp("seed"), 10_030, frames=8)
 
 
 def test_the_filter_needs_the_maps_and_never_the_true_world(corridor_folder, shipped_maps, tmp_path):
@@ -48,20 +48,21 @@ def test_every_row_is_given_the_maps_and_its_own_recording(shipped_maps, recordi
 
 
 def test_the_papers_method_follows_a_seeds_recording_in_the_shipped_map(shipped_maps, recordings):
-    """Twelve frames are a metre: a filter that stays where it was put is half a metre off."""
+    """Eight frames are 0.7 m: a filter that stays where it was put is that much off at the end."""
     path = recordings[0].camera_to_world[:, :3, 3]
-    assert np.linalg.norm(path[-1] - path[0]) > 0.9
-    rows = run_rows(shipped_maps, *recordings, methods=("proposed",), seed=1, n_particles=100)
+    assert np.linalg.norm(path[-1] - path[0]) > 0.6
+    rows = run_rows(shipped_maps, *recordings, methods=("proposed",), seed=1, n_particles=80)
     assert set(rows) == {"proposed", "proposed" + BY_HAND}
     for row in rows.values():
         assert row.timed.median < 0.15
-        assert row.timed.errors[-4:].max() < 0.35
+        assert row.timed.errors[-1] < 0.25
 
 
 def test_the_less_kind_recording_is_of_the_same_day(recordings):
     even, by_hand = recordings
     assert even.camera_to_world[0, :2, 3] == pytest.approx(by_hand.camera_to_world[0, :2, 3], abs=0.02)
-    assert np.nanmedian(np.abs(even.depth(0) - by_hand.depth(0))) < 0.1
+    # The sway alone turns the view by up to 1.5 degrees.
+    assert np.nanmedian(np.abs(even.depth(0) / by_hand.depth(0) - 1)) < 0.1
     steps = [np.linalg.norm(np.diff(s.camera_to_world[:, :3, 3], axis=0), axis=1) for s in recordings]
     assert np.std(steps[1]) > 3 * np.std(steps[0])
 

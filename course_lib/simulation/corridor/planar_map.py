@@ -124,7 +124,7 @@ def _fit_plane(corners: np.ndarray, areas: np.ndarray, towards: np.ndarray) -> t
 
 
 def _decimated(vertices: np.ndarray, faces: np.ndarray, reduction: float) -> SceneMap:
-    """The map with the share `reduction` of its triangles decimated away (VTK's quadric decimation)."""
+    """The map with the share `reduction` of its triangles decimated away by quadric errors."""
     # Flattening makes triangles without area; SceneMap drops them.
     flat = SceneMap(vertices, faces)
     if reduction == 0:
