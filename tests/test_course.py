@@ -130,6 +130,7 @@ def test_no_command_shows_the_usage_and_fails(copy):
     assert "usage:" in done.stdout
 
 
+@pytest.mark.slow
 def test_first_call_sets_up_and_hands_over_and_the_second_is_quiet(copy, tmp_path):
     first = call(copy, "demo", "corridor", "--json", cwd=tmp_path)
     # Only the command writes to standard output, or --json would be spoilt; the folder one is in stays.
@@ -161,6 +162,7 @@ def make_one_without_pip(venv):
     (venv / "course-ready.json").write_text("{}")  # all that earlier versions of course.py left
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [make_nothing, make_an_interrupted_one, make_a_dangling_python, make_one_without_pip])
 def test_a_half_made_environment_is_made_anew(copy, make):
     make(copy / ".venv")
@@ -225,6 +227,7 @@ def test_what_course_py_did_not_make_is_refused_and_left_as_it_is(copy, put, sai
     assert sorted((path, path.lstat().st_mtime_ns) for path in copy.parent.rglob("*")) == before
 
 
+@pytest.mark.slow
 def test_a_link_inside_an_environment_is_removed_and_not_what_it_leads_to(copy):
     precious = put_a_link_to_a_folder(copy / "a_link")
     (copy / ".venv").mkdir()
@@ -234,6 +237,7 @@ def test_a_link_inside_an_environment_is_removed_and_not_what_it_leads_to(copy):
     assert precious.read_text() == "mine"
 
 
+@pytest.mark.slow
 def test_a_module_of_the_callers_folder_neither_breaks_the_set_up_nor_runs(copy, tmp_path):
     for name in ("random", "ctypes", "venv", "pip", "shutil"):
         (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\nraise SystemExit(3)\n")
@@ -241,6 +245,7 @@ def test_a_module_of_the_callers_folder_neither_breaks_the_set_up_nor_runs(copy,
     assert not (tmp_path / "ran").exists()
 
 
+@pytest.mark.slow
 def test_what_has_changed_is_told_and_repaired(copy):
     call(copy, "x")
     ready = copy / ".venv" / "course-ready.json"
@@ -264,6 +269,7 @@ def test_what_has_changed_is_told_and_repaired(copy):
     assert str(moved) in done.stdout
 
 
+@pytest.mark.slow
 def test_no_network_is_told_and_the_next_call_goes_on(copy):
     (copy / "environment.txt").write_text("not-to-be-had==1\n")
     done = call(copy, "check")
@@ -317,6 +323,7 @@ def start_hanging_installation(copy, silent_index):
     return process, connection
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_a_killed_installation_is_made_anew(copy, silent_index):
     process, connection = start_hanging_installation(copy, silent_index)
@@ -329,6 +336,7 @@ def test_a_killed_installation_is_made_anew(copy, silent_index):
     assert done.stdout.startswith("handed over")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_control_c_stops_with_a_sentence(copy, silent_index):
     process, connection = start_hanging_installation(copy, silent_index)
@@ -340,6 +348,7 @@ def test_control_c_stops_with_a_sentence(copy, silent_index):
     assert "Traceback" not in errors
 
 
+@pytest.mark.slow
 def test_two_at_once_wait_for_each_other(copy):
     command = [sys.executable, str(copy / "course.py"), "x"]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": environment()}
