@@ -312,7 +312,7 @@ def only_one_at_a_time():
 
 
 def see_to_venv_module():
-    """Installs Python's module that makes environments, which Debian keeps apart, or raises SetupError with the cure."""
+    """Installs Python's module that makes environments, which Debian keeps apart; SetupError where it cannot."""
     missing = missing_venv_modules()
     if not missing:
         return
