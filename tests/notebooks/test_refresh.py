@@ -35,14 +35,14 @@ def run_nbval(path) -> subprocess.CompletedProcess:
 
 
 PANEL = """
-from course_lib.plots import figures
 from course_lib.lessons.kit.panel import Drawing, Panel, Switch
+from course_lib.plots import figures
 png = figures.png_bytes(figures.new_figure(size=(1, 1))[0])
 Panel("test", [Switch("on", "on")], lambda on: Drawing(png, "A small empty picture", "on: 1.25")).show()
 """
 PROGRESS = """
 import time
-from course_lib.lessons.kit.progress_bar import progress
+from course_lib.lessons import progress
 for step in progress(range(6), "six steps"):
     time.sleep(0.12)
 print("done:", step + 1)
