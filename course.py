@@ -31,23 +31,7 @@ OPENGL_READY = os.path.join(VENV, "course-opengl-ready")
 OPENGL_FAILED = os.path.join(VENV, "course-opengl-failed")
 OPENGL_PACKAGES = ["libegl1", "libgl1-mesa-dri", "libgl1"]
 
-USAGE = """\
-usage: python3 course.py COMMAND [options]
-
-  lab                       open the lessons in JupyterLab (on this computer only)
-  test                      run every test, the notebooks included; arguments go on to pytest
-  check                     look at the environment: packages, OpenGL, one rendered depth image
-  demo corridor             run paper 1's corridor experiment and print its table
-  demo room                 run paper 2's room experiment and print its tables
-  localize                  localize a recorded depth-camera sequence in a mesh map
-  stereo                    match a pair of panoramas and list the distances of boxed objects
-  make-data corridor        make data/corridor again: the world, its map and the recorded runs
-  make-data room            make data/room again: stereo panoramas, exact boxes, the semantic map
-  make-data training-rooms  photograph generated rooms: a detector's training and test pictures
-  train-detector            train the room detector (needs PyTorch, which the course does not install)
-  score-detector            measure a detector's precision and recall on known rooms
-  refresh                   run the lessons again and store their outputs
-
+HINT = """
 Options of one command: python3 course.py COMMAND --help
 The first call sets up .venv: a download of about 400 MB, 1.6 GB on disk, one or a few minutes.
 """
@@ -95,12 +79,12 @@ def main(arguments):
         )
         return 1
     if not arguments or arguments[0] in ("-h", "--help", "help"):
-        print(USAGE, end="")
+        print(usage() + HINT, end="")
         return 0 if arguments else 2
     try:
         if why_not_ready() is not None:
             if {"-h", "--help"} & set(arguments):
-                print(USAGE, end="")
+                print(usage() + HINT, end="")
                 return 0
             set_up()
         if not {"-h", "--help"} & set(arguments):
@@ -114,6 +98,15 @@ def main(arguments):
     except OSError as error:
         say(f"error: {explain_os_error(error)}")
     return 1
+
+
+def usage():
+    """The list of commands. course_lib.cli imports nothing but the standard library, so it is there before .venv is."""
+    sys.path.insert(0, ROOT)
+    sys.dont_write_bytecode = True  # help leaves no file behind
+    from course_lib import cli
+
+    return cli.usage()
 
 
 def hand_over(arguments):
@@ -312,7 +305,7 @@ def only_one_at_a_time():
 
 
 def see_to_venv_module():
-    """Installs Python's module that makes environments, which Debian keeps apart, or raises SetupError with the cure."""
+    """Installs Python's module that makes environments, which Debian keeps apart; SetupError where it cannot."""
     missing = missing_venv_modules()
     if not missing:
         return

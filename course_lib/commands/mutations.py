@@ -31,6 +31,7 @@ from pathlib import Path
 from course_lib.commands import test as suite
 
 NOT_COPIED = (".git", ".venv", "__pycache__", ".pytest_cache", ".ruff_cache", "results", "*.egg-info", ".hypothesis")
+NO_PLUGINS = ("-p", "no:cacheprovider", "-p", "no:nbval")  # nbval's import alone takes seconds
 PASSED, FAILED, INTERRUPTED = 0, 1, 2  # pytest's exit codes; interrupted: a file could not even be imported
 
 
@@ -204,7 +205,7 @@ def try_out(mutation: Mutation, copy: Path) -> str:
 
 def run_tests(words: list[str], copy: Path) -> tuple[int | None, str]:
     """pytest's exit code (None: it hung) and its last lines, run in `copy`."""
-    command = [sys.executable, "-m", "pytest", "-q", "--tb=short", "-p", "no:cacheprovider", *words]
+    command = [sys.executable, "-m", "pytest", "-q", "--tb=short", *NO_PLUGINS, *words]
     try:
         done = subprocess.run(
             command,

@@ -30,14 +30,16 @@ METADATA = {
 KEPT_CELL_METADATA = ("exercise", "tags", "jupyter")
 # Runs in the kernel before the first cell: a lesson that reaches for the network fails here, not at a student's.
 OFFLINE_STARTUP = """
-import socket as _socket
-_connect = _socket.socket.connect
-def _connect_here_only(self, address):
-    if self.family != getattr(_socket, "AF_UNIX", None) and address[0] not in ("127.0.0.1", "::1", "localhost"):
-        raise OSError(f"lessons run offline: no connection to {address[0]}")
-    return _connect(self, address)
-_socket.socket.connect = _connect_here_only
-del _socket
+def _stay_on_this_computer():
+    import socket
+    connect = socket.socket.connect
+    def connect_here_only(self, address):
+        if self.family != getattr(socket, "AF_UNIX", None) and address[0] not in ("127.0.0.1", "::1", "localhost"):
+            raise OSError(f"lessons run offline: no connection to {address[0]}")
+        return connect(self, address)
+    socket.socket.connect = connect_here_only
+_stay_on_this_computer()
+del _stay_on_this_computer
 """
 
 

@@ -92,6 +92,8 @@ def pytest_arguments(
     words = [] if paths else default_paths(fast, no_notebooks, only_notebooks)
     if any(is_notebook(path) for path in paths or words):
         words += nbval_options()
+    else:
+        words += ["-p", "no:nbval"]  # whose import alone takes seconds
     if fast:
         words += ["-m", "not browser and not slow"]
     if not paths and workers > 1:

@@ -119,7 +119,7 @@ def test_a_reader_that_leaves_early_causes_no_complaint():
     process.stdout.close()
     errors = process.stderr.read()
     process.stderr.close()
-    process.wait(timeout=60)
+    process.wait(timeout=1800)
     assert errors == ""
 
 
