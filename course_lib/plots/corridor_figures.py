@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import trimesh
 from matplotlib.figure import Figure
 
 from course_lib.depth_mcl.evaluation import PAPER_SIGMA
@@ -55,3 +56,14 @@ def figure_6(frames: np.ndarray, errors: dict[str, np.ndarray], title: str | Non
 def floor_plan(vertices: np.ndarray, height: float, thickness: float = 0.05) -> np.ndarray:
     """Map vertices `(M, 2)` within `thickness` metres of a height: what a horizontal cut would show."""
     return vertices[np.abs(vertices[:, 2] - height) < thickness][:, :2]
+
+
+def plane_cut(vertices: np.ndarray, faces: np.ndarray, axis: int, position: float) -> np.ndarray:
+    """Segments `(M, 2, 2)` [m] where the plane "coordinate `axis` = position" cuts the triangles of a mesh.
+
+    axis: 0, 1 or 2 for x, y or z. The other two coordinates are kept, in their order.
+    """
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    origin, normal = np.zeros(3), np.zeros(3)
+    origin[axis], normal[axis] = position, 1.0
+    return np.delete(trimesh.intersections.mesh_plane(mesh, normal, origin), axis, axis=2)

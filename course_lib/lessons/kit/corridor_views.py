@@ -1,20 +1,17 @@
-"""The corridor as the lessons see it: its map, the wagon's run, and the lines of plans and side views.
-
-Lines are where a plane cuts a mesh's triangles.
-"""
+"""The corridor as the lessons see it: its map, the wagon's run, and the lines of plans and side views."""
 
 from __future__ import annotations
 
 import functools
 
 import numpy as np
-import trimesh
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.paths import data_path
+from course_lib.plots.corridor_figures import plane_cut
 
 
 @functools.cache
@@ -27,17 +24,6 @@ def corridor_map() -> SceneMap:
 def wagon_run() -> DepthSequence:
     """The recording of the camera on the wagon."""
     return read_sequence(data_path("corridor/wagon"))
-
-
-def plane_cut(vertices: np.ndarray, faces: np.ndarray, axis: int, position: float) -> np.ndarray:
-    """Segments `(M, 2, 2)` [m] where the plane "coordinate `axis` = position" cuts the triangles of a mesh.
-
-    axis: 0, 1 or 2 for x, y or z. The other two coordinates are kept, in their order.
-    """
-    mesh = trimesh.Trimesh(vertices, faces, process=False)
-    origin, normal = np.zeros(3), np.zeros(3)
-    origin[axis], normal[axis] = position, 1.0
-    return np.delete(trimesh.intersections.mesh_plane(mesh, normal, origin), axis, axis=2)
 
 
 @functools.cache

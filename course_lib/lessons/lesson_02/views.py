@@ -12,9 +12,10 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
-from course_lib.lessons.kit.corridor_views import plane_cut, wagon_run
+from course_lib.lessons.kit.corridor_views import wagon_run
 from course_lib.lessons.lesson_02.small_room import MapQuality, room
 from course_lib.paths import data_path
+from course_lib.plots.corridor_figures import plane_cut
 
 EYE = np.array([1.2, 2.6, 1.2, 0.0, 0.05, np.deg2rad(8)])  # state of the camera that looks through the room
 CUT = 1.2  # metres, height of the cuts

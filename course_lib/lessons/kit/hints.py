@@ -1,0 +1,102 @@
+"""What is wrong with an answer, in a sentence: the hint of a known mistake, another order, kind, shape, NaN or inf."""
+
+from __future__ import annotations
+
+import copy
+import itertools
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:  # `exercises` asks here for hints
+    from course_lib.lessons.kit.exercises import Exercise
+
+
+def hint(exercise: Exercise, arguments: list[tuple], answers: list, wanted: list) -> str:
+    """The sentence for wrong answers to a list of inputs; the inputs and the right values are never shown."""
+    if any(answer is None for answer in answers):
+        return "Your function returns None: does every way through it end in `return`?"
+    for mistake in exercise.mistakes:
+        slips = [mistake.function(*copy.deepcopy(given)) for given in arguments]
+        if all(agree(a, s, exercise.tolerance) for a, s in zip(answers, slips, strict=True)):
+            return mistake.hint
+    if _only_reordered(answers, wanted, exercise.tolerance):
+        return "The values are right, but in another order than the task names them."
+    inf_is_an_answer = any(np.isinf(np.asarray(w, dtype=np.float64)).any() for right in wanted for w in _parts(right))
+    for answer, right in zip(answers, wanted, strict=True):
+        if (sentence := _difference(answer, right, inf_is_an_answer)) is not None:
+            return sentence
+    wrong = sum(not agree(a, w, exercise.tolerance) for a, w in zip(answers, wanted, strict=True))
+    if wrong < len(answers):
+        question = "have you used every argument?" if len(arguments[0]) > 1 else "which case have you left out?"
+        return f"Right on some inputs and wrong on others ({wrong} of {len(answers)} inputs): {question}"
+    return "Shape and type fit, but the values differ on every input. Work one small case by hand and compare."
+
+
+def _only_reordered(answers: list, wanted: list, tolerance: float) -> bool:
+    """Whether every answer holds the right values, all in one and the same other order."""
+    if not isinstance(wanted[0], tuple) or not all(_is_row_of(len(wanted[0]), answer) for answer in answers):
+        return False
+    return any(
+        all(agree(a, tuple(w[k] for k in order), tolerance) for a, w in zip(answers, wanted, strict=True))
+        for order in itertools.permutations(range(len(wanted[0])))
+    )
+
+
+def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | None:
+    """What is wrong with the kind, shape or finiteness of an answer, in a sentence; None where that is not it."""
+    if isinstance(right, tuple) and not _is_row_of(len(right), answer):
+        size = f" of {len(answer)}" if isinstance(answer, tuple | list) or getattr(answer, "ndim", 0) else ""
+        return f"Return {len(right)} values, separated by commas; yours returns a {kind_of(answer)}{size}."
+    for a, r in zip(answer if isinstance(right, tuple) else (answer,), _parts(right), strict=True):
+        values = _as_numbers(a)
+        if values is None:
+            return f"Return numbers; yours returns a {kind_of(a)}."
+        if values.shape != np.shape(r):
+            return f"The result must have shape {np.shape(r)}; yours has {values.shape}."
+        if np.isnan(values).any() and not np.isnan(r).any():
+            return "There is a NaN in your result: look for 0/0, inf - inf or the logarithm of a negative number."
+        if inf_is_an_answer and (np.isinf(values) & ~np.isinf(r)).any():
+            return "Yours is inf where a finite number is expected."
+        if inf_is_an_answer and (np.isinf(r) & ~np.isinf(values)).any():
+            return "Yours is a finite number where inf is expected."
+        if np.isinf(values).any() and not inf_is_an_answer:
+            return "There is an infinity in your result: look for a division by zero."
+    return None
+
+
+def _parts(right: object) -> tuple:
+    return right if isinstance(right, tuple) else (right,)
+
+
+def _is_row_of(n: int, answer: object) -> bool:
+    """Whether an answer holds n values one after the other, as a tuple, a list or an array."""
+    if isinstance(answer, np.ndarray) and answer.ndim == 0:
+        return False
+    return isinstance(answer, tuple | list | np.ndarray) and len(answer) == n
+
+
+def agree(answer: object, right: object, tolerance: float) -> bool:
+    """Whether an answer has the right shape, and the right values within the tolerance."""
+    if isinstance(right, tuple):
+        return _is_row_of(len(right), answer) and all(
+            agree(a, r, tolerance) for a, r in zip(answer, right, strict=True)
+        )
+    values = _as_numbers(answer)
+    if values is None or values.shape != np.shape(right):
+        return False
+    return bool(np.allclose(values, right, rtol=tolerance, atol=tolerance, equal_nan=True))
+
+
+def _as_numbers(value: object) -> np.ndarray | None:
+    """The value as a float array; None for what is no number (text, None, ragged lists, complex)."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        return None
+    return array.astype(np.float64) if array.dtype.kind in "biuf" else None
+
+
+def kind_of(value: object) -> str:
+    """What to call the kind of a value, such as "float"."""
+    return type(value).__name__

@@ -1,0 +1,35 @@
+"""A lesson's package hands on what its notebook asks for, and nothing else; a notebook imports what there is."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import json
+import re
+
+import pytest
+
+from course_lib.paths import notebook_paths
+
+
+def code_of(path) -> str:
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    return "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+
+
+@pytest.mark.parametrize("path", notebook_paths(), ids=lambda path: path.name[:2])
+def test_a_package_hands_on_what_its_notebook_asks_for(path):
+    name = f"lesson_{path.name[:2]}"
+    package = importlib.import_module(f"course_lib.lessons.{name}")
+    asked = re.findall(rf"(?<![.\w]){name}\.(\w+)", code_of(path))
+    assert set(package.__all__) == {*asked, "PANELS"}
+
+
+@pytest.mark.parametrize("path", notebook_paths(), ids=lambda path: path.name[:2])
+def test_what_a_notebook_imports_from_the_library_is_there(path):
+    for node in ast.walk(ast.parse(code_of(path))):
+        if isinstance(node, ast.ImportFrom) and node.module.startswith("course_lib"):
+            module = importlib.import_module(node.module)
+            for alias in node.names:
+                if not hasattr(module, alias.name):
+                    importlib.import_module(f"{node.module}.{alias.name}")
