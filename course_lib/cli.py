@@ -22,6 +22,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
     "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
+    "locate": ("locate", "find where two panoramas were taken, on a semantic map"),
     "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
     "make-data room": ("make_room", "make data/room again: stereo panoramas, exact boxes, the semantic map"),
