@@ -23,6 +23,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
     "demo rooms": ("demo_rooms", "run paper 2's experiment in generated rooms that nobody shaped, with intervals"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
+    "locate": ("locate", "find where two panoramas were taken, on a semantic map"),
     "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
     "make-data room": ("make_room", "make data/room again: stereo panoramas, exact boxes, the semantic map"),

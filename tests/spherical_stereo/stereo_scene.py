@@ -1,13 +1,19 @@
-"""One small scene for the tests of matching: eight boards in a textured room, seen by both cameras."""
+"""Two small scenes, seen by both cameras: eight boards for the tests of matching, five and their map for poses."""
 
+import math
 from functools import cache
 
 import numpy as np
 
+from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.panorama import View, open_view
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from tests.spherical_stereo.vertical_pair import (
     BASELINE,
     Board,
     blotches,
+    box_of,
     detections,
     panorama,
     room_walls,
@@ -37,3 +43,32 @@ def scene():
     everything = boards + room_walls(blotches(rng, 40))
     upper, lower = panorama(everything), panorama(everything, -BASELINE)
     return boards, upper, lower, detections(boards), detections(boards, -BASELINE)[::-1]
+
+
+MAPPED = [  # label, azimuth, horizontal range, width, bottom, top; the upper camera is the origin
+    ("sofa", 0.2, 1.6, 1.2, -0.9, -0.2),
+    ("sofa", 2.6, 2.2, 1.3, -0.9, -0.2),
+    ("chair", 1.3, 1.4, 0.7, -0.9, -0.1),
+    ("television", -1.2, 2.0, 1.1, -0.3, 0.5),
+    ("potted plant", -2.3, 1.8, 0.8, -0.8, 0.2),
+]
+HUES = [210.0, 30.0, 60.0, math.nan, 110.0]
+TRUE_POSE = Pose2D(3.0, 2.5, 0.7)
+
+
+@cache
+def mapped_scene() -> tuple[View, View, SemanticMap]:
+    """Two small panoramas of five textured boards with their exact boxes, and the map of the boards."""
+    rng = np.random.default_rng(3)
+    boards = [Board(*one, blotches(rng)) for one in MAPPED]
+    everything = [*room_walls(blotches(rng, size=48)), *boards]
+    views = []
+    for camera in (0.0, -BASELINE):
+        found = [
+            Detection(board.label, 0.9, box_of(board, camera), hue, 50.0)
+            for board, hue in zip(boards, HUES, strict=True)
+        ]
+        views.append(open_view(panorama(everything, camera)).having(detections=found))
+    places = TRUE_POSE.apply([[b.range * math.cos(b.azimuth), b.range * math.sin(b.azimuth)] for b in boards])
+    landmarks = [Landmark(b.label, *place, hue, 50.0) for b, place, hue in zip(boards, places, HUES, strict=True)]
+    return *views, SemanticMap(landmarks)

@@ -24,6 +24,7 @@ from course_lib.spherical_stereo.pose.rigid_fit import COINCIDENT, MIRRORED, TOO
 from course_lib.spherical_stereo.semantic_map.association import AssociationError, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from tests.spherical_stereo import vertical_pair
+from tests.spherical_stereo.stereo_scene import TRUE_POSE, mapped_scene
 
 WIDTH, HEIGHT = 1280, 640
 RIG = StereoRig(0.3, 1.32)
@@ -186,6 +187,18 @@ def test_far_objects_are_less_certain_and_less_certain_along_than_across():
     spreads = [np.sqrt(np.linalg.eigvalsh(one.covariance)) for one in found.observations]
     assert np.argsort(ranges).tolist() == np.argsort([spread[1] for spread in spreads]).tolist()
     assert all(spread[1] > spread[0] for spread in spreads)
+
+
+def test_a_place_is_as_certain_as_a_pixel_and_a_half_of_1280_lets_it_be():
+    """rho^2 sqrt(sec^4 e_u + sec^4 e_l) s / B along the ray, rho s across, s = 0.0075, and a decimetre either way."""
+    found = localize(*views(POSE))
+    for one, place, height in zip(found.observations, found.objects, HEIGHTS, strict=True):
+        rho = math.hypot(one.x, one.y)
+        secants = [1 + ((height - camera) / rho) ** 2 for camera in (RIG.upper_height, RIG.lower_height)]
+        along = math.hypot(0.0075 * rho**2 / 0.3 * math.hypot(*secants), 0.1)
+        across = math.hypot(0.0075 * rho, 0.1)
+        assert place.position[2] == pytest.approx(height - RIG.upper_height)
+        assert np.sqrt(np.linalg.eigvalsh(one.covariance)) == pytest.approx([across, along], rel=1e-6)
 
 
 def test_no_object_is_more_certain_than_its_centroid_can_be_told_from_a_box():
@@ -423,17 +436,6 @@ def test_images_without_a_detector_are_named():
         SemanticLocalizer(RIG, ROOM).localize(IMAGE, IMAGE)
 
 
-BOARDS = [  # label, azimuth, horizontal range, width, bottom, top; the upper camera is the origin
-    ("sofa", 0.2, 1.6, 1.2, -0.9, -0.2),
-    ("sofa", 2.6, 2.2, 1.3, -0.9, -0.2),
-    ("chair", 1.3, 1.4, 0.7, -0.9, -0.1),
-    ("television", -1.2, 2.0, 1.1, -0.3, 0.5),
-    ("potted plant", -2.3, 1.8, 0.8, -0.8, 0.2),
-]
-BOARD_HUES = [210.0, 30.0, 60.0, math.nan, 110.0]
-TRUE_POSE = Pose2D(3.0, 2.5, 0.7)
-
-
 class BoxesGiven:
     """A detector that knows the boxes of each image."""
 
@@ -447,25 +449,16 @@ class BoxesGiven:
 @pytest.fixture(scope="module")
 def photographed():
     """Two small panoramas of textured boards, a detector that knows their boxes, and the map of the boards."""
-    rng = np.random.default_rng(3)
-    boards = [vertical_pair.Board(*one, vertical_pair.blotches(rng)) for one in BOARDS]
-    walls = vertical_pair.room_walls(vertical_pair.blotches(rng, size=48))
-    detector, images = BoxesGiven(), []
-    for camera in (0.0, -vertical_pair.BASELINE):
-        image = vertical_pair.panorama([*walls, *boards], camera)
-        boxes = [vertical_pair.box_of(board, camera) for board in boards]
-        images.append(image)
-        found = [Detection(b.label, 0.9, box, hue, 50.0) for b, box, hue in zip(boards, boxes, BOARD_HUES, strict=True)]
+    *both, semantic_map = mapped_scene()
+    detector = BoxesGiven()
+    for view in both:
         for k in (0, 100, 256, 400):
-            turned = vertical_pair.rolled(found, k)
-            detector.of_image[np.roll(image, k, axis=1).tobytes()] = [
-                Detection(d.label, 0.9, t.box, d.hue, 50.0) for d, t in zip(found, turned, strict=True)
+            turned = vertical_pair.rolled(view.detections, k)
+            detector.of_image[np.roll(view.image, k, axis=1).tobytes()] = [
+                Detection(d.label, 0.9, t.box, d.hue, 50.0) for d, t in zip(view.detections, turned, strict=True)
             ]
-    places = TRUE_POSE.apply([[b.range * math.cos(b.azimuth), b.range * math.sin(b.azimuth)] for b in boards])
-    semantic_map = SemanticMap(
-        [Landmark(b.label, *place, hue, 50.0) for b, place, hue in zip(boards, places, BOARD_HUES, strict=True)]
-    )
-    return SemanticLocalizer(StereoRig(vertical_pair.BASELINE, 1.3), semantic_map, detector), images
+    localizer = SemanticLocalizer(StereoRig(vertical_pair.BASELINE, 1.3), semantic_map, detector)
+    return localizer, [view.image for view in both]
 
 
 def heading_error_deg(found, theta):
@@ -476,10 +469,11 @@ def test_two_images_give_the_pose(photographed):
     localizer, images = photographed
     found = localizer.localize(*images)
     assert found.status == "ok"
-    assert len(found.used_pairs) >= 4
-    assert math.dist(found.pose[:2], TRUE_POSE[:2]) < 0.15
-    assert heading_error_deg(found, TRUE_POSE.theta) < 2
-    assert len(found.matches) + sum(one.side == "upper" for one in found.unmatched) == len(BOARDS)
+    assert sorted(found.used_pairs) == sorted((one.observation, one.upper) for one in found.objects)
+    assert len(found.used_pairs) == 5
+    assert math.dist(found.pose[:2], TRUE_POSE[:2]) < 0.1
+    assert heading_error_deg(found, TRUE_POSE.theta) < 1
+    assert found.unmatched == ()
 
 
 @pytest.mark.parametrize("columns", [100, 256, 400])
@@ -487,8 +481,8 @@ def test_rolled_images_give_the_same_place_and_the_turned_heading(photographed, 
     localizer, images = photographed
     before, after = localizer.localize(*images), localizer.localize(*(np.roll(one, columns, axis=1) for one in images))
     assert after.used_pairs == before.used_pairs
-    assert math.dist(after.pose[:2], before.pose[:2]) < 0.1
-    assert heading_error_deg(after, before.pose.theta + 2 * math.pi * columns / vertical_pair.WIDTH) < 2
+    assert math.dist(after.pose[:2], before.pose[:2]) < 1e-6
+    assert heading_error_deg(after, before.pose.theta + 2 * math.pi * columns / vertical_pair.WIDTH) < 1e-6
 
 
 def test_the_disparities_of_two_images_give_the_pose(photographed):

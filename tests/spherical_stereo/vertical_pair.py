@@ -89,6 +89,17 @@ def panorama(boards, camera_z=0.0, width=WIDTH, supersampling=2):
     return cv2.resize(image, (width, width // 2), interpolation=cv2.INTER_AREA).astype(np.uint8)
 
 
+def seen_turned(image, turn):
+    """What a camera turned by a small vector (radians about x, y, z) sees of a panorama, by resampling it."""
+    height, width = image.shape[:2]
+    u, v = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    rays = pixel_to_direction(np.stack([u, v], axis=-1), width, height) @ cv2.Rodrigues(np.array(turn, float))[0].T
+    place = direction_to_pixel(rays, width, height) - 0.5 + [8, 0]
+    wide = np.concatenate([image[:, -8:], image, image[:, :8]], axis=1)  # across the seam
+    maps = (place[..., i].astype(np.float32) for i in (0, 1))
+    return cv2.remap(wide, *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+
+
 def box_of(board, camera_z=0.0, width=WIDTH):
     """The box around a board, edge coordinates; u_max passes the width at the seam."""
     edges = [np.asarray(c) - [0, 0, camera_z] for c in board.corners()]

@@ -22,7 +22,7 @@ from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel
 
 GREATEST_TURN = EPIPOLAR_TOLERANCE
 """Radians: a lower camera turned further than this moves true matches out of the epipolar tolerance."""
-MOST_FEATURES = 1500
+MOST_FEATURES = 800
 """Upper features that are looked for below, every k-th of all: enough for a hundredth of a degree."""
 FEWEST_AGREEING = 30
 """Matches that must agree on the turn; fewer tell nothing."""

@@ -52,7 +52,7 @@ class PanoramaFeatures:
 def detect_features(
     image: np.ndarray, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES
 ) -> PanoramaFeatures:
-    """`find_features` of an image, uint8 BGR `(H, W, 3)`, W = 2 H; raises `PanoramaError` as that and `open_view` do."""
+    """`find_features` of an image, uint8 BGR `(H, W, 3)`, W = 2 H. Raises `PanoramaError` as it and `open_view` do."""
     return find_features(open_view(image), threshold, octaves).features
 
 

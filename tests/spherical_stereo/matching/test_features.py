@@ -5,6 +5,7 @@ import pytest
 
 from course_lib.spherical_stereo.matching.epipolar import (
     EpipolarPairs,
+    allowed_by_rig,
     best_pairs,
     epipolar_pairs,
     epipolar_residual,
@@ -127,3 +128,31 @@ def test_best_pairs_are_mutual_and_clear():
     # 1 prefers 0, which prefers 0; 2 has two that are nearly alike; 3 and 4 want the same one equally.
     assert list(zip(kept.upper.tolist(), kept.lower.tolist(), strict=True)) == [(0, 0)]
     assert len(best_pairs(pairs_of((2, 2, 20), (2, 3, 22)), ratio=1.0)) == 1
+
+
+def test_nothing_is_turned_between_two_upright_cameras_and_so_descriptors_are_upright(image, features):
+    """The image upside down has the same features; descriptors that turn along would find most of them again."""
+    turned = detect_features(np.ascontiguousarray(image[::-1, ::-1]))
+    assert len(turned) == pytest.approx(len(features), rel=0.05)
+    back = PanoramaFeatures([WIDTH, HEIGHT] - turned.keypoints, turned.descriptors, WIDTH, HEIGHT)
+    same = epipolar_pairs(features, back, 0.005).upper
+    assert len(np.unique(same)) < 0.2 * len(features)
+    assert len(np.unique(epipolar_pairs(features, features, 0.005).upper)) == len(features)
+
+
+def one_feature(azimuth, elevation, bits=0):
+    """A feature at a direction (radians), whose descriptor differs from the first one's in so many bits."""
+    descriptor = np.packbits(np.arange(488) < bits)
+    keypoint = [(0.5 - azimuth / (2 * np.pi)) * WIDTH, (0.5 - elevation / np.pi) * HEIGHT]
+    return PanoramaFeatures(np.array([keypoint]), descriptor[None], WIDTH, HEIGHT)
+
+
+@pytest.mark.parametrize(("azimuth", "bits", "pairs"), [(0.014, 0, 1), (0.017, 0, 0), (0.0, 119, 1), (0.0, 125, 0)])
+def test_unless_told_otherwise_a_pair_is_within_three_columns_of_1280_and_120_bits(azimuth, bits, pairs):
+    assert len(epipolar_pairs(one_feature(0.0, 0.0), one_feature(azimuth, 0.1, bits))) == pairs
+
+
+@pytest.mark.parametrize(("horizontal_range", "allowed"), [(0.25, False), (0.35, True), (20.0, True), (-2.0, False)])
+def test_no_object_is_nearer_than_30_centimetres_or_behind_infinity(horizontal_range, allowed):
+    pairs = epipolar_pairs(one_feature(0.0, 0.0), one_feature(0.0, np.arctan(0.3 / horizontal_range)))
+    assert allowed_by_rig(pairs, 0.3).tolist() == [allowed]

@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 from course_lib.spherical_stereo.detection.boxes import DetectionError
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError, check_not_swapped, match_features
-from course_lib.spherical_stereo.matching.features import detect_features, find_features, inside_box
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, find_features, inside_box
 from course_lib.spherical_stereo.matching.object_matching import (
     CLASS_NOT_IN_OTHER,
     NO_MATCHES,
@@ -21,7 +21,7 @@ from course_lib.spherical_stereo.matching.object_matching import (
     match_views,
     pair_by_most_matches,
 )
-from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, azimuth_elevation_of_pixel, open_pair
+from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, azimuth_elevation_of_pixel, open_pair
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import BASELINE, HEIGHT, WIDTH, Seen, rolled
 
@@ -255,3 +255,19 @@ def test_pairing_is_one_to_one_and_treats_both_images_alike(counts):
     assert columns.isdisjoint(j for _, j in pairs)
     turned, turned_rows, turned_columns = pair_by_most_matches(counts.T)
     assert (sorted((j, i) for i, j in turned), turned_columns, turned_rows) == (sorted(pairs), rows, columns)
+
+
+def lone_feature(elevations, bits):
+    """A view of one chair with features straight ahead whose descriptors have so many bits set."""
+    keypoints = np.array([[WIDTH / 2, (0.5 - e / np.pi) * HEIGHT] for e in elevations])
+    descriptors = np.array([np.packbits(np.arange(488) < n) for n in bits])
+    box = (WIDTH / 2 - 20, 60.0, WIDTH / 2 + 20, 200.0)
+    view = View(WIDTH, HEIGHT, detections=[Seen("chair", box)])
+    return view.having(features=PanoramaFeatures(keypoints, descriptors, WIDTH, HEIGHT))
+
+
+@pytest.mark.parametrize(("second", "matched"), [(26, 1), (24, 0), (21, 0)])
+def test_a_feature_with_two_partners_nearly_alike_is_matched_to_neither(second, matched):
+    """20 of 25 bits is Lowe's ratio of 0.8."""
+    found = match_views(lone_feature([-0.2], [0]), lone_feature([-0.1, 0.0], [20, second]), RIG)
+    assert len(found.matches) == matched

@@ -1,0 +1,218 @@
+"""Find the pose of a spherical stereo camera on a semantic map, from two panoramas of your own.
+
+The objects come from a detector, or from boxes drawn by hand.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+from course_lib.commands.stereo import BOXES_FORMAT
+
+if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
+    from course_lib.spherical_stereo.panorama import View
+    from course_lib.spherical_stereo.pose.localization import Localization
+    from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options of `locate`."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the example
+    parser.epilog = BOXES_FORMAT
+    parser.add_argument("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
+    parser.add_argument("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
+    parser.add_argument("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
+    parser.add_argument("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
+    parser.add_argument(
+        "--boxes",
+        type=Path,
+        metavar="JSON",
+        help="objects drawn by hand on both images, in the format below (default: a detector finds them)",
+    )
+    add_detector_arguments(parser)
+    parser.add_argument(
+        "--association", default="greedy", metavar="NAME", help="how objects are matched to the map (default: greedy)"
+    )
+    parser.add_argument(
+        "--paper",
+        action="store_true",
+        help="the paper's method as it is: a pose that its own residuals contradict is given, too (default: not)",
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER", help="write locate.json, .csv and .png here (default: nowhere)"
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the tables")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Localizes and prints; 0 also where there is no pose, which is an answer."""
+    from course_lib.commands.arguments import require_output_folder
+    from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
+    from course_lib.spherical_stereo.detection.detector import find_objects
+    from course_lib.spherical_stereo.localizer import SemanticLocalizer
+    from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
+    from course_lib.spherical_stereo.semantic_map.association import ASSOCIATIONS
+    from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+    by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]
+    if arguments.boxes and any(one is not None for one in by_detector):
+        raise ValueError("--boxes says what is in the images, and so does a detector: give one of the two")
+    if arguments.association not in ASSOCIATIONS:
+        raise ValueError(f"--association must be one of {', '.join(ASSOCIATIONS)}; got {arguments.association!r}")
+    if arguments.out:
+        require_output_folder(arguments.out)
+    localizer = SemanticLocalizer(
+        StereoRig(arguments.baseline),
+        SemanticMap.load(arguments.map),
+        association=arguments.association,
+        reject_implausible=not arguments.paper,
+    )
+    views = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
+    detector = None
+    if arguments.boxes:
+        upper, lower = read_stereo_boxes(arguments.boxes).on(*views)
+    else:
+        detector = chosen_detector(arguments)
+        upper, lower = (find_objects(view, detector) for view in views)
+    found = localizer.localize_views(upper, lower)
+    summary = {
+        "upper": str(arguments.upper),
+        "lower": str(arguments.lower),
+        "map": str(arguments.map),
+        "baseline_m": arguments.baseline,
+        "objects_from": str(arguments.boxes or arguments.detector or "data/detector"),
+        "classes_of_the_detector": None if detector is None else detector.labels,
+        **localization_summary(found, localizer.semantic_map),
+    }
+    if arguments.out:
+        _write(arguments.out, summary, views, found, localizer.semantic_map)
+    if arguments.json:
+        print(json.dumps(summary))
+        return 0
+    if detector is not None and arguments.detector is None:
+        print(
+            f"The course's detector looked for objects. It knows {len(detector.labels)} classes, from simulated rooms "
+            f"only:\n{', '.join(detector.labels)}. Give yours with --detector, or draw --boxes.\n"
+        )
+    print(_text(summary))
+    if arguments.out:
+        print(f"\nWritten to {arguments.out}: locate.json, locate.csv, locate.png")
+    return 0
+
+
+def localization_summary(found: Localization, semantic_map: SemanticMap) -> dict:
+    """A localization as plain values, for JSON: angles in degrees, and null where there is nothing to say."""
+    x, y, heading = [None] * 3 if found.pose is None else found.pose
+    sigma = [None] * 3 if found.covariance is None else np.sqrt(np.diag(found.covariance)).tolist()
+    statistics = found.statistics
+    rejected = found.rejected_pose
+    return {
+        "status": found.status,
+        "reason": found.reason,
+        "explanation": found.explanation,
+        "x_m": x,
+        "y_m": y,
+        "heading_deg": None if heading is None else float(np.degrees(heading)),
+        "sigma_x_m": sigma[0],
+        "sigma_y_m": sigma[1],
+        "sigma_heading_deg": None if sigma[2] is None else float(np.degrees(sigma[2])),
+        "covariance": None if found.covariance is None else found.covariance.tolist(),
+        "rejected_pose": None if rejected is None else [rejected.x, rejected.y, float(np.degrees(rejected.theta))],
+        "rms_residual_m": found.rms_residual,
+        "expected_rms_residual_m": None if statistics is None else statistics.expected_rms,
+        "normalized_residual": None if statistics is None else statistics.normalized,
+        "lower_camera_turned_deg": None if found.turn is None else np.degrees(found.turn).tolist(),
+        "objects_upper": len(found.upper_detections),
+        "objects_lower": len(found.lower_detections),
+        "objects": _objects(found, semantic_map),
+        "unmatched": [
+            {"side": one.side, "label": getattr(found, f"{one.side}_detections")[one.index].label, "reason": one.reason}
+            for one in found.unmatched
+        ],
+    }
+
+
+def _objects(found: Localization, semantic_map: SemanticMap) -> list[dict]:
+    """One row for every object seen in both images: where it is, and which landmark it was taken for."""
+    landmark_of = dict(found.used_pairs)
+    order = [i for i, _ in found.used_pairs]
+    rows = []
+    for one, match in zip(found.objects, found.matches, strict=True):
+        landmark = landmark_of.get(one.observation)
+        placed = bool(np.isfinite(one.position).all())
+        rows.append(
+            {
+                "label": one.label,
+                "outcome": one.outcome,
+                "matched_features": match.n_matches,
+                "azimuth_deg": float(np.degrees(np.arctan2(one.position[1], one.position[0]))) if placed else None,
+                "range_m": float(np.hypot(*one.position[:2])) if placed else None,
+                "landmark": landmark,
+                "landmark_x_m": None if landmark is None else float(semantic_map.positions[landmark][0]),
+                "landmark_y_m": None if landmark is None else float(semantic_map.positions[landmark][1]),
+                "residual_m": None
+                if landmark is None or found.residuals is None
+                else float(np.linalg.norm(found.residuals[order.index(one.observation)])),
+            }
+        )
+    return rows
+
+
+def _text(s: dict) -> str:
+    if s["status"] == "ok":
+        lines = [
+            f"pose: x {_with_sigma(s['x_m'], s['sigma_x_m'], 2)} m, y {_with_sigma(s['y_m'], s['sigma_y_m'], 2)} m, "
+            f"heading {_with_sigma(s['heading_deg'], s['sigma_heading_deg'], 1)} degrees (± one standard deviation)"
+        ]
+    else:
+        lines = [f"no pose, {s['reason']}: {s['explanation']}"]
+    if s["rms_residual_m"] is not None:
+        lines.append(
+            f"residuals: {s['rms_residual_m']:.2f} m (root mean square), {s['expected_rms_residual_m']:.2f} m may be "
+            f"expected; normalized {s['normalized_residual']:.1f}, which is about 1 when all is right"
+        )
+    if s["lower_camera_turned_deg"] is not None:
+        turn = float(np.linalg.norm(s["lower_camera_turned_deg"]))
+        lines.append(f"the lower camera is turned against the upper one by {turn:.1f} degrees")
+    lines += ["", f"{s['objects_upper']} objects above, {s['objects_lower']} below, {len(s['objects'])} seen in both"]
+    if s["objects"]:
+        lines.append(
+            f" n {'object':14} {'features':>8} {'azimuth':>8} {'range [m]':>10}   {'landmark at':16} {'off by [m]':>10}"
+        )
+    lines += [f"{n:2d} {line}" for n, line in enumerate(map(_row, s["objects"]), start=1)]
+    lines += [f" - {one['label']:14} {one['side']} image only: {one['reason']}" for one in s["unmatched"]]
+    return "\n".join(lines)
+
+
+def _with_sigma(value: float, sigma: float | None, digits: int) -> str:
+    return f"{value:.{digits}f}" + ("" if sigma is None else f" ± {sigma:.{digits}f}")
+
+
+def _row(row: dict) -> str:
+    start = f"{row['label']:14} {row['matched_features']:8d} "
+    if row["range_m"] is None or row["outcome"] != "ok":
+        return start + row["outcome"]
+    start += f"{row['azimuth_deg']:7.0f}° {row['range_m']:10.2f}   "
+    if row["landmark"] is None:
+        return start + "none of its class is left"
+    at = f"({row['landmark_x_m']:.2f}, {row['landmark_y_m']:.2f})"
+    return start + f"{at:16} " + (f"{row['residual_m']:10.2f}" if row["residual_m"] is not None else "")
+
+
+def _write(
+    folder: Path, summary: dict, views: tuple[View, View], found: Localization, semantic_map: SemanticMap
+) -> None:
+    from course_lib.experiments.results import write_results
+    from course_lib.plots.location_figure import location_figure
+
+    write_results(folder / "locate.json", summary, summary["objects"])
+    lines = [f"{n:2d} {_row(row)}" for n, row in enumerate(summary["objects"], start=1)]
+    title = "On the map" if found.pose else f"No pose: {found.reason}"
+    images = [view.image for view in views]
+    location_figure(images, semantic_map, found, lines, title).savefig(folder / "locate.png", dpi=110)
