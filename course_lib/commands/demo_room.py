@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.commands.make_room import SEED
-from course_lib.commands.room_tables import EXACT, FITS, tables
+from course_lib.commands.room_tables import EXACT, FITS, WEIGHTED, tables
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from matplotlib.figure import Figure
@@ -97,7 +97,7 @@ def _photograph(folder: Path, seed: int) -> None:
 
 def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector | None = None) -> int:
     from course_lib.commands.progress import progress_bar
-    from course_lib.experiments.room import SOURCES, run_experiment
+    from course_lib.experiments.room import SOURCES, run_experiment, weighted_summary
     from course_lib.experiments.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
     from course_lib.spherical_stereo.recording import read_stereo_recording
@@ -106,6 +106,7 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
     semantic_map = SemanticMap.load(folder / "semantic_map.json")
     detector = detector or chosen_detector(arguments)
     results: dict[str, dict[str, list]] = {}
+    weighted: dict[tuple[str, str], dict] = {}
     rolled: dict[str, list[RolledPair]] = {name: [] for name in FITS}
     for number in (1, 2):
         recording = read_stereo_recording(folder / f"experiment_{number}")
@@ -129,7 +130,10 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
             pairs = turn_the_rig(results[f"experiment_{number}"]["images"], localizer, arguments.roll, bar)
             rolled["alike"] += pairs
             rolled["by_covariance"] += weigh_by_covariance(pairs, localizer)
-    summary = summarize(arguments, recording, results, semantic_map, recording.rig.baseline)
+        for source in SOURCES:
+            found = results[f"experiment_{number}"][source]
+            weighted[f"experiment_{number}", source] = weighted_summary(found, localizer)
+    summary = summarize(arguments, recording, results, weighted, semantic_map, recording.rig.baseline)
     if arguments.roll:
         summary["rolled_images"] = {name: turn_summary(pairs) for name, pairs in rolled.items()}
     written = write(arguments.out, summary, results, draw(semantic_map, results))
@@ -141,7 +145,7 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
     return 0
 
 
-def summarize(arguments, recording, results: dict, semantic_map: SemanticMap, baseline: float) -> dict:
+def summarize(arguments, recording, results: dict, weighted: dict, semantic_map: SemanticMap, baseline: float) -> dict:
     """Tables 3 to 5 by experiment and association method, stereo matching and distances over all poses."""
     import numpy as np
 
@@ -162,7 +166,9 @@ def summarize(arguments, recording, results: dict, semantic_map: SemanticMap, ba
         **{
             experiment: {
                 name: experiment_summary(by_source["images"]),
+                f"{name}{WEIGHTED}": weighted[experiment, "images"],
                 f"{name}{EXACT}": experiment_summary(by_source["exact_boxes"]),
+                f"{name}{WEIGHTED}{EXACT}": weighted[experiment, "exact_boxes"],
             }
             for experiment, by_source in results.items()
         },

@@ -9,12 +9,11 @@ import argparse
 import hashlib
 import json
 import os
-import re
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from course_lib.commands.arguments import require_output_folder
+from course_lib.commands.arguments import parse_seeds, require_output_folder
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 
 SEEDS = "1-20"
@@ -98,18 +97,6 @@ def run(arguments: argparse.Namespace) -> int:
             f"\nWritten to {arguments.out}: rooms.json, rooms.csv; the rooms' observations in {arguments.out / 'rooms'}"
         )
     return 0
-
-
-def parse_seeds(text: str) -> list[int]:
-    """The seeds that "4", "1-20" or "1-5,8" name, each once, in their order. Raises `ValueError` for anything else."""
-    seeds: list[int] = []
-    for part in text.split(","):
-        match = re.fullmatch(r"\s*(\d+)(?:-(\d+))?\s*", part)
-        first, last = (int(match[1]), int(match[2] or match[1])) if match else (1, 0)
-        if last < first:
-            raise ValueError(f"--seeds must be numbers or ranges such as 1-20 or 1-5,8; got {text!r}")
-        seeds += range(first, last + 1)
-    return list(dict.fromkeys(seeds))
 
 
 def detector_identity(arguments: argparse.Namespace) -> str:

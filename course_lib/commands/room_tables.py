@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-HEAD = f"{'':32} {'dx [m]':>8} {'dy [m]':>8} {'dtheta [deg]':>13}   {'std x':>6} {'std y':>6} {'std theta':>9}"
+HEAD = f"{'':46} {'dx [m]':>8} {'dy [m]':>8} {'dtheta [deg]':>13}   {'std x':>6} {'std y':>6} {'std theta':>9}"
 MEANS = ("mean_dx_m", "mean_dy_m", "mean_dtheta_deg")
 COLUMNS = (*MEANS, "std_dx_m", "std_dy_m", "std_dtheta_deg")
 EXACT = "_exact_boxes"  # ends the key of the numbers from exact boxes
+WEIGHTED = "_weighted"  # in the key of the numbers from the same associations, pairs weighted by their covariance
 FITS = {"alike": "all pairs counted alike, the paper's way", "by_covariance": "pairs weighted by their covariance"}
 FEW_UNABLE_PERCENT = 5.0  # half of the paper's 10
 MANY_PAIRS = 8  # so many that the others outvote two wrong ones
@@ -32,7 +33,7 @@ def tables(summary: dict) -> str:
             lines.append(_row(f"paper: {kind}", paper[kind]))
             for key, ours in summary[f"experiment_{number}"].items():
                 lines.append(_row(f"ours, {_source_of(key)}: {kind}", ours[kind]))
-    lines += ["", f"Table 5 [% of {summary['poses']} poses] {'':19} correct  incorrect  unable"]
+    lines += ["", f"Table 5 [% of {summary['poses']} poses] {'':27} correct  incorrect  unable"]
     for number in (1, 2):
         lines.append(_rates(f"experiment {number}, paper", PAPER_TABLE_5[number]))
         for key, ours in summary[f"experiment_{number}"].items():
@@ -101,21 +102,23 @@ def _turns(rolled: dict) -> list[str]:
 
 
 def _source_of(key: str) -> str:
-    return "exact boxes" if key.endswith(EXACT) else f"images, {key}"
+    name = key.removesuffix(EXACT)
+    source = "exact boxes" if key.endswith(EXACT) else f"images, {name.removesuffix(WEIGHTED)}"
+    return f"{source}, weighted_fit" if name.endswith(WEIGHTED) else source
 
 
 def _row(name: str, values: dict) -> str:
     if values["mean_dx_m"] is None:
-        return f"{name:32} {'none':>8}"
+        return f"{name:46} {'none':>8}"
     numbers = [values[column] for column in COLUMNS]
     return (
-        f"{name:32} {numbers[0]:8.2f} {numbers[1]:8.2f} {numbers[2]:13.2f}   "
+        f"{name:46} {numbers[0]:8.2f} {numbers[1]:8.2f} {numbers[2]:13.2f}   "
         f"{numbers[3]:6.2f} {numbers[4]:6.2f} {numbers[5]:9.2f}"
     )
 
 
 def _rates(name: str, values: dict) -> str:
     return (
-        f"  {name:42} {values['correct_percent']:7.0f} {values['incorrect_percent']:10.0f} "
+        f"  {name:50} {values['correct_percent']:7.0f} {values['incorrect_percent']:10.0f} "
         f"{values['unable_percent']:7.0f}"
     )

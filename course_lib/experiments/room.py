@@ -137,6 +137,35 @@ def experiment_summary(results: Sequence[PairResult]) -> dict:
     return summary([result.outcome for result in results])
 
 
+def fitted_by_covariance(found: Localization, localizer: SemanticLocalizer) -> Localization:
+    """A localization fitted anew (2.6): each observation weighted by its covariance, not counted alike.
+
+    localizer: the one that found it; its map and its association stay. What has no observations stays as it is.
+    """
+    if not found.observations:
+        return found
+    weighted = SemanticLocalizer(
+        localizer.rig,
+        localizer.semantic_map,
+        association=localizer.association,
+        weights=localizer.weights,
+        distance_term=localizer.distance_term,
+        weighted_fit=True,
+        reject_implausible=localizer.reject_implausible,
+    )
+    return weighted.localize_observations(found.observations)
+
+
+def weighted_summary(results: Sequence[PairResult], localizer: SemanticLocalizer) -> dict:
+    """`experiment_summary` of the same observations and associations, with pairs weighted by their covariances."""
+    return summary(
+        [
+            outcome(fitted_by_covariance(one.localization, localizer), one.pair.pose, one.true_landmarks)
+            for one in results
+        ]
+    )
+
+
 def matching_counts(results: Sequence[PairResult]) -> MatchingCounts:
     """How often stereo matching was right about the objects detected in both images, over all pairs.
 

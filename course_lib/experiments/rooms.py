@@ -63,7 +63,11 @@ def observe_room(seed: int, options: RoomsOptions, detector) -> dict:
         for number, folder in enumerate(folders, start=1):
             recording = read_stereo_recording(folder)
             localizer = SemanticLocalizer(
-                recording.rig, semantic_map, detector, image_size=(recording.width, recording.height)
+                recording.rig,
+                semantic_map,
+                detector,
+                image_size=(recording.width, recording.height),
+                reject_implausible=False,
             )
             for pair in recording.pairs:
                 results = {source: localize_pair(pair, localizer, source) for source in SOURCES}

@@ -32,8 +32,9 @@ KINDS = (CORRECT, INCORRECT, UNABLE)
 BOOTSTRAP_DRAWS, BOOTSTRAP_SEED = 10_000, 0
 # What is done with the observations: options of SemanticLocalizer. The first is the paper's method.
 METHODS: dict[str, dict] = {
-    "paper": {},
-    "weighted_fit": {"weighted_fit": True},
+    "paper": {"reject_implausible": False},
+    "weighted_fit": {"weighted_fit": True, "reject_implausible": False},
+    "library": {"reject_implausible": True},
 }
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.room import PairResult
+from course_lib.experiments.room import PairResult, fitted_by_covariance
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.pose.localization import Localization
@@ -73,20 +73,12 @@ def weigh_by_covariance(pairs: Sequence[RolledPair], localizer: SemanticLocalize
 
     localizer: the one that localized them; its map and its association stay.
     """
-    weighted = SemanticLocalizer(
-        localizer.rig,
-        localizer.semantic_map,
-        association=localizer.association,
-        weights=localizer.weights,
-        distance_term=localizer.distance_term,
-        weighted_fit=True,
-        reject_implausible=localizer.reject_implausible,
-    )
-
-    def refit(found: Localization) -> Localization:
-        return weighted.localize_observations(found.observations) if found.pose is not None else found
-
-    return [pair._replace(straight=refit(pair.straight), rolled=refit(pair.rolled)) for pair in pairs]
+    return [
+        pair._replace(
+            straight=fitted_by_covariance(pair.straight, localizer), rolled=fitted_by_covariance(pair.rolled, localizer)
+        )
+        for pair in pairs
+    ]
 
 
 def compare(pair: RolledPair) -> Turn:

@@ -24,7 +24,7 @@ def demo(tmp_path_factory):
 def test_json_holds_rates_and_errors_by_experiment_and_method(demo):
     summary = json.loads((demo / "room.json").read_text())
     for experiment in ("experiment_1", "experiment_2"):
-        for method in ("greedy", "greedy_exact_boxes"):
+        for method in ("greedy", "greedy_weighted", "greedy_exact_boxes", "greedy_weighted_exact_boxes"):
             row = summary[experiment][method]
             assert row["correct_percent"] + row["incorrect_percent"] + row["unable_percent"] == pytest.approx(100)
             for kind in ("all", "correct", "incorrect"):
@@ -32,6 +32,14 @@ def test_json_holds_rates_and_errors_by_experiment_and_method(demo):
     assert summary["poses"] == 2
     assert summary["stereo_matching"]["seen_in_both"] > 20
     assert 0 < summary["median_relative_range_error_percent"]["exact_boxes"] < 15
+
+
+def test_weighted_by_covariance_the_associations_are_the_same_and_the_poses_are_others(demo):
+    summary = json.loads((demo / "room.json").read_text())["experiment_2"]
+    for source in ("", "_exact_boxes"):
+        alike, weighted = summary[f"greedy{source}"], summary[f"greedy_weighted{source}"]
+        assert weighted["correct_percent"] == alike["correct_percent"]
+        assert weighted["all"]["mean_dx_m"] != alike["all"]["mean_dx_m"]
 
 
 def test_a_row_a_pose_and_every_figure_are_written(demo):
@@ -56,7 +64,9 @@ def test_the_tables_hold_the_papers_numbers_beside_ours(tmp_path, capsys):
     for number in range(1, 6):
         assert f"Table {number}" in text
     for part in (
-        "paper: correct                       0.23     0.44         11.94",
+        "paper: correct                                     0.23     0.44         11.94",
+        "ours, images, greedy, weighted_fit: correct",
+        "experiment 2, ours, exact boxes, weighted_fit",
         "ours, exact boxes",
         "images, greedy",
         "Images rolled by 640 columns",

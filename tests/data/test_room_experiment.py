@@ -7,15 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.room import experiment_summary, localize_pair, range_errors, run_experiment
+from course_lib.experiments.room import (
+    exact_detections,
+    experiment_summary,
+    localize_pair,
+    range_errors,
+    run_experiment,
+)
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.matching.object_matching import match_objects
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "room"
 SHIPPED_SEED, SEEDS = 4, (1, 2, 3, 4, 5)
 EXPERIMENTS = ("experiment_1", "experiment_2")
+MATCHED_FEATURES = [529, 638]  # in pairs 1 and 12 of experiment 1, over all objects
 
 
 @pytest.fixture(scope="module")
@@ -37,42 +45,117 @@ def over_seeds(experiment, method, *keys):
     return values
 
 
+def rows_of(experiment, source):
+    with (FOLDER / "results" / f"seed_{SHIPPED_SEED}.csv").open() as file:
+        return {
+            row["place"]: row
+            for row in csv.DictReader(file)
+            if (row["experiment"], row["source"]) == (experiment, source)
+        }
+
+
+def far_from(result, row):
+    """Whether a pose, or what it is called, is another than the stored one; metres."""
+    pose = result.localization.pose
+    same = result.outcome.kind == row["outcome"] and (pose is None) == (row["x"] == "")
+    return not same or (pose is not None and np.hypot(pose.x - float(row["x"]), pose.y - float(row["y"])) > 0.002)
+
+
+@pytest.fixture(scope="module")
+def recordings():
+    return {experiment: read_stereo_recording(FOLDER / experiment) for experiment in EXPERIMENTS}
+
+
+@pytest.fixture(scope="module")
+def from_exact_boxes(recordings, semantic_map):
+    return {
+        experiment: run_experiment(
+            recording, SemanticLocalizer(recording.rig, semantic_map, reject_implausible=False), "exact_boxes"
+        )
+        for experiment, recording in recordings.items()
+    }
+
+
+# What the code makes of the shipped photographs, now.
+
+
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
-def test_from_exact_boxes_distances_and_correct_poses_are_as_good_as_promised(experiment, semantic_map):
-    recording = read_stereo_recording(FOLDER / experiment)
-    results = run_experiment(
-        recording, SemanticLocalizer(recording.rig, semantic_map, reject_implausible=False), "exact_boxes"
-    )
-    assert np.median(range_errors(results, semantic_map, recording.rig.baseline, "box_centre")) <= 0.08
-    summary = experiment_summary(results)
-    assert summary["correct"]["mean_dx_m"] <= 0.19
-    assert summary["correct"]["mean_dy_m"] <= 0.20
-    assert summary["correct"]["mean_dtheta_deg"] <= 2.8
-    assert 60 <= summary["correct_percent"] < 100, "look-alike sofas are confused now and then"
-    again = stored(SHIPPED_SEED)[experiment]["greedy_exact_boxes"]
-    assert summary["correct_percent"] == pytest.approx(again["correct_percent"], abs=5.1)
-    assert summary["correct"]["mean_dx_m"] == pytest.approx(again["correct"]["mean_dx_m"], abs=0.02)
+def test_poses_from_exact_boxes_come_out_as_stored(experiment, from_exact_boxes):
+    """No network rounds anything here: all 20 poses within 2 mm."""
+    rows = rows_of(experiment, "exact_boxes")
+    assert [one.pair.name for one in from_exact_boxes[experiment] if far_from(one, rows[one.pair.name])] == []
 
 
-def test_poses_from_images_come_out_as_stored(semantic_map):
-    recording = read_stereo_recording(FOLDER / "experiment_2")
+def test_poses_from_images_come_out_as_stored(recordings, semantic_map):
+    recording, rows = recordings["experiment_2"], rows_of("experiment_2", "images")
     localizer = SemanticLocalizer(
         recording.rig, semantic_map, YoloDetector.load(FOLDER.parent / "detector"), reject_implausible=False
     )
-    with (FOLDER / "results" / f"seed_{SHIPPED_SEED}.csv").open() as file:
-        rows = {
-            row["place"]: row
-            for row in csv.DictReader(file)
-            if (row["experiment"], row["source"]) == ("experiment_2", "images")
-        }
-    same = 0
-    for pair in recording.pairs[::5]:
-        result, row = localize_pair(pair, localizer), rows[pair.name]
-        same += result.outcome.kind == row["outcome"]
-        if result.localization.pose is not None and row["x"]:
-            assert result.localization.pose.x == pytest.approx(float(row["x"]), abs=0.5)
+    chosen = recording.pairs[::4]
+    far = [pair.name for pair in chosen if far_from(localize_pair(pair, localizer), rows[pair.name])]
     # Another processor may round a score across the threshold, so that one pose comes out otherwise.
-    assert same >= 3
+    assert len(far) <= 1, far
+
+
+@pytest.mark.parametrize("experiment", EXPERIMENTS)
+def test_from_exact_boxes_distances_and_correct_poses_are_as_good_as_promised(
+    experiment, from_exact_boxes, recordings, semantic_map
+):
+    results, baseline = from_exact_boxes[experiment], recordings[experiment].rig.baseline
+    assert np.median(range_errors(results, semantic_map, baseline, "box_centre")) <= 0.06
+    summary = experiment_summary(results)
+    assert summary["correct"]["mean_dx_m"] <= 0.08
+    assert summary["correct"]["mean_dy_m"] <= 0.12
+    assert summary["correct"]["mean_dtheta_deg"] <= 0.8
+    assert summary["correct_percent"] < 100, "look-alike sofas are confused now and then"
+
+
+@pytest.mark.parametrize("experiment", EXPERIMENTS)
+def test_the_covariances_of_observations_tell_their_errors(experiment, from_exact_boxes, semantic_map):
+    """Squared error over variance, a coordinate: 1 in the mean if they told it exactly (the rig here is too good)."""
+    ratios = []
+    for result in from_exact_boxes[experiment]:
+        x, y, heading = result.pair.pose
+        turn = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
+        for one, landmark in zip(result.localization.observations, result.true_landmarks, strict=True):
+            error = turn @ (semantic_map.positions[landmark] - (x, y)) - (one.x, one.y)
+            ratios.append(error @ np.linalg.solve(one.covariance, error) / 2)
+    assert 0.3 < np.mean(ratios) < 1.5
+
+
+def test_the_features_matched_in_exact_boxes_are_as_many_as_ever(recordings):
+    """Of two pairs: 2 % of tolerance holds another rounding, but no other tolerance, ratio or descriptor."""
+    counts = []
+    for index in (1, 12):
+        pair = recordings["experiment_1"].pairs[index]
+        images = pair.images()
+        upper, lower = (
+            exact_detections(objects, image)[0]
+            for objects, image in zip((pair.upper_objects, pair.lower_objects), images, strict=True)
+        )
+        matches = match_objects(images[0], upper, images[1], lower, recordings["experiment_1"].rig)
+        counts.append(sum(match.n_matches for match in matches))
+    assert counts == pytest.approx(MATCHED_FEATURES, rel=0.02)
+
+
+def test_an_observation_has_the_colour_of_the_upper_image(recordings, semantic_map):
+    """As the map's colours are compared with one image's: the two cameras expose differently."""
+    recording = recordings["experiment_1"]
+    pair = recording.pairs[1]
+    result = localize_pair(
+        pair, SemanticLocalizer(recording.rig, semantic_map, reject_implausible=False), "exact_boxes"
+    )
+    upper, lower = (
+        np.array([[one.hue, one.saturation] for one in detections])
+        for detections in (result.localization.upper_detections, result.localization.lower_detections)
+    )
+    objects = [one for one in result.localization.objects if one.observation is not None]
+    seen = np.array([result.localization.observations[one.observation][3:5] for one in objects])
+    np.testing.assert_array_equal(seen, upper[[one.upper for one in objects]])
+    assert np.nanmedian(np.abs(seen - lower[[one.lower for one in objects]])) > 0.05
+
+
+# What the documents say: they are stored results, and prove nothing about the code.
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
@@ -82,11 +165,6 @@ def test_the_stored_rates_from_images_show_the_papers_failure(experiment):
     assert np.median(rates) < np.median(exact) - 10, "missed objects move the centroid"
     assert min(rates) > 0
     assert max(over_seeds(experiment, "greedy", "unable_percent")) <= 10
-
-
-@pytest.mark.parametrize("experiment", EXPERIMENTS)
-def test_the_stored_rates_from_images_are_about_the_papers(experiment):
-    assert 45 <= np.median(over_seeds(experiment, "greedy", "correct_percent")) <= 80
 
 
 @pytest.mark.parametrize(("key", "limit"), [("mean_dx_m", 0.25), ("mean_dy_m", 0.25), ("mean_dtheta_deg", 3.5)])
@@ -110,11 +188,3 @@ def test_weighted_by_covariance_rolled_images_never_move_the_stored_poses_by_mor
     assert turns["associations_agree"] > 80
     assert turns["within_0.10_m"] == turns["associations_agree"]
     assert turns["greatest_turned_deg"] < 2.0
-
-
-@pytest.mark.xfail(
-    strict=True, reason="aim not met: counted alike, far objects move the pose with a pixel of their boxes"
-)
-def test_counted_alike_rolled_images_never_move_the_stored_poses_by_more_than_a_decimetre():
-    turns = stored(SHIPPED_SEED)["rolled_images"]["alike"]
-    assert turns["within_0.10_m"] == turns["associations_agree"]

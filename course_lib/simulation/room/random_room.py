@@ -1,6 +1,7 @@
 """Rooms from a seed: a rectangle, 9 to 16 pieces of furniture, a shell with windows and lamps.
 
-The detector is trained on these rooms; the room of the experiment is another (experiment_room.py).
+The detector is trained on these rooms. The hand-made room (experiment_room.py) is another, but some limits of the
+pieces were moved towards it; the rooms for reporting (look_alike_room.py) are made of the same pieces.
 """
 
 from __future__ import annotations

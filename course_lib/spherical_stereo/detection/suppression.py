@@ -18,10 +18,11 @@ SAME_OBJECT_IOU = 0.65
 one with the best F1 on the validation rooms."""
 
 VOTE_IOU = 0.6
-"""Intersection over union from which a box votes on another's place (of 0.5 to 0.8 all do about as well)."""
+"""Intersection over union from which a box votes on another's place. On the validation rooms 0.5 to 0.8 all do about
+as well (`score-detector --voting`): centres miss exact ones by 2.96 rows, without votes by 3.22."""
 
 VOTE_SCORE = 0.1
-"""Least score of a box that votes (of 0.05 to 0.3 all do about as well)."""
+"""Least score of a box that votes; there, 0.05 to 0.3 all do about as well."""
 
 
 def suppress(overlap: np.ndarray, rank: np.ndarray, threshold: float) -> np.ndarray:

@@ -12,7 +12,7 @@ from course_lib.simulation.room.object_boxes import box_around, object_boxes
 from course_lib.simulation.room.random_room import make_room
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import RigModel, RigPose, stand_up
+from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, RigModel, RigPose, assemble, stand_up
 from course_lib.spherical_stereo.panorama import direction_to_pixel
 from tests.simulation.plain_room import plain_object, plain_room
 
@@ -121,12 +121,65 @@ def test_rig_tilts_stay_within_their_limits_and_are_shared():
     rigs = [stand_up(1.0, 2.0, 0.5, 1.44, 0.3, model, rng) for _ in range(200)]
     tilts = np.rad2deg([np.hypot(*rig.tilt) for rig in rigs])
     relative = np.rad2deg([np.hypot(*rig.relative_tilt) for rig in rigs])
+    yaws = np.rad2deg([rig.relative_yaw for rig in rigs])
     assert 0.8 < tilts.max() <= model.tilt_deg
-    assert 0.03 < relative.max() <= model.relative_tilt_deg
+    assert 0.25 < relative.max() <= model.relative_tilt_deg
+    assert 0.25 < np.abs(yaws).max() <= model.relative_yaw_deg
+    assert np.std([rig.baseline for rig in rigs]) == pytest.approx(model.baseline_error, rel=0.2)
+    assert np.std([rig.upper_height for rig in rigs]) == pytest.approx(model.height_error, rel=0.2)
     for rig in rigs[:20]:
         upper, lower = rig.camera_states()
-        assert np.linalg.norm(upper[:3] - lower[:3]) == pytest.approx(0.3)
-        assert np.rad2deg(np.abs(upper[3:5] - lower[3:5])).max() <= model.relative_tilt_deg + 1e-3
+        assert np.linalg.norm(upper[:3] - lower[:3]) == pytest.approx(rig.baseline)
+        assert np.rad2deg(np.abs(upper[3:5] - lower[3:5])).max() <= model.relative_tilt_deg + 0.01
+
+
+def test_one_mount_is_one_mount_at_every_place():
+    model, rng = RigModel(), np.random.default_rng(4)
+    mount = assemble(model, rng)
+    rigs = [stand_up(x, 2.0, 0.5, 1.44, 0.3, model, rng, mount) for x in (1.0, 2.0, 3.0)]
+    assert len({(rig.relative_tilt, rig.relative_yaw, rig.baseline, rig.upper_height) for rig in rigs}) == 1
+    assert len({rig.tilt for rig in rigs}) == 3
+    steeper = mount.tilted(1.0)
+    assert np.rad2deg(np.hypot(*steeper.relative_tilt)) == pytest.approx(1.0)
+    assert np.arctan2(*steeper.relative_tilt) == pytest.approx(np.arctan2(*mount.relative_tilt))
+    assert (steeper.relative_yaw, steeper.baseline_error) == (mount.relative_yaw, mount.baseline_error)
+
+
+def test_the_faults_of_a_mount_do_not_change_what_is_drawn_after_it():
+    """So that data/room, made before rigs had a yaw and a wrong baseline, comes out as it was."""
+    first, second = (np.random.default_rng(5) for _ in range(2))
+    stand_up(1.0, 2.0, 0.5, 1.44, 0.3, RigModel(), first)
+    perfect = stand_up(1.0, 2.0, 0.5, 1.44, 0.3, NEARLY_PERFECT_RIG, second)
+    assert first.uniform() == second.uniform()
+    assert (perfect.baseline, perfect.upper_height) == (0.3, 1.44)
+    assert "relative_yaw" not in perfect.as_dict()
+
+
+def test_the_lower_cameras_yaw_and_tilt_move_what_it_sees():
+    """The table is to the left: a turn to the left moves it to the right, a roll to the left side down moves it up."""
+    straight = RigPose(0.0, 0.0, 0.0, 1.32, 0.3)
+    turn = np.deg2rad(4.0)
+    columns_a_turn, rows_a_tilt = WIDTH * 4 / 360, WIDTH / 2 * 4 / 180
+    with PanoramaRenderer(plain_room(LEFT), WIDTH) as renderer:
+
+        def centre(rig):
+            u_min, v_min, u_max, v_max = object_boxes(renderer, rig.camera_states()[1])[0].visible_box
+            return np.array([u_min + u_max, v_min + v_max]) / 2
+
+        yawed = centre(dataclasses.replace(straight, relative_yaw=turn)) - centre(straight)
+        rolled = centre(dataclasses.replace(straight, relative_tilt=(turn, 0.0))) - centre(straight)
+    np.testing.assert_allclose(yawed, [columns_a_turn, 0.0], atol=0.6)
+    assert abs(rolled[1]) == pytest.approx(rows_a_tilt, rel=0.25)
+    assert rolled[1] > 0, "roll about the forward axis lifts the left side, so what is there moves down"
+
+
+def test_an_object_alone_is_as_large_at_a_coarser_scale():
+    room, state = plain_room(LEFT, AHEAD), np.array([0.0, 0.0, 1.3, 0.0, 0.0, 0.2])
+    with PanoramaRenderer(room, WIDTH) as fine, PanoramaRenderer(room, WIDTH, alone_scale=1) as coarse:
+        for one, other in zip(object_boxes(fine, state), object_boxes(coarse, state), strict=True):
+            assert one.visible_box == other.visible_box
+            np.testing.assert_allclose(one.unoccluded_box, other.unoccluded_box, atol=1.0)
+            assert one.visible_fraction == pytest.approx(other.visible_fraction, abs=0.02)
 
 
 def test_photographs_from_one_place_differ_and_one_seed_gives_one_photograph():

@@ -1,0 +1,259 @@
+"""Rooms that nobody shaped: what is kept of a room, what is used again, how many poses are judged and how surely."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from course_lib.experiments import rooms as rooms_module
+from course_lib.experiments.room import localize_pair
+from course_lib.experiments.room_evaluation import NO_OBJECT, PoseOutcome
+from course_lib.experiments.rooms import RoomsOptions, observe_room, observe_rooms, stored_map, stored_observations
+from course_lib.experiments.rooms_summary import (
+    JudgedPose,
+    bootstrap_percent,
+    judge_rooms,
+    pose_rows,
+    rates_and_errors,
+    rooms_summary,
+    wilson_percent,
+)
+from course_lib.geometry import wrap_angle
+from course_lib.paths import data_path
+from course_lib.simulation.room.look_alike_recording import RecordingModels
+from course_lib.simulation.room.survey import RoomSurveyModel
+from course_lib.simulation.sensors.panorama_rig import RigModel
+from course_lib.spherical_stereo.detection.detector import YoloDetector
+from course_lib.spherical_stereo.pose.localization import UNABLE, Localization
+
+MAP = [["sofa", 0.0, 0.0, 20.0, 60.0], ["sofa", 4.0, 0.0, 21.0, 60.0], ["table", 1.0, 3.0, None, 5.0]]
+NOISE = [[0.01, 0.0], [0.0, 0.01]]
+
+
+def entry(pose=(1.0, 1.0, 0.0), shown=(0, 1, 2), order=(0, 1, 2), seen=MAP):
+    """A pose's record: the map's objects as a rig at the pose with heading 0 sees them; `shown`: the truth told."""
+    observations = [[*one[:1], one[1] - pose[0], one[2] - pose[1], *one[3:], NOISE] for one in (seen[i] for i in order)]
+    source = {"observations": observations, "true_landmarks": list(shown)}
+    return {
+        "experiment": 1,
+        "name": "00",
+        "pose": list(pose),
+        "sources": {"images": source, "exact_boxes": source},
+        "objects": 4,
+        "found": 3,
+        "detections": 4,
+        "seconds": 0.5,
+    }
+
+
+def record(seed=7, poses=None):
+    return {
+        "seed": seed,
+        "options": RoomsOptions().as_dict(),
+        "look_alike": {"label": "sofa", "n": 2},
+        "map": MAP,
+        "poses": poses or [entry(), entry() | {"experiment": 2}],
+    }
+
+
+def test_a_record_gives_its_map_and_observations_back_grey_ones_too():
+    semantic_map = stored_map(record())
+    assert semantic_map.labels == ("sofa", "sofa", "table")
+    assert np.isnan(semantic_map.hues[2])
+    table = stored_observations(entry()["sources"]["images"])[2]
+    assert np.isnan(table.hue)
+    np.testing.assert_allclose((table.x, table.y), (0.0, 2.0))
+    np.testing.assert_allclose(table.covariance, NOISE)
+
+
+def test_poses_are_judged_by_the_truth_of_the_record():
+    right, wrong = (judge_rooms([record(poses=[entry(shown=shown)])]) for shown in ((0, 1, 2), (1, 0, 2)))
+    assert {one.outcome.kind for one in right} == {"correct"}
+    assert {one.outcome.kind for one in wrong} == {"incorrect"}
+    assert {(one.source, one.method) for one in right} == {
+        (source, method) for source in ("images", "exact_boxes") for method in ("paper", "weighted_fit")
+    }
+    assert right[0].outcome.dx_m == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_weighted_fit_is_weighted():
+    """The second sofa, told to be uncertain, is seen half a metre too far away."""
+    pose = entry()
+    sofa = pose["sources"]["images"]["observations"][1]
+    sofa[1], sofa[5] = sofa[1] + 0.5, [[4.0, 0.0], [0.0, 4.0]]
+    alike, weighted = judge_rooms([record(poses=[pose])])[:2]
+    assert (alike.method, weighted.method) == ("paper", "weighted_fit")
+    assert weighted.outcome.dx_m < 0.2 * alike.outcome.dx_m
+
+
+def test_the_summary_counts_rooms_look_alikes_and_what_was_confused():
+    rooms = [record(7), record(8, [entry(shown=(1, 0, -1)), entry() | {"experiment": 2}])]
+    found = rooms_summary(rooms, judge_rooms(rooms))
+    assert (found["rooms"], found["poses_a_room_and_height"], found["look_alikes"]) == (2, 1, {"sofa": [2, 2]})
+    assert found["both"]["images"]["paper"]["correct_percent"] == 75.0
+    assert found["experiment_1"]["images"]["paper"]["correct_percent"] == 50.0
+    assert found["wrong_pairs"]["images"] == {"poses": 1, "look_alikes": 2, "others": 0, "nothing": 1}
+    assert (found["detector"]["precision"], found["detector"]["recall"]) == (0.75, 0.75)
+    json.dumps(found, allow_nan=False)
+
+
+def test_a_row_a_pose_has_no_number_without_a_pose():
+    one = JudgedPose(
+        7, 1, "00", "images", "paper", (1.0, 1.0, 0.0), Localization(None, UNABLE, "why"), None, ()
+    )._replace(outcome=PoseOutcome("unable", np.nan, np.nan, np.nan))
+    (row,) = pose_rows([one])
+    assert (row["x"], row["outcome"], row["reason"], row["used_pairs"]) == ("", "unable", "why", 0)
+
+
+@pytest.mark.parametrize(("hits", "n"), [(13, 20), (0, 20), (20, 20), (200, 400)])
+def test_wilsons_interval_holds_the_shares_that_the_count_does_not_contradict(hits, n):
+    """p is inside if and only if |hits / n - p| <= z sqrt(p (1 - p) / n)."""
+    low, high = (value / 100 for value in wilson_percent(hits, n))
+    z = norm.ppf(0.975)
+    for bound in {low, high} - {0.0, 1.0}:
+        assert abs(hits / n - bound) == pytest.approx(z * np.sqrt(bound * (1 - bound) / n), abs=1e-9)
+    assert low <= hits / n <= high
+
+
+def test_rooms_that_differ_widen_the_interval_and_rooms_that_agree_do_not():
+    judged = [
+        JudgedPose(seed, 1, str(k), "images", "paper", (0, 0, 0), None, PoseOutcome(kind, 0.1, 0.1, 1.0), ())
+        for seed in range(10)
+        for k, kind in enumerate(["correct" if seed < 5 else "incorrect"] * 20)
+    ]
+    found = rates_and_errors(judged)
+    over_poses, over_rooms = (np.ptp(found[f"correct_{which}_percent"]) for which in ("wilson", "rooms"))
+    assert over_rooms > 3 * over_poses
+    assert bootstrap_percent(np.full(10, 0.5)) == [50.0, 50.0]
+    assert bootstrap_percent(np.array([0.5])) is None
+
+
+class Nothing:
+    """A detector that sees nothing."""
+
+    def detect(self, image):
+        return []
+
+
+PERFECT = RecordingModels(
+    rig=RigModel(relative_tilt_deg=0.0, relative_yaw_deg=0.0, baseline_error=0.0, height_error=0.0),
+    survey=RoomSurveyModel(places=4, width=640, fewest_pixels=40),
+)
+
+
+@pytest.fixture(scope="module")
+def room():
+    """A room that is really made: one pose at each height, a perfect rig, the course's detector."""
+    return observe_room(10_210, RoomsOptions(poses=1, models=PERFECT), YoloDetector.load(data_path("detector")))
+
+
+@pytest.fixture(scope="module")
+def seen(room):
+    """Every observation of the made room: source, what it is, and the landmark that it shows, in the rig's frame."""
+    semantic_map, many = stored_map(room), []
+    for pose in room["poses"]:
+        x, y, heading = pose["pose"]
+        turn = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
+        for source, entry in pose["sources"].items():
+            for one, landmark in zip(stored_observations(entry), entry["true_landmarks"], strict=True):
+                if landmark != NO_OBJECT:
+                    many.append((source, one, semantic_map.landmarks[landmark], turn))
+                    many[-1] += (turn @ (semantic_map.positions[landmark] - (x, y)),)
+    return many
+
+
+def test_in_a_made_room_observations_lie_where_their_landmarks_are(seen):
+    for source, least, limit in (("exact_boxes", 16, 0.08), ("images", 12, 0.12)):
+        errors = [
+            np.hypot(one.x - true[0], one.y - true[1]) / np.hypot(*true)
+            for its_source, one, _, _, true in seen
+            if its_source == source
+        ]
+        assert len(errors) >= least, "objects seen at two heights"
+        assert np.median(errors) < limit
+        azimuths = [
+            abs(wrap_angle(np.arctan2(one.y, one.x) - np.arctan2(true[1], true[0])))
+            for its_source, one, _, _, true in seen
+            if its_source == source
+        ]
+        assert np.median(azimuths) < np.deg2rad(2.0)
+
+
+def test_in_a_made_room_observations_have_about_the_colours_of_the_map(seen):
+    """Other light, another part of the object; but a colour from elsewhere in the image would miss by 90 degrees."""
+    hues = [
+        abs((one.hue - landmark.hue + 180) % 360 - 180)
+        for _, one, landmark, _, _ in seen
+        if not np.isnan(one.hue + landmark.hue)
+    ]
+    assert np.median(hues) < 15
+    assert np.median([abs(one.saturation - landmark.saturation) for _, one, landmark, _, _ in seen]) < 15
+
+
+def test_in_a_made_room_the_detector_finds_most_objects_and_the_record_says_so(room):
+    objects, found, detections = (
+        sum(pose[key] for pose in room["poses"]) for key in ("objects", "found", "detections")
+    )
+    assert objects > 30
+    assert 0.7 * objects < found <= detections
+
+
+def test_judged_from_its_record_a_pose_is_what_the_localizer_said(room, monkeypatch):
+    """Map matching and fit are done on what was stored, not on images: nothing may be lost on the way."""
+    direct = {}
+
+    def note(pair, localizer, source):
+        direct[pair.pose[0], localizer.rig.upper_height, source] = result = localize_pair(pair, localizer, source)
+        return result
+
+    monkeypatch.setattr(rooms_module, "localize_pair", note)
+    models = replace(PERFECT, width=320, survey=RoomSurveyModel(places=3, width=320, fewest_pixels=10))
+    small = observe_room(10_211, RoomsOptions(poses=1, models=models), Nothing())
+    judged = [one for one in judge_rooms([json.loads(json.dumps(small))]) if one.method == "paper"]
+    assert len(judged) == len(direct) == 4
+    for one, said in zip(judged, direct.values(), strict=True):
+        assert one.outcome.kind == said.outcome.kind
+        if said.localization.pose is not None:
+            np.testing.assert_allclose(one.localization.pose, said.localization.pose, atol=1e-9)
+            np.testing.assert_allclose(one.localization.covariance, said.localization.covariance)
+    assert {one.outcome.kind for one in judged if one.source == "images"} == {"unable"}
+    assert any(one.localization.pose is not None for one in judged if one.source == "exact_boxes")
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """Rooms are not photographed; the list of seeds that would have been."""
+    seeds = []
+
+    def note(seed, options, detector):
+        seeds.append(seed)
+        return record(seed) | {"options": options.as_dict()}
+
+    monkeypatch.setattr(rooms_module, "observe_room", note)
+    return seeds
+
+
+def test_finished_rooms_are_used_again_when_the_options_agree(made, tmp_path):
+    observe_rooms([3, 5], RoomsOptions(), Nothing, tmp_path)
+    again = observe_rooms([5, 4, 3], RoomsOptions(), Nothing, tmp_path)
+    assert made == [3, 5, 4]
+    assert [room["seed"] for room in again] == [5, 4, 3]
+    observe_rooms([3], RoomsOptions(poses=2), Nothing, tmp_path)
+    observe_rooms([3], RoomsOptions(poses=2, detector="another"), Nothing, tmp_path)
+    assert made == [3, 5, 4, 3, 3]
+
+
+def test_a_torn_file_is_no_finished_room(made, tmp_path):
+    observe_rooms([3], RoomsOptions(), Nothing, tmp_path)
+    (file,) = tmp_path.iterdir()
+    file.write_text(file.read_text()[:100])
+    observe_rooms([3], RoomsOptions(), Nothing, tmp_path)
+    assert made == [3, 3]
+
+
+@pytest.mark.parametrize(("seeds", "processes"), [([-1], 1), ([1], 0)])
+def test_bad_seeds_and_processes_are_named(seeds, processes, tmp_path):
+    with pytest.raises(ValueError, match="expected one or more, and no negative seed"):
+        observe_rooms(seeds, RoomsOptions(), Nothing, tmp_path, processes)

@@ -1,0 +1,84 @@
+"""Rooms of look-alikes: within their written limits, one room a seed, no room of the training generator."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from course_lib.simulation.room.footprints import distance_to, footprint, overlap
+from course_lib.simulation.room.look_alike_recording import RecordingModels, measurement_poses, mount_of
+from course_lib.simulation.room.look_alike_room import LookAlikeLimits, NoRoomDrawn, make_look_alike_room
+from course_lib.simulation.room.random_room import make_room
+
+SEEDS = (10_200, 10_201, 10_202)
+LIMITS = LookAlikeLimits()
+
+
+@pytest.fixture(scope="module")
+def rooms():
+    return [make_look_alike_room(seed) for seed in SEEDS]
+
+
+def alike(room):
+    return [thing for thing in room.objects if thing.label == room.objects[0].label]
+
+
+def test_three_to_five_pieces_of_one_class_are_one_piece_in_several_places(rooms):
+    for room in rooms:
+        pieces = alike(room)
+        assert pieces[0].label in LIMITS.kinds
+        assert 3 <= len(pieces) <= 5
+        for other in pieces[1:]:
+            for first, second in zip(pieces[0].meshes, other.meshes, strict=True):
+                np.testing.assert_array_equal(first.texture, second.texture)
+                np.testing.assert_array_equal(first.texture_coordinates, second.texture_coordinates)
+                np.testing.assert_allclose(np.ptp(first.vertices[:, 2]), np.ptp(second.vertices[:, 2]))
+
+
+def test_sizes_numbers_and_places_are_within_the_limits(rooms):
+    for room in rooms:
+        low, high = room.walls.min(axis=0), room.walls.max(axis=0)
+        assert ((high - low >= LIMITS.side[0]) & (high - low <= LIMITS.side[1])).all()
+        assert LIMITS.height[0] <= room.height <= LIMITS.height[1]
+        others = [thing.label for thing in room.objects if thing.label != room.objects[0].label]
+        # A television may bring a cabinet to stand on.
+        assert LIMITS.fewest_others <= len(others) <= LIMITS.others[1] + LIMITS.most_of_a_class
+        assert all(others.count(label) <= LIMITS.most_of_a_class for label in set(others) - {"cabinet"})
+        for first, second in itertools.combinations(room.objects, 2):
+            if overlap(footprint(first), footprint(second)):
+                assert {first.label, second.label} == {"cabinet", "television"}
+
+
+def test_one_seed_gives_one_room_another_draw_another_and_none_is_the_training_generators(rooms):
+    def places(room):
+        return [(thing.label, thing.x, thing.y) for thing in room.objects]
+
+    assert places(make_look_alike_room(SEEDS[0])) == places(rooms[0])
+    assert places(make_look_alike_room(SEEDS[0], draw=1)) != places(rooms[0])
+    assert places(rooms[0]) != places(rooms[1])
+    assert not np.array_equal(make_room(SEEDS[0]).walls, rooms[0].walls)
+    assert not np.array_equal(make_room(np.random.default_rng(SEEDS[0]).spawn(2)[0]).walls, rooms[0].walls)
+
+
+def test_limits_that_ask_for_too_much_are_named():
+    with pytest.raises(NoRoomDrawn, match="seed 10200"):
+        make_look_alike_room(10_200, limits=LookAlikeLimits(look_alikes=(90, 90), side=(5.0, 5.1)))
+
+
+def test_the_rig_stands_free_in_two_headings_at_every_place(rooms):
+    for seed, room in zip(SEEDS, rooms, strict=True):
+        poses = measurement_poses(room, 5, seed)
+        assert poses.shape == (5, 3)
+        np.testing.assert_array_equal(poses[0:4:2, :2], poses[1:4:2, :2])
+        quarters = (poses[1::2, 2] - poses[0:4:2, 2]) / (np.pi / 2)
+        np.testing.assert_allclose(quarters, np.round(quarters), atol=1e-9)
+        assert (np.round(quarters) % 4 != 0).all()
+        assert min(distance_to(footprint(thing), poses[:, :2]).min() for thing in room.objects) >= 0.3
+        np.testing.assert_array_equal(measurement_poses(room, 20, seed)[:5], poses)
+
+
+def test_another_tilt_changes_nothing_else_of_a_mount():
+    plain, tilted = (mount_of(10_200, RecordingModels(tilt_deg=tilt)) for tilt in (None, 1.0))
+    assert np.rad2deg(np.hypot(*tilted.relative_tilt)) == pytest.approx(1.0)
+    assert 0 < np.rad2deg(np.hypot(*plain.relative_tilt)) <= 0.3
+    assert (plain.relative_yaw, plain.baseline_error) == (tilted.relative_yaw, tilted.baseline_error)
