@@ -13,6 +13,7 @@ WORDS = {
     "exact_boxes": "exact boxes",
     "paper": "the paper's fit",
     "weighted_fit": "weighted_fit",
+    "library": "implausible rejected",
 }
 ERRORS, WIDTHS = ("dx_m", "dy_m", "dtheta_deg"), (16, 16, 18)
 
