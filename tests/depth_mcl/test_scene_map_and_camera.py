@@ -118,7 +118,7 @@ def test_the_anchor_is_the_origin_near_it_and_follows_the_cameras_by_whole_steps
     assert np.array_equal(there, scene.anchor(np.array([[1e6 + 1, 0, 0]])))
     assert np.array_equal(scene.anchor(np.zeros((0, 3))), scene.origin)
     # Cameras that have left the map draw its anchor no farther than its edge.
-    assert np.isfinite(scene.anchor(np.array([[1e300, 0, 0]]))).all()
+    assert np.abs(scene.anchor(np.array([[1e30, 0, 0]]))).max() < 1e6 + 100
 
 
 @pytest.mark.parametrize("coordinate", [3e7, -1e20, 7.7e37])
