@@ -5,8 +5,8 @@ kitchen, with seeds from 10,000 up. Images are thinned and few particles used, f
 
     table(SceneMap.load(map_file), read_sequence(folder), "6", seed=10201, frames=100)
 
-Of the kitchen this says: 456 frames truly lost, 88 % of them called lost, 10 % doubtful, 2 % tracked; 384 good ones, 70 %
-called tracked, 22 % doubtful, 8 % lost.
+Of the kitchen this says: 456 frames truly lost, 88 % of them called lost, 10 % doubtful, 2 % tracked; 384 good ones,
+70 % called tracked, 22 % doubtful, 8 % lost.
 """
 
 from __future__ import annotations
