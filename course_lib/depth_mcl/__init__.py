@@ -11,6 +11,7 @@
     fallon, planar_map   the method that table 1 compares with
     gaussian             the textbook's likelihood, to compare with (8)
     sequence             recordings on disk
+    tracking             beyond the paper: whether the filter still holds the track
 
 State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`.
 """

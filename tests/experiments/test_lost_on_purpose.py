@@ -20,7 +20,7 @@ def test_frames_are_counted_by_what_they_are_and_what_they_were_called():
 
 
 def test_a_run_that_holds_the_track_is_called_tracked(corridor):
-    judged = judged_run(*corridor, WAYS["as it is"]._replace(n_particles=60), "xyyaw", seed=10301, frames=20)
+    judged = judged_run(*corridor, WAYS["as it is"]._replace(n_particles=200), "xyyaw", seed=10301, frames=20)
     assert not judged.truly_lost.any()
     assert judged.called(truly_lost=False)["tracked"] >= 18
 
