@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
 from course_lib.geometry import (
@@ -111,12 +112,30 @@ def test_bad_weights_are_refused(weights):
         circular_mean([0.1, 0.2, 0.3], weights)
 
 
-def test_rotation_exp_and_log_agree_with_scipy(rng):
-    vectors = rng.uniform(-1.5, 1.5, (200, 3))
-    vectors[0] = 0
-    assert np.allclose(rotation_exp(vectors), Rotation.from_rotvec(vectors).as_matrix(), atol=1e-13)
+def test_rotation_exp_is_the_exponential_of_the_cross_product_matrix_and_log_undoes_it(rng):
+    vectors = rng.uniform(-1.5, 1.5, (20, 3))
+    vectors[0], vectors[1] = 0, [1e-9, 0, 0]
+    skew = np.cross(vectors[:, None, :], np.eye(3)).swapaxes(-1, -2)
+    assert np.allclose(rotation_exp(vectors), expm(skew), atol=1e-13)
     assert np.allclose(rotation_log(rotation_exp(vectors)), vectors, atol=1e-12)
     assert np.allclose(rotation_angle(rotation_exp(vectors)), np.linalg.norm(vectors, axis=1), atol=1e-12)
+
+
+def test_functions_of_rotations_broadcast_over_leading_axes(rng):
+    vectors = rng.uniform(-1, 1, (4, 5, 3))
+    rotations = rotation_exp(vectors)
+    assert rotations.shape == (4, 5, 3, 3)
+    assert np.array_equal(rotations[2, 3], rotation_exp(vectors[2, 3]))
+    assert np.allclose(rotation_log(rotations), vectors)
+    assert rotation_angle(rotations).shape == (4, 5)
+    assert np.ndim(rotation_angle(rotations[0, 0])) == 0
+
+
+def test_rotation_mean_lies_nearer_to_the_heavier(rng):
+    """Of turns by 0 and a about one axis with weights 2 and 1 the chordal mean is at atan2(sin a, 2 + cos a)."""
+    pair = rotation_exp(np.array([[0.0, 0, 0], [0, 0, 0.9]]))
+    expected = rotation_exp(np.array([0, 0, np.arctan2(np.sin(0.9), 2 + np.cos(0.9))]))
+    assert np.allclose(rotation_mean(pair, [2.0, 1.0]), expected, atol=1e-12)
 
 
 def test_rotation_mean_does_not_depend_on_the_axes(rng):

@@ -6,6 +6,7 @@
     likelihood           3.3.3 and 3.3.4, eqs (8) to (11): A-2
     motion               3.2, eq. (5): A-1, as printed and in the body's axes
     particle_filter      3.1 and 3.4, eqs (3), (4), (12): start, A-3
+    uncertainty          how far off the estimate may be, which the paper's weights cannot say
     localizer            figure 1: all of it in order
     evaluation           section 4: table 1
     fallon, planar_map   the method that table 1 compares with
