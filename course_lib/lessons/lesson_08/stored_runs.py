@@ -1,4 +1,4 @@
-"""Stored results of the corridor experiment: what `demo corridor --seed N --recording shipped` wrote, read back for lessons.
+"""Stored results of the corridor experiment, `demo corridor --seed N --recording shipped`, read back for lessons.
 
 data/corridor/results/ holds seed_N.json (the summary) and seed_N.csv (one row a frame) of every reporting seed.
 """
