@@ -155,7 +155,7 @@ def _run_kindnesses(arguments: argparse.Namespace, seeds: list[int]) -> int:
 
     camera = DepthCamera.sr4000().resized(*KINDNESS_SIZE)
     options = {"n_particles": arguments.particles, "backend": arguments.backend, "frames": arguments.frames}
-    result = {"seeds": seeds, "image": list(KINDNESS_SIZE), "n_particles": arguments.particles, "hardships": {}}
+    result = {"seeds": seeds, "image": list(KINDNESS_SIZE), **options, "hardships": {}}
     for name, hardships in {"none": (), **{name: (name,) for name in HARDSHIPS}, "all": HARDSHIPS}.items():
         errors = [hardship_errors(_data(arguments), s, hardships, camera, bar=progress_bar, **options) for s in seeds]
         result["hardships"][name] = {key: spread([e[key] for e in errors]) for key in errors[0]}

@@ -81,7 +81,7 @@ def test_a_recording_without_a_path_on_the_floor_is_named(corridor, monkeypatch)
 
 @pytest.mark.parametrize("seed", REPORTING_SEEDS)
 def test_the_reported_results_meet_the_targets(corridor_folder, seed):
-    """What `demo corridor --seed N` wrote, as the README and lesson 08 quote it."""
+    """What `demo corridor --seed N --recording shipped` wrote, as the README and lesson 08 quote it."""
     summary = json.loads((corridor_folder / "results" / f"seed_{seed}.json").read_text())
     assert (summary["seed"], summary["n_particles"]) == (seed, 200)
     assert summary["frames"] >= 300

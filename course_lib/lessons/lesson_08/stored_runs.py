@@ -1,4 +1,4 @@
-"""Stored results of the corridor experiment: what `demo corridor --seed N` wrote, read back for lessons.
+"""Stored results of the corridor experiment, `demo corridor --seed N --recording shipped`, read back for lessons.
 
 data/corridor/results/ holds seed_N.json (the summary) and seed_N.csv (one row a frame) of every reporting seed.
 """
@@ -39,7 +39,7 @@ def stored_runs(folder: Path | None = None) -> list[StoredRun]:
     paths = [path for path in Path(folder).glob("seed_*.json") if re.fullmatch(r"seed_\d+", path.stem)]
     if not paths:
         raise FileNotFoundError(
-            f"no seed_N.json in {folder}: make them with `python3 course.py demo corridor --seed N --out FOLDER`"
+            f"no seed_N.json in {folder}: make them with `python3 course.py demo corridor --seed N --recording shipped`"
         )
     runs = sorted((_read(path) for path in paths), key=lambda run: run.seed)
     sizes = {(run.summary["frames"], run.summary["n_particles"]) for run in runs}
