@@ -64,6 +64,7 @@ def test_a_folder_without_the_data_is_named(tmp_path, capsys):
     assert "no sequence" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_another_process_with_the_same_seed_writes_the_same_bytes(tmp_path):
     words = ["demo", "corridor", "--seed", "6", "--frames", "3", "--particles", "15", "--out"]
     for name in ("a", "b"):
@@ -73,6 +74,7 @@ def test_another_process_with_the_same_seed_writes_the_same_bytes(tmp_path):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_without_opengl_ray_casting_runs_it_to_the_last_figure(tmp_path):
     words = [
         "demo",
