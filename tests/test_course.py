@@ -59,7 +59,7 @@ def copy(tmp_path):
 
 def environment(**more):
     """The user's environment without pip's settings: an address that nobody answers stands for every index."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(("PIP_", "UV_"))}
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(("PIP_", "UV_", "PYTHON"))}
     pip = {"PIP_CONFIG_FILE": os.devnull, "PIP_INDEX_URL": "http://127.0.0.1:9/simple", "PIP_RETRIES": "0"}
     return {**kept, **pip, "PIP_NO_CACHE_DIR": "1", **more}
 

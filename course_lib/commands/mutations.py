@@ -30,7 +30,7 @@ from pathlib import Path
 
 from course_lib.commands import test as suite
 
-NOT_COPIED = (".git", ".venv", "__pycache__", ".pytest_cache", ".ruff_cache", "results", "*.egg-info", ".hypothesis")
+NOT_COPIED = (".git", ".venv", "results", "build", ".pytest_cache", ".ruff_cache", ".hypothesis")  # of the first level
 NO_PLUGINS = ("-p", "no:cacheprovider", "-p", "no:nbval")  # nbval's import alone takes seconds
 PASSED, FAILED, INTERRUPTED = 0, 1, 2  # pytest's exit codes; interrupted: a file could not even be imported
 
@@ -157,7 +157,7 @@ def scratch_copies(root: Path, count: int) -> Iterator[list[Path]]:
     with tempfile.TemporaryDirectory(prefix="course-mutations-") as folder:
         copies = [Path(folder).resolve() / str(number) / "course" for number in range(count)]
         for copy in copies:
-            shutil.copytree(root, copy, ignore=shutil.ignore_patterns(*NOT_COPIED))
+            shutil.copytree(root, copy, ignore=lambda folder, names: not_copied(Path(folder) == root, names))
             if (root.parent / "shared").is_dir():  # recordings beside the repository
                 (copy.parent / "shared").symlink_to(root.parent / "shared")
             suite.write_offline_startup(copy.parent / "home")
@@ -168,6 +168,11 @@ def scratch_copies(root: Path, count: int) -> Iterator[list[Path]]:
             if not done.stdout.startswith(str(copy)):
                 raise MutationError(f"Python imports {done.stdout.strip() or done.stderr} instead of the copy {copy}")
         yield copies
+
+
+def not_copied(first_level: bool, names: list[str]) -> list[str]:
+    """Which of the `names` in a folder a scratch copy does without; data/*/results, of the same name, is data."""
+    return [name for name in names if name == "__pycache__" or (first_level and name in NOT_COPIED)]
 
 
 def copy_environment(copy: Path) -> dict[str, str]:

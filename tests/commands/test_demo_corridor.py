@@ -175,6 +175,7 @@ def test_options_that_do_not_fit_are_told_before_the_work(words, named, capsys):
     assert named in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_another_process_with_the_same_seed_writes_the_same_bytes(tmp_path):
     words = ["demo", "corridor", "--seed", "6", "--frames", "3", "--particles", "15", "--out"]
     for name in ("a", "b"):
@@ -184,6 +185,7 @@ def test_another_process_with_the_same_seed_writes_the_same_bytes(tmp_path):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_without_opengl_ray_casting_runs_it_to_the_last_figure(tmp_path):
     words = [
         "demo",

@@ -51,6 +51,7 @@ def test_a_row_a_pose_and_every_figure_are_written(demo):
     assert not list(demo.glob("*.partial"))
 
 
+@pytest.mark.slow
 def test_one_json_object_is_printed_and_nothing_else(tmp_path, capsys):
     assert main(["demo", "room", "--poses", "1", "--out", str(tmp_path), "--json", "--roll", "640", "97"]) == 0
     summary = json.loads(capsys.readouterr().out)

@@ -101,8 +101,8 @@ def test_nothing_is_written_to_the_home(server):
     assert list(home.iterdir()) == []
 
 
-def test_the_first_lesson_is_what_opens():
-    command, _ = lab.lab_command()
+def test_the_first_lesson_is_what_opens(tmp_path):
+    command, _ = lab.lab_command(state_folder=tmp_path)
     assert "--LabApp.default_url=/lab/tree/notebooks/00_start_here.ipynb" in command
     assert "--ServerApp.ip=127.0.0.1" in command
     assert not any("token" in word or "password" in word for word in command)
@@ -149,5 +149,5 @@ def test_it_starts_beside_a_module_of_a_known_name_and_control_c_ends_it_without
     os.close(master)
 
 
-def test_the_command_runs_in_this_environment():
-    assert lab.lab_command()[0][:4] == [sys.executable, "-P", "-m", "jupyterlab"]
+def test_the_command_runs_in_this_environment_and_imports_nothing_of_the_callers_folder(tmp_path):
+    assert lab.lab_command(state_folder=tmp_path)[0][:4] == [sys.executable, "-P", "-m", "jupyterlab"]

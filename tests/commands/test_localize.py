@@ -65,6 +65,7 @@ def test_the_kitchen_is_localized_in_six_degrees_through_gimbal_lock(kitchen_fol
     assert summary["median_rotation_deg"] < 8
 
 
+@pytest.mark.slow
 def test_the_kitchen_is_run_to_its_end(kitchen_folder, capsys):
     """With few particles, for time: whether it holds to the camera is the README's table, whether it ends is this."""
     assert main(arguments(kitchen_folder, ".", dof="6", particles=20, json=True)) == 0

@@ -153,6 +153,12 @@ def test_the_command_takes_names_and_no_arguments_of_pytest(monkeypatch):
 
 def test_the_scratch_copies_leave_nothing_behind(repository):
     put(repository, entry("one"))
+    for name in ("results/mine.csv", "data/room/results/seed_1.csv", ".venv/bin/python"):
+        (repository / name).parent.mkdir(parents=True)
+        (repository / name).touch()
     with mutations.scratch_copies(repository, 1) as (copy,):
+        assert not (copy / "results").exists()
+        assert not (copy / ".venv").exists()
+        assert (copy / "data" / "room" / "results" / "seed_1.csv").exists()
         assert (copy / "course_lib" / "code.py").read_text() == CODE
     assert not copy.exists()
