@@ -9,7 +9,7 @@ import pytest
 
 from course_lib.cli import main
 from course_lib.commands.stereo import BOXES_FORMAT
-from course_lib.spherical_stereo.detection.boxes_file import read_boxes
+from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
 
@@ -122,7 +122,7 @@ def test_the_help_shows_a_boxes_file_that_can_be_read(tmp_path, capsys):
     assert BOXES_FORMAT in capsys.readouterr().out
     example = tmp_path / "boxes.json"
     example.write_text("\n".join(BOXES_FORMAT.splitlines()[1:]))
-    boxes = read_boxes(example)
+    boxes = read_stereo_boxes(example)
     assert (boxes.width, boxes.height, len(boxes.upper), len(boxes.lower)) == (1024, 512, 1, 1)
 
 
@@ -165,7 +165,7 @@ def test_the_real_pair_is_matched_and_its_objects_find_themselves(panorama_room,
     # The README beside the pair: flow between the two is vertical, |dx| 0.3 px, dy 12 px (medians).
     assert summary["median_disparity_px"] == pytest.approx(12, abs=1.5)
     assert summary["median_azimuth_difference_px"] < 0.6
-    boxes = read_boxes(REAL_BOXES)
+    boxes = read_stereo_boxes(REAL_BOXES)
     pairs = {(row["upper"], row["lower"]) for row in summary["objects"]}
     assert pairs == {(upper, lower) for _, upper, lower in boxes.named_pairs()}
     assert len(pairs) == len(boxes.upper) == 16

@@ -23,7 +23,8 @@ from course_lib.spherical_stereo.pose.rigid_fit import (
 DOUBT = 0.001
 """Share of the right poses that may be called implausible, were the covariances exact."""
 NOISE_FACTOR = 1.5
-"""How much larger than their covariances say the errors may be."""
+"""How much larger than their covariances say the errors may be (chosen beforehand, and looked at on generated rooms,
+seeds 10,000 to 10,011, from exact boxes and from images: of 66 right poses none is rejected, of 54 wrong ones 50)."""
 
 
 class Residuals(NamedTuple):

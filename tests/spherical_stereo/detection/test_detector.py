@@ -142,6 +142,16 @@ def test_a_view_that_was_checked_is_taken_as_it_is(detector, rng):
     assert find_objects(open_view(image), detector).detections == tuple(detector.detect(image))
 
 
+def test_a_box_below_the_threshold_votes_on_the_place_of_a_surer_one(detector, monkeypatch):
+    """Two boxes of one object, 0.6 and 0.4 sure: with a threshold of 0.5 one stays, where both say."""
+    boxes, scores = np.array([[100.0, 40, 140, 80], [104.0, 40, 144, 80]]), np.array([[0.6, 0.0], [0.4, 0.0]])
+    monkeypatch.setattr(detector._network, "infer", lambda blob: (boxes, scores))
+    found, sure, _ = detector.detect_in_plane(np.zeros((128, 320, 3), np.uint8))
+    assert detector.score_threshold == 0.5
+    assert found.tolist() == [pytest.approx([101.6, 40, 141.6, 80])]
+    assert sure.tolist() == [0.6]
+
+
 def test_truncated_weights_that_opencv_would_take_are_refused(files, tmp_path):
     cfg, weights, names = files
     cut = tmp_path / "cut.weights"

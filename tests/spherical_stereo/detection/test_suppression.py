@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.suppression import VOTE_SCORE, suppress, suppress_in_image, vote_on_boxes
+from course_lib.spherical_stereo.detection.suppression import suppress, suppress_in_image, vote_on_boxes
 
 BOX = np.array([100.0, 50, 200, 150])
 
@@ -57,7 +57,7 @@ def test_boxes_that_nearly_coincide_vote_weighted_by_their_scores():
 
 @pytest.mark.parametrize(
     ("box", "score", "kind"),
-    [((60, 0, 160, 100), 0.5, 1), ((4, 0, 104, 100), 0.5, 2), ((4, 0, 104, 100), 0.5 * VOTE_SCORE, 1)],
+    [((60, 0, 160, 100), 0.5, 1), ((4, 0, 104, 100), 0.5, 2), ((4, 0, 104, 100), 0.09, 1)],
     ids=["far away", "another class", "hardly sure"],
 )
 def test_others_have_no_vote(box, score, kind):
