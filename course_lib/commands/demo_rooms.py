@@ -1,6 +1,7 @@
 """Run paper 2's room experiment in rooms of look-alikes that nobody shaped, made on the fly; print rates and errors.
 
-A room takes minutes. What is finished is kept under --out and used again when the same rooms are asked for.
+A room takes two minutes of one core. What is finished is kept under --out, and used again when the same rooms are
+asked for.
 """
 
 from __future__ import annotations

@@ -142,6 +142,11 @@ PERFECT = RecordingModels(
     survey=RoomSurveyModel(places=4, width=640, fewest_pixels=40),
 )
 
+TINY = RoomsOptions(
+    poses=1,
+    models=replace(PERFECT, width=320, survey=RoomSurveyModel(places=3, width=320, fewest_pixels=10)),
+)
+
 
 @pytest.fixture(scope="module")
 def room():
@@ -209,8 +214,7 @@ def test_judged_from_its_record_a_pose_is_what_the_localizer_said(room, monkeypa
         return result
 
     monkeypatch.setattr(rooms_module, "localize_pair", note)
-    models = replace(PERFECT, width=320, survey=RoomSurveyModel(places=3, width=320, fewest_pixels=10))
-    small = observe_room(10_211, RoomsOptions(poses=1, models=models), Nothing())
+    small = observe_room(10_211, TINY, Nothing())
     judged = [one for one in judge_rooms([json.loads(json.dumps(small))]) if one.method == "paper"]
     assert len(judged) == len(direct) == 4
     for one, said in zip(judged, direct.values(), strict=True):
@@ -257,3 +261,14 @@ def test_a_torn_file_is_no_finished_room(made, tmp_path):
 def test_bad_seeds_and_processes_are_named(seeds, processes, tmp_path):
     with pytest.raises(ValueError, match="expected one or more, and no negative seed"):
         observe_rooms(seeds, RoomsOptions(), Nothing, tmp_path, processes)
+
+
+def test_rooms_made_by_two_processes_are_the_rooms_that_one_makes(tmp_path):
+    seeds = (10_213, 10_211)
+    made = observe_rooms(seeds, TINY, Nothing, tmp_path, processes=2)
+    assert [room["seed"] for room in made] == list(seeds)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["room_10211.json", "room_10213.json"]
+    alone = observe_room(10_211, TINY, Nothing())
+    for one, other in zip(made[1]["poses"], alone["poses"], strict=True):
+        assert one | {"seconds": 0} == other | {"seconds": 0}
+    assert made[1]["map"] == alone["map"]

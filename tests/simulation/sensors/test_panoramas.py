@@ -147,10 +147,11 @@ def test_one_mount_is_one_mount_at_every_place():
 
 def test_the_faults_of_a_mount_do_not_change_what_is_drawn_after_it():
     """So that data/room, made before rigs had a yaw and a wrong baseline, comes out as it was."""
-    first, second = (np.random.default_rng(5) for _ in range(2))
-    stand_up(1.0, 2.0, 0.5, 1.44, 0.3, RigModel(), first)
-    perfect = stand_up(1.0, 2.0, 0.5, 1.44, 0.3, NEARLY_PERFECT_RIG, second)
-    assert first.uniform() == second.uniform()
+    used, reference = (np.random.default_rng(5) for _ in range(2))
+    stand_up(1.0, 2.0, 0.5, 1.44, 0.3, RigModel(), used)
+    reference.uniform(size=4)  # the length and the direction of two tilts
+    assert used.uniform() == reference.uniform()
+    perfect = stand_up(1.0, 2.0, 0.5, 1.44, 0.3, NEARLY_PERFECT_RIG, used)
     assert (perfect.baseline, perfect.upper_height) == (0.3, 1.44)
     assert "relative_yaw" not in perfect.as_dict()
 

@@ -1,0 +1,34 @@
+"""`score-detector --voting`: the table of the voters' constants, the used choice marked."""
+
+import json
+
+import pytest
+
+from course_lib.cli import main
+from course_lib.experiments import detector_evaluation
+from course_lib.experiments.detector_evaluation import DetectorScore, VotingScore
+
+
+@pytest.fixture
+def compared(monkeypatch):
+    """Nothing is detected: three choices with scores made up."""
+    score = DetectorScore(60, 100, 90, 10)
+    choices = [(*detector_evaluation.NO_VOTES, 3.2), (0.6, 0.1, 2.5), (0.8, 0.3, 2.6)]
+    found = [VotingScore(iou, least, score, 1.0, jitter) for iou, least, jitter in choices]
+    monkeypatch.setattr(detector_evaluation, "compare_voting", lambda detector, labelled: found)
+
+
+def test_the_table_marks_the_constants_in_use(compared, tmp_path, capsys):
+    assert main(["score-detector", "--voting", "--images", str(tmp_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 4
+    assert "no votes" in lines[1]
+    assert "v 3.20; 0.900, 0.900" in lines[1]
+    assert [line.endswith("(used)") for line in lines[1:]] == [False, True, False]
+
+
+def test_json_is_one_object_with_the_constants_in_use(compared, tmp_path, capsys):
+    assert main(["score-detector", "--voting", "--images", str(tmp_path), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["used"] == {"vote_iou": 0.6, "vote_score": 0.1}
+    assert [one["jitter_v"] for one in printed["voting"]] == [3.2, 2.5, 2.6]
