@@ -42,6 +42,9 @@ SIGMA_XY_YAW = (0.15, 0.04, 0.0, 0.0, 0.0, np.deg2rad(1.5))
 MAP_MARGIN = 1.0
 
 
+Status = Literal["ok", "no measurement"]
+
+
 class NoMeasurementWarning(UserWarning):
     """A frame without a single measured pixel: the filter moved its particles and could not weigh them."""
 
@@ -90,7 +93,7 @@ class Estimate(NamedTuple):
     """`(N, 6)` before resampling, as weighed."""
     weights: np.ndarray
     """`(N,)` of these particles."""
-    status: Literal["ok", "no measurement"]
+    status: Status
     """"no measurement" where the frame held none: the particles were moved by system noise, and all weigh the same."""
     error_covariance: np.ndarray
     """`(6, 6)`, the same units and axes: of the error to expect while the filter follows (uncertainty.py)."""
@@ -189,7 +192,7 @@ class MonteCarloLocalizer:
             )
         return self.renderer.render_points(camera.points(depth))
 
-    def _estimate(self, particles: np.ndarray, weighting: Weighting, status: str) -> Estimate:
+    def _estimate(self, particles: np.ndarray, weighting: Weighting, status: Status) -> Estimate:
         w, scores = weighting
         state = self.motion.mean(particles, w)
         deviations = self.motion.deviations(particles, state)

@@ -10,15 +10,16 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.depth_mcl.uncertainty import INDEPENDENT_PIXELS, error_covariance, tempered_weights
+from course_lib.depth_mcl.uncertainty import error_covariance, tempered_weights
 from course_lib.geometry import state_from_optical_pose
 
 MOVING = [0, 1, 5]  # x, y, yaw
+WORTH = 50.0  # pixels: what the calibration found, written down a second time
 
 
 def test_many_particles_are_weighed_as_if_the_image_were_worth_a_number_of_pixels(rng):
     scores = 0.6 - 0.01 * rng.random(500)
-    expected = np.exp(INDEPENDENT_PIXELS * scores)
+    expected = np.exp(WORTH * scores)
     assert tempered_weights(scores, 5.0) == pytest.approx(expected / expected.sum())
 
 
@@ -39,7 +40,7 @@ def test_a_quadratic_score_gives_the_gaussian_that_it_describes(rng):
     deviations = np.zeros((200_000, 6))
     deviations[:, 0] = rng.normal(0, 0.2, 200_000)
     scores = 0.8 - deviations[:, 0] ** 2 / (2 * 0.3**2)
-    expected = 1 / (1 / 0.2**2 + INDEPENDENT_PIXELS / 0.3**2)
+    expected = 1 / (1 / 0.2**2 + WORTH / 0.3**2)
     assert error_covariance(deviations, scores)[0, 0] == pytest.approx(expected, rel=0.02)
     assert np.count_nonzero(error_covariance(deviations, scores)) == 1
 
