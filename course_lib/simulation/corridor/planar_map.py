@@ -13,7 +13,6 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.simulation.corridor.mesh_files import to_polydata
 
 
 def planar_simplification(
@@ -124,13 +123,28 @@ def _fit_plane(corners: np.ndarray, areas: np.ndarray, towards: np.ndarray) -> t
 
 
 def _decimated(vertices: np.ndarray, faces: np.ndarray, reduction: float) -> SceneMap:
-    """The map with the share `reduction` of its triangles decimated away by quadric errors."""
+    """The map with the share `reduction` of its triangles decimated away (VTK's quadric decimation)."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
+
     # Flattening makes triangles without area; SceneMap drops them.
     flat = SceneMap(vertices, faces)
     if reduction == 0:
         return flat
-    mesh = to_polydata(flat.vertices, flat.faces).decimate(reduction)
-    return SceneMap(mesh.points, mesh.regular_faces)
+    points, cells, mesh = vtkPoints(), vtkCellArray(), vtkPolyData()
+    points.SetData(numpy_to_vtk(flat.vertices.copy(), deep=True))
+    cells.SetData(3, numpy_to_vtkIdTypeArray(flat.faces.astype(np.int64).ravel(), deep=True))
+    mesh.SetPoints(points)
+    mesh.SetPolys(cells)
+    decimation = vtkQuadricDecimation()
+    decimation.SetInputData(mesh)
+    decimation.SetTargetReduction(reduction)
+    decimation.Update()
+    result = decimation.GetOutput()
+    triangles = vtk_to_numpy(result.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    return SceneMap(vtk_to_numpy(result.GetPoints().GetData()), triangles)
 
 
 def _regions(centres: np.ndarray, join: float) -> np.ndarray:
