@@ -22,10 +22,16 @@ ROOT = Path(__file__).parents[1]
 
 
 def pytest_collection_modifyitems(items):
-    """Marks what drives a browser, so that a quick run can leave it out."""
+    """Marks what drives a browser, so that a quick run can leave it out, and puts the files that take long first.
+
+    A file stays on one processor: a long one that began last would keep one busy while the others have nothing to do.
+    """
     for item in items:
         if {"page", "browser"} & set(getattr(item, "fixturenames", ())):
             item.add_marker("browser")
+    long = {item.path for item in items if item.path.suffix == ".ipynb"}
+    long |= {item.path for item in items if any(item.get_closest_marker(name) for name in ("browser", "slow"))}
+    items.sort(key=lambda item: (item.path not in long, item.path.suffix != ".ipynb"))
 
 
 @pytest.fixture

@@ -97,8 +97,7 @@ def pytest_arguments(
     if fast:
         words += ["-m", "not browser and not slow"]
     if not paths and workers > 1:
-        # A file stays on one processor, with its kernel, its window and its fixtures. In the order given: the lessons,
-        # the longest of all, come first, so that no processor is idle at the end.
+        # A file stays on one processor, with its kernel, window and fixtures, in the order of tests/conftest.py.
         words += ["-n", str(workers), "--dist", "loadfile", "--no-loadscope-reorder"]
     return [*words, *passed_on]
 

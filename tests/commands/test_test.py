@@ -150,20 +150,34 @@ def test_no_display_and_none_of_the_users_settings_reach_the_tests(tmp_path):
         assert environment["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkEGLRenderWindow"
 
 
-def test_what_drives_a_browser_is_marked_by_its_fixture(request):
-    conftest = next(
-        plugin
-        for plugin in request.config.pluginmanager.get_plugins()
-        if str(getattr(plugin, "__file__", "")) == str(Path(__file__).parents[1] / "conftest.py")
-    )
+@pytest.fixture
+def arranged(request):
+    """What tests/conftest.py makes of collected tests (file, marks, fixtures): their files and marks, in order."""
+    conftest = request.config.pluginmanager.get_plugin(str(Path(__file__).parents[1] / "conftest.py"))
 
     class Item:
-        def __init__(self, *fixtures):
-            self.fixturenames, self.marks = fixtures, []
+        def __init__(self, file, *marks, fixtures=()):
+            self.path, self.marks, self.fixturenames = Path(file), list(marks), fixtures
 
         def add_marker(self, name):
             self.marks.append(name)
 
-    items = [Item("browser", "lab"), Item("page"), Item("lab"), Item()]
-    conftest.pytest_collection_modifyitems(items)
-    assert [item.marks for item in items] == [["browser"], ["browser"], [], []]
+        def get_closest_marker(self, name):
+            return name if name in self.marks else None
+
+    def arrange(*described):
+        items = [Item(file, *marks, fixtures=fixtures) for file, marks, fixtures in described]
+        conftest.pytest_collection_modifyitems(items)
+        return [(item.path.name, item.marks) for item in items]
+
+    return arrange
+
+
+def test_what_drives_a_browser_is_marked_by_its_fixture(arranged):
+    tests = [("a.py", [], ("browser", "lab")), ("a.py", [], ("page",)), ("a.py", [], ("lab",)), ("a.py", [], ())]
+    assert [marks for _, marks in arranged(*tests)] == [["browser"], ["browser"], [], []]
+
+
+def test_the_files_that_take_long_come_first_and_stay_whole(arranged):
+    tests = [("a.py", [], ()), ("b.py", [], ()), ("b.py", ["slow"], ()), ("c.ipynb", [], ()), ("d.py", [], ("page",))]
+    assert [name for name, _ in arranged(*tests)] == ["c.ipynb", "b.py", "b.py", "d.py", "a.py"]
