@@ -106,6 +106,15 @@ def test_the_box_of_a_whole_copy_and_the_score_of_a_surer_cut_one_stay():
     assert scores.tolist() == [0.9]
 
 
+def test_a_surer_copy_that_the_seam_cuts_gives_way_to_the_whole_one_even_when_both_centres_count():
+    """A wide object: 28 of its columns are missing at the left end, and its middle is in the range all the same."""
+    cut, whole = [0, 100, 165, 180], [WIDTH - 28, 100, WIDTH + 149, 180]
+    assert centres_in_range(np.array([cut, whole]), WIDTH).all()
+    boxes, scores, _ = select_on_circle(np.array([cut, whole]), np.array([0.9, 0.6]), np.zeros(2, int), WIDTH, IOU)
+    assert boxes.tolist() == [whole]
+    assert scores.tolist() == [0.9]
+
+
 def copies_at_the_border(inside_score, margin_score):
     """An object at the range's end: one copy just inside it, one just before its start, a turn apart."""
     start, stop = valid_range(WIDTH)
