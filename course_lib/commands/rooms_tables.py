@@ -16,6 +16,7 @@ WORDS = {
     "library": "implausible rejected",
 }
 ERRORS, WIDTHS = ("dx_m", "dy_m", "dtheta_deg"), (16, 16, 18)
+ERRORS_HEAD = f"{'n':>5}{'dx [m]':>16}{'dy [m]':>16}{'dtheta [deg]':>18}"
 
 
 def tables(summary: dict) -> str:
@@ -36,7 +37,7 @@ def tables(summary: dict) -> str:
         lines += [f"  {name:40}{_shares(values)}" for name, values in _rows(summary[f"experiment_{number}"])]
     lines.append("Both heights")
     lines += [f"  {name:40}{_shares(values)}" for name, values in _rows(summary["both"])]
-    lines += ["", "Absolute errors: median (mean)", f"{'':42}{'n':>5}{'dx [m]':>16}{'dy [m]':>16}{'dtheta [deg]':>18}"]
+    lines += ["", "Absolute errors: median (mean)".ljust(42) + ERRORS_HEAD]
     for number, (upper, lower) in CAMERA_HEIGHTS.items():
         for kind in ("correct", "all"):
             lines.append(f"Cameras at {upper:.2f} and {lower:.2f} m, {kind} poses")
@@ -51,16 +52,18 @@ def tilt_table(tilts: dict) -> str:
     """Rates and errors over the relative tilt of the two cameras; both heights together."""
     lines = [
         "Lower camera tilted against the upper one, both heights",
-        f"{'':42}{'correct [%]':>12}{'incorrect':>11}{'unable':>8}   all but unable: median (mean) errors",
-        f"{'':73}{'dx [m]':>16}{'dy [m]':>16}{'dtheta [deg]':>18}",
+        f"{'':42}{'correct [%]':>12}{'incorrect':>11}{'unable':>8}",
     ]
     for tilt, by_source in tilts.items():
         lines.append(f"{tilt} degrees")
         for name, values in _rows(by_source):
-            rates = (
-                f"{values['correct_percent']:12.1f}{values['incorrect_percent']:11.1f}{values['unable_percent']:8.1f}"
-            )
-            lines.append(f"  {name:40}{rates}{_errors(values['all'], count=False)}")
+            shares = zip(KINDS, (12, 11, 8), strict=True)
+            lines.append(f"  {name:40}" + "".join(f"{values[f'{kind}_percent']:{width}.1f}" for kind, width in shares))
+    for kind in ("correct", "all"):
+        lines.append(f"Absolute errors of {kind} poses: median (mean)".ljust(42) + ERRORS_HEAD)
+        for tilt, by_source in tilts.items():
+            lines.append(f"{tilt} degrees")
+            lines += [f"  {name:40}{_errors(values[kind])}" for name, values in _rows(by_source)]
     return "\n".join(lines)
 
 
@@ -106,8 +109,8 @@ def _share(share: float, over_poses: list[float], over_rooms: list[float] | None
     return f"{text:>28}"
 
 
-def _errors(group: dict, count: bool = True) -> str:
-    head = f"{group['n']:5d}" if count else ""
+def _errors(group: dict) -> str:
+    head = f"{group['n']:5d}"
     if not group["n"]:
         return head + f"{'none':>{WIDTHS[0]}}"
     pairs = [f"{group[f'median_{error}']:.3f} ({group[f'mean_{error}']:.3f})" for error in ERRORS]

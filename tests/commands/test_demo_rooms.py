@@ -75,7 +75,7 @@ def test_every_tilt_is_a_set_of_rooms_of_its_own(made, tmp_path, capsys):
     assert [options.models.tilt_deg for _, options in made] == [None, 0.0, 0.3]
     text = capsys.readouterr().out
     assert "Lower camera tilted against the upper one" in text
-    assert "\n0.3 degrees\n" in text
+    assert text.count("\n0.3 degrees\n") == 3, "shares, errors of correct poses, errors of all"
 
 
 @pytest.mark.parametrize(
