@@ -73,7 +73,7 @@ def test_poses_are_judged_by_the_truth_of_the_record():
     assert {one.outcome.kind for one in right} == {"correct"}
     assert {one.outcome.kind for one in wrong} == {"incorrect"}
     assert {(one.source, one.method) for one in right} == {
-        (source, method) for source in ("images", "exact_boxes") for method in ("paper", "weighted_fit")
+        (source, method) for source in ("images", "exact_boxes") for method in ("paper", "weighted_fit", "library")
     }
     assert right[0].outcome.dx_m == pytest.approx(0.0, abs=1e-9)
 
