@@ -1,6 +1,6 @@
 """Mutations: faults that the tests must notice, each tried in a scratch copy of the repository.
 
-`course.py test --mutations` reads them from tests/mutations.toml (and tests/mutations.d/*.toml), one entry a fault:
+`course.py test --mutations` reads them from tests/mutations.toml, one entry a fault:
 
     [[mutation]]
     name = "colour from the lower image"     # what is broken, in words
@@ -52,8 +52,8 @@ class Mutation:
 
 def read_mutations(root: Path) -> list[Mutation]:
     """All mutations of the repository `root`, in order. Raises `MutationError` for an entry that is not well formed."""
-    paths = [root / "tests" / "mutations.toml", *sorted((root / "tests" / "mutations.d").glob("*.toml"))]
-    mutations = [mutation for path in paths if path.exists() for mutation in read_file(path)]
+    path = root / "tests" / "mutations.toml"
+    mutations = list(read_file(path)) if path.exists() else []
     names = [mutation.name for mutation in mutations]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:

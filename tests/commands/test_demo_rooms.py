@@ -6,7 +6,8 @@ import json
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands.demo_rooms import detector_identity, parse_seeds
+from course_lib.commands.arguments import parse_seeds
+from course_lib.commands.demo_rooms import detector_identity
 from course_lib.experiments import rooms as rooms_module
 from tests.experiments.test_rooms import entry, record
 

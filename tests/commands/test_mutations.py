@@ -22,7 +22,7 @@ def entry(name, old="2 * x", new="3 * x", file="course_lib/code.py", tests="['te
 def repository(tmp_path):
     """A repository of one function, its test, and a place for mutations."""
     root = tmp_path / "course"
-    for folder in ("course_lib", "tests/mutations.d"):
+    for folder in ("course_lib", "tests"):
         (root / folder).mkdir(parents=True)
     (root / "course_lib" / "__init__.py").touch()
     (root / "course_lib" / "code.py").write_text(CODE)
@@ -117,12 +117,6 @@ def test_a_bad_entry_is_named(repository, text, said):
     put(repository, text)
     with pytest.raises(MutationError, match=said):
         mutations.read_mutations(repository)
-
-
-def test_the_files_of_the_folder_join_the_list(repository):
-    put(repository, entry("one"))
-    (repository / "tests" / "mutations.d" / "more.toml").write_text(entry("two"))
-    assert [mutation.name for mutation in mutations.read_mutations(repository)] == ["one", "two"]
 
 
 def test_a_name_that_fits_none_and_an_empty_list_are_told(repository):
