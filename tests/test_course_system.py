@@ -15,11 +15,12 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="ot
 
 @pytest.fixture
 def course(monkeypatch, tmp_path):
-    """course.py as a module, with its memory of a success in a scratch folder and no command really run."""
+    """course.py as a module, with its memory of success and failure in a scratch folder and no command really run."""
     spec = importlib.util.spec_from_file_location("course", COURSE)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     monkeypatch.setattr(module, "OPENGL_READY", str(tmp_path / "ready"))
+    monkeypatch.setattr(module, "OPENGL_FAILED", str(tmp_path / "failed"))
     monkeypatch.setattr(module.shutil, "which", lambda name: f"/usr/bin/{name}")
     monkeypatch.setattr(module.os, "geteuid", lambda: 0)
     monkeypatch.setattr(module.sys, "base_prefix", "/usr")

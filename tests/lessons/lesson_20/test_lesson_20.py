@@ -10,6 +10,7 @@ import nbformat
 import numpy as np
 import pytest
 
+from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.lessons.lesson_20.own_panoramas import (
     MissingBaselineError,
@@ -97,7 +98,7 @@ def test_a_folder_that_is_not_there_is_named(tmp_path):
 
 
 def test_a_wrong_unit_gives_poses_and_a_low_score(stand_in):
-    options = {"sigma": [0.05] * 3 + [0.03] * 3, "n_particles": 15, "seed": 1, "noise": "tangent"}
+    options = {"sigma": [0.05] * 3 + [0.03] * 3, "n_particles": 15, "seed": 1, "motion": TANGENT_SPACE}
     right = misread_run(stand_in, RIGHT, frames=2, **options)
     wrong = misread_run(stand_in, "depth: 5000 units a metre", frames=2, **options)
     assert np.isfinite(wrong.camera_to_world).all()
