@@ -271,7 +271,7 @@ def write_figures(out: Path, sequence: DepthSequence, rows: dict[str, Row], figu
     """Writes the figures and the trajectory (TUM); the names of the files."""
     import numpy as np
 
-    from course_lib.depth_mcl.sequence import write_tum
+    from course_lib.depth_mcl.poses import write_tum
 
     ours = rows["proposed"].run
     times = np.asarray(ours.frames, float) if sequence.times is None else sequence.times[: len(ours.frames)]

@@ -168,7 +168,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _start(given: str | None, sequence: DepthSequence, up: str) -> np.ndarray:
     """Camera-to-world matrix `(4, 4)` of the first frame in the map's own world, optical convention."""
-    from course_lib.depth_mcl.sequence import read_pose
+    from course_lib.depth_mcl.poses import read_pose
     from course_lib.geometry import optical_pose, rotation_to_z_up
 
     if given is None and not sequence.has_poses:
@@ -268,7 +268,7 @@ def _table(s: dict) -> str:
 def _write(folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap) -> None:
     """Writes options and numbers (JSON), a row a frame (CSV), the trajectory (TUM) and the figure."""
     from course_lib.depth_mcl.evaluation import pose_errors
-    from course_lib.depth_mcl.sequence import write_tum
+    from course_lib.depth_mcl.poses import write_tum
     from course_lib.experiments.results import write_results
     from course_lib.plots.track_figure import track_figure
 

@@ -1,18 +1,18 @@
 """Paper 1: Hatakeyama, Kanai, Date, "3D Monte Carlo localization with a depth camera". A module for each step.
 
     camera, scene_map    what is given: the depth camera and the mesh map
-    renderer             3.3.1, eq. (6): a depth image of the map for every particle
+    rendering/           3.3.1, eq. (6): a depth image of the map for every particle
     sensor               3.3.2, eq. (7): the camera's own points, made comparable
     likelihood           3.3.3 and 3.3.4, eqs (8) to (11): A-2
     motion               3.2, eq. (5): A-1, as printed and in the body's axes
     particle_filter      3.1 and 3.4, eqs (3), (4), (12): start, A-3
-    uncertainty          how far off the estimate may be, which the paper's weights cannot say
     localizer            figure 1: all of it in order
     evaluation           section 4: table 1
-    fallon, planar_map   the method that table 1 compares with
-    gaussian             the textbook's likelihood, to compare with (8)
-    sequence             recordings on disk
-    tracking             beyond the paper: whether the filter still holds the track
+    fallon               the method that table 1 compares with
+    poses, sequence      files of poses, recordings on disk
+  beyond the paper
+    uncertainty          how far off the estimate may be, which the paper's weights cannot say
+    tracking             whether the filter still holds the track
 
 State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`.
 """
@@ -28,10 +28,11 @@ from course_lib.depth_mcl.particle_filter import (
     resample,
     weighted_mean_state,
 )
+from course_lib.depth_mcl.poses import SequenceError
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from course_lib.depth_mcl.scene_map import SceneMap, SceneMapError
 from course_lib.depth_mcl.sensor import depth_image_from_points
-from course_lib.depth_mcl.sequence import SequenceError, read_sequence
+from course_lib.depth_mcl.sequence import read_sequence
 
 __all__ = [
     "BODY_AXES",

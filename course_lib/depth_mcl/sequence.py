@@ -16,25 +16,20 @@ and when, groundtruth.txt has times of its own, and intrinsics.txt must be added
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.geometry import UP_AXES, is_rotation, rotation_mean
+from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_poses, read_tum, write_tum
+from course_lib.geometry import UP_AXES
 
 NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
-
 
 UNITS_PER_METRE = 1000.0  # of depth images: millimetres (7-Scenes); files of the TUM RGB-D dataset have 5000
 
 TUM_TIME_DIFFERENCE = 0.02  # seconds between an image and its pose, as in the dataset's tool associate.py
-
-
-class SequenceError(ValueError):
-    """A recording that cannot be used: a missing or malformed file, or files that do not fit each other."""
 
 
 class DepthSequence:
@@ -128,13 +123,13 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
         frames = sorted(images)
     elif (folder / "poses.txt").exists():
         images = _depth_files(folder)
-        frames, camera_to_world = _read_poses(folder / "poses.txt")
+        frames, camera_to_world = read_poses(folder / "poses.txt")
         _require_same_frames(folder, frames, sorted(images))
         times = _read_times(folder, camera_to_world)
     else:
         images = _depth_files(folder)
         frames, times, camera_to_world = sorted(images), None, None
-    intrinsics = _read_numbers(folder / "intrinsics.txt")
+    intrinsics = read_numbers(folder / "intrinsics.txt")
     if intrinsics.shape != (3, 3):
         raise SequenceError(f"{folder / 'intrinsics.txt'} must hold a 3 x 3 matrix; got {intrinsics.shape}")
     image_shape = read_depth_png(images[frames[0]]).shape
@@ -143,7 +138,7 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
     except ValueError as error:
         raise SequenceError(f"{folder / 'intrinsics.txt'}: {error}") from error
     path_file = folder / "path_on_floor.txt"
-    path_on_floor = _read_numbers(path_file) if path_file.is_file() else None
+    path_on_floor = read_numbers(path_file) if path_file.is_file() else None
     if path_on_floor is not None and (path_on_floor.ndim != 2 or path_on_floor.shape[1] != 3):
         raise SequenceError(f"{path_file} must hold x y z per row; got shape {path_on_floor.shape}")
     return DepthSequence(
@@ -239,52 +234,6 @@ def write_depth_png(path: str | Path, depth: np.ndarray) -> None:
     Path(path).write_bytes(encoded.tobytes())
 
 
-def read_tum(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
-    """Times `(T,)` and poses `(T, 4, 4)` of a TUM trajectory file (t tx ty tz qx qy qz qw per row)."""
-    from scipy.spatial.transform import Rotation
-
-    rows = _read_numbers(Path(path))
-    if rows.ndim != 2 or rows.shape[1] != 8:
-        raise SequenceError(f"{path} must hold rows of 8 numbers (t tx ty tz qx qy qz qw); got shape {rows.shape}")
-    norms = np.linalg.norm(rows[:, 4:], axis=1)
-    if (np.abs(norms - 1) > 1e-2).any():
-        raise SequenceError(f"{path}: quaternions must have length one; row {int(np.abs(norms - 1).argmax())} has not")
-    poses = np.tile(np.eye(4), (len(rows), 1, 1))
-    poses[:, :3, :3] = Rotation.from_quat(rows[:, 4:]).as_matrix()
-    poses[:, :3, 3] = rows[:, 1:4]
-    return rows[:, 0], poses
-
-
-def write_tum(path: str | Path, times: np.ndarray, poses: np.ndarray) -> None:
-    """Writes poses `(T, 4, 4)` with times `(T,)` in seconds as a TUM trajectory."""
-    from scipy.spatial.transform import Rotation
-
-    poses = np.asarray(poses, dtype=np.float64)
-    quaternions = Rotation.from_matrix(poses[:, :3, :3]).as_quat(canonical=True)
-    rows = np.column_stack([times, poses[:, :3, 3], quaternions])
-    np.savetxt(path, rows, fmt="%.9f", header="t tx ty tz qx qy qz qw")
-
-
-def read_pose(path: str | Path) -> np.ndarray:
-    """A camera-to-world matrix `(4, 4)`, optical convention, from a file in any of the formats that hold poses.
-
-    A 4 x 4 matrix, or the first row of a poses.txt (frame, then 16 numbers) or of a TUM trajectory (8 numbers).
-    Raises `FileNotFoundError` for a missing file, `SequenceError` for anything else in it.
-    """
-    path = Path(path)
-    rows = _read_numbers(path)
-    if rows.shape[1] == 8:
-        return read_tum(path)[1][0]
-    if rows.shape[1] == 17:
-        return _read_poses(path)[1][0]
-    if rows.shape != (4, 4) or not _are_rigid(rows[None])[0]:
-        raise SequenceError(
-            f"{path} must hold a pose: a rigid 4 x 4 matrix, rows as in poses.txt (17 numbers), or a TUM trajectory (8 "
-            f"numbers); got {rows.shape[0]} rows of {rows.shape[1]} numbers"
-        )
-    return _nearest_rigid(rows[None])[0]
-
-
 def _depth_files(folder: Path) -> dict[int, Path]:
     """Depth images of a recording by frame number: the first run of digits in the name."""
     if not (folder / "depth").is_dir():
@@ -303,31 +252,6 @@ def _depth_files(folder: Path) -> dict[int, Path]:
     if not files:
         raise SequenceError(f"{folder / 'depth'} holds no PNG images")
     return files
-
-
-def _read_poses(path: Path) -> tuple[list[int], np.ndarray]:
-    rows = _read_numbers(path)
-    if rows.ndim != 2 or rows.shape[1] != 17:
-        raise SequenceError(f"{path} must hold rows of 17 numbers (frame, then a 4 x 4 matrix); got {rows.shape}")
-    if (rows[:, 0] != np.rint(rows[:, 0])).any() or (np.diff(rows[:, 0]) <= 0).any():
-        raise SequenceError(f"{path}: frame numbers must be whole and ascending, each once")
-    poses = rows[:, 1:].reshape(-1, 4, 4)
-    good = _are_rigid(poses)
-    if not good.all():
-        frame = int(rows[np.argmin(good), 0])
-        raise SequenceError(f"{path}: the matrix of frame {frame} is not rigid (a rotation, and 0 0 0 1 below)")
-    return rows[:, 0].astype(int).tolist(), _nearest_rigid(poses)
-
-
-def _are_rigid(poses: np.ndarray) -> np.ndarray:
-    return is_rotation(poses[:, :3, :3], tolerance=1e-3) & (np.abs(poses[:, 3] - [0, 0, 0, 1]).max(axis=-1) < 1e-6)
-
-
-def _nearest_rigid(poses: np.ndarray) -> np.ndarray:
-    """Files hold few digits: the nearest rotation makes good what rounding took."""
-    rigid = poses.copy()
-    rigid[:, :3, :3] = [rotation_mean(rotation[None]) for rotation in poses[:, :3, :3]]
-    return rigid
 
 
 def _require_same_frames(folder: Path, pose_frames: list[int], image_frames: list[int]) -> None:
@@ -389,17 +313,3 @@ def _read_up(folder: Path) -> str | None:
     if up not in UP_AXES:
         raise SequenceError(f"{path} must name one of {', '.join(UP_AXES)}; got {up!r}")
     return up
-
-
-def _read_numbers(path: Path) -> np.ndarray:
-    if not path.is_file():
-        raise FileNotFoundError(f"no file {path}")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # of an empty file, which gets an error below
-            numbers = np.loadtxt(path, dtype=np.float64, ndmin=2)
-    except ValueError as error:
-        raise SequenceError(f"{path} must hold rows of numbers, all of one length: {error}") from error
-    if numbers.size == 0 or not np.isfinite(numbers).all():
-        raise SequenceError(f"{path} is empty or holds values that are not finite")
-    return numbers

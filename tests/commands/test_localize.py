@@ -8,7 +8,8 @@ import pytest
 
 from course_lib.cli import main
 from course_lib.commands.localize import believed, join_words
-from course_lib.depth_mcl.sequence import read_sequence, read_tum, write_sequence
+from course_lib.depth_mcl.poses import read_tum
+from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
 
 KEYS = {
