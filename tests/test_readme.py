@@ -139,3 +139,23 @@ def test_the_results_quote_detector_stereo_and_distances_as_stored():
         quoted = [number.strip() for number in line.split("|")[2].split(",")]
         digits = len(quoted[0].split(".")[1])
         assert quoted == [f"{value:.{digits}f}" for value in values]
+
+
+@pytest.mark.parametrize(
+    ("name", "source", "method"),
+    [
+        ("from images, the paper's method", "images", "paper"),
+        ("from images, implausible poses rejected", "images", "library"),
+        ("from exact boxes, the paper's method", "exact_boxes", "paper"),
+        ("from exact boxes, implausible poses rejected", "exact_boxes", "library"),
+    ],
+)
+def test_the_rows_of_the_rooms_are_the_stored_shares_and_intervals(name, source, method):
+    stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["both"][source][method]
+    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name} |"))
+    shares = (
+        f"{stored[f'{kind}_percent']:.1f} ({stored[f'{kind}_rooms_percent'][0]:.0f} to "
+        f"{stored[f'{kind}_rooms_percent'][1]:.0f})"
+        for kind in ("correct", "incorrect", "unable")
+    )
+    assert [cell.strip() for cell in row.split("|")[2:5]] == list(shares)
