@@ -141,5 +141,5 @@ def test_a_time_out_that_is_none_is_refused(seconds):
 
 def test_only_addresses_and_kernel_paths_are_sanitized():
     lines = [line for line in SANITIZE.read_text().splitlines() if line and not line.startswith("#")]
-    assert [line for line in lines if line.startswith("[")] == ["[address]", "[kernel-path]", "[picture]"]
+    assert [line for line in lines if line.startswith("[")] == ["[picture]", "[address]", "[kernel-path]"]
     assert len(lines) == 9
