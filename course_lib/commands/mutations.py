@@ -20,6 +20,7 @@ import os
 import queue
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -32,6 +33,9 @@ from course_lib.commands import test as suite
 
 NOT_COPIED = (".git", ".venv", "results", "build", ".pytest_cache", ".ruff_cache", ".hypothesis")  # of the first level
 NO_PLUGINS = ("-p", "no:cacheprovider", "-p", "no:nbval")  # nbval's import alone takes seconds
+# A crash of the code's own making: OpenGL used from two threads may end so before it draws anything wrong. A process
+# that somebody else killed (SIGKILL where memory ran out, SIGTERM) proves nothing.
+CRASHES = tuple(-number for number in (signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGILL))
 PASSED, FAILED, INTERRUPTED = 0, 1, 2  # pytest's exit codes; interrupted: a file could not even be imported
 
 
@@ -203,8 +207,7 @@ def try_out(mutation: Mutation, copy: Path) -> str:
         code, _ = run_tests(["-x", *mutation.tests], copy)
     finally:
         path.write_bytes(original)
-    # Below 0: a signal ended pytest. OpenGL used from two threads may crash before it draws anything wrong.
-    if code is None or code < 0 or code in (FAILED, INTERRUPTED):
+    if code is None or code in (FAILED, INTERRUPTED, *CRASHES):
         return "killed"
     return "SURVIVED" if code == PASSED else f"EXIT CODE {code}"
 

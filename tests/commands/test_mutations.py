@@ -49,17 +49,19 @@ def test_what_is_noticed_is_killed_and_what_is_not_survives(repository, capsys):
         entry("renamed", old="'double'", new="'single'"),
         entry("no name any more", old="def double(x)", new="def other(x)"),
         entry("pytest dies", new="__import__('os').abort()"),
+        entry("somebody kills pytest", new="__import__('os').kill(__import__('os').getpid(), 9)"),
     )
     assert mutations.run(repository, []) == 1
     printed = capsys.readouterr().out.splitlines()
-    assert {line.split(maxsplit=1)[1]: line.split()[0] for line in printed[:5]} == {
+    assert {line.split(maxsplit=1)[1]: line.split()[0] for line in printed[:6]} == {
         "trebled": "killed",
         "added": "killed",
         "renamed": "SURVIVED",
         "no name any more": "killed",
         "pytest dies": "killed",
+        "CODE -9    somebody kills pytest": "EXIT",
     }
-    assert printed[-1] == "5 mutations, 4 killed, 1 survived"
+    assert printed[-1] == "6 mutations, 4 killed, 1 survived, 1 could not be tried"
     assert (repository / "course_lib" / "code.py").read_text() == CODE
     assert mutations.run(repository, ["Trebled"]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == "1 mutations, 1 killed, 0 survived"
