@@ -30,7 +30,7 @@ from course_lib.depth_mcl.likelihood import (
 from course_lib.depth_mcl.motion import BODY_AXES, Motion, checked_sigma
 from course_lib.depth_mcl.particle_filter import Scheme, effective_sample_size, initial_particles, resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.uncertainty import error_covariance
+from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, positive_part
 
 # Standard deviations of the system noise a frame for the paper's experiment (x, y, yaw), metres and radians: x is
 # forward and y left where the body's axes count, as they do unless another motion is given. Chosen on tuning seeds; the
@@ -142,6 +142,7 @@ class MonteCarloLocalizer:
             raise ValueError(f"seed must be a whole number, 0 or more; got {seed!r}")
         self.rng = np.random.default_rng(int(seed))
         self.particles: np.ndarray | None = None
+        self._centre_covariance = np.zeros((6, 6))  # of the error of the particles' centre, beyond their own spread
 
     def initialize(self, state0: np.ndarray) -> None:
         """Puts every particle at the initial state `(6,)`, eqs (3), (4).
@@ -156,6 +157,7 @@ class MonteCarloLocalizer:
                 f"{scene_map.bounds[0].round(2).tolist()} to {scene_map.bounds[1].round(2).tolist()} m"
             )
         self.particles = particles
+        self._centre_covariance = np.zeros((6, 6))
 
     def step(self, depth: np.ndarray) -> Estimate:
         """One round of the paper's figure 1 for a depth image `(H, W)` in metres, NaN = no measurement.
@@ -196,13 +198,9 @@ class MonteCarloLocalizer:
         w, scores = weighting
         state = self.motion.mean(particles, w)
         deviations = self.motion.deviations(particles, state)
-        return Estimate(
-            state,
-            (w[:, None] * deviations).T @ deviations,
-            float(scores.max()),
-            effective_sample_size(w),
-            particles,
-            w,
-            status,
-            error_covariance(deviations, np.nan_to_num(scores)),
-        )
+        spread = (w[:, None] * deviations).T @ deviations
+        frame = error_covariance(deviations, np.nan_to_num(scores))
+        error = carried_covariance(frame, deviations, self._centre_covariance)
+        self._centre_covariance = positive_part(error - spread)
+        ess = effective_sample_size(w)
+        return Estimate(state, spread, float(scores.max()), ess, particles, w, status, error)

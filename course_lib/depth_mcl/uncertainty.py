@@ -10,12 +10,11 @@ pixels; and kappa is lowered where it would leave too few particles to span the 
 particles are sparse, so that the spacing between them, an error too, is in the answer. What counts is their spread
 about the estimate that the filter gives, whatever its own weights were.
 
-Calibrated where nothing is reported from: a wagon's run of the corridor of seed 10,001 with 50, 200 and 800 particles,
-and the shipped run by hand, six degrees of freedom, with 1,000. There the normalized error e' C^-1 e / d, d the number
-of components that move, is 1.2, 0.7 and 1.3 in the mean of a run, and 1.2 by hand.
-What it cannot say: particles lie within a frame's noise of where the last frame left them, and so does this covariance.
-A filter that has fallen behind by more than that is more wrong than it knows (six degrees of freedom in the kitchen
-recording: 1.6 to 3.8 in the mean of 60 frames), and one that is lost has all its particles in the wrong place.
+That is one frame's share of the error. Particles lie within a frame's noise of where the last frame left them, and what
+that frame got wrong is still in them: `carried_covariance` takes it along from frame to frame, as a Kalman filter would.
+
+kappa is calibrated where nothing is reported from, on one frame's share: a wagon's run of the corridor of seed 10,001.
+What neither can say: a filter that is lost has all its particles in the wrong place (tracking.py).
 """
 
 from __future__ import annotations
@@ -29,6 +28,7 @@ from course_lib.depth_mcl.particle_filter import effective_sample_size
 # components are left at least. Both chosen on tuning worlds: see above.
 INDEPENDENT_PIXELS = 50.0
 SPARE_PARTICLES = 2
+_SMALLEST_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cloud is flat there
 
 
 def tempered_weights(scores: np.ndarray, least_sample_size: float) -> np.ndarray:
@@ -54,7 +54,7 @@ def tempered_weights(scores: np.ndarray, least_sample_size: float) -> np.ndarray
 
 
 def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
-    """Covariance `(6, 6)` of the estimate's error: the mean square deviation of the particles under tempered weights.
+    """Covariance `(6, 6)` that a frame leaves: the mean square deviation of the particles under tempered weights.
 
     C = sum_i v_i d_i d_i',    v_i ~ exp(kappa s_i)
 
@@ -66,3 +66,34 @@ def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
     n_moving = np.count_nonzero(np.ptp(deviations, axis=0))
     v = tempered_weights(scores, n_moving + SPARE_PARTICLES)
     return (v[:, None] * deviations).T @ deviations
+
+
+def carried_covariance(covariance: np.ndarray, deviations: np.ndarray, earlier: np.ndarray) -> np.ndarray:
+    """Covariance `(6, 6)` of the estimate's error, with what is left of the error that the particles started from.
+
+    P = C + A E A',    A = C Q^-1
+
+    covariance: C `(6, 6)`, what this frame leaves of the cloud's own covariance Q, that of `deviations` `(N, 6)` about
+    their mean. A is then the share of an earlier error that the frame did not correct: a Kalman filter's I - K, with C
+    for its posterior and Q for its prior. It is 0 along what the image shows, and 1 along a wall without a door, where
+    errors add up. earlier: E `(6, 6)`, of the place where the particles started.
+    A has no eigenvalue above 1: no frame makes an earlier error larger. Along what the particles do not span (too few of
+    them, or a component without noise) nothing was corrected, and A is the identity.
+    """
+    deviations = np.asarray(deviations, dtype=np.float64)
+    scale = np.std(deviations, axis=0)
+    scale[scale == 0] = 1.0  # metres and radians, in units of the cloud's own widths
+    values, axes = np.linalg.eigh(np.cov(deviations / scale, rowvar=False, bias=True))
+    spanned = values > _SMALLEST_SHARE
+    width, axes = np.sqrt(values[spanned]), axes[:, spanned]
+    whiten, unwhiten = (axes / width).T / scale, (axes * width) * scale[:, None]
+    shares, directions = np.linalg.eigh(whiten @ covariance @ whiten.T)
+    lessened = (directions * (np.clip(shares, 0.0, 1.0) - 1.0)) @ directions.T  # A - 1, where the cloud is round
+    kept = np.eye(6) + unwhiten @ lessened @ whiten
+    return covariance + kept @ earlier @ kept.T
+
+
+def positive_part(matrix: np.ndarray) -> np.ndarray:
+    """The symmetric matrix without its negative eigenvalues: a difference of covariances as a covariance."""
+    values, axes = np.linalg.eigh(matrix)
+    return (axes * np.clip(values, 0.0, None)) @ axes.T

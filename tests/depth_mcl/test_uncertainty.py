@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.localizer import MonteCarloLocalizer
+from course_lib.depth_mcl.localizer import MonteCarloLocalizer, Weighting
 from course_lib.depth_mcl.motion import BODY_AXES
 from course_lib.depth_mcl.particle_filter import effective_sample_size
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.depth_mcl.uncertainty import error_covariance, tempered_weights
+from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, tempered_weights
 from course_lib.geometry import state_from_optical_pose
 
 MOVING = [0, 1, 5]  # x, y, yaw
@@ -50,6 +50,84 @@ def test_an_estimate_beside_the_best_particles_is_told(rng):
     deviations = rng.normal(0, 0.05, (300, 6))
     deviations[:, 1] += 0.3
     assert error_covariance(deviations, np.zeros(300))[1, 1] > 0.3**2
+
+
+def test_what_a_frame_does_not_correct_is_carried_on(rng):
+    """Cloud: 0.2 m along x and y. The frame leaves all of it along x, a quarter of the variance along y."""
+    deviations = np.zeros((50_000, 6))
+    deviations[:, :2] = rng.normal(0, 0.2, (50_000, 2))
+    left, earlier = np.zeros((6, 6)), np.zeros((6, 6))
+    left[0, 0], left[1, 1] = 0.2**2, 0.2**2 / 4
+    earlier[0, 0], earlier[1, 1], earlier[2, 2] = 0.5**2, 0.4**2, 0.3**2
+    carried = carried_covariance(left, deviations, earlier)
+    expected = np.diag([0.2**2 + 0.5**2, 0.2**2 / 4 + (0.4 / 4) ** 2, 0.3**2, 0, 0, 0])  # nothing moved along z
+    assert carried == pytest.approx(expected, rel=0.03, abs=2e-3)
+
+
+@pytest.mark.parametrize("n_particles", [1, 2, 5])
+def test_too_few_particles_correct_only_what_they_span(n_particles, rng):
+    deviations = rng.normal(0, 0.1, (n_particles, 6))
+    earlier = np.eye(6)
+    carried = carried_covariance(np.zeros((6, 6)), deviations, earlier)
+    assert np.isfinite(carried).all()
+    assert np.linalg.matrix_rank(carried, tol=1e-6) == 6 - (n_particles - 1)
+
+
+class Wall:
+    """Stands for a renderer before a wall without a door: its "images" are the particles themselves, 9 m away."""
+
+    scene_map = type("Everywhere", (), {"contains": staticmethod(lambda position, margin: True)})
+    camera = type("Camera", (), {"shape": (1, 6), "points": staticmethod(lambda depth: depth)})
+
+    def render(self, particles):
+        return 9 + particles[:, None]
+
+    def render_points(self, points):
+        return points
+
+
+def distance_to_the_wall(measured, simulated):
+    """Weighs by y alone, the paper's way: the best takes nearly all."""
+    squared = (simulated[:, 0, 1] - measured[0, 1]) ** 2
+    scores = 1 - squared / (2 * 0.3**2) / WORTH  # so that the whole image gives y with 0.3 m
+    w = np.exp(-squared / (2 * 0.005**2) + squared.min() / (2 * 0.005**2))
+    return Weighting(w / w.sum(), scores)
+
+
+def test_along_a_wall_errors_add_up_and_the_covariance_with_them(rng):
+    """Of 100 walks the squared error of x grows with time, as its variance says: one frame's share says far less."""
+    ratios, by_one_frame = [], []
+    for seed in range(100):
+        localizer = MonteCarloLocalizer(
+            Wall(), 60, [0.1, 0.1, 0, 0, 0, 0], seed=seed, motion=BODY_AXES, weighting=distance_to_the_wall
+        )
+        true = np.zeros(6)
+        localizer.initialize(true)
+        for _ in range(20):
+            true = true + np.array([0.1, 0.1, 0, 0, 0, 0]) * rng.standard_normal(6)
+            estimate = localizer.step(9 + true[None])
+        squared = (estimate.state[0] - true[0]) ** 2
+        ratios.append(squared / estimate.error_covariance[0, 0])
+        by_one_frame.append(squared / np.var(estimate.particles[:, 0]))
+    assert 0.5 < np.mean(ratios) < 2
+    assert np.mean(by_one_frame) > 5
+
+
+@pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
+def test_without_measurements_the_variance_grows_by_one_frames_noise_at_a_time():
+    localizer = MonteCarloLocalizer(Wall(), 2000, [0.1, 0, 0, 0, 0, 0])
+    localizer.initialize(np.zeros(6))
+    variances = [localizer.step(np.full((1, 6), np.nan)).error_covariance[0, 0] for _ in range(8)]
+    assert variances == pytest.approx(0.1**2 * np.arange(1, 9), rel=0.15)
+
+
+def test_a_new_start_forgets_the_earlier_errors():
+    localizer = MonteCarloLocalizer(Wall(), 60, [0.1, 0.1, 0, 0, 0, 0], weighting=distance_to_the_wall)
+    variances = []
+    for _ in range(2):
+        localizer.initialize(np.zeros(6))
+        variances.append([localizer.step(np.full((1, 6), 9.0)).error_covariance[0, 0] for _ in range(10)])
+    assert variances[1][0] < 2 * variances[0][0] < variances[0][9]
 
 
 def normalized_error(estimate, state):
