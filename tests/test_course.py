@@ -39,12 +39,27 @@ def build_editable(folder, config_settings=None, metadata_directory=None):
 build_wheel = build_editable
 """
 HANGS_S = 1200  # no call takes so long, however busy the machine is
+# Stands for Python's ensurepip, which unpacks and compiles pip anew for seconds: copies one that is ready.
+COPY_PIP = "import shutil, sysconfig\nshutil.copytree({!r}, sysconfig.get_path('purelib'), dirs_exist_ok=True)\n"
+QUICK = {}  # what the environment of every call holds while a copy is tried
 HANDED_OVER = 'import os, sys\nprint("handed over", sys.argv[1:], sys.prefix, os.getcwd())\n'
 
 
+@pytest.fixture(scope="module")
+def quick_pip(tmp_path_factory):
+    """A folder for PYTHONPATH with which environments get their pip at once."""
+    folder = tmp_path_factory.mktemp("quick")
+    subprocess.run([sys.executable, "-P", "-m", "venv", str(folder / "venv")], check=True)
+    library = next((folder / "venv" / "lib").iterdir()) / "site-packages"
+    (folder / "path").mkdir()
+    (folder / "path" / "ensurepip.py").write_text(COPY_PIP.format(str(library)))
+    return str(folder / "path")
+
+
 @pytest.fixture
-def copy(tmp_path):
+def copy(tmp_path, quick_pip, monkeypatch):
     """A folder with course.py, an environment of no package, and a package that says that it was called."""
+    monkeypatch.setitem(QUICK, "PYTHONPATH", quick_pip)
     folder = tmp_path / "course"
     (folder / "course_lib").mkdir(parents=True)
     (folder / "course.py").write_bytes(COURSE.read_bytes())
@@ -61,7 +76,7 @@ def environment(**more):
     """The user's environment without pip's settings: an address that nobody answers stands for every index."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith(("PIP_", "UV_", "PYTHON"))}
     pip = {"PIP_CONFIG_FILE": os.devnull, "PIP_INDEX_URL": "http://127.0.0.1:9/simple", "PIP_RETRIES": "0"}
-    return {**kept, **pip, "PIP_NO_CACHE_DIR": "1", **more}
+    return {**kept, **pip, **QUICK, "PIP_NO_CACHE_DIR": "1", **more}
 
 
 def call(folder, *arguments, prelude="", cwd=None, **more):
@@ -123,7 +138,7 @@ def test_no_command_shows_the_usage_and_fails(copy):
 
 @pytest.mark.slow
 def test_first_call_sets_up_and_hands_over_and_the_second_is_quiet(copy, tmp_path):
-    first = call(copy, "demo", "corridor", "--json", cwd=tmp_path)
+    first = call(copy, "demo", "corridor", "--json", cwd=tmp_path, PYTHONPATH="")  # with Python's own ensurepip
     # Only the command writes to standard output, or --json would be spoilt; the folder one is in stays.
     assert first.stdout == f"handed over ['demo', 'corridor', '--json'] {copy / '.venv'} {tmp_path}\n"
     assert "setting it up" in first.stderr

@@ -1,6 +1,8 @@
 """`demo corridor`: table 1, its figures and its JSON, on a few frames."""
 
+import contextlib
 import csv
+import io
 import json
 import os
 import shutil
@@ -20,6 +22,7 @@ KEYS = {
     "seed", "n_particles", "frames", "median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "ms_per_frame",
     "fallon_median_m",
 }  # fmt: skip
+THREE_FRAMES = ["--seed", "6", "--frames", "3", "--particles", "15"]
 
 
 @pytest.fixture(scope="module")
@@ -31,23 +34,30 @@ def demo(tmp_path_factory, request):
     return folder
 
 
-def test_json_is_one_object_with_the_promised_keys(tmp_path, capsys):
-    words = ["demo", "corridor", "--frames", "3", "--particles", "20", "--out", str(tmp_path), "--json"]
-    assert main(words) == 0
-    summary = json.loads(capsys.readouterr().out)
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory):
+    """What a run of three frames with --json printed, and its folder."""
+    folder, output = tmp_path_factory.mktemp("printed"), io.StringIO()
+    with contextlib.redirect_stdout(output):
+        assert main(["demo", "corridor", *THREE_FRAMES, "--json", "--out", str(folder)]) == 0
+    return output.getvalue(), folder
+
+
+def test_json_is_one_object_with_the_promised_keys(printed):
+    summary = json.loads(printed[0])
     assert summary.keys() >= KEYS
-    assert (summary["frames"], summary["n_particles"], summary["seed"]) == (3, 20, 0)
+    assert (summary["frames"], summary["n_particles"], summary["seed"]) == (3, 15, 6)
     assert 0 <= summary["within_3sigma_percent"] <= 100
     assert set(summary["methods"]) >= {"proposed", "fallon", "fallon_full", "fallon_disparity", "fallon_disparity_full"}
 
 
-def test_the_table_holds_the_papers_rows_beside_ours(tmp_path, capsys):
-    assert main(["demo", "corridor", "--frames", "2", "--particles", "10", "--out", str(tmp_path)]) == 0
-    table = capsys.readouterr().out
-    for row in ("paper: proposed method", "paper: Fallon", "proposed method, ours", "Fallon-style, depth, 20 x 15"):
-        assert row in table
-    assert "0.07" in table
-    assert "n/a" in table
+@pytest.mark.slow
+def test_another_process_with_the_same_seed_writes_the_same_bytes(printed, tmp_path):
+    words = ["demo", "corridor", *THREE_FRAMES, "--out", str(tmp_path)]
+    code = f"from course_lib.cli import main; raise SystemExit(main({words!r}))"
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+    for name in ("corridor.csv", "trajectory.txt"):
+        assert (tmp_path / name).read_bytes() == (printed[1] / name).read_bytes()
 
 
 def test_figures_and_results_are_written(demo):
@@ -72,9 +82,14 @@ def test_a_seeds_own_recording_has_a_less_kind_one_beside_it(demo):
     assert "with calibration and mount errors, pushed by hand:" in table_1(stored)
 
 
-def test_the_shipped_recording_is_still_there_for_the_lessons(tmp_path, corridor_folder):
+def test_the_shipped_recordings_table_holds_the_papers_rows_beside_ours(tmp_path, corridor_folder, capsys):
     words = ["demo", "corridor", "--recording", "shipped", "--frames", "3", "--particles", "20", "--out", str(tmp_path)]
     assert main(words) == 0
+    table = capsys.readouterr().out
+    for row in ("paper: proposed method", "paper: Fallon", "proposed method, ours", "Fallon-style, depth, 20 x 15"):
+        assert row in table
+    assert "0.07" in table
+    assert "n/a" in table
     stored = json.loads((tmp_path / "corridor.json").read_text())
     assert "methods_by_hand" not in stored
     x, y = (float(next(csv.DictReader((tmp_path / "corridor.csv").open()))[f"proposed_{axis}_m"]) for axis in "xy")
@@ -151,7 +166,7 @@ def test_a_seed_is_written_when_it_is_done(tmp_path, monkeypatch):
 
 
 def test_the_kindnesses_are_measured_one_by_one(tmp_path, capsys):
-    words = ["--seeds", "10042", "--frames", "5", "--particles", "40", "--backend", "ray", "--out", str(tmp_path)]
+    words = ["--seeds", "10042", "--frames", "3", "--particles", "30", "--backend", "ray", "--out", str(tmp_path)]
     assert main(["demo", "corridor", "--kindnesses", *words]) == 0
     table = capsys.readouterr().out
     result = json.loads((tmp_path / "kindnesses.json").read_text())
@@ -173,16 +188,6 @@ def test_the_kindnesses_are_measured_one_by_one(tmp_path, capsys):
 def test_options_that_do_not_fit_are_told_before_the_work(words, named, capsys):
     assert main(["demo", "corridor", *words]) == 2
     assert named in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_another_process_with_the_same_seed_writes_the_same_bytes(tmp_path):
-    words = ["demo", "corridor", "--seed", "6", "--frames", "3", "--particles", "15", "--out"]
-    for name in ("a", "b"):
-        code = f"from course_lib.cli import main; raise SystemExit(main({[*words, str(tmp_path / name)]!r}))"
-        subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
-    for name in ("corridor.csv", "trajectory.txt"):
-        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
 @pytest.mark.slow

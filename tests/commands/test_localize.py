@@ -67,12 +67,19 @@ def test_the_kitchen_is_localized_in_six_degrees_through_gimbal_lock(kitchen_fol
 
 
 @pytest.mark.slow
-def test_the_kitchen_is_run_to_its_end(kitchen_folder, capsys):
-    """With few particles, for time: whether it holds to the camera is the README's table, whether it ends is this."""
-    assert main(arguments(kitchen_folder, ".", dof="6", particles=20, json=True)) == 0
+def test_the_kitchens_last_frames_are_read_and_run(kitchen_folder, tmp_path, capsys):
+    """Every fourth frame with few particles, for time: how well it holds to the camera is the table of RESULTS.md."""
+    kitchen = read_sequence(kitchen_folder)
+    kept = range(0, len(kitchen), 4)
+    depths = [kitchen.depth(i) for i in kept]
+    write_sequence(
+        tmp_path, kitchen.intrinsics, [kitchen.frames[i] for i in kept], depths, kitchen.camera_to_world[kept]
+    )
+    (tmp_path / "map.ply").symlink_to(kitchen_folder / "map.ply")
+    assert main(arguments(tmp_path, ".", dof="6", particles=20, json=True)) == 0
     summary = json.loads(capsys.readouterr().out)
-    assert (summary["frames"], summary["renders_per_frame"]) == (167, 20)
-    assert summary["p90_position_m"] < 1.5
+    assert (summary["frames"], summary["renders_per_frame"]) == (42, 20)
+    assert summary["median_position_m"] < 3
 
 
 def test_x_y_yaw_in_a_world_whose_up_is_unknown_is_refused(kitchen_folder, capsys):

@@ -24,7 +24,7 @@ def corridor(corridor_folder):
 @pytest.mark.slow
 def test_a_stretch_of_the_corridor_meets_the_targets_of_the_whole(corridor):
     """200 particles, alpha 0.1, beta 0.01, on a seed of no tuning and no report."""
-    nearest, timed = path_errors(run_method(METHODS["proposed"], *corridor, seed=77, frames=25), corridor[2])
+    nearest, timed = path_errors(run_method(METHODS["proposed"], *corridor, seed=77, frames=14), corridor[2])
     assert nearest.median <= 0.05
     assert nearest.sigma <= 0.10
     assert nearest.within_3sigma >= 0.99
