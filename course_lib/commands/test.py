@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
             arguments.passed_on, arguments.fast, arguments.no_notebooks, arguments.only_notebooks, processors()
         )
         write_offline_startup(Path(home))
-        environment = suite_environment(Path(home))
+        environment = suite_environment(Path(home)) | one_thread_a_worker(words)
         code = subprocess.run([sys.executable, "-m", "pytest", *words], cwd=ROOT, env=environment).returncode
     return conclude(code, time.monotonic() - started)
 
@@ -161,6 +161,11 @@ def suite_environment(home: Path, environment: Mapping[str, str] = os.environ) -
         result[variable] = str(home / folder)
     result["JUPYTER_RUNTIME_DIR"] = str(home / "runtime")
     return result
+
+
+def one_thread_a_worker(words: list[str]) -> dict[str, str]:
+    """Where pytest runs in several processes, linear algebra starts no threads that wait for each other besides."""
+    return {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")} if "-n" in words else {}
 
 
 def conclude(code: int, seconds: float) -> int:

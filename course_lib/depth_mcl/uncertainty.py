@@ -10,8 +10,8 @@ pixels; and kappa is lowered where it would leave too few particles to span the 
 particles are sparse, so that the spacing between them, an error too, is in the answer. What counts is their spread
 about the estimate that the filter gives, whatever its own weights were.
 
-That is one frame's share of the error. Particles lie within a frame's noise of where the last frame left them, and what
-that frame got wrong is still in them: `carried_covariance` takes it along from frame to frame, as a Kalman filter would.
+That is one frame's share of the error. Particles lie within a frame's noise of where the last frame left them, and
+what that frame got wrong is still in them: `carried_covariance` takes it along, as a Kalman filter would.
 
 kappa is calibrated where nothing is reported from, on one frame's share: a wagon's run of the corridor of seed 10,001.
 What neither can say: a filter that is lost has all its particles in the wrong place (tracking.py).
@@ -77,8 +77,8 @@ def carried_covariance(covariance: np.ndarray, deviations: np.ndarray, earlier: 
     their mean. A is then the share of an earlier error that the frame did not correct: a Kalman filter's I - K, with C
     for its posterior and Q for its prior. It is 0 along what the image shows, and 1 along a wall without a door, where
     errors add up. earlier: E `(6, 6)`, of the place where the particles started.
-    A has no eigenvalue above 1: no frame makes an earlier error larger. Along what the particles do not span (too few of
-    them, or a component without noise) nothing was corrected, and A is the identity.
+    A has no eigenvalue above 1: no frame makes an earlier error larger. Along what the particles do not span (too few
+    of them, or a component without noise) nothing was corrected, and A is the identity.
     """
     deviations = np.asarray(deviations, dtype=np.float64)
     scale = np.std(deviations, axis=0)

@@ -31,6 +31,11 @@ def test_the_whole_runs_on_every_processor_and_a_file_stays_on_one():
     assert test_command.pytest_arguments(["-n", "3"], workers=2)[-2:] == ["-n", "3"]
 
 
+def test_workers_do_not_start_threads_that_wait_for_each_other():
+    assert test_command.one_thread_a_worker(["-n", "2"])["OMP_NUM_THREADS"] == "1"
+    assert test_command.one_thread_a_worker(["tests"]) == {}
+
+
 @pytest.mark.parametrize(
     ("passed_on", "lessons"),
     [

@@ -30,7 +30,19 @@ SESSION_IS_IDLE = """() => {
     const kernel = window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel;
     return kernel?.connectionStatus === 'connected' && kernel.status === 'idle';
 }"""
-RUN_ALL = "() => window.jupyterapp.commands.execute('notebook:run-all-cells').then(() => true)"
+# Whole runs are nbval's work too: here two are enough, of the others what stands before the first panel's end.
+RUN_WHOLLY = ("00", "07")
+# Clears the stored outputs first, with their numbers: what stands there afterwards has been run.
+RUN = """wholly => {
+    const {commands, shell} = window.jupyterapp, notebook = shell.currentWidget.content;
+    const shows = cell => cell.model.type === 'code' && cell.model.outputs.toJSON().some(
+        output => [].concat(output.data?.['text/plain'] ?? '').join('').startsWith("Panel '"));
+    const panel = notebook.widgets.findIndex(shows);
+    return commands.execute('notebook:clear-all-cell-outputs').then(() => {
+        notebook.activeCellIndex = panel + 1;
+        return commands.execute(wholly ? 'notebook:run-all-cells' : 'notebook:run-all-above');
+    }).then(() => true);
+}"""
 STATES = """() => window.jupyterapp.shell.currentWidget.content.widgets
     .filter(cell => cell.model.type === 'code')
     .map(cell => [cell.model.executionCount, cell.model.outputs.toJSON().some(o => o.output_type === 'error')])"""
@@ -129,10 +141,13 @@ def test_a_lesson_runs_and_its_first_panel_answers(browser, lab, path):
     pictures = page.locator(".jp-OutputArea-output img[alt]")
     assert pictures.count() > 0, "stored pictures, with their alternative text, are there before anything runs"
 
-    page.evaluate(RUN_ALL)
+    wholly = path.name[:2] in RUN_WHOLLY
+    page.evaluate(RUN, wholly)
     page.wait_for_function(SESSION_IS_IDLE)
     states = page.evaluate(STATES)
-    assert [count for count, _ in states] == list(range(1, len(states) + 1))
+    counts = [count for count, _ in states if wholly or count]
+    assert counts == list(range(1, len(counts) + 1))
+    assert counts
     assert not any(failed for _, failed in states)
     assert page.locator(".jp-OutputArea-output img:not([alt])").count() == 0
 
