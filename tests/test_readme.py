@@ -148,6 +148,8 @@ def test_the_results_quote_detector_stereo_and_distances_as_stored():
         ("from images, implausible poses rejected", "images", "library"),
         ("from exact boxes, the paper's method", "exact_boxes", "paper"),
         ("from exact boxes, implausible poses rejected", "exact_boxes", "library"),
+        ("from images, eq. (1) as printed", "images", "as_printed"),
+        ("from exact boxes, eq. (1) as printed", "exact_boxes", "as_printed"),
     ],
 )
 def test_the_rows_of_the_rooms_are_the_stored_shares_and_intervals(name, source, method):

@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="DEG",
         help="also run the same rooms with the lower camera tilted by exactly DEG degrees against the upper one, and "
-        "print the errors (default: not; the issue's table: 0 0.1 0.3 1)",
+        "print the errors (default: not at all), for example 0 0.1 0.3 1",
     )
     add_detector_arguments(parser)
     parser.add_argument(

@@ -12,6 +12,7 @@ WORDS = {
     "images": "images",
     "exact_boxes": "exact boxes",
     "paper": "the paper's fit",
+    "as_printed": "eq. (1) as printed",
     "weighted_fit": "weighted_fit",
     "library": "implausible rejected",
 }
@@ -29,7 +30,7 @@ def tables(summary: dict) -> str:
         f"Look-alikes: {kinds}",
         "",
         "Share of poses [%], with 95 % intervals: (over poses, as if independent; over rooms, by bootstrap)",
-        f"{'':42}{'correct':>28}{'incorrect':>28}{'unable':>28}",
+        f"{'':42}{'correct':>31}{'incorrect':>31}{'unable':>31}",
     ]
     for number, (upper, lower) in CAMERA_HEIGHTS.items():
         lines.append(f"Cameras at {upper:.2f} and {lower:.2f} m")
@@ -106,7 +107,7 @@ def _paper_share(number: int, kind: str) -> str:
 def _share(share: float, over_poses: list[float], over_rooms: list[float] | None) -> str:
     rooms = f"; {over_rooms[0]:.0f} to {over_rooms[1]:.0f}" if over_rooms else ""
     text = f"{share:.1f} ({over_poses[0]:.0f} to {over_poses[1]:.0f}{rooms})"
-    return f"{text:>28}"
+    return f"{text:>31}"
 
 
 def _errors(group: dict) -> str:

@@ -35,6 +35,7 @@ METHODS: dict[str, dict] = {
     "paper": {"reject_implausible": False},
     "weighted_fit": {"weighted_fit": True, "reject_implausible": False},
     "library": {"reject_implausible": True},
+    "as_printed": {"distance_term": "as_printed", "reject_implausible": False},
 }
 
 
