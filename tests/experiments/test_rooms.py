@@ -70,19 +70,22 @@ def test_a_record_gives_its_map_and_observations_back_grey_ones_too():
 
 
 def test_poses_are_judged_by_the_truth_of_the_record():
-    right, wrong = (judge_rooms([record(poses=[entry(shown=shown)])]) for shown in ((0, 1, 2), (1, 0, 2)))
-    assert {one.outcome.kind for one in right if one.method != "as_printed"} == {"correct"}
+    right, wrong = (
+        [one for one in judge_rooms([record(poses=[entry(shown=shown)])]) if one.method != "as_printed"]
+        for shown in ((0, 1, 2), (1, 0, 2))
+    )
+    assert {one.outcome.kind for one in right} == {"correct"}
     assert {one.outcome.kind for one in wrong} == {"incorrect"}
     assert {(one.source, one.method) for one in right} == {
-        (source, method) for source in ("images", "exact_boxes") for method in METHODS
+        (source, method) for source in ("images", "exact_boxes") for method in METHODS if method != "as_printed"
     }
     assert right[0].outcome.dx_m == pytest.approx(0.0, abs=1e-9)
 
 
 def test_as_printed_the_distance_term_prefers_what_is_too_near():
-    """Sofas and table exactly where the map has them: the cheapest pair is an object near the centroid with one far."""
+    """All stand where the map has them, and yet the cheapest pair is an object near the centroid with one far off."""
     outcomes = {one.method: one.outcome.kind for one in judge_rooms([record(poses=[entry()])])}
-    assert (outcomes["paper"], outcomes["as_printed"]) == ("correct", "incorrect")
+    assert outcomes["paper"] == "correct" != outcomes["as_printed"]
 
 
 def test_the_weighted_fit_is_weighted():
