@@ -256,6 +256,7 @@ def _table(s: dict) -> str:
             f"rotation error [deg]  {s['median_rotation_deg']:6.2f}   {s['p90_rotation_deg']:6.2f}",
             "",
             f"within 5 cm and 5 degrees: {s['within_5cm_5deg_percent']:.1f} %",
+            f"squared error in units of its covariance: {s['mean_normalized_error']:.2f} in the mean (1 is honest)",
         ]
     else:
         lines += ["no poses.txt: errors are not known", ""]

@@ -63,8 +63,9 @@ def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
     not estimated.
     """
     deviations = np.asarray(deviations, dtype=np.float64)
-    n_moving = np.count_nonzero(np.ptp(deviations, axis=0))
-    v = tempered_weights(scores, n_moving + SPARE_PARTICLES)
+    moving = np.ptp(deviations, axis=0) > 0
+    deviations = np.where(moving, deviations, 0.0)  # the mean of equal numbers may differ from them by rounding
+    v = tempered_weights(scores, np.count_nonzero(moving) + SPARE_PARTICLES)
     return (v[:, None] * deviations).T @ deviations
 
 
@@ -97,3 +98,14 @@ def positive_part(matrix: np.ndarray) -> np.ndarray:
     """The symmetric matrix without its negative eigenvalues: a difference of covariances as a covariance."""
     values, axes = np.linalg.eigh(matrix)
     return (axes * np.clip(values, 0.0, None)) @ axes.T
+
+
+def normalized_error(deviation: np.ndarray, covariance: np.ndarray) -> float:
+    """Squared error in units of its covariance, e' C^-1 e / d: 1 in the mean where the covariance is honest.
+
+    deviation: e `(6,)`, the true state's from the estimate (`Motion.deviations`); covariance: C `(6, 6)`, whose
+    components with a variance of 0, given and not estimated, are left out; d is the number of the others.
+    """
+    estimated = np.flatnonzero(np.diag(covariance))
+    e = np.asarray(deviation, dtype=np.float64)[estimated]
+    return float(e @ np.linalg.solve(covariance[np.ix_(estimated, estimated)], e)) / len(estimated)

@@ -21,6 +21,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import FAR, NEAR, DepthSequence
 from course_lib.depth_mcl.tracking import Agreement, TrackStatus, agreement, judge_track
+from course_lib.depth_mcl.uncertainty import normalized_error
 from course_lib.geometry import optical_pose, rotation_to_z_up, state_from_optical_pose
 
 # Standard deviations of the system noise a frame, metres and degrees (chosen: for six degrees of freedom about the
@@ -45,6 +46,8 @@ class Run(NamedTuple):
     """How each frame's image agrees with the map as seen from its estimate."""
     statuses: list[TrackStatus]
     """Whether the filter believes itself on the track, frame by frame."""
+    normalized_errors: np.ndarray
+    """`(T,)` squared error in units of the covariance (uncertainty.py); empty where the truth is not known."""
     ms_per_frame: float
     """Milliseconds, the mean over steps; reading the images is not counted."""
     frames_without_measurement: int
@@ -92,6 +95,7 @@ def run_sequence(
     if count < 1:
         raise ValueError(f"frames must be at least 1; got {frames}")
     start = sequence.camera_to_world[0] if start is None else start
+    true = state_from_optical_pose(to_z_up @ sequence.camera_to_world[:count]) if sequence.has_poses else ()
     estimates, agreements, seconds = [], [], 0.0
     with DepthRenderer(scene_map.transformed(to_z_up), used, backend) as renderer:
         localizer = MonteCarloLocalizer(renderer, n_particles, sigma, seed=seed, motion=motion, weighting=weighting)
@@ -117,13 +121,20 @@ def run_sequence(
         ess=np.array([e.ess for e in estimates]),
         agreements=agreements,
         statuses=judge_track(agreements),
+        normalized_errors=np.array(
+            [
+                normalized_error(motion.deviations(state[None], e.state)[0], e.error_covariance)
+                for e, state in zip(estimates, true, strict=False)
+            ]
+        ),
         ms_per_frame=1000 * seconds / count,
         frames_without_measurement=sum(e.status != "ok" for e in estimates),
     )
 
 
 def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float]:
-    """Median and 90th percentile of position (m) and rotation (degrees) errors; share within 5 cm, 5 degrees."""
+    """Median and 90th percentile of position (m) and rotation (degrees) errors; share within 5 cm, 5 degrees; and the
+    mean normalized error, which is near 1 where the covariance says rightly how large errors are."""
     position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
     rotation_deg = np.rad2deg(rotation)
     return {
@@ -132,4 +143,5 @@ def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float]:
         "median_rotation_deg": float(np.median(rotation_deg)),
         "p90_rotation_deg": float(np.percentile(rotation_deg, 90)),
         "within_5cm_5deg_percent": float(100 * np.mean((position <= 0.05) & (rotation_deg <= 5.0))),
+        "mean_normalized_error": float(np.mean(run.normalized_errors)),
     }

@@ -47,6 +47,7 @@ def test_a_hand_carried_run_is_followed_in_six_degrees(corridor_folder, capsys):
     summary = json.loads(capsys.readouterr().out)
     assert summary["median_position_m"] < 0.3
     assert summary["median_rotation_deg"] < 8
+    assert 0.05 < summary["mean_normalized_error"] < 20
 
 
 def test_the_same_seed_gives_the_same_table(corridor_folder, capsys):

@@ -10,10 +10,9 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, tempered_weights
+from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, normalized_error, tempered_weights
 from course_lib.geometry import state_from_optical_pose
 
-MOVING = [0, 1, 5]  # x, y, yaw
 WORTH = 50.0  # pixels: what the calibration found, written down a second time
 
 
@@ -50,6 +49,12 @@ def test_an_estimate_beside_the_best_particles_is_told(rng):
     deviations = rng.normal(0, 0.05, (300, 6))
     deviations[:, 1] += 0.3
     assert error_covariance(deviations, np.zeros(300))[1, 1] > 0.3**2
+
+
+def test_what_is_given_has_no_variance_though_a_mean_is_rounded(rng):
+    deviations = np.zeros((30, 6))
+    deviations[:, 0], deviations[:, 2] = rng.normal(0, 0.1, 30), 2e-16
+    assert error_covariance(deviations, np.zeros(30))[2, 2] == 0
 
 
 def test_what_a_frame_does_not_correct_is_carried_on(rng):
@@ -130,10 +135,11 @@ def test_a_new_start_forgets_the_earlier_errors():
     assert variances[1][0] < 2 * variances[0][0] < variances[0][9]
 
 
-def normalized_error(estimate, state):
-    """e' C^-1 e / d of a frame, d = 3."""
-    error = BODY_AXES.deviations(state[None], estimate.state)[0][MOVING]
-    return error @ np.linalg.solve(estimate.error_covariance[np.ix_(MOVING, MOVING)], error) / 3
+def test_the_error_is_counted_in_units_of_its_covariance_where_something_was_estimated():
+    covariance = np.zeros((6, 6))
+    covariance[np.ix_([0, 5], [0, 5])] = [[4.0, 1.0], [1.0, 1.0]]
+    # By hand: the inverse is [[1, -1], [-1, 4]] / 3.
+    assert normalized_error([2.0, 9.0, 9.0, 9.0, 9.0, 1.0], covariance) == pytest.approx((4 - 4 + 4) / 3 / 2)
 
 
 @pytest.mark.parametrize("seed", [10_001, 10_002])
@@ -148,6 +154,8 @@ def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_
         localizer.initialize(true[0])
         estimates = [localizer.step(subsample_depth(sequence.depth(i), camera, small)) for i in frames]
     pairs = list(zip(estimates, true, strict=True))
-    assert 0.5 < np.mean([normalized_error(*pair) for pair in pairs]) < 2
+    deviations = [BODY_AXES.deviations(state[None], e.state)[0] for e, state in pairs]
+    normalized = [normalized_error(d, e.error_covariance) for d, e in zip(deviations, estimates, strict=True)]
+    assert 0.5 < np.mean(normalized) < 2
     # The spread of the paper's own weights is no answer: beyond ten sigma in more than half of the frames.
     assert np.median([abs(e.state[0] - state[0]) / np.sqrt(e.covariance[0, 0] + 1e-30) for e, state in pairs]) > 10
