@@ -313,7 +313,7 @@ def see_to_venv_module():
     # Only the system's own Python can be completed by the system's packages.
     if shutil.which("apt-get") and sys.base_prefix == "/usr" and os.geteuid() == 0:
         say(f"Python's module {missing[0]!r}, which makes .venv, is missing: installing {venv_package()}")
-        said = f" It could not be installed: {last_lines(apt_install([venv_package()])[1])}."
+        said = f" It could not be installed: {last_lines(apt_install([venv_package()])[1]).rstrip('.')}."
         importlib.invalidate_caches()
         if not missing_venv_modules():
             return
@@ -337,10 +337,16 @@ def apt_install_line(packages):
 
 
 def apt_install(packages):
-    """Exit code and output of installing Debian's packages, as root."""
+    """Exit code and output of installing Debian's packages, as root; where apt-get complains, what it complains of.
+
+    Without a network, `apt-get update` says so and ends with code 0; the installation then says only "no candidate".
+    """
     os.environ.setdefault("DEBIAN_FRONTEND", "noninteractive")
-    run(["apt-get", "update"], None)
-    return run([*apt_install_line(packages).split(), "-o", "DPkg::Lock::Timeout=120"], None)
+    updated = run(["apt-get", "update"], None)[1]
+    code, lines = run([*apt_install_line(packages).split(), "-o", "DPkg::Lock::Timeout=120"], None)
+    complaints = [line for line in updated if line.startswith(("W: Failed to fetch", "E: "))][:1]
+    complaints += [line for line in lines if line.startswith("E: ")]
+    return code, complaints or lines
 
 
 def see_to_opengl():

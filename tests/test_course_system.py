@@ -131,6 +131,18 @@ def test_a_module_venv_that_apt_cannot_bring_is_told_with_what_apt_said(course, 
         course.see_to_venv_module()
 
 
+def test_without_a_network_apts_first_word_about_it_is_told(course, monkeypatch):
+    # What a bare Debian 12 printed; its `apt-get update` ends with code 0.
+    unreachable = "W: Failed to fetch http://mirror/InRelease  Could not connect to mirror:80 (127.0.0.1)."
+    updated = [unreachable, unreachable.replace("InRelease", "updates"), "W: Some index files failed to download."]
+    refused = ["This may mean that it is missing.", "E: Package 'python3.11-venv' has no installation candidate"]
+    monkeypatch.setitem(sys.modules, "ensurepip", None)
+    monkeypatch.setattr(course, "run", lambda command, lock: (0, updated) if "update" in command else (100, refused))
+    with pytest.raises(course.SetupError) as error:
+        course.see_to_venv_module()
+    assert f"It could not be installed: {unreachable} / {refused[1]}." in str(error.value)
+
+
 @pytest.mark.parametrize("who", ["another user", "a system without apt", "a Python that is not the system's"])
 def test_where_apt_is_of_no_use_the_cure_for_a_missing_venv_is_told(course, monkeypatch, who):
     commands = take_venv_away(course, monkeypatch, apt_brings_it=True)

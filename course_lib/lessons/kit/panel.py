@@ -77,6 +77,9 @@ class Switch:
 
 Control = Slider | Choice | Switch
 
+LEAST_LABEL_EM = 14.0  # so that the sliders of most panels begin at one place
+EM_PER_LETTER = 0.55  # measured in JupyterLab: up to 0.52; a label that is longer than its place is cut
+
 
 def _pair(slider: widgets.FloatSlider, number: widgets.BoundedFloatText, control: Slider) -> None:
     """Slider and number box move together. A browser's slider says 0.15000000000000002: the box holds 0.15."""
@@ -120,6 +123,8 @@ class Panel:
         self._held = False
         self._inputs: dict[str, widgets.ValueWidget] = {}
         self._picture, self._summary = widgets.HTML(), widgets.HTML()
+        letters = max((len(control.label) for control in controls if not isinstance(control, Switch)), default=0)
+        self._label_em = max(LEAST_LABEL_EM, EM_PER_LETTER * letters)
         rows = [self._row(control) for control in controls]
         buttons = [self._button(label) for label in self.actions]
         self.box = widgets.VBox([*rows, widgets.HBox(buttons), self._picture, self._summary])
@@ -164,12 +169,15 @@ class Panel:
         display(self)
 
     def _row(self, control: Control) -> widgets.Widget:
-        label = {"description": control.label, "style": {"description_width": "14em"}}
-        wide = widgets.Layout(width="34em")
+        label = {"description": control.label, "style": {"description_width": f"{self._label_em:g}em"}}
+        wide = widgets.Layout(width=f"{self._label_em + 20:g}em")
         if isinstance(control, Choice):
             widget = row = widgets.Dropdown(options=control.options, value=control.default, layout=wide, **label)
         elif isinstance(control, Switch):
-            widget = row = widgets.Checkbox(value=control.default, indent=False, description=control.label)
+            whole = widgets.Layout(width="auto")  # the default, 300 px, cuts long labels
+            widget = row = widgets.Checkbox(
+                value=control.default, indent=False, description=control.label, layout=whole
+            )
         else:
             ends = {"min": control.least, "max": control.greatest, "step": control.step, "value": control.default}
             slider = widgets.FloatSlider(**ends, **label, layout=wide, readout=False, continuous_update=self.continuous)

@@ -20,7 +20,7 @@ from course_lib.plots.figures import BLACK, BLUE, ORANGE
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.spherical_stereo.detection.boxes import box_iou
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
-from course_lib.spherical_stereo.detection.seam import appended_columns, extend_seam
+from course_lib.spherical_stereo.detection.seam import appended_columns, extend_seam, valid_range
 from course_lib.spherical_stereo.recording import TrueObject
 
 _N_BINS = 36  # of hue, 10 degrees each
@@ -53,20 +53,19 @@ def seam_panel(percents: Sequence[int] = CUTS) -> Panel:
         now = cuts[round(cut)]
         objects = now.objects(extension, threshold)
         seen = (now.extended if extension else now.plain).above(threshold)
-        limit = end if extension else width
         shown.set_data(small[round(cut)])
         hidden.set_visible(not extension)
         for edge in edges:
             edge.set_visible(extension)
         exact.set_segments([outline(now.sofa), outline(now.sofa - [width, 0, width, 0])])
-        drawn = _with_copies(objects.boxes, width, limit)
-        kept.set_segments([outline(box) for box, _ in drawn])
-        kept.set_color([class_style(objects.labels[index])[0] for _, index in drawn])
-        away = [i for i, box in enumerate(seen.boxes) if not _is_drawn(box, [b for b, _ in drawn], width)]
+        drawn = where_they_count(objects.boxes, width) if extension else objects.boxes
+        kept.set_segments([outline(box) for box in drawn])
+        kept.set_color([class_style(label)[0] for label in objects.labels] or BLACK)
+        away = [i for i, box in enumerate(seen.boxes) if not _is_drawn(box, drawn, width)]
         dropped.set_segments([outline(seen.boxes[i]) for i in away])
         dropped.set_color([class_style(seen.labels[i])[0] for i in away] or BLACK)
         pieces = pieces_of_sofa(objects, now.sofa, width)
-        spots = [(box, index) for box, index in drawn if index in pieces][: len(names)]
+        spots = [(drawn[index], index) for index in pieces][: len(names)]
         for text, spot in zip(names, [*spots, *[None] * len(names)], strict=False):
             text.set_text("" if spot is None else f"sofa {objects.scores[spot[1]]:.1f}")
             if spot is not None:
@@ -88,19 +87,19 @@ def seam_panel(percents: Sequence[int] = CUTS) -> Panel:
     return Panel("12 slide the seam", controls, draw)
 
 
-def _with_copies(boxes: np.ndarray, width: int, limit: float) -> list[tuple[np.ndarray, int]]:
-    """Every box with the index of its object, and once more a turn away where it shows there, too."""
-    shifted = [(box + np.array([t, 0, t, 0]), i) for i, box in enumerate(boxes) for t in (0, -width)]
-    return [(box, i) for box, i in shifted if box[2] > 0 and box[0] < limit]
+def where_they_count(boxes: np.ndarray, width: int) -> np.ndarray:
+    """The boxes (n, 4), each shifted by whole turns so that its centre lies in the range that counts."""
+    turns = np.floor(((boxes[:, 0] + boxes[:, 2]) / 2 - valid_range(width)[0]) / width)
+    return boxes - width * turns[:, None] * [1, 0, 1, 0]
 
 
-def _is_drawn(box: np.ndarray, others: Sequence[np.ndarray], width: int) -> bool:
+def _is_drawn(box: np.ndarray, others: np.ndarray, width: int) -> bool:
     """Whether nearly the same box is drawn at this very place already."""
-    if not others:
+    if not len(others):
         return False
-    right = np.array([width, 0.0, width, 0.0])  # copies may begin left of column 0
+    right = np.array([width, 0.0, width, 0.0])
     far = 10.0 * width  # a circle so long that nothing wraps
-    return float(box_iou((box + right)[None], np.array(others) + right, far).max()) > 0.95
+    return float(box_iou((box + right)[None], others + right, far).max()) > 0.95
 
 
 def hue_panel(image_bgr: np.ndarray, things: Sequence[TrueObject]) -> Panel:

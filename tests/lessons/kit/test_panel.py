@@ -117,6 +117,16 @@ def test_slow_panels_redraw_on_release():
     assert widget_of(make(continuous=False), ipywidgets.FloatSlider).continuous_update is False
 
 
+@pytest.mark.parametrize("letters", [5, 40])
+def test_a_long_label_gets_the_room_that_it_needs_and_the_slider_keeps_its_own(letters):
+    panel = Panel("test", [Slider("x", "x" * letters, 0, 4, 1, 0.5), Switch("on", "o" * 60)], lambda x, on: _any())
+    slider, box = widget_of(panel, ipywidgets.FloatSlider), widget_of(panel, ipywidgets.Checkbox)
+    label_em = float(slider.style.description_width.removesuffix("em"))
+    assert label_em >= max(14, 0.52 * letters)  # 0.52 em a letter was measured in JupyterLab
+    assert float(slider.layout.width.removesuffix("em")) == pytest.approx(label_em + 20)
+    assert box.layout.width == "auto"  # else a check box is 300 px wide, and its label cut
+
+
 def test_only_plain_widgets_are_used():
     allowed = {"VBox", "HBox", "FloatSlider", "BoundedFloatText", "Dropdown", "Checkbox", "Button", "HTML"}
     assert {type(w).__name__ for w in all_widgets(make().box)} <= allowed

@@ -8,7 +8,7 @@ import pytest
 from course_lib.lessons.kit.exercises import find_exercise, judge
 from course_lib.lessons.kit.room_photographs import the_image
 from course_lib.lessons.lesson_12.figures import crop_of, hues_and_saturations, outline, part_of
-from course_lib.lessons.lesson_12.panel import seam_panel
+from course_lib.lessons.lesson_12.panel import seam_panel, where_they_count
 from course_lib.lessons.lesson_12.scores import colours_against_map
 from course_lib.lessons.lesson_12.seam_cuts import (
     CUTS,
@@ -25,6 +25,7 @@ from course_lib.lessons.lesson_12.seam_cuts import (
 )
 from course_lib.spherical_stereo.detection.boxes import box_iou
 from course_lib.spherical_stereo.detection.colour import central_half, mean_hue_saturation
+from course_lib.spherical_stereo.detection.seam import centres_in_range
 
 WIDTH = 1280
 
@@ -123,6 +124,16 @@ def test_the_extension_switch_changes_what_the_panel_says_of_the_sofa():
     off, on = (panel.draw(**(panel.defaults() | {"extension": e, "threshold": 0.3})).summary for e in (False, True))
     overlap = [float(text.split("(IoU) ")[1].split(";")[0]) for text in (off, on)]
     assert overlap[1] > overlap[0]
+
+
+@pytest.mark.parametrize("percent", [50, 70])
+def test_the_panel_draws_a_counted_box_where_its_centre_counts(percent):
+    boxes = cut_sofa(percent).objects(True, 0.5).boxes
+    drawn = where_they_count(boxes, WIDTH)
+    assert centres_in_range(drawn, WIDTH).all()
+    assert (drawn - boxes)[:, 0] % WIDTH == pytest.approx(0)
+    assert drawn[:, 2] - drawn[:, 0] == pytest.approx(boxes[:, 2] - boxes[:, 0])
+    assert not centres_in_range(boxes, WIDTH).all(), "some box of this image needs the turn"
 
 
 def by_one_turn(a, b, width):
