@@ -28,6 +28,7 @@ from course_lib.depth_mcl.particle_filter import effective_sample_size
 # components are left at least. Both chosen on tuning worlds: see above.
 INDEPENDENT_PIXELS = 50.0
 SPARE_PARTICLES = 2
+_NO_VARIANCE = 1e-18  # a nanometre's, or a nanoradian's: what is less is rounding
 _SMALLEST_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cloud is flat there
 
 
@@ -104,8 +105,8 @@ def normalized_error(deviation: np.ndarray, covariance: np.ndarray) -> float:
     """Squared error in units of its covariance, e' C^-1 e / d: 1 in the mean where the covariance is honest.
 
     deviation: e `(6,)`, the true state's from the estimate (`Motion.deviations`); covariance: C `(6, 6)`, whose
-    components with a variance of 0, given and not estimated, are left out; d is the number of the others.
+    components without a variance, given and not estimated, are left out; d is the number of the others.
     """
-    estimated = np.flatnonzero(np.diag(covariance))
+    estimated = np.flatnonzero(np.diag(covariance) > _NO_VARIANCE)
     e = np.asarray(deviation, dtype=np.float64)[estimated]
     return float(e @ np.linalg.solve(covariance[np.ix_(estimated, estimated)], e)) / len(estimated)
