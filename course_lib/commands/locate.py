@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
-from course_lib.commands.stereo import BOXES_FORMAT
+from course_lib.commands.stereo import add_pair_arguments
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from course_lib.spherical_stereo.panorama import View
@@ -23,12 +23,8 @@ if TYPE_CHECKING:  # imported where they are used, so that --help does not wait 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `locate`."""
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the example
-    parser.epilog = BOXES_FORMAT
-    parser.add_argument("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
-    parser.add_argument("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
+    add_pair_arguments(parser)
     parser.add_argument("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
-    parser.add_argument("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
     parser.add_argument(
         "--boxes",
         type=Path,

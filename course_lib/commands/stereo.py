@@ -19,13 +19,18 @@ the boxes file, in pixels (left, top, right, bottom) of images of that size; "na
 """
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options of `stereo`."""
+def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares what every command on two panoramas is given, and ends its help with the format of boxes."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the example
     parser.epilog = BOXES_FORMAT
     parser.add_argument("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
     parser.add_argument("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
     parser.add_argument("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options of `stereo`."""
+    add_pair_arguments(parser)
     parser.add_argument(
         "--boxes",
         type=Path,

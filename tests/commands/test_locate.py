@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands import locate
+from course_lib.commands.stereo import BOXES_FORMAT
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from tests.spherical_stereo.stereo_scene import TRUE_POSE, mapped_scene
 from tests.spherical_stereo.vertical_pair import BASELINE
@@ -140,4 +140,4 @@ def test_what_does_not_fit_is_named_in_one_line(pair, more, other, message, caps
 def test_the_help_shows_the_format_of_the_boxes(capsys):
     with pytest.raises(SystemExit):
         main(["locate", "--help"])
-    assert locate.BOXES_FORMAT in capsys.readouterr().out
+    assert BOXES_FORMAT in capsys.readouterr().out
