@@ -40,7 +40,7 @@ class MeshChunks:
 
         camera_to_world: `(N, 4, 4)`, optical convention, in the frame of the vertices.
         """
-        normals = _inward_normals(camera)
+        normals = inward_normals(camera)
         rotation, position = camera_to_world[:, :3, :3], camera_to_world[:, :3, 3]
         world_normals = np.einsum("nij,pj->npi", rotation, normals)
         offsets = np.einsum("npi,ni->np", world_normals, position)
@@ -57,12 +57,25 @@ class MeshChunks:
             seen[todo] = inside
         return seen
 
+    def with_own_vertices(self, faces: np.ndarray, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Vertices `(V', 3)` chunk by chunk, where each chunk's begin `(C + 1,)`, and faces `(F, 3)` counted from there.
+
+        faces, vertices: those that the chunks were made of. A vertex on the border of two chunks is in both.
+        """
+        chunk = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
+        # One number for a vertex in a chunk; sorted, they stand chunk by chunk.
+        keys = (chunk[:, None] * np.int64(len(vertices)) + faces[self.order]).ravel()
+        own, index = np.unique(keys, return_inverse=True)
+        vertex_starts = np.searchsorted(own, np.arange(len(self.starts)) * np.int64(len(vertices)))
+        local = index.reshape(-1, 3) - vertex_starts[chunk][:, None]
+        return vertices[own % len(vertices)], vertex_starts, np.ascontiguousarray(local, dtype=np.int32)
+
     def faces_of(self, chunks: np.ndarray) -> np.ndarray:
         """Positions in chunk order of the triangles of the chunks marked in `(C,)` bool."""
         return np.flatnonzero(np.repeat(chunks, np.diff(self.starts)))
 
 
-def _inward_normals(camera: DepthCamera) -> np.ndarray:
+def inward_normals(camera: DepthCamera) -> np.ndarray:
     """Unit normals `(5, 3)`, optical frame, pointing into the view: its left, right, top, bottom, and the front."""
     left, right = (-0.5 - camera.cx) / camera.fx, (camera.width - 0.5 - camera.cx) / camera.fx
     top, bottom = (-0.5 - camera.cy) / camera.fy, (camera.height - 0.5 - camera.cy) / camera.fy

@@ -71,6 +71,10 @@ class DepthRenderer:
             from course_lib.depth_mcl.rendering.vtk_backend import VtkBackend
 
             return VtkBackend(self.scene_map, self.camera, self.batch_size)
+        if self.backend == "raster":
+            from course_lib.depth_mcl.rendering.raster_backend import RasterBackend
+
+            return RasterBackend(self.scene_map, self.camera)
         if self.backend == "ray":
             from course_lib.depth_mcl.rendering.ray_backend import RayBackend
 
