@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 import re
 import tempfile
 from pathlib import Path
+
+
+def add_backend_argument(parser: argparse.ArgumentParser) -> None:
+    """Declares `--backend`: how depth images are rendered (`DepthRenderer`)."""
+    parser.add_argument(
+        "--backend",
+        choices=["raster", "vtk", "ray"],
+        default="raster",
+        help="z-buffer on the processors (default), OpenGL's z-buffer (for a graphics card), or ray casting",
+    )
 
 
 def require_seed(seed: int) -> None:

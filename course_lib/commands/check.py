@@ -173,7 +173,7 @@ def find_broken_imports(modules: list[str]) -> dict[str, str]:
 
 def check_depth_images() -> Iterator[Finding]:
     """OpenGL's renderer, and one depth image of a tilted plane by each backend beside its closed form."""
-    for backend, name in (("vtk", "z-buffer"), ("ray", "ray casting")):
+    for backend, name in (("raster", "z-buffer"), ("vtk", "OpenGL's z-buffer"), ("ray", "ray casting")):
         command = [sys.executable, *APART, "-m", "course_lib.commands.depth_image_probe", backend]
         code, output = run_apart(command, RENDER_TIMEOUT_S)
         result = read_result(output) if code == 0 else None

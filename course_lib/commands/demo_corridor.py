@@ -14,6 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from course_lib.commands.arguments import add_backend_argument
 from course_lib.commands.corridor_tables import table_1, table_of_kindnesses, table_over_recordings
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
@@ -56,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
     parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames (default: all)")
     parser.add_argument("--data", type=Path, metavar="FOLDER", help="corridor data (default: data/corridor)")
-    parser.add_argument("--backend", choices=["vtk", "ray"], default="vtk", help="z-buffer (default) or ray casting")
+    add_backend_argument(parser)
     parser.add_argument(
         "--out",
         type=Path,

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from course_lib.commands.arguments import add_backend_argument
+
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import DepthSequence
@@ -102,7 +104,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (default: 2; xyyaw: 1.5)"
     )
-    parser.add_argument("--backend", choices=["vtk", "ray"], default="vtk", help="z-buffer (default) or ray casting")
+    add_backend_argument(parser)
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write results, trajectory, figure here")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
 

@@ -16,7 +16,7 @@ from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, MonteCarloLocalizer, NoMeasurementWarning, WeightingRule
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, Motion
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.rendering.renderer import Backend, DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import FAR, NEAR, DepthSequence
@@ -74,7 +74,7 @@ def run_sequence(
     up: str | None = None,
     start: np.ndarray | None = None,
     frames: int | None = None,
-    backend: str = "vtk",
+    backend: Backend = "raster",
     near: float = NEAR,
     far: float = FAR,
     progress: Callable = iter,

@@ -14,7 +14,7 @@ import course_lib
 
 def versions() -> dict[str, str]:
     """Versions that a result depends on: Python, this library, and the packages that compute."""
-    packages = ("numpy", "scipy", "vtk", "trimesh", "opencv-python-headless")
+    packages = ("numpy", "scipy", "numba", "vtk", "trimesh", "opencv-python-headless")
     return {"python": platform.python_version(), "course_lib": course_lib.__version__} | {
         name: version(name) for name in packages
     }

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.rendering.renderer import Backend, DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.experiments.corridor import Run
@@ -15,7 +15,7 @@ from course_lib.plots.figures import depth_images
 BESIDE = np.array([-0.5, 0.0, 0.0, 0.0, 0.0, np.deg2rad(4.0)])  # from the estimate: half a metre back, four degrees
 
 
-def overview_figure(scene_map: SceneMap, sequence: DepthSequence, run: Run, backend: str = "vtk") -> Figure:
+def overview_figure(scene_map: SceneMap, sequence: DepthSequence, run: Run, backend: Backend = "raster") -> Figure:
     """The middle frame of a run in x, y, yaw: the measured image, the map from the estimate, the map from beside it.
 
     Agreement is eq. (8) divided by the number of measured pixels, 0 to 1.

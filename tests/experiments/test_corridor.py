@@ -59,7 +59,7 @@ def test_what_is_not_estimated_stays_at_its_first_value(corridor):
 
 def test_both_backends_lead_to_the_same_estimates(corridor):
     scene_map, _, sequence = corridor
-    runs = [run_sequence(scene_map, sequence, frames=2, n_particles=30, backend=b) for b in ("vtk", "ray")]
+    runs = [run_sequence(scene_map, sequence, frames=2, n_particles=30, backend=b) for b in ("raster", "vtk", "ray")]
     assert runs[0].states == pytest.approx(runs[1].states, abs=2e-3)
 
 

@@ -58,7 +58,7 @@ class MeshChunks:
         return seen
 
     def with_own_vertices(self, faces: np.ndarray, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Vertices `(V', 3)` chunk by chunk, where each chunk's begin `(C + 1,)`, and faces `(F, 3)` counted from there.
+        """Vertices `(V', 3)` chunk by chunk, where each chunk's begin `(C + 1,)`, and faces `(F, 3)` counted from it.
 
         faces, vertices: those that the chunks were made of. A vertex on the border of two chunks is in both.
         """

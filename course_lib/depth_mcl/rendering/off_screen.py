@@ -22,7 +22,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 CURE = (
     "On Debian or Ubuntu: apt-get install libegl1 libgl1-mesa-dri libgl1 (`python3 course.py check` tells what is "
-    'missing). Without OpenGL, ray casting gives the same images: DepthRenderer(..., backend="ray"), or --backend ray'
+    'missing). Without OpenGL, DepthRenderer(..., backend="raster") gives the same images: leave out --backend vtk'
 )
 
 _windows: weakref.WeakSet[vtkRenderWindow] = weakref.WeakSet()
@@ -54,7 +54,7 @@ def require_own_process(process: int) -> None:
         raise OpenGLError(
             f"OpenGL was started in process {process}, and this is process {os.getpid()}, forked from it: a fork "
             'leaves the threads of OpenGL behind, and drawing would hang. Start workers with "spawn" or "forkserver" '
-            '(multiprocessing.get_context("spawn")), or fork before the first renderer, or use backend="ray"'
+            '(multiprocessing.get_context("spawn")), or fork before the first renderer, or use backend="raster"'
         )
 
 

@@ -1,4 +1,4 @@
-"""Depth images by the course's own z-buffer (rasterizer.py), on every processor: no OpenGL, no window, no fork to fear."""
+"""Depth images by the course's own z-buffer (rasterizer.py), on every processor: no OpenGL, no window, no driver."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class RasterBackend:
 
         def draw(start: int) -> None:
             views = slice(start, start + VIEWS_A_TASK)
-            scratch = np.empty((6, int(np.diff(self._vertex_starts).max())), dtype=np.float32)
+            scratch = np.empty((6, int(np.diff(self._vertex_starts).max())))
             rasterizer.draw_views(
                 out[views],
                 rotations[views],

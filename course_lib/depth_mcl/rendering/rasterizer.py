@@ -2,8 +2,8 @@
 
 For each view: chunks of the mesh that the view cannot see are left out; the others are drawn, the nearest first. A
 chunk's vertices are turned into the camera's frame and projected; each triangle is filled row by row, and each pixel
-keeps the nearest depth. What a pixel keeps is 1/Z, because that is linear in the image: three vertices give a plane over
-pixel coordinates, and the nearest is the greatest. 0 is "nothing hit".
+keeps the nearest depth. What a pixel keeps is 1/Z, because that is linear in the image: three vertices give a plane
+over pixel coordinates, and the nearest is the greatest. 0 is "nothing hit".
 
     u = fx X/Z + cx,    v = fy Y/Z + cy,    1/Z = a u + b v + c
 
@@ -22,17 +22,20 @@ compiled = njit(nogil=True, cache=True, fastmath=True)
 
 BLOCK = 8  # pixels: edge of the blocks whose farthest depth is kept
 # Pixels by which a row's ends are stretched: two triangles leave no gap between them through rounding.
-_OVERLAP = np.float32(1e-4)
+_OVERLAP = 1e-4
 _ONE = np.float32(1.0)
 
 
 @compiled
-def draw_views(images, rotations, positions, lens, sides, spheres, vertex_starts, vertices, face_starts, faces, scratch):
+def draw_views(
+    images, rotations, positions, lens, sides, spheres, vertex_starts, vertices, face_starts, faces, scratch
+):
     """Fills `images` `(N, H, W)` float32 with 1/Z of the mesh, 0 where nothing is hit.
 
     rotations `(N, 3, 3)` from the world to the cameras, positions `(N, 3)`; lens: fx, fy, cx, cy, near, far; sides
-    `(4, 3)` inward normals of the view; spheres `(C, 4)` around the chunks, centre and radius; vertices `(V, 3)` chunk by
-    chunk, faces `(F, 3)` indices within the chunk's own vertices. All float32. scratch: `(6, V_max)` for one chunk.
+    `(4, 3)` inward normals of the view; spheres `(C, 4)` around the chunks, centre and radius; vertices `(V, 3)` chunk
+    by chunk, faces `(F, 3)` indices within the chunk's own vertices. All float32. scratch: `(6, V_max)` float64, for
+    one chunk.
     """
     n_chunks = len(spheres)
     seen = np.empty(n_chunks, np.int64)
@@ -139,7 +142,7 @@ def project(scratch, rotation, position, lens, vertices):
     """Writes u, v, 1/Z and X, Y, Z of vertices `(n, 3)` into the first n columns of `scratch`."""
     for i in range(len(vertices)):
         x, y, z = to_camera(rotation, position, vertices[i, 0], vertices[i, 1], vertices[i, 2])
-        inverse = _ONE / z if z > lens[4] else np.float32(0)
+        inverse = 1.0 / z if z > lens[4] else 0.0
         scratch[0, i] = lens[0] * x * inverse + lens[2]
         scratch[1, i] = lens[1] * y * inverse + lens[3]
         scratch[2, i] = inverse
@@ -163,7 +166,7 @@ def draw_faces(image, scratch, lens, faces):
 def draw_cut(image, scratch, lens, a, b, c):
     """Fills the part of one triangle that lies behind the near plane: a polygon of three or four corners."""
     near = lens[4]
-    corners = np.empty((4, 3), np.float32)
+    corners = np.empty((4, 3), np.float64)
     count = 0
     for i, j in ((a, b), (b, c), (c, a)):
         zi, zj = scratch[5, i], scratch[5, j]
@@ -176,7 +179,7 @@ def draw_cut(image, scratch, lens, a, b, c):
             y = scratch[4, i] + share * (scratch[4, j] - scratch[4, i])
             corners[count, 0] = lens[0] * x / near + lens[2]
             corners[count, 1] = lens[1] * y / near + lens[3]
-            corners[count, 2] = _ONE / near
+            corners[count, 2] = 1.0 / near
             count += 1
     for k in range(1, count - 1):
         p, q, r = corners[0], corners[k], corners[k + 1]
@@ -206,22 +209,24 @@ def fill_triangle(image, u0, v0, w0, u1, v1, w1, u2, v2, w2):
         return
     along_u = ((w1 - w0) * (v2 - v0) - (w2 - w0) * (v1 - v0)) / twice_area
     along_v = ((w2 - w0) * (u1 - u0) - (w1 - w0) * (u2 - u0)) / twice_area
-    least, greatest = min(w0, w1, w2), max(w0, w1, w2)  # a sliver's plane is steep: its rounding must not leave them
+    # The plane of a sliver is steep: its rounding must not leave the triangle's own depths.
+    least, greatest = np.float32(min(w0, w1, w2)), np.float32(max(w0, w1, w2))
     long_slope = (u2 - u0) / (v2 - v0)
-    upper_slope = (u1 - u0) / (v1 - v0) if v1 > v0 else np.float32(0)
-    lower_slope = (u2 - u1) / (v2 - v1) if v2 > v1 else np.float32(0)
+    upper_slope = (u1 - u0) / (v1 - v0) if v1 > v0 else 0.0
+    lower_slope = (u2 - u1) / (v2 - v1) if v2 > v1 else 0.0
     for row in range(first_row, last_row + 1):
-        v = np.float32(row)
+        v = float(row)
         start = u0 + (v - v0) * long_slope
         end = u0 + (v - v0) * upper_slope if v < v1 else u1 + (v - v1) * lower_slope
         if start > end:
             start, end = end, start
         first = max(0, int(np.ceil(start - _OVERLAP)))
         last = min(width - 1, int(np.floor(end + _OVERLAP)))
-        at_zero = w0 + along_v * (v - v0) - along_u * u0
+        # The row's first pixel in float64, for a corner far outside the image is far to reckon from; then in float32.
+        w_first, step = np.float32(w0 + along_v * (v - v0) + along_u * (first - u0)), np.float32(along_u)
         line = image[row]
         for column in range(first, last + 1):
-            w = min(max(at_zero + along_u * np.float32(column), least), greatest)
+            w = min(max(w_first + step * np.float32(column - first), least), greatest)
             line[column] = max(line[column], w)
 
 

@@ -1,13 +1,15 @@
 """GPU scene simulation (paper 1, 3.3.1): what a depth camera would measure at every particle's pose.
 
-`DepthRenderer` is one door with two rooms behind it. Backend "vtk" draws the map once per particle, as tiles of one
-off-screen window, and reads the z-buffer back once (vtk_backend.py): the paper's method. Backend "ray" shoots one ray
-through every pixel centre (ray_backend.py): the reference that tests compare with. Both take float64 states, subtract
-the map's anchor before anything becomes float32, and give depth along the optical axis, `inf` where nothing between the
-camera's near and far planes is hit.
+`DepthRenderer` is one door with three rooms behind it. Backend "raster" fills a z-buffer in the course's own compiled
+loops, on every processor (rasterizer.py). Backend "vtk" is the paper's way, for whoever has a graphics card: it draws
+the map once per particle, as tiles of one off-screen window, and reads OpenGL's z-buffer back once (vtk_backend.py).
+Backend "ray" shoots one ray through every pixel centre (ray_backend.py): the reference that tests compare with. All
+take float64 states, subtract the map's anchor before anything becomes float32, and give depth along the optical axis,
+`inf` where nothing between the camera's near and far planes is hit.
 
-Threads may share a renderer. Processes: a forked child may use one that it inherits if it is "ray"; "vtk" says by name
-that it cannot. Pickled, as "spawn" does it, a renderer takes its map and camera along and opens again when first used.
+Threads may share a renderer. Processes: a forked child may use one that it inherits, unless it is "vtk", which says by
+name that it cannot. Pickled, as "spawn" does it, a renderer takes its map and camera along and opens again when first
+used.
 """
 
 from __future__ import annotations
@@ -21,12 +23,16 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.geometry import as_states, is_rotation, optical_pose
 
-if TYPE_CHECKING:  # imported when asked for: VTK takes its time, and needs OpenGL's libraries
+if TYPE_CHECKING:  # imported when asked for: Numba and VTK take their time, and VTK needs OpenGL's libraries
+    from course_lib.depth_mcl.rendering.raster_backend import RasterBackend
     from course_lib.depth_mcl.rendering.ray_backend import RayBackend
     from course_lib.depth_mcl.rendering.vtk_backend import VtkBackend
 
 # Pixels of one off-screen window: 200 tiles of the SR4000, about 80 MB with colour and depth.
 MAX_BATCH_PIXELS = 200 * 176 * 144
+
+
+Backend = Literal["raster", "vtk", "ray"]
 
 
 class RendererClosedError(RuntimeError):
@@ -42,7 +48,7 @@ class DepthRenderer:
     """Depth images of a map from any number of poses.
 
     scene_map: triangles in the world. camera: the depth camera, its resolution, and its near and far planes.
-    backend: "vtk" (z-buffer) or "ray" (ray casting, the reference). max_batch_pixels bounds the memory of one batch:
+    backend: "raster" (z-buffer), "vtk" (OpenGL's) or "ray" (the reference). max_batch_pixels bounds one batch's memory:
     as many images as fit are drawn at once, at least one.
     A context manager; `close()` frees the window, after which every call raises `RendererClosedError`.
     Raises `OpenGLError` where OpenGL cannot start (backend "vtk"), which is so in a process forked after the first
@@ -53,7 +59,7 @@ class DepthRenderer:
         self,
         scene_map: SceneMap,
         camera: DepthCamera,
-        backend: Literal["vtk", "ray"] = "vtk",
+        backend: Backend = "raster",
         *,
         max_batch_pixels: int = MAX_BATCH_PIXELS,
     ) -> None:
@@ -66,7 +72,7 @@ class DepthRenderer:
         self._closed = False
         self._open_backend = self._new_backend()
 
-    def _new_backend(self) -> VtkBackend | RayBackend:
+    def _new_backend(self) -> RasterBackend | VtkBackend | RayBackend:
         if self.backend == "vtk":
             from course_lib.depth_mcl.rendering.vtk_backend import VtkBackend
 
@@ -79,7 +85,10 @@ class DepthRenderer:
             from course_lib.depth_mcl.rendering.ray_backend import RayBackend
 
             return RayBackend(self.scene_map, self.camera)
-        raise ValueError(f"backend must be 'vtk' (z-buffer) or 'ray' (ray casting); got {self.backend!r}")
+        raise ValueError(
+            f"backend must be 'raster' (z-buffer), 'vtk' (OpenGL's z-buffer) or 'ray' (ray casting); "
+            f"got {self.backend!r}"
+        )
 
     def render(self, states: np.ndarray) -> np.ndarray:
         """Depth images `(N, H, W)` float32 metres of the map from states `(N, 6)`; `inf` where nothing is hit.
@@ -135,7 +144,7 @@ class DepthRenderer:
             self._open_backend.close()
             self._open_backend = None
 
-    def _backend(self) -> VtkBackend | RayBackend:
+    def _backend(self) -> RasterBackend | VtkBackend | RayBackend:
         """What draws; after a journey to another process it is opened here, at first use.
 
         Not on arrival, where an error would kill a pool's worker and leave the pool waiting for its answer.

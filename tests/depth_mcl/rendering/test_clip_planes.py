@@ -34,7 +34,7 @@ def seen(depth, camera, state):
     """Share of the pixels on which a board at this depth is seen: by each path, views and points."""
     points = depth * camera.rays()
     shares = {"NumPy": np.isfinite(depth_image_from_points(points, camera)).mean()}
-    for backend in ("vtk", "ray"):
+    for backend in ("raster", "vtk", "ray"):
         with DepthRenderer(board_map(depth, state), camera, backend) as renderer:
             shares[f"{backend}, views"] = np.isfinite(renderer.render(state)).mean()
             shares[f"{backend}, points"] = np.isfinite(renderer.render_points(points)).mean()
@@ -68,7 +68,7 @@ def test_the_planes_are_wider_by_rounding_alone():
     assert 0.98e-3 < near < 0.001
 
 
-@pytest.mark.parametrize("backend", ["vtk", "ray"])
+@pytest.mark.parametrize("backend", ["raster", "vtk", "ray"])
 def test_a_surface_just_before_near_does_not_hide_the_one_on_far(backend):
     camera = DepthCamera(16, 12, 9.0, 11.0, 6.7, 6.1, near=0.5, far=4.0)
     state = np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])

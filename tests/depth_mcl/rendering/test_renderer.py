@@ -28,7 +28,7 @@ from tests.depth_mcl.shapes import (
     wall,
 )
 
-BACKENDS = ["vtk", "ray"]
+BACKENDS = ["raster", "vtk", "ray"]
 HALF_MILLIMETRE = 5e-4
 
 
@@ -360,7 +360,7 @@ def test_an_unknown_backend_and_too_large_an_image_are_named():
     with pytest.raises(ValueError, match="ray"):
         DepthRenderer(room(), SMALL, "opengl")
     with pytest.raises(ValueError, match="resized"):
-        DepthRenderer(room(), SMALL.resized(20_000, 10))
+        DepthRenderer(room(), SMALL.resized(20_000, 10), "vtk")
 
 
 def test_opengl_that_cannot_start_names_the_cure_and_the_other_backend():
@@ -370,15 +370,15 @@ def test_opengl_that_cannot_start_names_the_cure_and_the_other_backend():
         "from course_lib.depth_mcl import DepthCamera, DepthRenderer, OpenGLError, SceneMap\n"
         "scene = SceneMap(np.array([[2., -9, -9], [2, 9, -9], [2, 0, 9]]), np.array([[0, 1, 2]]))\n"
         "camera = DepthCamera.sr4000()\n"
-        "try:\n    DepthRenderer(scene, camera)\nexcept OpenGLError as error:\n    print('NAMED', error)\n"
-        "print(np.median(DepthRenderer(scene, camera, backend='ray').render(np.zeros(6))))\n"
+        "try:\n    DepthRenderer(scene, camera, 'vtk')\nexcept OpenGLError as error:\n    print('NAMED', error)\n"
+        "print(np.median(DepthRenderer(scene, camera).render(np.zeros(6))))\n"
     )
     environment = os.environ | {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "DISPLAY": ""}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=1800)
     assert done.returncode == 0, done.stderr
     assert "NAMED" in done.stdout
     assert "libegl1" in done.stdout
-    assert 'backend="ray"' in done.stdout
+    assert 'backend="raster"' in done.stdout
     assert done.stdout.strip().endswith("2.0")
     assert "Traceback" not in done.stderr
     assert issubclass(OpenGLError, RuntimeError)
