@@ -33,6 +33,13 @@ def paired_pixels(measured: np.ndarray, simulated: np.ndarray) -> tuple[np.ndarr
     return valid_pixels(measured), simulated
 
 
+def checked_alpha(alpha: float) -> float:
+    """Raises `ValueError` for alpha not positive, in metres."""
+    if not (np.isfinite(alpha) and alpha > 0):
+        raise ValueError(f"alpha must be a positive number of metres; got {alpha!r}")
+    return float(alpha)
+
+
 def likelihood(measured: np.ndarray, simulated: np.ndarray, alpha: float = ALPHA) -> np.ndarray:
     """Likelihood `(N,)` of every particle: how well its simulated depth image agrees with the measured one.
 
@@ -46,8 +53,7 @@ def likelihood(measured: np.ndarray, simulated: np.ndarray, alpha: float = ALPHA
     Raises `ValueError` for alpha not positive, `DepthImageError` for images that do not fit.
     Source: paper 1, eq. (8).
     """
-    if not (np.isfinite(alpha) and alpha > 0):
-        raise ValueError(f"alpha must be a positive number of metres; got {alpha!r}")
+    alpha = checked_alpha(alpha)
     valid, simulated = paired_pixels(measured, simulated)
     z = np.asarray(measured, dtype=np.float32)[valid]
     result = np.empty(len(simulated))

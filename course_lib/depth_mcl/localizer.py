@@ -18,11 +18,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from course_lib.depth_mcl.compiled_likelihood import likelihood
 from course_lib.depth_mcl.likelihood import (
     ALPHA,
     BETA,
     DepthImageError,
-    likelihood,
     normalize_likelihood,
     valid_pixels,
     weights,
