@@ -22,7 +22,7 @@ def slanted_wall_error(near: float) -> np.ndarray:
     along, up = np.array([np.sin(turn), np.cos(turn), 0.0]), np.array([0.0, 0.0, 1.0])
     middle = np.array([7.5, 0.0, 0.0])
     corners = [middle + a * along + b * up for a, b in ((-9, -9), (9, -9), (9, 9), (-9, 9))]
-    with DepthRenderer(SceneMap(np.array(corners), np.array([[0, 1, 2], [0, 2, 3]])), camera) as renderer:
+    with DepthRenderer(SceneMap(np.array(corners), np.array([[0, 1, 2], [0, 2, 3]])), camera, "vtk") as renderer:
         image = renderer.render(np.zeros(6))[0]
     # Plane n . p = d in the body frame (x forward, y left): with p = Z (1, -ray x, -ray y), Z = d / (n . (1, ...)).
     normal = np.cross(along, up)
@@ -36,7 +36,7 @@ def seconds_per_view(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Seconds a view for each count, the best of a few repeats: as tiles of one window, and one after the other."""
     tiled, single = np.full((2, len(counts)), np.inf)
-    with DepthRenderer(scene_map, camera) as window, DepthRenderer(scene_map, camera) as alone:
+    with DepthRenderer(scene_map, camera, "vtk") as window, DepthRenderer(scene_map, camera, "vtk") as alone:
         for _ in progress(range(repeats), "measuring times"):
             for index, count in enumerate(counts):
                 started = time.perf_counter()
