@@ -161,3 +161,20 @@ def test_the_rows_of_the_rooms_are_the_stored_shares_and_intervals(name, source,
         for kind in ("correct", "incorrect", "unable")
     )
     assert [cell.strip() for cell in row.split("|")[2:5]] == list(shares)
+
+
+@pytest.mark.parametrize("source", ["images", "exact_boxes"])
+@pytest.mark.parametrize("tilt", ["0", "0.1", "0.3", "1"])
+def test_the_rows_of_the_tilts_are_the_stored_shares_and_errors(source, tilt):
+    stored = json.loads((ROOM_RESULTS / "tilts_1-10.json").read_text())["tilts"][tilt][source]
+    name = f"| from {source.replace('_', ' ')}, {tilt} degrees |"
+    row = next(line for line in RESULTS.splitlines() if line.startswith(name))
+    errors = (
+        ", ".join(
+            f"{stored[method]['correct'][f'median_{error}']:.{digits}f}"
+            for error, digits in (("dx_m", 2), ("dy_m", 2), ("dtheta_deg", 1))
+        )
+        for method in ("paper", "weighted_fit")
+    )
+    shares = f"{stored['paper']['correct_percent']:.0f}", f"{stored['library']['unable_percent']:.0f}"
+    assert [cell.strip() for cell in row.split("|")[2:6]] == [*shares, *errors]
