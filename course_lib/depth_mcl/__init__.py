@@ -4,6 +4,8 @@
     rendering/           3.3.1, eq. (6): a depth image of the map for every particle
     sensor               3.3.2, eq. (7): the camera's own points, made comparable
     likelihood           3.3.3 and 3.3.4, eqs (8) to (11): A-2
+    compiled_likelihood  eq. (8) once more, in a compiled loop
+    weighting            both as a part of the filter that can be exchanged
     motion               3.2, eq. (5): A-1, as printed and in the body's axes
     particle_filter      3.1 and 3.4, eqs (3), (4), (12): start, A-3
     localizer            figure 1: all of it in order

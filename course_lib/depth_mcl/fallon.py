@@ -17,7 +17,7 @@ import numpy as np
 from scipy.stats import norm
 
 from course_lib.depth_mcl.likelihood import paired_pixels, valid_pixels
-from course_lib.depth_mcl.localizer import Weighting, WeightingRule
+from course_lib.depth_mcl.weighting import Weighting
 
 COARSE_WIDTH, COARSE_HEIGHT = 20, 15  # pixels, the size the constants below were made for
 
@@ -104,14 +104,18 @@ _FORMS = {
 }
 
 
-def fallon_weighting(form: Literal["depth", "disparity"] = "depth") -> WeightingRule:
-    """Weighting rule for `MonteCarloLocalizer`: "depth" or "disparity". The score is the log-likelihood a pixel."""
+def fallon_weighting(form: Literal["depth", "disparity"] = "depth") -> Weighting:
+    """Weighting for `MonteCarloLocalizer`: "depth" or "disparity". The score is the log-likelihood a pixel."""
     if form not in _FORMS:
         raise ValueError(f"form must be 'depth' or 'disparity'; got {form!r}")
-    return partial(_weigh, form)
+    return Weighting(partial(_score, form), partial(_weigh, form))
 
 
-def _weigh(form: str, measured: np.ndarray, simulated: np.ndarray) -> Weighting:
+def _score(form: str, measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
     log_likelihood, compared_pixels = _FORMS[form]
-    values = log_likelihood(measured, simulated)
-    return Weighting(weights_from_log_likelihood(values), values / max(1, compared_pixels(measured).sum()))
+    return log_likelihood(measured, simulated) / max(1, compared_pixels(measured).sum())
+
+
+def _weigh(form: str, measured: np.ndarray, scores: np.ndarray) -> np.ndarray:
+    compared_pixels = _FORMS[form][1]
+    return weights_from_log_likelihood(scores * max(1, compared_pixels(measured).sum()))

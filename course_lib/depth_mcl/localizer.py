@@ -6,31 +6,22 @@
         estimate = localizer.step(depth)
 
 How particles move and how they are weighed are parts that can be exchanged: the motions are in motion.py,
-`paper_weighting` is here, Fallon's in fallon.py.
+the paper's weighting in weighting.py, Fallon's in fallon.py.
 """
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
-from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.compiled_likelihood import likelihood
-from course_lib.depth_mcl.likelihood import (
-    ALPHA,
-    BETA,
-    DepthImageError,
-    normalize_likelihood,
-    valid_pixels,
-    weights,
-)
+from course_lib.depth_mcl.likelihood import ALPHA, BETA, DepthImageError, valid_pixels
 from course_lib.depth_mcl.motion import BODY_AXES, Motion, checked_sigma
 from course_lib.depth_mcl.particle_filter import Scheme, effective_sample_size, initial_particles, resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, positive_part
+from course_lib.depth_mcl.weighting import Weighting, paper_weighting
 
 # Standard deviations of the system noise a frame for the paper's experiment (x, y, yaw), metres and radians: x is
 # forward and y left where the body's axes count, as they do unless another motion is given. Chosen on tuning seeds; the
@@ -47,33 +38,6 @@ Status = Literal["ok", "no measurement"]
 
 class NoMeasurementWarning(UserWarning):
     """A frame without a single measured pixel: the filter moved its particles and could not weigh them."""
-
-
-class Weighting(NamedTuple):
-    """What a weighting rule says of N particles."""
-
-    weights: np.ndarray
-    """`(N,)`, summing to one."""
-    scores: np.ndarray
-    """`(N,)`, the raw score of every particle: a mean over pixels, larger is better, not normalized over particles."""
-
-
-WeightingRule = Callable[[np.ndarray, np.ndarray], Weighting]
-"""(measured `(H, W)`, simulated `(N, H, W)`) -> Weighting."""
-
-
-def paper_weighting(alpha: float = ALPHA, beta: float = BETA) -> WeightingRule:
-    """The paper's weighting: likelihood, min-max normalization, weight, one after the other.
-
-    The score is l_(i) divided by the number of pixels compared: 1 for perfect agreement, whatever the camera saw.
-    """
-
-    return partial(_weigh, alpha, beta)
-
-
-def _weigh(alpha: float, beta: float, measured: np.ndarray, simulated: np.ndarray) -> Weighting:
-    l = likelihood(measured, simulated, alpha)  # noqa: E741 - the paper's letter
-    return Weighting(weights(normalize_likelihood(l), beta), l / max(1, valid_pixels(measured).sum()))
 
 
 class Estimate(NamedTuple):
@@ -122,7 +86,7 @@ class MonteCarloLocalizer:
         *,
         motion: Motion = BODY_AXES,
         resampling: Scheme = "systematic",
-        weighting: WeightingRule | None = None,
+        weighting: Weighting | None = None,
     ) -> None:
         if int(n_particles) != n_particles or n_particles < 1:
             raise ValueError(f"n_particles must be a whole number, at least 1; got {n_particles!r}")
@@ -179,10 +143,12 @@ class MonteCarloLocalizer:
             )
             self.particles = particles.copy()
             w = np.full(self.n_particles, 1.0 / self.n_particles)
-            return self._estimate(particles, Weighting(w, np.full(self.n_particles, np.nan)), "no measurement")
-        weighting = self.weighting(measured, self.renderer.render(particles))
-        self.particles = particles[resample(weighting.weights, self.rng, self.resampling)]
-        return self._estimate(particles, weighting, "ok")
+            return self._estimate(particles, w, np.full(self.n_particles, np.nan), "no measurement")
+        batches = self.renderer.batches(particles)
+        scores = np.concatenate([self.weighting.score(measured, images) for images in batches])
+        w = self.weighting.weigh(measured, scores)
+        self.particles = particles[resample(w, self.rng, self.resampling)]
+        return self._estimate(particles, w, scores, "ok")
 
     def _measure(self, depth: np.ndarray) -> np.ndarray:
         """Eq. (7): the camera's own points through the projection and z-buffer of the simulated views."""
@@ -194,8 +160,7 @@ class MonteCarloLocalizer:
             )
         return self.renderer.render_points(camera.points(depth))
 
-    def _estimate(self, particles: np.ndarray, weighting: Weighting, status: Status) -> Estimate:
-        w, scores = weighting
+    def _estimate(self, particles: np.ndarray, w: np.ndarray, scores: np.ndarray, status: Status) -> Estimate:
         state = self.motion.mean(particles, w)
         deviations = self.motion.deviations(particles, state)
         spread = (w[:, None] * deviations).T @ deviations

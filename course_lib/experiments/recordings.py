@@ -14,7 +14,7 @@ import numpy as np
 
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
-from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, MonteCarloLocalizer, NoMeasurementWarning, WeightingRule
+from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, Motion
 from course_lib.depth_mcl.rendering.renderer import Backend, DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
@@ -22,6 +22,7 @@ from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import FAR, NEAR, DepthSequence
 from course_lib.depth_mcl.tracking import Agreement, TrackStatus, agreement, judge_track
 from course_lib.depth_mcl.uncertainty import normalized_error
+from course_lib.depth_mcl.weighting import Weighting
 from course_lib.geometry import optical_pose, rotation_to_z_up, state_from_optical_pose
 
 # Standard deviations of the system noise a frame, metres and degrees (chosen: for six degrees of freedom about the
@@ -69,7 +70,7 @@ def run_sequence(
     n_particles: int = 200,
     seed: int = 0,
     motion: Motion = BODY_AXES,
-    weighting: WeightingRule | None = None,
+    weighting: Weighting | None = None,
     coarse: bool = False,
     up: str | None = None,
     start: np.ndarray | None = None,

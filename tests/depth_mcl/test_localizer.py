@@ -8,10 +8,11 @@ import pytest
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
-from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning, Weighting
+from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES
 from course_lib.depth_mcl.particle_filter import resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.weighting import paper_weighting
 from course_lib.geometry import wrap_angle
 from tests.depth_mcl.shapes import SMALL, random_triangles, room, room_depth
 
@@ -161,10 +162,13 @@ def test_arrays_that_the_filter_took_or_gave_are_the_callers_own(renderer):
     assert np.array_equal(last[:3], last[3:])
 
 
-def by_rank(measured, simulated):
+def ranks(measured, scores):
     """Weights that depend on the particle's number alone."""
-    w = np.arange(1.0, len(simulated) + 1)
-    return Weighting(w / w.sum(), w)
+    w = np.arange(1.0, len(scores) + 1)
+    return w / w.sum()
+
+
+by_rank = paper_weighting()._replace(weigh=ranks)
 
 
 @pytest.mark.parametrize("motion", [BODY_AXES, WORLD_AXES, TANGENT_SPACE])
@@ -186,6 +190,18 @@ def test_alpha_and_beta_reach_the_weights(renderer):
     measured = renderer.render_points(SMALL.points(room_depth(SMALL, walk(1)[0])[0]))
     values = likelihood(measured, renderer.render(estimate.particles), 0.5)
     assert estimate.weights == pytest.approx(weights(normalize_likelihood(values), 0.3), rel=1e-4)
+
+
+@pytest.mark.parametrize("weighting", [None, fallon_weighting("depth")])
+def test_particles_that_are_rendered_in_batches_are_weighed_together(weighting):
+    """Seven images a batch, forty particles: nothing changes but the memory that it takes."""
+    estimates = []
+    for max_batch_pixels in (7 * SMALL.width * SMALL.height, 10**7):
+        with DepthRenderer(room(), SMALL, max_batch_pixels=max_batch_pixels) as renderer:
+            assert (renderer.batch_size == 7) == (not estimates)
+            estimates += run(MonteCarloLocalizer(renderer, 40, SIGMA, seed=3, weighting=weighting), walk(1))
+    assert np.array_equal(estimates[0].weights, estimates[1].weights)
+    assert estimates[0].score == estimates[1].score
 
 
 @pytest.mark.parametrize("scheme", ["systematic", "stratified", "multinomial", "residual"])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.localizer import MonteCarloLocalizer, Weighting
+from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.depth_mcl.motion import BODY_AXES
 from course_lib.depth_mcl.particle_filter import effective_sample_size
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
@@ -11,6 +11,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, normalized_error, tempered_weights
+from course_lib.depth_mcl.weighting import Weighting
 from course_lib.geometry import state_from_optical_pose
 
 WORTH = 50.0  # pixels: what the calibration found, written down a second time
@@ -84,19 +85,25 @@ class Wall:
     scene_map = type("Everywhere", (), {"contains": staticmethod(lambda position, margin: True)})
     camera = type("Camera", (), {"shape": (1, 6), "points": staticmethod(lambda depth: depth)})
 
-    def render(self, particles):
-        return 9 + particles[:, None]
+    def batches(self, particles):
+        yield 9 + particles[:, None]
 
     def render_points(self, points):
         return points
 
 
-def distance_to_the_wall(measured, simulated):
-    """Weighs by y alone, the paper's way: the best takes nearly all."""
-    squared = (simulated[:, 0, 1] - measured[0, 1]) ** 2
-    scores = 1 - squared / (2 * 0.3**2) / WORTH  # so that the whole image gives y with 0.3 m
-    w = np.exp(-squared / (2 * 0.005**2) + squared.min() / (2 * 0.005**2))
-    return Weighting(w / w.sum(), scores)
+def score_of_y(measured, simulated):
+    """A Gaussian in y alone, so that the whole image gives y with 0.3 m."""
+    return 1 - (simulated[:, 0, 1] - measured[0, 1]) ** 2 / (2 * 0.3**2) / WORTH
+
+
+def weigh_sharply(measured, scores):
+    """The paper's way: the best takes nearly all."""
+    w = np.exp((scores - scores.max()) * WORTH * 0.3**2 / 0.005**2)
+    return w / w.sum()
+
+
+distance_to_the_wall = Weighting(score_of_y, weigh_sharply)
 
 
 def test_along_a_wall_errors_add_up_and_the_covariance_with_them(rng):

@@ -21,6 +21,7 @@ from numba import njit
 compiled = njit(nogil=True, cache=True, fastmath=True)
 
 BLOCK = 8  # pixels: edge of the blocks whose farthest depth is kept
+CHUNKS_BETWEEN = 32  # chunks drawn before the blocks are looked at again: looking at every pixel costs, too
 # Pixels by which a row's ends are stretched: two triangles leave no gap between them through rounding.
 _OVERLAP = 1e-4
 _ONE = np.float32(1.0)
@@ -45,6 +46,7 @@ def draw_views(
     for k in range(len(images)):
         images[k] = 0
         blocks[:] = 0
+        drawn = 0
         count = chunks_in_view(seen, nearest, rotations[k], positions[k], lens, sides, spheres)
         for i in np.argsort(nearest[:count]):
             c = seen[i]
@@ -54,7 +56,9 @@ def draw_views(
             chunk = vertices[vertex_starts[c] : vertex_starts[c + 1]]
             project(scratch, rotations[k], positions[k], lens, chunk)
             draw_faces(images[k], scratch, lens, faces[face_starts[c] : face_starts[c + 1]])
-            note_farthest(blocks, images[k], rectangle)
+            drawn += 1
+            if drawn % CHUNKS_BETWEEN == 0:
+                note_farthest(blocks, images[k])
 
 
 @compiled
@@ -125,11 +129,11 @@ def is_hidden(blocks, rectangle, nearest):
 
 
 @compiled
-def note_farthest(blocks, image, rectangle):
-    """Writes the least 1/Z of each block in the rectangle."""
+def note_farthest(blocks, image):
+    """Writes the least 1/Z of each block."""
     height, width = image.shape
-    for row in range(rectangle[0], rectangle[1] + 1):
-        for column in range(rectangle[2], rectangle[3] + 1):
+    for row in range(len(blocks)):
+        for column in range(blocks.shape[1]):
             least = image[row * BLOCK, column * BLOCK]
             for v in range(row * BLOCK, min(height, (row + 1) * BLOCK)):
                 for u in range(column * BLOCK, min(width, (column + 1) * BLOCK)):

@@ -14,6 +14,7 @@ used.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal
 
@@ -98,10 +99,13 @@ class DepthRenderer:
         Raises `ValueError` for states of a wrong shape or not finite, `RendererClosedError` after `close()`.
         Source: paper 1, eq. (6).
         """
-        states = np.atleast_2d(as_states(states))
-        if states.ndim != 2:
-            raise ValueError(f"states must have shape (N, 6); got {states.shape}")
-        return self.render_poses(optical_pose(states))
+        return self.render_poses(optical_pose(_particles(states)))
+
+    def batches(self, states: np.ndarray) -> Iterator[np.ndarray]:
+        """The same images a batch `(n, H, W)` at a time, for more particles than images fit into memory."""
+        states = _particles(states)
+        for start in range(0, len(states), self.batch_size):
+            yield self.render(states[start : start + self.batch_size])
 
     def render_poses(self, camera_to_world: np.ndarray) -> np.ndarray:
         """The same from camera-to-world matrices `(N, 4, 4)` in the optical convention."""
@@ -172,3 +176,11 @@ class DepthRenderer:
         state = "closed" if self._closed else "open"
         size = f"{self.camera.width} x {self.camera.height}"
         return f"DepthRenderer({self.scene_map!r}, {size} pixels, backend={self.backend!r}, {state})"
+
+
+def _particles(states: np.ndarray) -> np.ndarray:
+    """States `(N, 6)`, of which one alone may come as `(6,)`."""
+    states = np.atleast_2d(as_states(states))
+    if states.ndim != 2:
+        raise ValueError(f"states must have shape (N, 6); got {states.shape}")
+    return states
