@@ -33,7 +33,7 @@ OPENGL_PACKAGES = ["libegl1", "libgl1-mesa-dri", "libgl1"]
 
 HINT = """
 Options of one command: python3 course.py COMMAND --help
-The first call sets up .venv: a download of about 400 MB, 1.6 GB on disk, one or a few minutes.
+The first call sets up .venv: a download of about 450 MB, 1.9 GB on disk, one or a few minutes.
 """
 
 # Asks for what VTK asks for: an EGL device, a display without a surface, or the default one. It runs in a process of
@@ -396,7 +396,7 @@ def explain_pip(lines):
     text = "\n".join(lines)
     network = ("NewConnectionError", "Timeout", "ProxyError", "resolve", "Connection refused", "timed out", "SSLError")
     if "No space left" in text:
-        return "the disk is full: the environment needs about 2.5 GB. Make room and call course.py again."
+        return "the disk is full: the environment needs about 3 GB. Make room and call course.py again."
     if "Permission denied" in text:
         return "pip may not write here. Put the course into a folder of your own. " + last_lines(lines)
     errors = [line for line in lines if line.startswith("ERROR")] or lines
