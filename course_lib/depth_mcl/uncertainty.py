@@ -96,9 +96,15 @@ def carried_covariance(covariance: np.ndarray, deviations: np.ndarray, earlier: 
 
 
 def positive_part(matrix: np.ndarray) -> np.ndarray:
-    """The symmetric matrix without its negative eigenvalues: a difference of covariances as a covariance."""
-    values, axes = np.linalg.eigh(matrix)
-    return (axes * np.clip(values, 0.0, None)) @ axes.T
+    """The symmetric matrix without its negative eigenvalues: a difference of covariances as a covariance.
+
+    Components without a variance stay exactly without: what rounding gave them would add up from frame to frame.
+    """
+    block = np.ix_(*2 * (np.flatnonzero(np.diag(matrix) > _NO_VARIANCE),))
+    result = np.zeros_like(matrix)
+    values, axes = np.linalg.eigh(matrix[block])
+    result[block] = (axes * np.clip(values, 0.0, None)) @ axes.T
+    return result
 
 
 def normalized_error(deviation: np.ndarray, covariance: np.ndarray) -> float:

@@ -58,6 +58,15 @@ def test_what_is_given_has_no_variance_though_a_mean_is_rounded(rng):
     assert error_covariance(deviations, np.zeros(30))[2, 2] == 0
 
 
+def test_what_is_given_has_no_variance_after_many_frames():
+    """Turned in the plane, so that no covariance is diagonal; rounding must not add up along z, roll and pitch."""
+    localizer = MonteCarloLocalizer(Wall(), 60, [0.1, 0.02, 0, 0, 0, 0.03], weighting=distance_to_the_wall)
+    localizer.initialize(np.array([0, 0, 1 / 3, 0.1, 0.2, 0.7]))
+    for _ in range(200):
+        estimate = localizer.step(np.full((1, 6), 9.0))
+    assert np.array_equal(np.flatnonzero(np.diag(estimate.error_covariance) > 1e-20), [0, 1, 5])
+
+
 def test_what_a_frame_does_not_correct_is_carried_on(rng):
     """Cloud: 0.2 m along x and y. The frame leaves all of it along x, a quarter of the variance along y."""
     deviations = np.zeros((50_000, 6))
