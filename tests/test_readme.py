@@ -48,6 +48,27 @@ def test_the_rows_over_seeds_are_the_medians_and_ranges_of_the_stored_results(na
     assert np.array_equal([middle, low, high], expected)
 
 
+@pytest.mark.parametrize(
+    ("name", "method", "key", "digits"),
+    [
+        ("nearest-path median", "proposed", "median_m", 3),
+        ("sigma", "proposed", "sigma_m", 3),
+        ("within 0.30 m", "proposed", "within_3sigma_percent", 1),
+        ("timed median", "proposed", "median_timed_m", 3),
+        ("Fallon-style (depth, 20 x 15) nearest-path median", "fallon", "median_m", 3),
+        ("Fallon-style timed median", "fallon", "median_timed_m", 2),
+    ],
+)
+def test_the_rows_over_recordings_are_the_medians_and_ranges_of_five(name, method, key, digits):
+    stored = json.loads((CORRIDOR_RESULTS / "recordings_1-5.json").read_text())
+    assert stored["seeds"] == [1, 2, 3, 4, 5]
+    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| recordings: {name} |"))
+    for part, cell in zip(("methods", "methods_by_hand"), row.split("|")[2:4], strict=True):
+        values = [one[part][method][key] for one in stored["recordings"]]
+        expected = np.round([np.median(values), min(values), max(values)], digits)
+        assert np.array_equal([float(v) for v in re.findall(r"\d+\.\d+", cell)[:3]], expected)
+
+
 def test_the_readme_is_a_front_page():
     assert len(README.splitlines()) <= 130
 

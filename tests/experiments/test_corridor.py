@@ -90,3 +90,14 @@ def test_the_reported_results_meet_the_targets(corridor_folder, seed):
     assert summary["sigma_m"] <= 0.10
     assert summary["within_3sigma_percent"] >= 99
     assert summary["median_timed_m"] <= 0.08
+
+
+def test_the_reported_recordings_meet_the_targets_too(corridor_folder):
+    """What `demo corridor --seeds 1-5` wrote: recordings of their own, the kind part and the less kind one."""
+    stored = json.loads((corridor_folder / "results" / "recordings_1-5.json").read_text())
+    for summary in stored["recordings"]:
+        for rows in (summary["methods"], summary["methods_by_hand"]):
+            assert rows["proposed"]["median_m"] <= 0.05
+            assert rows["proposed"]["sigma_m"] <= 0.10
+            assert rows["proposed"]["within_3sigma_percent"] >= 99
+            assert rows["proposed"]["median_timed_m"] <= 0.08
