@@ -23,6 +23,9 @@ NO_TESTS = 5
 # Only what hangs takes so long: no test may fail because the machine has other work to do.
 HANGS_S = 1800
 
+# Tests of what only the notebooks use; a quick run leaves them out with the lessons.
+LESSON_TESTS = ("tests/lessons", "tests/notebooks")
+
 # pytest's options whose value is the next word, which may have the look of a path: `-k data`.
 OPTIONS_WITH_VALUE = (
     "-k",
@@ -42,7 +45,7 @@ OPTIONS_WITH_VALUE = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     only = parser.add_mutually_exclusive_group()
-    only.add_argument("--fast", action="store_true", help="no lessons, no browser, nothing that is marked slow")
+    only.add_argument("--fast", action="store_true", help="no lessons nor their tests, no browser, nothing marked slow")
     only.add_argument("--no-notebooks", action="store_true", help="only tests/")
     only.add_argument("--only-notebooks", action="store_true", help="only the lessons")
     only.add_argument(
@@ -95,7 +98,7 @@ def pytest_arguments(
     else:
         words += ["-p", "no:nbval"]  # whose import alone takes seconds
     if fast:
-        words += ["-m", "not browser and not slow"]
+        words += ["-m", "not browser and not slow", *(f"--ignore={folder}" for folder in LESSON_TESTS)]
     if not paths and workers > 1:
         # A file stays on one processor, with its kernel, window and fixtures, in the order of tests/conftest.py.
         words += ["-n", str(workers), "--dist", "loadfile", "--no-loadscope-reorder"]

@@ -134,6 +134,7 @@ def test_a_broken_package_fails_with_a_cure_that_does_not_go_round_in_a_circle(f
     assert [finding.cure for finding in check.check_packages()] == [check.MAKE_ANEW]
 
 
+@pytest.mark.slow
 def test_a_module_of_the_callers_folder_neither_breaks_the_checks_nor_runs(tmp_path, monkeypatch):
     for name in ("random", "json", "numpy"):
         (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\nraise SystemExit(3)\n")
@@ -175,6 +176,7 @@ def test_a_plane_in_the_wrong_place_is_noticed(monkeypatch):
     assert depth_image_probe.measure("ray")["largest_error_mm"] > 1.9
 
 
+@pytest.mark.slow
 def test_opengl_that_cannot_start_fails_with_its_cure(monkeypatch):
     # No driver can be found: libEGL loads, and has nothing to hand over to.
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere/mesa.json")

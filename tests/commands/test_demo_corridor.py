@@ -60,6 +60,7 @@ def test_another_process_with_the_same_seed_writes_the_same_bytes(printed, tmp_p
         assert (tmp_path / name).read_bytes() == (printed[1] / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_figures_and_results_are_written(demo):
     for name in ("figure_5.png", "figure_6.png"):
         assert (demo / name).read_bytes().startswith(b"\x89PNG")
@@ -71,10 +72,12 @@ def test_figures_and_results_are_written(demo):
     assert not list(demo.glob("*.partial"))
 
 
+@pytest.mark.slow
 def test_the_filter_keeps_to_the_path(demo):
     assert json.loads((demo / "corridor.json").read_text())["median_timed_m"] < 0.15
 
 
+@pytest.mark.slow
 def test_a_seeds_own_recording_has_a_less_kind_one_beside_it(demo):
     stored = json.loads((demo / "corridor.json").read_text())
     assert list(stored["methods_by_hand"]) == ["proposed", "fallon"]
@@ -123,6 +126,7 @@ def two_seeds(tmp_path_factory):
     return out
 
 
+@pytest.mark.slow
 def test_several_seeds_give_a_table_over_recordings(two_seeds, capsys):
     assert main(["demo", "corridor", "--seeds", "10040-10041", *SMALL, "--out", str(two_seeds), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
@@ -136,6 +140,7 @@ def test_several_seeds_give_a_table_over_recordings(two_seeds, capsys):
     assert f"({min(medians):.3f} to {max(medians):.3f})" in table
 
 
+@pytest.mark.slow
 def test_finished_seeds_are_not_run_again_and_others_are(two_seeds, tmp_path, capsys, monkeypatch):
     ran = []
     real = demo_corridor._rows_of
@@ -165,6 +170,7 @@ def test_a_seed_is_written_when_it_is_done(tmp_path, monkeypatch):
     assert not (tmp_path / "seed_10041.json").exists()
 
 
+@pytest.mark.slow
 def test_the_kindnesses_are_measured_one_by_one(tmp_path, capsys):
     words = ["--seeds", "10042", "--frames", "3", "--particles", "30", "--backend", "ray", "--out", str(tmp_path)]
     assert main(["demo", "corridor", "--kindnesses", *words]) == 0

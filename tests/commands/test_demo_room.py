@@ -25,6 +25,7 @@ def demo(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_json_holds_rates_and_errors_by_experiment_and_method(demo):
     summary = json.loads((demo / "room.json").read_text())
     for experiment in ("experiment_1", "experiment_2"):
@@ -38,6 +39,7 @@ def test_json_holds_rates_and_errors_by_experiment_and_method(demo):
     assert 0 < summary["median_relative_range_error_percent"]["exact_boxes"] < 15
 
 
+@pytest.mark.slow
 def test_weighted_by_covariance_the_associations_are_the_same_and_the_poses_are_others(demo):
     summary = json.loads((demo / "room.json").read_text())["experiment_2"]
     for source in ("", "_exact_boxes"):
@@ -46,6 +48,7 @@ def test_weighted_by_covariance_the_associations_are_the_same_and_the_poses_are_
         assert weighted["all"]["mean_dx_m"] != alike["all"]["mean_dx_m"]
 
 
+@pytest.mark.slow
 def test_a_row_a_pose_and_every_figure_are_written(demo):
     rows = list(csv.DictReader((demo / "room.csv").open()))
     assert [row["source"] for row in rows] == ["images", "images", "exact_boxes", "exact_boxes"] * 2
@@ -63,6 +66,7 @@ def test_one_json_object_is_printed_and_nothing_else(tmp_path, capsys):
     assert summary["rolled_images"]["alike"]["n"] == 2, "two experiments, one number of columns"
 
 
+@pytest.mark.slow
 def test_the_tables_hold_the_papers_numbers_beside_ours(demo):
     text = (demo / "printed").read_text()
     for number in range(1, 6):

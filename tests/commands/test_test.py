@@ -67,6 +67,7 @@ def test_parts_can_be_left_out():
     fast = test_command.pytest_arguments([], fast=True)
     assert "notebooks" not in fast
     assert fast[fast.index("-m") + 1] == "not browser and not slow"
+    assert "--ignore=tests/lessons" in fast
 
 
 def test_without_a_lesson_the_whole_is_refused(tmp_path, monkeypatch):

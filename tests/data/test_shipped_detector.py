@@ -78,6 +78,7 @@ def test_the_experiments_room_scores_as_stored(detector, recording, scores):
     assert score.recall == pytest.approx(scores["experiment_room"]["recall"], abs=0.04)
 
 
+@pytest.mark.slow
 def test_an_unseen_room_is_recognized(detector, tmp_path):
     make_room_images(tmp_path, TEST_ROOM, 2, 2)
     score = score_detector(detector, labelled_images(tmp_path))
@@ -108,6 +109,7 @@ def rolled(localizer, recording):
     return turn_the_rig(results, localizer, (97, 640, 1033))
 
 
+@pytest.mark.slow
 def test_turning_the_rig_turns_the_heading_and_mostly_nothing_else(rolled):
     found = turn_summary(rolled)
     assert found["associations_agree"] >= 3
@@ -115,6 +117,7 @@ def test_turning_the_rig_turns_the_heading_and_mostly_nothing_else(rolled):
     assert found["median_turned_deg"] < 2.0
 
 
+@pytest.mark.slow
 def test_weighted_by_covariance_a_turn_never_moves_the_pose_by_more_than_a_decimetre(rolled, localizer):
     found = turn_summary(weigh_by_covariance(rolled, localizer))
     assert found["within_0.10_m"] == found["associations_agree"]

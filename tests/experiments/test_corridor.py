@@ -31,6 +31,7 @@ def test_a_stretch_of_the_corridor_meets_the_targets_of_the_whole(corridor):
     assert timed.median <= 0.08
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", [key for key in METHODS if key != "proposed"])
 def test_every_fallon_row_goes_along_with_the_same_recording(corridor, key):
     """In 25 frames the wagon goes 2.3 m. A filter that stays behind is off by half of it in the median, all at last."""

@@ -179,6 +179,7 @@ def seen(room):
     return many
 
 
+@pytest.mark.slow
 def test_in_a_made_room_observations_lie_where_their_landmarks_are(seen):
     for source, least, limit in (("exact_boxes", 16, 0.08), ("images", 12, 0.12)):
         errors = [
@@ -273,6 +274,7 @@ def test_bad_seeds_and_processes_are_named(seeds, processes, tmp_path):
         observe_rooms(seeds, RoomsOptions(), Nothing, tmp_path, processes)
 
 
+@pytest.mark.slow
 def test_rooms_made_by_two_processes_are_the_rooms_that_one_makes(tmp_path):
     seeds = (10_213, 10_211)
     made = observe_rooms(seeds, TINY, Nothing, tmp_path, processes=2)

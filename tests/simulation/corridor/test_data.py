@@ -32,6 +32,7 @@ def small(tmp_path_factory):
     return folder, make_corridor_data(folder, 11, SMALL)
 
 
+@pytest.mark.slow
 def test_one_seed_gives_the_same_bytes_and_other_files_stay(small, tmp_path):
     folder, _ = small
     (tmp_path / "wagon").mkdir()

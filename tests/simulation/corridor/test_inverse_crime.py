@@ -96,6 +96,7 @@ def test_the_recordings_are_of_the_run_day(made):
         assert np.nanmedian(middle) < SCREEN - sequence.camera_to_world[0, 0, 3] + 0.6
 
 
+@pytest.mark.slow
 def test_the_map_is_fused_where_registration_believes_the_stations_stood(make):
     """Stations believed 0.2 m from where they stood bend the map; fused with their true poses it would not be bent."""
     exact, bent = (

@@ -114,6 +114,7 @@ def test_a_folder_without_a_recording_is_named(tmp_path):
         read_stereo_recording(tmp_path)
 
 
+@pytest.mark.slow
 def test_training_pictures_go_on_where_they_stopped(tmp_path):
     make_room_images(tmp_path / "stopped", 5, 1, 1)
     images = make_room_images(tmp_path / "stopped", 5, 2, 1)
