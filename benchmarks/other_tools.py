@@ -92,9 +92,9 @@ def pyvista_loop(scene_map: SceneMap, camera: DepthCamera) -> Tool:
             position = pose[:3, 3] - anchor
             plotter.camera.position, plotter.camera.focal_point = position, position + pose[:3, 2]
             plotter.camera.up = -pose[:3, 1]
-            plotter.camera.clipping_range = (camera.near, camera.far)
             plotter.render()
-            image[:] = -plotter.get_image_depth(fill_value=-np.inf)
+            plotter.camera.clipping_range = (camera.near, camera.far)  # by which depths are read
+            image[:] = -plotter.get_image_depth(fill_value=-np.inf, reset_camera_clipping_range=False)
         return Timed((time.perf_counter() - begun) * len(poses) / len(images), images)
 
     return render
