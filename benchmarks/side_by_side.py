@@ -1,15 +1,15 @@
-"""The filter's step and other renderers, measured in one process on the same poses: `python3 course.py bench` runs this.
+"""The filter's step and other renderers, measured in one process on the same poses.
 
-Every repeat takes another frame of the recording: particles are drawn about its true pose as the filter would draw them,
-one whole step of the filter is timed, and then every tool renders the poses that this step rendered. So what changes
-from repeat to repeat, the view and the machine's mood, changes for all alike, and ratios are taken repeat by repeat.
+Every repeat takes another frame of the recording: particles are drawn about its true pose as the filter would draw
+them, one whole step of the filter is timed, and then every tool renders the poses that this step rendered. So what
+changes from repeat to repeat, the view and the machine's mood, changes for all alike, and ratios are taken repeat by
+repeat.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -105,7 +105,7 @@ def timed_step(scene: Scene, renderer: DepthRenderer, frame: int, n_particles: i
 
 
 def share_apart(ours: np.ndarray, theirs: np.ndarray, far: float) -> float:
-    """Share of pixels by which two sets of images differ by more than a centimetre; beyond far counts as nothing hit."""
+    """Share of pixels by which two sets of images are more than a centimetre apart; beyond far nothing is hit."""
     count = min(len(ours), len(theirs))
     a, b = (np.where(images[:count] <= far, images[:count], np.inf).astype(np.float64) for images in (ours, theirs))
     with np.errstate(invalid="ignore"):
