@@ -10,7 +10,6 @@ import argparse
 import base64
 import hashlib
 import importlib.metadata
-import os
 import platform
 import subprocess
 import sys
@@ -18,6 +17,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from course_lib.commands.depth_image_probe import LARGEST_ERROR_MM, read_result
+from course_lib.processors import processors
 
 DISTRIBUTION = "course-lib"
 EXTRAS = ("", "lessons", "test")  # what environment.txt pins
@@ -196,7 +196,7 @@ def check_depth_images() -> Iterator[Finding]:
 
 def check_machine() -> Finding:
     """Cores this process may use and memory that is free; too little memory stops kernels without a word."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    cores = processors()
     free = free_memory_gb()
     if free is None:
         return Finding(True, f"{cores} cores; this system does not tell its free memory")

@@ -9,13 +9,13 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-import os
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from course_lib.commands.arguments import parse_seeds, require_output_folder
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+from course_lib.processors import processors
 
 SEEDS = "1-20"
 NETWORK_FILES = (".cfg", ".weights", ".names", ".json")  # what makes a detector what it is
@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.simulation.room.look_alike_recording import RecordingModels
 
     options = RoomsOptions(arguments.poses, RecordingModels(), detector_identity(arguments))
-    processes = arguments.processes or os.cpu_count() or 1
+    processes = arguments.processes or processors()
     load = partial(chosen_detector, arguments)
     rooms = observe_rooms(seeds, options, load, arguments.out / "rooms", processes, progress_bar("rooms", "room"))
     judged = judge_rooms(rooms)

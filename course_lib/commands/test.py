@@ -15,6 +15,8 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
+from course_lib.processors import processors
+
 ROOT = Path(__file__).resolve().parents[2]
 PASSES_ARGUMENTS_ON = True
 
@@ -73,11 +75,6 @@ def run(arguments: argparse.Namespace) -> int:
         environment = suite_environment(Path(home)) | one_thread_a_worker(words)
         code = subprocess.run([sys.executable, "-m", "pytest", *words], cwd=ROOT, env=environment).returncode
     return conclude(code, time.monotonic() - started)
-
-
-def processors() -> int:
-    """How many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def pytest_arguments(

@@ -7,8 +7,8 @@ holds the two together.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from course_lib.depth_mcl.compiled import compiled
 from course_lib.depth_mcl.likelihood import ALPHA, checked_alpha, paired_pixels
 
 
@@ -22,7 +22,7 @@ def likelihood(measured: np.ndarray, simulated: np.ndarray, alpha: float = ALPHA
 
 
 # Sums may be taken in any order, several pixels at a time; infinity keeps its meaning (a miss counts 0).
-@njit(nogil=True, cache=True, fastmath={"reassoc", "nsz", "contract", "arcp"})
+@compiled(fastmath={"reassoc", "nsz", "contract", "arcp"})
 def _sums(z, counts, images, alpha):
     """sum_j counts_j alpha / (alpha + |z_j - image_j|) of each image."""
     result = np.empty(len(images))

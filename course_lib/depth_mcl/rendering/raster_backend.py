@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
@@ -13,6 +12,7 @@ from course_lib.depth_mcl.rendering import rasterizer
 from course_lib.depth_mcl.rendering.chunks import MeshChunks, inward_normals
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import depth_image_from_points
+from course_lib.processors import processors
 
 VIEWS_A_TASK = 8  # small enough that no thread waits long for the last, large enough that starting one costs nothing
 
@@ -93,8 +93,3 @@ class RasterBackend:
 
     def close(self) -> None:
         """Nothing is held that the renderer's own end does not free."""
-
-
-def processors() -> int:
-    """How many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -15,10 +15,8 @@ see, and the image is the one that a ray through each pixel's centre gives.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-# Threads draw views of their own side by side: without Python's lock. Compiled code is kept beside this file.
-compiled = njit(nogil=True, cache=True, fastmath=True)
+from course_lib.depth_mcl.compiled import compiled
 
 BLOCK = 8  # pixels: edge of the blocks whose farthest depth is kept
 CHUNKS_BETWEEN = 32  # chunks drawn before the blocks are looked at again: looking at every pixel costs, too
@@ -27,7 +25,7 @@ _OVERLAP = 1e-4
 _ONE = np.float32(1.0)
 
 
-@compiled
+@compiled()
 def draw_views(
     images, rotations, positions, lens, sides, spheres, vertex_starts, vertices, face_starts, faces, scratch
 ):
@@ -61,7 +59,7 @@ def draw_views(
                 note_farthest(blocks, images[k])
 
 
-@compiled
+@compiled()
 def chunks_in_view(seen, nearest, rotation, position, lens, sides, spheres):
     """Writes the chunks that a view may see into `seen`, the least Z of each into `nearest`; returns how many."""
     near, far = lens[4], lens[5]
@@ -82,7 +80,7 @@ def chunks_in_view(seen, nearest, rotation, position, lens, sides, spheres):
     return count
 
 
-@compiled
+@compiled()
 def to_camera(rotation, position, x, y, z):
     """A point of the world in the camera's frame."""
     x, y, z = x - position[0], y - position[1], z - position[2]
@@ -93,7 +91,7 @@ def to_camera(rotation, position, x, y, z):
     )
 
 
-@compiled
+@compiled()
 def cover(rotation, position, lens, sphere, height, width):
     """Blocks (first and last row, first and last column) that a sphere may cover; all where it comes near the eye."""
     x, y, z = to_camera(rotation, position, sphere[0], sphere[1], sphere[2])
@@ -115,7 +113,7 @@ def cover(rotation, position, lens, sphere, height, width):
     )
 
 
-@compiled
+@compiled()
 def is_hidden(blocks, rectangle, nearest):
     """Whether all pixels of the blocks in the rectangle hold something nearer than Z = `nearest`."""
     if nearest <= 0:
@@ -128,7 +126,7 @@ def is_hidden(blocks, rectangle, nearest):
     return True
 
 
-@compiled
+@compiled()
 def note_farthest(blocks, image):
     """Writes the least 1/Z of each block."""
     height, width = image.shape
@@ -141,7 +139,7 @@ def note_farthest(blocks, image):
             blocks[row, column] = least
 
 
-@compiled
+@compiled()
 def project(scratch, rotation, position, lens, vertices):
     """Writes u, v, 1/Z and X, Y, Z of vertices `(n, 3)` into the first n columns of `scratch`."""
     for i in range(len(vertices)):
@@ -153,7 +151,7 @@ def project(scratch, rotation, position, lens, vertices):
         scratch[3, i], scratch[4, i], scratch[5, i] = x, y, z
 
 
-@compiled
+@compiled()
 def draw_faces(image, scratch, lens, faces):
     """Fills triangles `(F, 3)` of projected vertices; those that reach before the near plane are cut there."""
     u, v, w = scratch[0], scratch[1], scratch[2]
@@ -166,7 +164,7 @@ def draw_faces(image, scratch, lens, faces):
             draw_cut(image, scratch, lens, a, b, c)
 
 
-@compiled
+@compiled()
 def draw_cut(image, scratch, lens, a, b, c):
     """Fills the part of one triangle that lies behind the near plane: a polygon of three or four corners."""
     near = lens[4]
@@ -190,7 +188,7 @@ def draw_cut(image, scratch, lens, a, b, c):
         fill_triangle(image, p[0], p[1], p[2], q[0], q[1], q[2], r[0], r[1], r[2])
 
 
-@compiled
+@compiled()
 def fill_triangle(image, u0, v0, w0, u1, v1, w1, u2, v2, w2):
     """Keeps in each pixel whose centre lies in the triangle the greater of what it holds and the plane's 1/Z."""
     height, width = image.shape
@@ -234,7 +232,7 @@ def fill_triangle(image, u0, v0, w0, u1, v1, w1, u2, v2, w2):
             line[column] = max(line[column], w)
 
 
-@njit(nogil=True, cache=True)  # not fastmath, which knows no infinity
+@compiled(fastmath=False)  # which knows no infinity
 def invert(images, farthest):
     """Turns 1/Z into Z in place; `inf` where nothing was hit or it lies beyond `farthest`."""
     for k in range(len(images)):
