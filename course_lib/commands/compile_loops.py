@@ -1,6 +1,7 @@
-"""Compiles the depth filter's loops once, so that no lesson waits for it: `python -m course_lib.commands.compile_loops`.
+"""Compiles the depth filter's loops once: `python -m course_lib.commands.compile_loops`.
 
-`course.py` runs this at the end of a set-up. What is compiled is kept (course_lib/depth_mcl/compiled.py).
+`course.py` runs this at the end of a set-up, so that no lesson waits for it. What is compiled is kept
+(course_lib/depth_mcl/compiled.py).
 """
 
 from __future__ import annotations

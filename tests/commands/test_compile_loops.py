@@ -16,7 +16,8 @@ def compiled_forms():
 def test_the_filter_compiles_nothing_that_the_set_up_did_not():
     compile_loops()
     before = compiled_forms()
-    assert before["draw_views"] and before["_sums"]
+    assert before["draw_views"]
+    assert before["_sums"]
     vertices = np.array([[2.0, -5, -5], [-2, 5, -5], [2, 0, 5]])
     camera = DepthCamera.from_fov(16, 12, 60.0, 45.0)
     with DepthRenderer(SceneMap(vertices, np.array([[0, 1, 2]])), camera) as renderer:
