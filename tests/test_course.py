@@ -39,8 +39,18 @@ def build_editable(folder, config_settings=None, metadata_directory=None):
 build_wheel = build_editable
 """
 HANGS_S = 1200  # no call takes so long, however busy the machine is
-# Stands for Python's ensurepip, which unpacks and compiles pip anew for seconds: copies one that is ready.
-COPY_PIP = "import shutil, sysconfig\nshutil.copytree({!r}, sysconfig.get_path('purelib'), dirs_exist_ok=True)\n"
+# Stands for Python's module venv, which unpacks and compiles pip anew for seconds: links one that is ready.
+QUICK_VENV = """
+import importlib.util, os, pathlib, sys, sysconfig
+path = os.path.join(sysconfig.get_path("stdlib"), "venv", "__init__.py")
+spec = importlib.util.spec_from_file_location("venv", path)
+venv = sys.modules["venv"] = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(venv)
+venv.main(["--without-pip", *sys.argv[1:]])
+for entry in pathlib.Path({!r}).iterdir():
+    for library in pathlib.Path(sys.argv[-1]).glob("lib/*/site-packages"):
+        os.symlink(entry, library / entry.name)
+"""
 QUICK = {}  # what the environment of every call holds while a copy is tried
 HANDED_OVER = 'import os, sys\nprint("handed over", sys.argv[1:], sys.prefix, os.getcwd())\n'
 
@@ -52,7 +62,7 @@ def quick_pip(tmp_path_factory):
     subprocess.run([sys.executable, "-P", "-m", "venv", str(folder / "venv")], check=True)
     library = next((folder / "venv" / "lib").iterdir()) / "site-packages"
     (folder / "path").mkdir()
-    (folder / "path" / "ensurepip.py").write_text(COPY_PIP.format(str(library)))
+    (folder / "path" / "venv.py").write_text(QUICK_VENV.format(str(library)))
     return str(folder / "path")
 
 
