@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import sysconfig
 import time
 from pathlib import Path
 
@@ -47,7 +48,7 @@ spec = importlib.util.spec_from_file_location("venv", path)
 venv = sys.modules["venv"] = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(venv)
 venv.main(["--without-pip", *sys.argv[1:]])
-for entry in pathlib.Path({!r}).iterdir():
+for entry in map(pathlib.Path, {!r}):
     for library in pathlib.Path(sys.argv[-1]).glob("lib/*/site-packages"):
         os.symlink(entry, library / entry.name)
 """
@@ -59,11 +60,10 @@ HANDED_OVER = 'import os, sys\nprint("handed over", sys.argv[1:], sys.prefix, os
 def quick_pip(tmp_path_factory):
     """A folder for PYTHONPATH with which environments get their pip at once."""
     folder = tmp_path_factory.mktemp("quick")
-    subprocess.run([sys.executable, "-P", "-m", "venv", str(folder / "venv")], check=True)
-    library = next((folder / "venv" / "lib").iterdir()) / "site-packages"
-    (folder / "path").mkdir()
-    (folder / "path" / "venv.py").write_text(QUICK_VENV.format(str(library)))
-    return str(folder / "path")
+    pip = [str(path) for path in Path(sysconfig.get_path("purelib")).glob("pip*") if path.is_dir()]
+    assert pip
+    (folder / "venv.py").write_text(QUICK_VENV.format(pip))
+    return str(folder)
 
 
 @pytest.fixture

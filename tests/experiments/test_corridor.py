@@ -35,7 +35,7 @@ def test_a_stretch_of_the_corridor_meets_the_targets_of_the_whole(corridor):
 @pytest.mark.parametrize("key", [key for key in METHODS if key != "proposed"])
 def test_every_fallon_row_goes_along_with_the_same_recording(corridor, key):
     """In 25 frames the wagon goes 2.3 m. A filter that stays behind is off by half of it in the median, all at last."""
-    run = run_method(METHODS[key], *corridor, seed=10_001, frames=25, n_particles=40, backend="ray")
+    run = run_method(METHODS[key], *corridor, seed=10_001, frames=25, n_particles=40)
     travelled = np.linalg.norm(np.diff(corridor[2].camera_to_world[:25, :3, 3], axis=0), axis=1).sum()
     nearest, timed = path_errors(run, corridor[2])
     assert nearest.median < 0.3
