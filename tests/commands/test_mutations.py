@@ -20,7 +20,7 @@ def entry(name, old="2 * x", new="3 * x", file="course_lib/code.py", tests="['te
 
 @pytest.fixture
 def repository(tmp_path, monkeypatch):
-    """A repository of one function, its test, and a place for mutations; without pytest's plugins, which cost seconds."""
+    """A repository of one function, its test, a place for mutations; pytest without plugins, which cost seconds."""
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     root = tmp_path / "course"
     for folder in ("course_lib", "tests"):
