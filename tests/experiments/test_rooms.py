@@ -197,6 +197,7 @@ def test_in_a_made_room_observations_lie_where_their_landmarks_are(seen):
         assert np.median(azimuths) < np.deg2rad(2.0)
 
 
+@pytest.mark.slow
 def test_in_a_made_room_observations_have_about_the_colours_of_the_map(seen):
     """Other light, another part of the object; but a colour from elsewhere in the image would miss by 90 degrees."""
     hues = [
@@ -208,6 +209,7 @@ def test_in_a_made_room_observations_have_about_the_colours_of_the_map(seen):
     assert np.median([abs(one.saturation - landmark.saturation) for _, one, landmark, _, _ in seen]) < 15
 
 
+@pytest.mark.slow
 def test_in_a_made_room_the_detector_finds_most_objects_and_the_record_says_so(room):
     objects, found, detections = (
         sum(pose[key] for pose in room["poses"]) for key in ("objects", "found", "detections")
@@ -216,6 +218,7 @@ def test_in_a_made_room_the_detector_finds_most_objects_and_the_record_says_so(r
     assert 0.7 * objects < found <= detections
 
 
+@pytest.mark.slow
 def test_judged_from_its_record_a_pose_is_what_the_localizer_said(room, monkeypatch):
     """Map matching and fit are done on what was stored, not on images: nothing may be lost on the way."""
     direct = {}

@@ -57,6 +57,7 @@ def test_a_negative_seed_is_refused():
         make_data.run(argparse.Namespace(seed=-3, out=None))
 
 
+@pytest.mark.slow
 def test_all_products_are_there_and_readable(small):
     folder, summary = small
     assert {path.name for path in folder.iterdir()} == set(PRODUCTS)
@@ -66,6 +67,7 @@ def test_all_products_are_there_and_readable(small):
     assert json.loads((folder / "summary.json").read_text())["seed"] == 11
 
 
+@pytest.mark.slow
 def test_a_run_that_is_stopped_leaves_the_old_data_alone(small):
     folder, _ = small
     before = checksums(folder, PRODUCTS)
@@ -106,6 +108,7 @@ def test_a_parameter_without_a_comment_is_named():
         field_comments(Model())
 
 
+@pytest.mark.slow
 def test_no_measured_number_is_missing(small):
     numbers = small[1]["measured"]
     assert np.isfinite([numbers["map"]["hole_share"], numbers["wagon"]["no_return_share"]]).all()

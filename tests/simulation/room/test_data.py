@@ -28,6 +28,7 @@ def small(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_one_seed_gives_the_same_bytes_and_other_files_stay(small, tmp_path):
     (tmp_path / "README.md").write_text("written by hand")
     make_room_data(tmp_path, 11, SMALL)
@@ -36,6 +37,7 @@ def test_one_seed_gives_the_same_bytes_and_other_files_stay(small, tmp_path):
     assert (tmp_path / "README.md").read_text() == "written by hand"
 
 
+@pytest.mark.slow
 def test_the_recording_says_where_each_pair_was_taken(small):
     place = MEASUREMENT_PLACES[2]
     for number, height in ((1, 1.32), (2, 1.44)):
@@ -49,6 +51,7 @@ def test_the_recording_says_where_each_pair_was_taken(small):
             assert upper.shape == lower.shape == (160, 320, 3)
 
 
+@pytest.mark.slow
 def test_a_second_heading_is_not_a_roll_of_the_first(small):
     first, second = (pair.images()[0] for pair in read_stereo_recording(small / "experiment_1").pairs)
     # 180 and -90 degrees: a quarter turn of 80 columns.
@@ -56,6 +59,7 @@ def test_a_second_heading_is_not_a_roll_of_the_first(small):
     assert abs(rolled.mean() - second.mean()) > 0.5, "exposures differ"
 
 
+@pytest.mark.slow
 def test_the_map_lists_every_object_of_the_room_where_it_stands(small):
     room, semantic_map = make_experiment_room(), SemanticMap.load(small / "semantic_map.json")
     assert list(semantic_map.labels) == [thing.label for thing in room.objects]
@@ -65,6 +69,7 @@ def test_the_map_lists_every_object_of_the_room_where_it_stands(small):
     np.testing.assert_allclose(semantic_map.walls, room.walls)
 
 
+@pytest.mark.slow
 def test_a_run_that_is_stopped_leaves_the_old_data_alone(small):
     before = checksums(small, PRODUCTS)
 
@@ -87,6 +92,7 @@ def test_an_object_that_nobody_sees_is_named():
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "message"),
     [

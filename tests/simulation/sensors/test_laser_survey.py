@@ -83,6 +83,7 @@ def fused():
     return *fuse(scans, model), model
 
 
+@pytest.mark.slow
 def test_the_fused_surface_is_the_room_within_millimetres(fused):
     vertices, faces, _ = fused
     centres = vertices[faces].mean(axis=1)
@@ -92,6 +93,7 @@ def test_the_fused_surface_is_the_room_within_millimetres(fused):
     assert np.median(np.abs(flat[:, 2])) < 0.004
 
 
+@pytest.mark.slow
 def test_what_the_pillar_hides_stays_a_hole(fused):
     vertices, faces, _ = fused
     caster = WorldCaster(vertices, faces)
@@ -101,6 +103,7 @@ def test_what_the_pillar_hides_stays_a_hole(fused):
     assert beside_it == pytest.approx(1.4, abs=0.02)
 
 
+@pytest.mark.slow
 def test_slabs_are_welded(fused):
     vertices, faces, _ = fused
     assert len(np.unique(vertices, axis=0)) == len(vertices)
@@ -112,6 +115,7 @@ def test_slabs_are_welded(fused):
     assert inner.sum() == 0
 
 
+@pytest.mark.slow
 def test_decimation_keeps_the_shape(fused):
     vertices, faces, model = fused
     points, triangles = simplify(vertices, faces, model)
