@@ -39,12 +39,12 @@ def _row(row: dict) -> str:
     )
 
 
-def table_over_recordings(result: dict) -> str:
-    """Table 1 as median (least to greatest) over the recordings of several seeds."""
+def table_over_recordings(result: dict, told: str = "least to greatest") -> str:
+    """Table 1 over the recordings of several seeds: medians and, in brackets, what is `told` of each."""
     seeds = result["seeds"]
     lines = [
         f"Table 1 over {len(seeds)} recordings, seeds {seeds[0]} to {seeds[-1]}, {result['frames']} frames, "
-        f"{result['n_particles']} particles: median (least to greatest)",
+        f"{result['n_particles']} particles: median ({told})",
         "",
         f"{'':36} {'nearest median [m]':>22} {'sigma [m]':>22} {'<= 0.30 m [%]':>22} {'same frame median [m]':>22}",
     ]
@@ -62,7 +62,7 @@ def _spreads(row: dict) -> str:
 
 
 def _spread(spread: dict, digits: int) -> str:
-    middle, least, greatest = (f"{spread[key]:.{digits}f}" for key in ("median", "least", "greatest"))
+    middle, least, greatest = ("?" if value is None else f"{value:.{digits}f}" for value in spread.values())
     return f"{f'{middle} ({least} to {greatest})':>22}"
 
 

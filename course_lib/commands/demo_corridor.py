@@ -208,11 +208,10 @@ def summarize(arguments: argparse.Namespace, seed: int, rows: dict[str, Row]) ->
     """The numbers of table 1: the paper's experiment at the top level, every method below `methods`, those on the less
     kind recording below `methods_by_hand`."""
     from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
-    from course_lib.experiments.corridor_seeds import BY_HAND, row_numbers
+    from course_lib.experiments.corridor_seeds import rows_by_part
 
-    numbers = {key: row_numbers(key, row) for key, row in rows.items()}
-    even = {key: row for key, row in numbers.items() if not key.endswith(BY_HAND)}
-    by_hand = {key.removesuffix(BY_HAND): row for key, row in numbers.items() if key.endswith(BY_HAND)}
+    parts = rows_by_part(rows)
+    even = parts["methods"]
     copied = ("median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "ms_per_frame")
     return {
         "seed": seed,
@@ -222,8 +221,7 @@ def summarize(arguments: argparse.Namespace, seed: int, rows: dict[str, Row]) ->
         "settings": _settings(arguments, seed),
         **{name: even["proposed"][name] for name in copied},
         "fallon_median_m": even["fallon"]["median_m"],
-        "methods": even,
-        **({"methods_by_hand": by_hand} if by_hand else {}),
+        **parts,
     }
 
 

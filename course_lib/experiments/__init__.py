@@ -2,3 +2,7 @@
 
 Imports the methods and what is simulated; no method imports it.
 """
+
+from course_lib.experiments.sweeps import sweep
+
+__all__ = ["sweep"]

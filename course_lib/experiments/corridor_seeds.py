@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import quantile_test
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import PositionError
@@ -27,6 +28,7 @@ BY_HAND = "_by_hand"
 """Ends the names of their rows."""
 # The numbers of a row that are told over seeds.
 TOLD = ("median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "median_effective_sample_size")
+INTERVAL_PERCENT = 95
 
 Bar = Callable[[str], Callable[[Iterable], Iterable]]
 """Makes, from a few words, what wraps a loop in a progress bar."""
@@ -102,24 +104,45 @@ def row_numbers(key: str, row: Row) -> dict[str, object]:
     }
 
 
-def over_recordings(summaries: Sequence[dict]) -> dict[str, dict[str, dict]]:
-    """For "methods" and "methods_by_hand", every row and every number told: median, least and greatest over seeds."""
+def rows_by_part(rows: dict[str, Row]) -> dict[str, dict[str, dict]]:
+    """What table 1 tells of every row, those on the even recording below "methods", the others "methods_by_hand"."""
+    numbers = {key: row_numbers(key, row) for key, row in rows.items()}
+    by_hand = {key.removesuffix(BY_HAND): row for key, row in numbers.items() if key.endswith(BY_HAND)}
+    even = {key: row for key, row in numbers.items() if not key.endswith(BY_HAND)}
+    return {"methods": even, **({"methods_by_hand": by_hand} if by_hand else {})}
+
+
+def spread(values: Sequence[float]) -> dict[str, float]:
+    """Median, least and greatest of one number over seeds."""
+    return {"median": float(np.median(values)), "least": float(min(values)), "greatest": float(max(values))}
+
+
+def median_interval(values: Sequence[float]) -> dict[str, float | None]:
+    """Median of one number over seeds and its 95 % confidence interval; no interval from fewer than six seeds.
+
+    From order statistics: at most half of all recordings lie below the median, whatever their distribution.
+    """
+    low, high = quantile_test(values, q=0, p=0.5).confidence_interval(confidence_level=INTERVAL_PERCENT / 100)
+    known = np.isfinite([low, high]).all()
+    ends = {"low": float(low), "high": float(high)} if known else {"low": None, "high": None}
+    return {"median": float(np.median(values)), **ends}
+
+
+def over_recordings(
+    summaries: Sequence[dict], tell: Callable[[Sequence[float]], dict] = spread
+) -> dict[str, dict[str, dict]]:
+    """For "methods" and "methods_by_hand", what `tell` makes of every number of every row over seeds (`spread`)."""
     return {
         part: {
             key: {
                 "name": summaries[0][part][key]["name"],
-                **{name: spread([summary[part][key][name] for summary in summaries]) for name in TOLD},
+                **{name: tell([summary[part][key][name] for summary in summaries]) for name in TOLD},
             }
             for key in summaries[0][part]
         }
         for part in ("methods", "methods_by_hand")
         if all(part in summary for summary in summaries)
     }
-
-
-def spread(values: Sequence[float]) -> dict[str, float]:
-    """Median, least and greatest of one number over seeds."""
-    return {"median": float(np.median(values)), "least": float(min(values)), "greatest": float(max(values))}
 
 
 def hardship_errors(
