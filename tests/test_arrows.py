@@ -16,7 +16,7 @@ ALLOWED = {
     "depth_mcl": {"geometry", "processors"},
     "spherical_stereo": {"geometry"},
     "simulation": METHODS,
-    "experiments": METHODS | {"simulation"},
+    "experiments": METHODS | {"processors", "simulation"},
     "plots": METHODS | {"experiments"},
     "lessons": METHODS | {"experiments", "paths", "plots", "simulation"},
     "detector_training": METHODS | {"experiments", "simulation"},

@@ -17,6 +17,8 @@ from tempfile import TemporaryDirectory
 from course_lib.commands.arguments import parse_seeds, require_output_folder
 
 EXPERIMENTS = ("corridor",)
+CONNECT_S = 30
+MOST_SEEDS = 10_000  # by their number alone; who wants more, or meant one seed, says so: A-B
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -73,9 +75,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 def seeds_of(text: str) -> list[int]:
     """The seeds that `--seeds` names: a number alone is how many, from 1 on; else ranges, as everywhere."""
-    if re.fullmatch(r"\s*[1-9]\d*\s*", text):
-        return list(range(1, int(text) + 1))
-    return parse_seeds(text)
+    if not re.fullmatch(r"\s*\d+\s*", text):
+        return parse_seeds(text)
+    if not 1 <= int(text) <= MOST_SEEDS:
+        raise ValueError(f"--seeds {text} asks for so many seeds (1 to {MOST_SEEDS}); for one alone: {text}-{text}")
+    return list(range(1, int(text) + 1))
 
 
 def dask_executor(address: str):
@@ -85,7 +89,7 @@ def dask_executor(address: str):
     except ImportError as error:
         raise ValueError("--dask needs Dask's scheduler: pip install distributed") from error
     try:
-        return Client(address).get_executor()
+        return Client(address, timeout=CONNECT_S).get_executor()
     except (OSError, ValueError) as error:
         raise ValueError(
             f"--dask {address}: no scheduler answers there ({error}); start one: dask scheduler"

@@ -49,8 +49,9 @@ class DepthRenderer:
     """Depth images of a map from any number of poses.
 
     scene_map: triangles in the world. camera: the depth camera, its resolution, and its near and far planes.
-    backend: "raster" (z-buffer), "vtk" (OpenGL's) or "ray" (the reference). max_batch_pixels bounds one batch's memory:
-    as many images as fit are drawn at once, at least one.
+    backend: "raster" (z-buffer), "vtk" (OpenGL's) or "ray" (the reference). exact: draw every triangle of the map;
+    else a large map is drawn with fewer triangles, which lie within centimetres of it (simplification.py; `drawn`).
+    max_batch_pixels bounds one batch's memory: as many images as fit are drawn at once, at least one.
     A context manager; `close()` frees the window, after which every call raises `RendererClosedError`.
     Raises `OpenGLError` where OpenGL cannot start (backend "vtk"), which is so in a process forked after the first
     window was opened, `ValueError` for an unknown backend.
@@ -62,6 +63,7 @@ class DepthRenderer:
         camera: DepthCamera,
         backend: Backend = "raster",
         *,
+        exact: bool = False,
         max_batch_pixels: int = MAX_BATCH_PIXELS,
     ) -> None:
         if int(max_batch_pixels) != max_batch_pixels or max_batch_pixels < 1:
@@ -69,6 +71,7 @@ class DepthRenderer:
         self.scene_map = scene_map
         self.camera = camera
         self.backend = backend
+        self.exact = exact
         self.batch_size = max(1, int(max_batch_pixels) // (camera.width * camera.height))
         self._closed = False
         self._open_backend = self._new_backend()
@@ -77,19 +80,28 @@ class DepthRenderer:
         if self.backend == "vtk":
             from course_lib.depth_mcl.rendering.vtk_backend import VtkBackend
 
-            return VtkBackend(self.scene_map, self.camera, self.batch_size)
+            return VtkBackend(self.drawn, self.camera, self.batch_size)
         if self.backend == "raster":
             from course_lib.depth_mcl.rendering.raster_backend import RasterBackend
 
-            return RasterBackend(self.scene_map, self.camera)
+            return RasterBackend(self.drawn, self.camera)
         if self.backend == "ray":
             from course_lib.depth_mcl.rendering.ray_backend import RayBackend
 
-            return RayBackend(self.scene_map, self.camera)
+            return RayBackend(self.drawn, self.camera)
         raise ValueError(
             f"backend must be 'raster' (z-buffer), 'vtk' (OpenGL's z-buffer) or 'ray' (ray casting); "
             f"got {self.backend!r}"
         )
+
+    @property
+    def drawn(self) -> SceneMap:
+        """The triangles that are drawn: the map, or, unless `exact`, fewer."""
+        if self.exact:
+            return self.scene_map
+        from course_lib.depth_mcl.simplification import simplified
+
+        return simplified(self.scene_map)
 
     def render(self, states: np.ndarray) -> np.ndarray:
         """Depth images `(N, H, W)` float32 metres of the map from states `(N, 6)`; `inf` where nothing is hit.
