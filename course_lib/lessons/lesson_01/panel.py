@@ -31,7 +31,7 @@ def _camera() -> DepthCamera:
 @functools.cache
 def _renderer() -> DepthRenderer:
     camera = _camera()
-    return DepthRenderer(corridor_map(), camera, max_batch_pixels=camera.width * camera.height)
+    return DepthRenderer(corridor_map(), camera, exact=True, max_batch_pixels=camera.width * camera.height)
 
 
 def _view_edges(camera: DepthCamera, pose: np.ndarray) -> np.ndarray:

@@ -47,7 +47,7 @@ def room_cut(door_open: bool) -> np.ndarray:
 @functools.lru_cache(maxsize=64)
 def camera_view(scene_map: SceneMap) -> np.ndarray:
     """Depth image [m] of a map of the room from beside the table, looking past the pillar to the door."""
-    with DepthRenderer(scene_map, view_camera()) as renderer:
+    with DepthRenderer(scene_map, view_camera(), exact=True) as renderer:
         return renderer.render(EYE)[0]
 
 
@@ -86,7 +86,7 @@ def corridor_difference(scene_map: SceneMap, true_world: SceneMap, frames: range
     states = state_from_optical_pose(recording.camera_to_world[list(frames)])
     images = []
     for scene in (scene_map, true_world):
-        with DepthRenderer(scene, recording.camera()) as renderer:
+        with DepthRenderer(scene, recording.camera(), exact=True) as renderer:
             images.append(renderer.render(states))
     mapped, true = images
     there = np.isfinite(true)

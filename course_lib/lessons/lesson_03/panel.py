@@ -21,7 +21,7 @@ _NEAR_PLANES = ("1", "0.5", "0.1", "0.01", "0.001", "0.0001")
 @functools.cache
 def _renderer(near: float, backend: str) -> DepthRenderer:
     camera = DepthCamera.sr4000(near=near)
-    return DepthRenderer(corridor(), camera, backend, max_batch_pixels=camera.width * camera.height)
+    return DepthRenderer(corridor(), camera, backend, exact=True, max_batch_pixels=camera.width * camera.height)
 
 
 def camera_panel() -> Panel:

@@ -24,7 +24,7 @@ def true_world() -> SceneMap:
 def true_depths(recording: DepthSequence, camera: DepthCamera, frames: range) -> np.ndarray:
     """`(n, H, W)` true depths [m] of recorded frames: the true world drawn from the true poses."""
     states = state_from_optical_pose(recording.camera_to_world[list(frames)])
-    with DepthRenderer(true_world(), camera.with_clip_planes(0.1, 40.0)) as renderer:
+    with DepthRenderer(true_world(), camera.with_clip_planes(0.1, 40.0), exact=True) as renderer:
         return renderer.render(states)
 
 

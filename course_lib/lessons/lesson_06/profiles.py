@@ -81,7 +81,7 @@ def small_scene() -> Scene:
     sequence = wagon_run()
     camera = sequence.camera()
     small = camera.resized(*SMALL)
-    renderer = DepthRenderer(corridor_map(), small, "ray")
+    renderer = DepthRenderer(corridor_map(), small, "ray", exact=True)
     truth = state_from_optical_pose(sequence.camera_to_world[FRAME])
     return Scene(subsample_depth(sequence.depth(FRAME), camera, small), truth, renderer)
 

@@ -104,7 +104,7 @@ def corridor_stretch() -> Stretch:
     measured = np.stack([subsample_depth(sequence.depth(frame), camera, small) for frame in FRAMES])
     walls = floor_plan(scene_map.vertices, true[0, 2])
     near = (walls[:, 0] > true[:, 0].min() - 1.5) & (walls[:, 0] < true[:, 0].max() + 1.5)
-    return Stretch(measured, true, walls[near], DepthRenderer(scene_map, small, "ray"))
+    return Stretch(measured, true, walls[near], DepthRenderer(scene_map, small, "ray", exact=True))
 
 
 def start(stretch: Stretch) -> StepperState:
