@@ -246,7 +246,7 @@ def install(lock):
             os.remove(INCOMPLETE)  # pip ended by itself, with nothing half-written: the next call goes on from here
         raise SetupError(explain_pip(lines))
     # What fails here would compile when it is first used, and `check` says why.
-    run([PYTHON, "-P", "-m", "course_lib.commands.compile_loops"], lock)
+    run([PYTHON, "-P", "-m", "course_lib.commands.warm_up"], lock)
 
 
 def show(text, milestone):

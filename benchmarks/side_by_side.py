@@ -1,9 +1,9 @@
-"""The filter's step and other renderers, measured in one process on the same poses.
+"""The filter's step and other renderers, measured in one process on the same poses of the same map.
 
 Every repeat takes another frame of the recording: particles are drawn about its true pose as the filter would draw
-them, one whole step of the filter is timed, and then every tool renders the poses that this step rendered. So what
-changes from repeat to repeat, the view and the machine's mood, changes for all alike, and ratios are taken repeat by
-repeat.
+them, one whole step of the filter is timed, with fewer triangles and exactly, and then every tool renders the poses
+that the first of these steps rendered, of the whole map. So what changes from repeat to repeat, the view and the
+machine's mood, changes for all alike, and ratios are taken repeat by repeat.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.depth_mcl.motion import Motion
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.geometry import optical_pose, state_from_optical_pose
 
@@ -29,8 +30,8 @@ IMAGE = (176, 144)  # pixels: the paper's camera
 TOOLS: dict[str, tuple[str, Callable[[SceneMap, DepthCamera], Tool]]] = {
     "embree": ("Open3D RaycastingScene (Embree), casting alone", open3d_embree),
     "embreex": ("trimesh's embreex, a particle at a time", lambda m, c: course_backend("ray", m, c)),
-    "vtk_tiles": ("OpenGL tiles of one window (backend vtk)", lambda m, c: course_backend("vtk", m, c)),
-    "vtk_loop": ("one VTK render per particle", lambda m, c: course_backend("vtk", m, c, one_by_one=True)),
+    "vtk_tiles": ("OpenGL, tiles of one window (backend vtk)", lambda m, c: course_backend("vtk", m, c)),
+    "vtk_loop": ("OpenGL, one VTK render per particle", lambda m, c: course_backend("vtk", m, c, one_by_one=True)),
     "pyvista": ("PyVista get_image_depth per particle", pyvista_loop),
 }
 
@@ -50,21 +51,25 @@ class Scene(NamedTuple):
 
 
 class Measured(NamedTuple):
-    """Seconds of every repeat, and what the tools rendered in the last."""
+    """Seconds of every repeat."""
 
-    step_s: np.ndarray
-    """`(R,)` whole steps of the filter."""
+    steps_s: dict[str, np.ndarray]
+    """Whole steps of the filter `(R,)`: "default" and "exact"."""
     tools_s: dict[str, np.ndarray]
-    """Seconds `(R,)` for the same images, by tool; tools that are not here are left out."""
+    """The same images `(R,)`, by tool; tools that are not here are left out."""
     missing: dict[str, str]
     """What each tool that is not here said."""
     disagreement: dict[str, float]
-    """Share of pixels by which a tool's images and ours differ by more than a centimetre."""
+    """Share of pixels by which a tool's images and our exact ones differ by more than a centimetre."""
+
+    def ratio(self, tool: str, step: str = "default") -> dict[str, float] | None:
+        """How many times the step's time a tool takes: median, least and greatest of the repeats."""
+        return told(self.tools_s[tool] / self.steps_s[step]) if tool in self.tools_s else None
 
 
-def frames_of(scene: Scene, repeats: int) -> np.ndarray:
-    """Frame indices spread over the recording, the first left out."""
-    return np.linspace(1, len(scene.sequence) - 1, repeats).astype(int)
+def told(values: np.ndarray) -> dict[str, float]:
+    """Median, least and greatest."""
+    return {"median": float(np.median(values)), "least": float(np.min(values)), "greatest": float(np.max(values))}
 
 
 def measure(scene: Scene, tools: Sequence[str], repeats: int, n_particles: int = N_PARTICLES) -> Measured:
@@ -75,27 +80,27 @@ def measure(scene: Scene, tools: Sequence[str], repeats: int, n_particles: int =
             made[key] = TOOLS[key][1](scene.scene_map, camera)
         except Exception as error:  # a tool that is not here is a row that says so
             missing[key] = f"{type(error).__name__}: {error}"
-    frames = frames_of(scene, repeats)
-    step_s, tools_s, disagreement = np.empty(repeats), {key: np.empty(repeats) for key in made}, {}
-    with DepthRenderer(scene.scene_map, camera) as renderer:
+    frames = np.linspace(1, len(scene.sequence) - 1, repeats).astype(int)
+    steps_s = {"default": np.empty(repeats), "exact": np.empty(repeats)}
+    tools_s, disagreement = {key: np.empty(repeats) for key in made}, {}
+    with DepthRenderer(scene.scene_map, camera) as default, DepthRenderer(scene.scene_map, camera, exact=True) as exact:
         for repeat, frame in enumerate([frames[0], *frames], start=-1):
-            seconds, particles = timed_step(scene, renderer, int(frame), n_particles)
+            seconds, particles = timed_step(scene, default, int(frame), n_particles)
+            exact_seconds, _ = timed_step(scene, exact, int(frame), n_particles)
             poses = optical_pose(particles)
             results = {key: tool(poses) for key, tool in made.items()}
             if repeat < 0:
-                ours = renderer.render(particles[:LOOPED_IMAGES])
+                ours = exact.render(particles[:LOOPED_IMAGES])
                 disagreement = {key: share_apart(ours, result.images, camera.far) for key, result in results.items()}
                 continue
-            step_s[repeat] = seconds
+            steps_s["default"][repeat], steps_s["exact"][repeat] = seconds, exact_seconds
             for key, result in results.items():
                 tools_s[key][repeat] = result.seconds
-    return Measured(step_s, tools_s, missing, disagreement)
+    return Measured(steps_s, tools_s, missing, disagreement)
 
 
 def timed_step(scene: Scene, renderer: DepthRenderer, frame: int, n_particles: int) -> tuple[float, np.ndarray]:
     """Seconds of one whole step, all particles at the true pose before it; and the particles that it rendered."""
-    from course_lib.depth_mcl.sensor import subsample_depth
-
     depth = subsample_depth(scene.sequence.depth(frame), scene.sequence.camera(), renderer.camera)
     localizer = MonteCarloLocalizer(renderer, n_particles, scene.sigma, seed=frame, motion=scene.motion)
     localizer.initialize(state_from_optical_pose(scene.sequence.camera_to_world[frame]))

@@ -23,6 +23,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
     "demo rooms": ("demo_rooms", "run paper 2's experiment in generated rooms that nobody shaped, with intervals"),
     "sweep": ("sweep", "run an experiment for many seeds on all processors: table 1 with confidence intervals"),
+    "bench": ("bench", "measure the depth filter side by side with Embree, PyVista and others"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
     "locate": ("locate", "find where two panoramas were taken, on a semantic map"),
     "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),

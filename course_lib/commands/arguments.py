@@ -10,12 +10,17 @@ from pathlib import Path
 
 
 def add_backend_argument(parser: argparse.ArgumentParser) -> None:
-    """Declares `--backend`: how depth images are rendered (`DepthRenderer`)."""
+    """Declares `--backend` and `--exact`: how depth images are rendered (`DepthRenderer`)."""
     parser.add_argument(
         "--backend",
         choices=["raster", "vtk", "ray"],
         default="raster",
         help="z-buffer on the processors (default), OpenGL's z-buffer (for a graphics card), or ray casting",
+    )
+    parser.add_argument(
+        "--exact",
+        action="store_true",
+        help="draw every triangle of the map; else a large one is drawn with fewer, within centimetres of it",
     )
 
 

@@ -155,7 +155,7 @@ def _run_kindnesses(arguments: argparse.Namespace, seeds: list[int]) -> int:
     from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
 
     camera = DepthCamera.sr4000().resized(*KINDNESS_SIZE)
-    options = {"n_particles": arguments.particles, "backend": arguments.backend, "frames": arguments.frames}
+    options = run_options(arguments)
     result = {"seeds": seeds, "image": list(KINDNESS_SIZE), **options, "hardships": {}}
     for name, hardships in {"none": (), **{name: (name,) for name in HARDSHIPS}, "all": HARDSHIPS}.items():
         errors = [hardship_errors(_data(arguments), s, hardships, camera, bar=progress_bar, **options) for s in seeds]
@@ -163,6 +163,13 @@ def _run_kindnesses(arguments: argparse.Namespace, seeds: list[int]) -> int:
         write_results(arguments.out / "kindnesses.json", result)
     print(json.dumps(result) if arguments.json else table_of_kindnesses(result))
     return 0
+
+
+def run_options(arguments: argparse.Namespace) -> dict:
+    """What every run of a method is told (`run_sequence`)."""
+    return {"n_particles": arguments.particles} | {
+        name: getattr(arguments, name) for name in ("backend", "exact", "frames")
+    }
 
 
 def _data(arguments: argparse.Namespace) -> Path:
@@ -186,13 +193,13 @@ def _rows_of(arguments: argparse.Namespace, seed: int, temporary: Path) -> tuple
             even, by_hand = own_recordings(data, temporary, seed, arguments.frames, progress_bar)
         except ImportError as error:
             raise ImportError(f"{error}; --recording shipped makes none") from error
-    options = {"n_particles": arguments.particles, "backend": arguments.backend, "frames": arguments.frames}
+    options = run_options(arguments)
     return maps, even, run_rows(maps, even, by_hand, arguments.methods, progress_bar, seed=seed, **options)
 
 
 def _settings(arguments: argparse.Namespace, seed: int) -> dict:
     """What decides a seed's result."""
-    names = ("particles", "frames", "recording", "backend", "methods")
+    names = ("particles", "frames", "recording", "backend", "exact", "methods")
     return {"seed": seed, "data": str(_data(arguments)), **{name: getattr(arguments, name) for name in names}}
 
 

@@ -143,6 +143,7 @@ def run(arguments: argparse.Namespace) -> int:
         start=start,
         frames=arguments.frames,
         backend=arguments.backend,
+        exact=arguments.exact,
         near=arguments.near,
         far=arguments.far,
         progress=progress_bar("localizing"),
@@ -222,6 +223,7 @@ def _options(arguments: argparse.Namespace, up: str) -> dict:
         "near_m": arguments.near,
         "far_m": arguments.far,
         "backend": arguments.backend,
+        "exact": arguments.exact,
     }
 
 

@@ -76,6 +76,7 @@ def run_sequence(
     start: np.ndarray | None = None,
     frames: int | None = None,
     backend: Backend = "raster",
+    exact: bool = False,
     near: float = NEAR,
     far: float = FAR,
     progress: Callable = iter,
@@ -98,7 +99,7 @@ def run_sequence(
     start = sequence.camera_to_world[0] if start is None else start
     true = state_from_optical_pose(to_z_up @ sequence.camera_to_world[:count]) if sequence.has_poses else ()
     estimates, agreements, seconds = [], [], 0.0
-    with DepthRenderer(scene_map.transformed(to_z_up), used, backend) as renderer:
+    with DepthRenderer(scene_map.transformed(to_z_up), used, backend, exact=exact) as renderer:
         localizer = MonteCarloLocalizer(renderer, n_particles, sigma, seed=seed, motion=motion, weighting=weighting)
         localizer.initialize(state_from_optical_pose(to_z_up @ start))
         with warnings.catch_warnings():

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from course_lib.commands.compile_loops import compile_loops
+from course_lib.commands.warm_up import compile_loops
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer, SceneMap, compiled_likelihood
 from course_lib.depth_mcl.rendering import rasterizer
 

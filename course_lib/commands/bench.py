@@ -1,0 +1,97 @@
+"""Measure the depth filter side by side with other renderers, in one run, and print one table.
+
+The tools it is compared with (environment-bench.txt: Open3D with Embree) are installed by the first call into .bench, a
+folder of their own. Times are of this machine at this hour; the ratios are what to compare. Other programs should rest.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from course_lib.commands.arguments import require_output_folder
+
+ROOT = Path(__file__).resolve().parents[2]
+LOCK = ROOT / "environment-bench.txt"
+TOOLS = ROOT / ".bench"
+STAMP = "course-bench.txt"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options of `bench`."""
+    parser.add_argument("--quick", action="store_true", help="fewer repeats: two minutes instead of ten")
+    parser.add_argument("--no-tools", action="store_true", help="install nothing: only tools that are there already")
+    parser.add_argument(
+        "--recording",
+        type=Path,
+        metavar="FOLDER",
+        help="measure on this recording, too, in six degrees of freedom: depth images, poses.txt and its map, map.ply",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("results/bench"),
+        metavar="FOLDER",
+        help="for bench.json (default: results/bench)",
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Installs what is missing, measures in a process of its own, prints and saves."""
+    from course_lib.commands.bench_table import table
+
+    require_output_folder(arguments.out)
+    if arguments.recording and not (arguments.recording / "map.ply").is_file():
+        raise ValueError(f"--recording {arguments.recording} holds no map.ply: see data/README.md for the format")
+    if not arguments.no_tools:
+        why = install_tools()
+        if why:
+            print(f"The tools to compare with could not be installed, and are left out: {why}", file=sys.stderr)
+    words = ["--quick"] if arguments.quick else []
+    words += ["--kitchen", str(arguments.recording.resolve())] if arguments.recording else []
+    path = os.pathsep.join([str(ROOT / "benchmarks"), str(TOOLS), os.environ.get("PYTHONPATH", "")])
+    environment = os.environ | {"PYTHONPATH": path.rstrip(os.pathsep)}
+    if sys.platform.startswith("linux"):
+        environment["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
+    done = subprocess.run(
+        [sys.executable, "-P", str(ROOT / "benchmarks" / "measure.py"), *words],
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    if done.returncode:
+        print(f"The measurement ended with code {done.returncode}; what it said stands above.", file=sys.stderr)
+        return 1
+    result = json.loads(done.stdout.splitlines()[-1])
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    (arguments.out / "bench.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    print(json.dumps(result) if arguments.json else table(result))
+    return 0
+
+
+def install_tools() -> str | None:
+    """Brings `.bench` to what environment-bench.txt says; None, or why it could not be done."""
+    wanted = hashlib.sha256(LOCK.read_bytes()).hexdigest()
+    stamp = TOOLS / STAMP
+    if stamp.is_file() and stamp.read_text(encoding="utf-8") == wanted:
+        return None
+    if TOOLS.exists() and any(TOOLS.iterdir()) and not stamp.is_file():
+        return f"{TOOLS} was not made by this command; move it away"
+    print("Installing the tools to compare with into .bench, a minute or two ...", file=sys.stderr)
+    shutil.rmtree(TOOLS, ignore_errors=True)
+    TOOLS.mkdir()
+    stamp.write_text("unfinished", encoding="utf-8")
+    pip = [sys.executable, "-P", "-m", "pip", "install", "--quiet", "--no-deps", "--disable-pip-version-check"]
+    done = subprocess.run([*pip, "--target", str(TOOLS), "-r", str(LOCK)], capture_output=True, text=True)
+    if done.returncode:
+        lines = [line for line in done.stderr.splitlines() if line.startswith("ERROR")] or done.stderr.splitlines()
+        return " / ".join(lines[-2:]) or f"pip ended with code {done.returncode}"
+    stamp.write_text(wanted, encoding="utf-8")
+    return None

@@ -1,0 +1,53 @@
+"""What `bench` prints: its JSON as a table."""
+
+from __future__ import annotations
+
+
+def table(result: dict) -> str:
+    """Every row with today's number: times of this run, and ratios with their least and greatest over the repeats."""
+    machine = result["machine"]
+    load = "" if machine["load_at_the_end"] is None else f", load {machine['load_at_the_end']:.1f} at the end"
+    lines = [
+        f"{machine['processor']}, {machine['processors']} processors{load}; OpenGL: {machine['opengl']}",
+        "One step: propagate, render, likelihood, weights, estimate, resample; 200 particles, 176 x 144 pixels.",
+    ]
+    for scene in result["scenes"]:
+        lines += ["", f"{scene['name']}, {scene['triangles']:,} triangles", _heading()]
+        lines += [_row(name, row) for name, row in scene["rows"].items()]
+    particles, maps, true = result["particles"], result["maps"], result["against_the_true_world"]
+    waiting, memory = result["waiting"], result["memory"]
+    lines += [
+        "",
+        f"one of {particles['particles'][1]} particles costs {particles['growth']:.2f} of one of "
+        f"{particles['particles'][0]}; memory grew by {particles['peak_memory_grew_mb']:.0f} MB",
+        f"a map of {maps['triangles'][1]:,} triangles costs {maps['growth']:.2f} of one of {maps['triangles'][0]:,}, after "
+        f"{maps['preprocessing_s']:.0f} s of preprocessing, once ({maps['drawn'][1]:,} and {maps['drawn'][0]:,} drawn)",
+        *(
+            f"depth error against the true world, {name}: median {row['median_mm']:.2f} mm, "
+            f"99 % below {row['percentile_99_mm']:.0f} mm"
+            for name, row in true.items()
+        ),
+        f"import course_lib {waiting['import_s']:.2f} s; course.py --help {waiting['help_s']:.2f} s; lesson 00 "
+        f"{waiting['lesson_00_s']:.1f} s; a pose of paper 2 {waiting['pose_s']:.2f} s "
+        f"(models loaded in {waiting['loading_s']:.1f} s)",
+        f"memory over the second half of {memory['steps']:,} steps: {memory['steps_grew_mb']:+.1f} MB; over the second "
+        f"half of {memory['renderers']} renderers: {memory['renderers_grew_mb']:+.1f} MB",
+    ]
+    return "\n".join(lines)
+
+
+def _heading() -> str:
+    return f"{'':46} {'ms (least to greatest)':>24} {'x our step':>20} {'x exact step':>20} {'pixels > 1 cm apart':>20}"
+
+
+def _row(name: str, row: dict) -> str:
+    if "missing" in row:
+        return f"{name:46} not here: {row['missing'][:90]}"
+    ratios = [f"{_spread(row[key], 1):>20}" if key in row else f"{'':20}" for key in ("times_default", "times_exact")]
+    apart = f"{100 * row['pixels_apart']:>18.3f} %" if "pixels_apart" in row else ""
+    return f"{name:46} {_spread(row['ms'], 0):>24} {' '.join(ratios)} {apart}".rstrip()
+
+
+def _spread(told: dict[str, float], digits: int) -> str:
+    middle, least, greatest = (f"{told[key]:.{digits}f}" for key in ("median", "least", "greatest"))
+    return f"{middle} ({least} to {greatest})"

@@ -1,0 +1,32 @@
+"""What takes seconds once is done before the first lesson: `python -m course_lib.commands.warm_up`.
+
+`course.py` runs this at the end of a set-up. Compiled loops are kept beside their source (course_lib/depth_mcl/
+compiled.py), the simplified map of the corridor in the user's cache (simplification.py).
+"""
+
+from __future__ import annotations
+
+
+def compile_loops() -> None:
+    """Renders one depth image and weighs it, as every frame of the filter does."""
+    import numpy as np
+
+    from course_lib.commands.depth_image_probe import measure
+    from course_lib.depth_mcl.compiled_likelihood import likelihood
+
+    measure("raster")
+    likelihood(np.ones((2, 2), dtype=np.float32), np.ones((1, 2, 2), dtype=np.float32))
+
+
+def simplify_corridor() -> None:
+    """Simplifies the map that most lessons render."""
+    from course_lib.depth_mcl.scene_map import SceneMap
+    from course_lib.depth_mcl.simplification import simplified
+    from course_lib.paths import data_path
+
+    simplified(SceneMap.load(data_path("corridor/map.ply")))
+
+
+if __name__ == "__main__":
+    compile_loops()
+    simplify_corridor()
