@@ -20,8 +20,8 @@ def table(result: dict) -> str:
         "",
         f"one of {particles['particles'][1]} particles costs {particles['growth']:.2f} of one of "
         f"{particles['particles'][0]}; memory grew by {particles['peak_memory_grew_mb']:.0f} MB",
-        f"a map of {maps['triangles'][1]:,} triangles costs {maps['growth']:.2f} of one of {maps['triangles'][0]:,}, after "
-        f"{maps['preprocessing_s']:.0f} s of preprocessing, once ({maps['drawn'][1]:,} and {maps['drawn'][0]:,} drawn)",
+        f"a map of {maps['triangles'][1]:,} triangles costs {maps['growth']:.2f} of one of {maps['triangles'][0]:,} "
+        f"({maps['drawn'][1]:,} and {maps['drawn'][0]:,} drawn), after {maps['preprocessing_s']:.0f} s once",
         *(
             f"depth error against the true world, {name}: median {row['median_mm']:.2f} mm, "
             f"99 % below {row['percentile_99_mm']:.0f} mm"
