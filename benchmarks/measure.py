@@ -62,6 +62,8 @@ def rows_of(scene: Scene, measured: Measured) -> dict[str, object]:
 def measure_all(quick: bool, kitchen: Path | None, note: Callable[[str], None]) -> dict[str, object]:
     """Every number of the table."""
     repeats, scene = (3 if quick else 9), corridor()
+    note("particles")  # before tools that would hold more memory than many particles do
+    particles = growth.particle_growth(scene, 2 if quick else 5)
     note("corridor, side by side")
     measured = side_by_side.measure(scene, list(side_by_side.TOOLS), repeats)
     scenes = [rows_of(scene, measured)]
@@ -69,8 +71,6 @@ def measure_all(quick: bool, kitchen: Path | None, note: Callable[[str], None]) 
         note("a recording in six degrees of freedom, side by side")
         other = six_degrees(kitchen / "map.ply", kitchen)
         scenes.append(rows_of(other, side_by_side.measure(other, ["embree", "embreex", "pyvista"], repeats)))
-    note("particles")
-    particles = growth.particle_growth(scene, 2 if quick else 5)
     note("triangles")
     maps = growth.map_growth(scene, repeats)
     note("against the true world")

@@ -60,7 +60,7 @@ def open3d_embree(scene_map: SceneMap, camera: DepthCamera) -> Tool:
 def course_backend(backend: str, scene_map: SceneMap, camera: DepthCamera, one_by_one: bool = False) -> Tool:
     """One of the course's own backends; one_by_one: a render and a read-back for each particle, half of them timed."""
     pixels = camera.width * camera.height if one_by_one else 200 * camera.width * camera.height
-    renderer = DepthRenderer(scene_map, camera, backend, max_batch_pixels=pixels)
+    renderer = DepthRenderer(scene_map, camera, backend, exact=True, max_batch_pixels=pixels)
 
     def render(poses: np.ndarray) -> Timed:
         asked = poses[:LOOPED_IMAGES] if one_by_one else poses

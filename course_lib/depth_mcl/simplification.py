@@ -23,13 +23,13 @@ from vtkmodules.vtkFiltersCore import vtkQuadricDecimation, vtkStaticCleanPolyDa
 
 from course_lib.depth_mcl.scene_map import SceneMap
 
-# Metres. A fifth of the likelihood's alpha, at which a pixel counts half: where particles are told apart, it is small.
-TOLERANCE = 0.02
+# Metres. A pixel that is off by so much still counts seven eighths in the likelihood (alpha = 0.1 m).
+TOLERANCE = 0.015
 WITHIN_PERCENT = 99
 # A smaller map is drawn as it is: there is nothing to gain.
 LEAST_TRIANGLES = 20_000
 # Quadric errors (square metres, weighed by areas) at which the merging of edges stops, one after the other.
-_QUADRIC_ERRORS = (1e-8, 1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4)
+_QUADRIC_ERRORS = (1e-8, 1e-7, 3e-7, 6e-7, 1e-6, 2e-6, 4e-6, 8e-6, 2e-5, 5e-5)
 _CHECKED_VERTICES = 20_000
 _KEEP_AT_LEAST = 0.01  # of the triangles: VTK wants a number
 
