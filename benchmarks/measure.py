@@ -16,6 +16,7 @@ from pathlib import Path
 
 import growth
 import numpy as np
+import panels
 import side_by_side
 import start_up
 from side_by_side import Measured, Scene
@@ -27,8 +28,10 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.recordings import system_noise
 from course_lib.experiments.results import versions
-from course_lib.paths import data_path
+from course_lib.paths import data_path, notebook_paths
 from course_lib.processors import processors
+
+QUICK_LESSONS = ("00", "07", "15")
 
 
 def corridor() -> Scene:
@@ -77,6 +80,12 @@ def measure_all(quick: bool, kitchen: Path | None, note: Callable[[str], None]) 
     true = growth.truth(scene, SceneMap.load(data_path("corridor/true_world.ply")), 8 if quick else 40)
     note("start-up, lesson 00, a room's poses")
     waiting = start_up.start_up(2 if quick else 7) | start_up.room_seconds(5 if quick else 15)
+    note("keys and pictures, in a browser")
+    lessons = QUICK_LESSONS if quick else tuple(path.name[:2] for path in notebook_paths())
+    try:
+        pictures = panels.picture_ms(lessons, 8 if quick else 20)
+    except (ImportError, RuntimeError) as error:
+        pictures = {"missing": str(error)}
     note("memory")
     memory = start_up.memory(scene, 200 if quick else 10_000, 20 if quick else 100)
     ratios = {tool: measured.ratio(tool) for tool in ("embree", "pyvista")}
@@ -94,6 +103,7 @@ def measure_all(quick: bool, kitchen: Path | None, note: Callable[[str], None]) 
         "maps": maps,
         "against_the_true_world": true,
         "waiting": waiting,
+        "picture_ms": pictures,
         "memory": memory,
         "quick": quick,
         "machine": machine(scene),

@@ -15,7 +15,15 @@ def table(result: dict) -> str:
         lines += ["", f"{scene['name']}, {scene['triangles']:,} triangles", _heading()]
         lines += [_row(name, row) for name, row in scene["rows"].items()]
     particles, maps, true = result["particles"], result["maps"], result["against_the_true_world"]
-    waiting, memory = result["waiting"], result["memory"]
+    waiting, memory, pictures = result["waiting"], result["memory"], result["picture_ms"]
+    if "missing" in pictures:
+        keys = f"from a key to its picture: not measured ({pictures['missing'][:80]})"
+    else:
+        milliseconds = sorted(pictures.values())
+        keys = (
+            f"from a key on a panel to its picture: {milliseconds[0]:.0f} to {milliseconds[-1]:.0f} ms, the medians of "
+            f"{len(milliseconds)} lessons' first panels"
+        )
     lines += [
         "",
         f"one of {particles['particles'][1]} particles costs {particles['growth']:.2f} of one of "
@@ -30,6 +38,7 @@ def table(result: dict) -> str:
         f"import course_lib {waiting['import_s']:.2f} s; course.py --help {waiting['help_s']:.2f} s; lesson 00 "
         f"{waiting['lesson_00_s']:.1f} s; a pose of paper 2 {waiting['pose_s']:.2f} s "
         f"(models loaded in {waiting['loading_s']:.1f} s)",
+        keys,
         f"memory over the second half of {memory['steps']:,} steps: {memory['steps_grew_mb']:+.1f} MB; over the second "
         f"half of {memory['renderers']} renderers: {memory['renderers_grew_mb']:+.1f} MB",
     ]
