@@ -14,6 +14,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+import curves
 import growth
 import numpy as np
 import panels
@@ -62,8 +63,10 @@ def rows_of(scene: Scene, measured: Measured) -> dict[str, object]:
     return {"name": scene.name, "triangles": len(scene.scene_map), "rows": rows}
 
 
-def measure_all(quick: bool, kitchen: Path | None, note: Callable[[str], None]) -> dict[str, object]:
-    """Every number of the table."""
+def measure_all(
+    quick: bool, kitchen: Path | None, figure: Path | None, note: Callable[[str], None]
+) -> dict[str, object]:
+    """Every number of the table; figure: where that of time against particles, pixels and triangles goes."""
     repeats, scene = (3 if quick else 9), corridor()
     note("particles")  # before tools that would hold more memory than many particles do
     particles = growth.particle_growth(scene, 2 if quick else 5)
@@ -86,6 +89,10 @@ def measure_all(quick: bool, kitchen: Path | None, note: Callable[[str], None]) 
         pictures = panels.picture_ms(lessons, 8 if quick else 20)
     except (ImportError, RuntimeError) as error:
         pictures = {"missing": str(error)}
+    curve = None
+    if figure is not None:
+        curve = curves.curves(scene, 3, note)
+        curves.draw(curve, figure)
     note("memory")
     memory = start_up.memory(scene, 200 if quick else 10_000, 20 if quick else 100)
     ratios = {tool: measured.ratio(tool) for tool in ("embree", "pyvista")}
@@ -104,6 +111,7 @@ def measure_all(quick: bool, kitchen: Path | None, note: Callable[[str], None]) 
         "against_the_true_world": true,
         "waiting": waiting,
         "picture_ms": pictures,
+        "curves": curve,
         "memory": memory,
         "quick": quick,
         "machine": machine(scene),
@@ -136,6 +144,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--kitchen", type=Path)
+    parser.add_argument("--figure", type=Path)
     given = parser.parse_args()
     note = partial(print, "measuring:", file=sys.stderr, flush=True)
-    print(json.dumps(measure_all(given.quick, given.kitchen, note)))
+    print(json.dumps(measure_all(given.quick, given.kitchen, given.figure, note)))

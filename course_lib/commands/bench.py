@@ -25,7 +25,7 @@ STAMP = "course-bench.txt"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `bench`."""
-    parser.add_argument("--quick", action="store_true", help="fewer repeats: two minutes instead of ten")
+    parser.add_argument("--quick", action="store_true", help="fewer repeats and no figure: a few minutes")
     parser.add_argument("--no-tools", action="store_true", help="install nothing: only tools that are there already")
     parser.add_argument(
         "--recording",
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         default=Path("results/bench"),
         metavar="FOLDER",
-        help="for bench.json (default: results/bench)",
+        help="where bench.json and bench.png go (default: results/bench)",
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
 
@@ -54,7 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
         why = install_tools()
         if why:
             print(f"The tools to compare with could not be installed, and are left out: {why}", file=sys.stderr)
-    words = ["--quick"] if arguments.quick else []
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    words = ["--quick"] if arguments.quick else ["--figure", str((arguments.out / "bench.png").resolve())]
     words += ["--kitchen", str(arguments.recording.resolve())] if arguments.recording else []
     path = os.pathsep.join([str(ROOT / "benchmarks"), str(TOOLS), os.environ.get("PYTHONPATH", "")])
     environment = os.environ | {"PYTHONPATH": path.rstrip(os.pathsep)}
@@ -70,7 +71,6 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"The measurement ended with code {done.returncode}; what it said stands above.", file=sys.stderr)
         return 1
     result = json.loads(done.stdout.splitlines()[-1])
-    arguments.out.mkdir(parents=True, exist_ok=True)
     (arguments.out / "bench.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     print(json.dumps(result) if arguments.json else table(result))
     return 0

@@ -1,0 +1,183 @@
+"""`bench`: its tools are installed once, into their own folder; its table says what was measured and what is missing.
+
+How fast anything is, is no test: the numbers here are made up, and what is measured is measured by the command alone.
+"""
+
+import copy
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course_lib.cli import main
+from course_lib.commands import bench
+from course_lib.commands.bench_table import table
+from course_lib.depth_mcl import DepthRenderer, SceneMap
+from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
+from course_lib.depth_mcl.motion import BODY_AXES
+from course_lib.depth_mcl.sequence import read_sequence
+
+ROOT = Path(__file__).parents[2]
+SPREAD = {"median": 100.0, "least": 90.0, "greatest": 130.0}
+RESULT = {
+    "step_ms": 100.0,
+    "scenes": [
+        {
+            "name": "corridor",
+            "triangles": 120_000,
+            "rows": {
+                "step, default": {"ms": SPREAD},
+                "Embree": {
+                    "ms": {"median": 700.0, "least": 650.0, "greatest": 750.0},
+                    "times_default": {"median": 7.0, "least": 6.5, "greatest": 7.5},
+                    "times_exact": {"median": 3.5, "least": 3.0, "greatest": 4.0},
+                    "pixels_apart": 0.00001,
+                },
+                "PyVista": {"missing": "ModuleNotFoundError: No module named 'pyvista'"},
+            },
+        }
+    ],
+    "particles": {"particles": [200, 2000], "growth": 0.9, "peak_memory_grew_mb": 60.0},
+    "maps": {"triangles": [120_000, 1_080_000], "drawn": [31_385, 33_000], "growth": 1.1, "preprocessing_s": 17.0},
+    "against_the_true_world": {"exact": {"median_mm": 12.7, "percentile_99_mm": 2837.0}},
+    "waiting": {"import_s": 0.03, "help_s": 0.06, "lesson_00_s": 11.0, "pose_s": 0.45, "loading_s": 0.7},
+    "picture_ms": {"00_start_here": 73.0, "07_estimate_and_resample": 57.0},
+    "memory": {"steps": 200, "steps_grew_mb": 0.1, "renderers": 20, "renderers_grew_mb": 0.0},
+    "machine": {"processor": "a processor", "processors": 2, "load_at_the_end": 1.1, "opengl": "llvmpipe"},
+}
+
+
+def test_the_table_tells_times_ratios_and_what_is_missing():
+    text = table(RESULT)
+    assert "a processor, 2 processors, load 1.1 at the end; OpenGL: llvmpipe" in text
+    assert "700 (650 to 750)" in text
+    assert "7.0 (6.5 to 7.5)" in text
+    assert "3.5 (3.0 to 4.0)" in text
+    assert "not here: ModuleNotFoundError" in text
+    assert (
+        "a map of 1,080,000 triangles costs 1.10 of one of 120,000 (33,000 and 31,385 drawn), after 17 s once" in text
+    )
+    assert "57 to 73 ms, the medians of 2 lessons' first panels" in text
+    without = copy.deepcopy(RESULT) | {"picture_ms": {"missing": "no Chromium or Chrome found"}}
+    assert "not measured (no Chromium or Chrome found)" in table(without)
+
+
+@pytest.fixture
+def fake(tmp_path, monkeypatch):
+    """A place for tools, and a measurement that prints the result above and what it was asked."""
+    monkeypatch.setattr(bench, "TOOLS", tmp_path / "tools")
+    monkeypatch.setattr(bench, "LOCK", tmp_path / "lock.txt")
+    (tmp_path / "lock.txt").write_text("a-tool==1\n")
+    calls = []
+    real = subprocess.run
+
+    def run(command, **options):
+        calls.append(command)
+        if "pip" in command:
+            return subprocess.CompletedProcess(command, 0, "", "")
+        return real([sys.executable, "-c", f"print('noise')\nprint({json.dumps(json.dumps(RESULT))})"], **options)
+
+    monkeypatch.setattr(subprocess, "run", run)
+    return calls
+
+
+def test_tools_are_installed_once_into_their_own_folder_and_again_when_their_lock_changes(fake, tmp_path, capsys):
+    words = ["bench", "--quick", "--out", str(tmp_path / "out")]
+    assert main([*words, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == RESULT
+    assert json.loads((tmp_path / "out" / "bench.json").read_text()) == RESULT
+    (pip,) = [call for call in fake if "pip" in call]
+    assert pip[pip.index("--target") + 1] == str(tmp_path / "tools")
+    assert main(words) == 0
+    assert "step, default" in capsys.readouterr().out
+    assert sum("pip" in call for call in fake) == 1
+    (tmp_path / "lock.txt").write_text("a-tool==2\n")
+    assert main(words) == 0
+    assert sum("pip" in call for call in fake) == 2
+    assert main([*words, "--no-tools"]) == 0
+    assert "--quick" in fake[-1]
+
+
+def test_without_a_network_the_rest_is_measured(fake, tmp_path, capsys, monkeypatch):
+    ours = subprocess.run
+
+    def fail(command, **options):
+        if "pip" in command:
+            return subprocess.CompletedProcess(command, 1, "", "noise\nERROR: no route to host")
+        return ours(command, **options)
+
+    monkeypatch.setattr(subprocess, "run", fail)
+    assert main(["bench", "--quick", "--out", str(tmp_path / "out")]) == 0
+    assert "are left out: ERROR: no route to host" in capsys.readouterr().err
+    assert main(["bench", "--quick", "--out", str(tmp_path / "out")]) == 0
+    assert "are left out" in capsys.readouterr().err, "an installation that failed is tried again"
+
+
+def test_a_folder_that_is_not_ours_is_left_alone(fake, tmp_path, capsys):
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools" / "thesis.txt").write_text("mine")
+    assert main(["bench", "--quick", "--out", str(tmp_path / "out")]) == 0
+    assert "was not made by this command" in capsys.readouterr().err
+    assert (tmp_path / "tools" / "thesis.txt").read_text() == "mine"
+
+
+def test_a_recording_without_its_map_is_named(tmp_path, capsys):
+    assert main(["bench", "--recording", str(tmp_path)]) == 2
+    assert "holds no map.ply" in capsys.readouterr().err
+
+
+@pytest.fixture
+def benchmarks(monkeypatch):
+    """The benchmarks' modules, importable."""
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+
+
+def test_images_that_differ_are_counted_and_what_nobody_hits_is_alike(benchmarks):
+    from side_by_side import share_apart
+
+    ours = np.array([[[1.0, 2.0, np.inf, 5.0]]])
+    theirs = np.array([[[1.005, 2.5, np.inf, 40.0]]])
+    assert share_apart(ours, theirs, far=30.0) == 0.5
+    assert share_apart(ours, ours, far=30.0) == 0.0
+
+
+def test_a_finer_survey_is_the_same_building_in_nine_times_the_triangles(benchmarks):
+    from growth import finer_survey
+
+    cube = np.array([[x, y, z] for x in (0, 2.0) for y in (0, 3.0) for z in (0, 1.0)])
+    faces = [
+        [0, 1, 3],
+        [0, 3, 2],
+        [4, 6, 7],
+        [4, 7, 5],
+        [0, 4, 5],
+        [0, 5, 1],
+        [2, 3, 7],
+        [2, 7, 6],
+        [0, 2, 6],
+        [0, 6, 4],
+    ]
+    scene_map = SceneMap(cube, np.array(faces))
+    fine = finer_survey(scene_map)
+    assert len(fine) == 9 * len(scene_map)
+    assert np.abs(fine.bounds - scene_map.bounds).max() < 0.02
+    edges = np.sort(fine.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    _, counts = np.unique(edges, axis=0, return_counts=True)
+    assert set(counts) == {1, 2}
+    assert (counts == 1).sum() == 12, "open where the box is open, and nowhere else"
+
+
+def test_a_step_is_timed_from_the_pose_that_is_asked(benchmarks, corridor_folder):
+    from side_by_side import Scene, timed_step
+
+    sequence = read_sequence(corridor_folder / "wagon")
+    planar = SceneMap.load(corridor_folder / "planar_map.ply")
+    scene = Scene("corridor", planar, sequence, np.array(SIGMA_XY_YAW), BODY_AXES)
+    with DepthRenderer(scene.scene_map, scene.sequence.camera().resized(16, 12)) as renderer:
+        seconds, particles = timed_step(scene, renderer, 40, 7)
+    assert seconds > 0
+    assert particles.shape == (7, 6)
+    assert np.linalg.norm(particles[:, :2].mean(axis=0) - scene.sequence.camera_to_world[40, :2, 3]) < 0.5
