@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.cli import find_command
+from course_lib.commands.bench_table import table
 from course_lib.commands.demo_corridor import table_1
 
 ROOT = Path(__file__).parents[1]
@@ -67,6 +68,14 @@ def test_the_rows_over_recordings_are_the_medians_and_ranges_of_five(name, metho
         values = [one[part][method][key] for one in stored["recordings"]]
         expected = np.round([np.median(values), min(values), max(values)], digits)
         assert np.array_equal([float(v) for v in re.findall(r"\d+\.\d+", cell)[:3]], expected)
+
+
+def test_the_speed_is_what_the_benchmark_printed():
+    stored = json.loads((CORRIDOR_RESULTS / "bench.json").read_text())
+    quoted = [line.removeprefix("    ").rstrip() for line in RESULTS.splitlines()]
+    assert [line for line in table(stored).splitlines() if line not in quoted] == []
+    told = re.search(r"(\d+) ms on two cores .* (\d+) times as fast as Embree", README.replace("\n", " "))
+    assert (float(told[1]), float(told[2])) == (round(stored["step_ms"]), round(stored["embree_ratio"]))
 
 
 def test_the_readme_is_a_front_page():
