@@ -28,7 +28,7 @@ def share_that_differs(scene_map, camera, states):
     """Share of pixels by more than a millimetre; centres on an edge may fall to either side."""
     images = []
     for backend in ("raster", "ray"):
-        with DepthRenderer(scene_map, camera, backend) as renderer:
+        with DepthRenderer(scene_map, camera, backend, exact=True) as renderer:
             images.append(renderer.render(states))
     with np.errstate(invalid="ignore"):
         difference = np.where(images[0] == images[1], 0.0, np.abs(images[0] - images[1]))
