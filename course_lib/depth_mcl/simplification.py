@@ -12,6 +12,7 @@ import contextlib
 import hashlib
 import os
 import tempfile
+import warnings
 from functools import lru_cache
 from pathlib import Path
 
@@ -31,14 +32,22 @@ LEAST_TRIANGLES = 20_000
 # Quadric errors (square metres, weighed by areas) at which the merging of edges stops, one after the other.
 _QUADRIC_ERRORS = (1e-8, 1e-7, 3e-7, 6e-7, 1e-6, 2e-6, 4e-6, 8e-6, 2e-5, 5e-5)
 _CHECKED_VERTICES = 20_000
+# Below, nobody waits long enough to be told why; a million took 16 s on one core of a server.
+QUICK_TRIANGLES = 300_000
+_SECONDS_A_TRIANGLE = 16e-6
 _KEEP_AT_LEAST = 0.01  # of the triangles: VTK wants a number
+
+
+class LargeMapWarning(UserWarning):
+    """A map so large that its simplification, which happens once, makes one wait."""
 
 
 @lru_cache(maxsize=4)
 def simplified(scene_map: SceneMap, tolerance: float = TOLERANCE) -> SceneMap:
     """The map with fewer triangles: 99 % of its vertices are within `tolerance` metres of them; small maps as they are.
 
-    The same for the same map, in every process. Raises `ValueError` for a tolerance that is not positive and finite.
+    The same for the same map, in every process. Warns (`LargeMapWarning`) before a wait of many seconds.
+    Raises `ValueError` for a tolerance that is not positive and finite.
     """
     if not (np.isfinite(tolerance) and tolerance > 0):
         raise ValueError(f"tolerance must be a positive number of metres; got {tolerance}")
@@ -47,6 +56,14 @@ def simplified(scene_map: SceneMap, tolerance: float = TOLERANCE) -> SceneMap:
     path = _cache_path(scene_map, tolerance)
     found = _read(path)
     if found is None:
+        if len(scene_map) > QUICK_TRIANGLES:
+            seconds = len(scene_map) * _SECONDS_A_TRIANGLE
+            warnings.warn(
+                f"simplifying a map of {len(scene_map):,} triangles takes about {seconds:.0f} s, once: what is found "
+                f"is kept in {path.parent}. exact=True (--exact) draws every triangle, and each frame takes longer",
+                LargeMapWarning,
+                stacklevel=2,
+            )
         found = _simplify(scene_map, tolerance)
         _keep(path, found)
     return found
