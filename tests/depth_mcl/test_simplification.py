@@ -19,7 +19,7 @@ def a_cache_of_its_own(tmp_path, monkeypatch):
     simplification.simplified.cache_clear()
 
 
-def bumpy_wall(amplitude=0.002, seed=3, n=130):
+def bumpy_wall(amplitude=0.002, seed=3, n=110):
     """A wall x = 2, 5.2 m wide, of about 2 n^2 triangles: random bumps (m), a step half a metre high, a square hole."""
     grid = np.linspace(-2.6, 2.6, n + 1)
     y, z = (values.ravel() for values in np.meshgrid(grid, grid, indexing="ij"))
@@ -66,7 +66,7 @@ def test_a_map_of_which_nothing_can_go_is_drawn_as_it_is():
 
 
 def test_a_finer_map_of_the_same_wall_gives_no_more_triangles():
-    coarse, fine = bumpy_wall(0.001), bumpy_wall(0.001, n=260)
+    coarse, fine = bumpy_wall(0.001), bumpy_wall(0.001, n=220)
     assert len(fine) > 3.9 * len(coarse)
     assert len(simplification.simplified(fine)) < 1.3 * len(simplification.simplified(coarse))
 
@@ -113,7 +113,7 @@ def test_what_is_damaged_is_made_again_and_where_nothing_can_be_kept_it_works(mo
 
 
 def test_who_has_to_wait_is_told_why_and_only_once(monkeypatch):
-    monkeypatch.setattr(simplification, "QUICK_TRIANGLES", 30_000)
+    monkeypatch.setattr(simplification, "QUICK_TRIANGLES", 21_000)
     with pytest.warns(simplification.LargeMapWarning, match="exact=True"):
         simplification.simplified(bumpy_wall())
     simplification.simplified.cache_clear()
