@@ -98,9 +98,7 @@ def draw(found: dict[str, list[Point]], path: Path) -> None:
     right = {"xy": (0.98, 130), "xycoords": ("axes fraction", "data"), "ha": "right"}
     axes[2].annotate("the paper: 125 ms on a GPU", **right, fontsize=8, color="0.4")
     axes[0].set_ylabel("time [ms]")
-    figure.suptitle(
-        "One quantity changes, the others stay at 200 particles, 176 x 144 pixels and the shipped map"
-    )
+    figure.suptitle("One quantity changes, the others stay at 200 particles, 176 x 144 pixels and the shipped map")
     axes[0].legend(loc="lower right", fontsize=8)
     figure.savefig(path, dpi=110)
     plt.close(figure)

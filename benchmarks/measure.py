@@ -64,7 +64,7 @@ def rows_of(scene: Scene, measured: Measured) -> dict[str, object]:
 
 
 def measure_all(
-    quick: bool, kitchen: Path | None, figure: Path | None, note: Callable[[str], None]
+    quick: bool, recording: Path | None, figure: Path | None, note: Callable[[str], None]
 ) -> dict[str, object]:
     """Every number of the table; figure: where that of time against particles, pixels and triangles goes."""
     repeats, scene = (3 if quick else 9), corridor()
@@ -73,9 +73,9 @@ def measure_all(
     note("corridor, side by side")
     measured = side_by_side.measure(scene, list(side_by_side.TOOLS), repeats)
     scenes = [rows_of(scene, measured)]
-    if kitchen is not None:
+    if recording is not None:
         note("a recording in six degrees of freedom, side by side")
-        other = six_degrees(kitchen / "map.ply", kitchen)
+        other = six_degrees(recording / "map.ply", recording)
         scenes.append(rows_of(other, side_by_side.measure(other, ["embree", "embreex", "pyvista"], repeats)))
     note("triangles")
     maps = growth.map_growth(scene, repeats)
@@ -143,8 +143,8 @@ def _cpuinfo() -> list[str]:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--kitchen", type=Path)
+    parser.add_argument("--recording", type=Path)
     parser.add_argument("--figure", type=Path)
     given = parser.parse_args()
     note = partial(print, "measuring:", file=sys.stderr, flush=True)
-    print(json.dumps(measure_all(given.quick, given.kitchen, given.figure, note)))
+    print(json.dumps(measure_all(given.quick, given.recording, given.figure, note)))

@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
             print(f"The tools to compare with could not be installed, and are left out: {why}", file=sys.stderr)
     arguments.out.mkdir(parents=True, exist_ok=True)
     words = ["--quick"] if arguments.quick else ["--figure", str((arguments.out / "bench.png").resolve())]
-    words += ["--kitchen", str(arguments.recording.resolve())] if arguments.recording else []
+    words += ["--recording", str(arguments.recording.resolve())] if arguments.recording else []
     path = os.pathsep.join([str(ROOT / "benchmarks"), str(TOOLS), os.environ.get("PYTHONPATH", "")])
     environment = os.environ | {"PYTHONPATH": path.rstrip(os.pathsep)}
     if sys.platform.startswith("linux"):

@@ -25,7 +25,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `sweep`."""
     parser.add_argument("experiment", choices=EXPERIMENTS, help="corridor: table 1 of paper 1")
     parser.add_argument(
-        "--seeds", default="20", metavar="N|A-B", help="N: seeds 1 to N; A-B: these (default: 20, which takes an hour)"
+        "--seeds",
+        default="20",
+        metavar="N|A-B",
+        help="N: seeds 1 to N; A-B: these (default: 20, an hour or two)",
     )
     parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
     parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames (default: all)")

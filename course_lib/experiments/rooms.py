@@ -13,7 +13,7 @@ import multiprocessing
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -23,6 +23,7 @@ import numpy as np
 from course_lib.experiments.detector_evaluation import match_image
 from course_lib.experiments.results import write_results
 from course_lib.experiments.room import SOURCES, PairResult, localize_pair
+from course_lib.experiments.sweeps import finished
 from course_lib.simulation.room.look_alike_recording import RecordingModels, photograph_room, surveyed_room
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.recording import read_stereo_recording
@@ -154,26 +155,13 @@ def observe_rooms(
     with ProcessPoolExecutor(min(processes, len(missing)), context, _start_worker, (load_detector,)) as pool:
         try:
             jobs = [pool.submit(_observe_in_worker, seed, options) for seed in missing]
-            for job in progress(_finished(jobs)):
+            for job in progress(finished(jobs)):
                 room = _keep(folder, job.result())
                 rooms[room["seed"]] = room
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return [rooms[seed] for seed in seeds]
-
-
-class _finished:
-    """Jobs in the order in which they end, with a length for progress bars."""
-
-    def __init__(self, jobs: list) -> None:
-        self._jobs = jobs
-
-    def __len__(self) -> int:
-        return len(self._jobs)
-
-    def __iter__(self):
-        return as_completed(self._jobs)
 
 
 _worker: dict = {}

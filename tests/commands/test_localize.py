@@ -9,6 +9,7 @@ import pytest
 from course_lib.cli import main
 from course_lib.commands.localize import believed, join_words
 from course_lib.depth_mcl.poses import read_tum
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
 
@@ -268,3 +269,26 @@ def test_an_output_folder_that_cannot_be_is_told_before_any_work(corridor_folder
     assert "--out" in captured.err
     assert "frame/s" not in captured.err  # no progress bar: nothing ran
     assert (tmp_path / "a_file").read_text() == "mine"
+
+
+@pytest.mark.parametrize("command", ["localize", "demo"])
+def test_exact_reaches_the_renderer(command, corridor_folder, tmp_path, monkeypatch):
+    asked = []
+
+    class Watched(DepthRenderer):
+        def __init__(self, *given, **options):
+            asked.append(options.get("exact", False))
+            super().__init__(*given, **options)
+
+    monkeypatch.setattr("course_lib.experiments.recordings.DepthRenderer", Watched)
+    few = ["--frames", "2", "--particles", "8", "--out", str(tmp_path)]
+    words = {
+        "localize": ["--map", str(corridor_folder / "map.ply"), "--sequence", str(corridor_folder / "wagon"), *few],
+        "demo": ["corridor", "--recording", "shipped", *few],
+    }[command]
+    assert main([command, *words]) == 0
+    assert not any(asked)
+    asked.clear()
+    assert main([command, *words, "--exact"]) == 0
+    assert asked
+    assert all(asked)

@@ -1,9 +1,17 @@
 """What a set-up compiles is what the filter then runs: a loop with other types would be compiled again, for seconds."""
 
 import numpy as np
+import pytest
 
-from course_lib.commands.warm_up import compile_loops
-from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer, SceneMap, compiled_likelihood
+from course_lib.commands.warm_up import compile_loops, simplify_corridor
+from course_lib.depth_mcl import (
+    DepthCamera,
+    DepthRenderer,
+    MonteCarloLocalizer,
+    SceneMap,
+    compiled_likelihood,
+    simplification,
+)
 from course_lib.depth_mcl.rendering import rasterizer
 
 
@@ -25,3 +33,14 @@ def test_the_filter_compiles_nothing_that_the_set_up_did_not():
         localizer.initialize(np.zeros(6))
         localizer.step(np.full((12, 16), 2.0, dtype=np.float32))
     assert compiled_forms() == before
+
+
+def test_the_corridors_map_is_not_simplified_again(tmp_path, monkeypatch, corridor_folder):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    simplification.simplified.cache_clear()
+    simplify_corridor()
+    simplification.simplified.cache_clear()
+    monkeypatch.setattr(simplification, "_simplify", lambda *_: pytest.fail("it was simplified again"))
+    scene_map = SceneMap.load(corridor_folder / "map.ply")
+    assert len(simplification.simplified(scene_map)) < len(scene_map) / 2
+    simplification.simplified.cache_clear()
