@@ -53,6 +53,8 @@ def table_over_recordings(result: dict, told: str = "least to greatest") -> str:
         if rows and title:
             lines += ["", title]
         lines += [f"{row['name']:36} {_spreads(row)}" for row in rows.values()]
+    if any("?" in line for line in lines):
+        lines += ["", "?: so few recordings leave the interval unknown; six are enough."]
     return "\n".join(lines)
 
 

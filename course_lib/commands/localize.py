@@ -260,7 +260,7 @@ def _table(s: dict) -> str:
             f"rotation error [deg]  {s['median_rotation_deg']:6.2f}   {s['p90_rotation_deg']:6.2f}",
             "",
             f"within 5 cm and 5 degrees: {s['within_5cm_5deg_percent']:.1f} %",
-            f"squared error in units of its covariance: {s['mean_normalized_error']:.2f} in the mean (1 is honest)",
+            f"squared error in units of its covariance: {_in_the_mean(s['mean_normalized_error'])}",
         ]
     else:
         lines += ["no poses.txt: errors are not known", ""]
@@ -268,6 +268,12 @@ def _table(s: dict) -> str:
         lines.append(f"{s['frames_without_measurement']} frames held no measurement between --near and --far")
     lines.append(f"{s['renders_per_frame']} renders and {s['ms_per_frame']:.0f} ms a frame")
     return "\n".join(lines)
+
+
+def _in_the_mean(normalized: float | None) -> str:
+    if normalized is None:
+        return "unknown (too few particles to span the motion)"
+    return f"{normalized:.2f} in the mean (1 is honest)"
 
 
 def _write(folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap) -> None:

@@ -111,8 +111,14 @@ def normalized_error(deviation: np.ndarray, covariance: np.ndarray) -> float:
     """Squared error in units of its covariance, e' C^-1 e / d: 1 in the mean where the covariance is honest.
 
     deviation: e `(6,)`, the true state's from the estimate (`Motion.deviations`); covariance: C `(6, 6)`, whose
-    components without a variance, given and not estimated, are left out; d is the number of the others.
+    components without a variance, given and not estimated, are left out; d is the number of the others. NaN where C is
+    singular: fewer particles than that many components need, or all of them at one place, do not say how far off.
     """
     estimated = np.flatnonzero(np.diag(covariance) > _NO_VARIANCE)
-    e = np.asarray(deviation, dtype=np.float64)[estimated]
-    return float(e @ np.linalg.solve(covariance[np.ix_(estimated, estimated)], e)) / len(estimated)
+    c = np.asarray(covariance, dtype=np.float64)[np.ix_(estimated, estimated)]
+    sigma = np.sqrt(np.diag(c))  # metres and radians, in units of their own spread
+    correlation = c / np.outer(sigma, sigma)
+    if not len(c) or np.linalg.eigvalsh(correlation)[0] < _SMALLEST_SHARE:
+        return float("nan")
+    e = np.asarray(deviation, dtype=np.float64)[estimated] / sigma
+    return float(e @ np.linalg.solve(correlation, e)) / len(estimated)

@@ -48,7 +48,8 @@ class Run(NamedTuple):
     statuses: list[TrackStatus]
     """Whether the filter believes itself on the track, frame by frame."""
     normalized_errors: np.ndarray
-    """`(T,)` squared error in units of the covariance (uncertainty.py); empty where the truth is not known."""
+    """`(T,)` squared error in units of the covariance (uncertainty.py); NaN where particles were too few to have one;
+    empty where the truth is not known."""
     ms_per_frame: float
     """Milliseconds, the mean over steps; reading the images is not counted."""
     frames_without_measurement: int
@@ -134,9 +135,10 @@ def run_sequence(
     )
 
 
-def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float]:
+def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float | None]:
     """Median and 90th percentile of position (m) and rotation (degrees) errors; share within 5 cm, 5 degrees; and the
-    mean normalized error, which is near 1 where the covariance says rightly how large errors are."""
+    mean normalized error, which is near 1 where the covariance says rightly how large errors are (None where a frame's
+    particles were too few for one)."""
     position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
     rotation_deg = np.rad2deg(rotation)
     return {
@@ -145,5 +147,7 @@ def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float]:
         "median_rotation_deg": float(np.median(rotation_deg)),
         "p90_rotation_deg": float(np.percentile(rotation_deg, 90)),
         "within_5cm_5deg_percent": float(100 * np.mean((position <= 0.05) & (rotation_deg <= 5.0))),
-        "mean_normalized_error": float(np.mean(run.normalized_errors)),
+        "mean_normalized_error": None
+        if np.isnan(run.normalized_errors).any()
+        else float(np.mean(run.normalized_errors)),
     }

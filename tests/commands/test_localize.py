@@ -51,6 +51,15 @@ def test_a_hand_carried_run_is_followed_in_six_degrees(corridor_folder, capsys):
     assert 0.05 < summary["mean_normalized_error"] < 20
 
 
+@pytest.mark.parametrize("particles", [1, 3])
+def test_particles_too_few_for_a_covariance_are_said_to_be(corridor_folder, capsys, particles):
+    words = arguments(corridor_folder, dof="xyyaw", frames=2, particles=particles)
+    assert main(words) == 0
+    assert "units of its covariance: unknown (too few particles" in capsys.readouterr().out
+    assert main([*words, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["mean_normalized_error"] is None
+
+
 def test_the_same_seed_gives_the_same_table(corridor_folder, capsys):
     tables = []
     for _ in range(2):

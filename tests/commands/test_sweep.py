@@ -18,6 +18,7 @@ def test_what_is_missing_is_run_and_the_table_tells_medians_and_intervals(tmp_pa
     assert "Table 1 over 2 recordings, seeds 10040 to 10041, 2 frames, 6 particles" in table
     assert "median (95 % interval of the median)" in table
     assert "(? to ?)" in table, "two recordings tell no interval"
+    assert "six are enough" in table
     lines = (tmp_path / "corridor.jsonl").read_text().splitlines()
     assert sorted(json.loads(line)["point"]["seed"] for line in lines[1:]) == [10040, 10041]
     assert main([*words, "--seeds", "10041", "--json"]) == 2, "a number alone is how many, and that is too many here"

@@ -158,6 +158,11 @@ def test_the_error_is_counted_in_units_of_its_covariance_where_something_was_est
     assert normalized_error([2.0, 9.0, 9.0, 9.0, 9.0, 1.0], covariance) == pytest.approx((4 - 4 + 4) / 3 / 2)
 
 
+@pytest.mark.parametrize("covariance", [np.zeros((6, 6)), np.diag([1e-12, 0, 0, 0, 0, 0]) + 1e-4])
+def test_too_few_particles_have_no_normalized_error(covariance):
+    assert np.isnan(normalized_error(np.full(6, 0.1), covariance))
+
+
 @pytest.mark.parametrize("seed", [10_001, 10_002])
 def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_folder, seed):
     """Between 0.5 and 2 in the mean; by the spread of the paper's weights they are beyond any number."""
