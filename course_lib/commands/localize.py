@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -95,11 +96,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=["x", "-x", "y", "-y", "z", "-z", "unknown"],
         help="the axis of map and poses that points up (default: what up.txt in the folder says, else unknown)",
     )
+    parser.add_argument(
+        "--method",
+        choices=["annealed", "paper"],
+        help="the filter: annealed and refined, which adapts to the camera's motion (default with --dof 6, six degrees "
+        "of freedom only), or the paper's (default with --dof xyyaw), whose particles and noise are set by hand",
+    )
     parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
     parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames")
     parser.add_argument(
-        "--sigma-position", type=float, metavar="M", help="system noise a frame, metres (default: 0.05; xyyaw: 0.15)"
+        "--sigma-position",
+        type=float,
+        metavar="M",
+        help="system noise a frame of the paper's, metres (default: 0.05; xyyaw: 0.15)",
     )
     parser.add_argument(
         "--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (default: 2; xyyaw: 1.5)"
@@ -115,8 +125,9 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
-    from course_lib.experiments.recordings import pose_error_summary, run_sequence, system_noise
+    from course_lib.experiments.recordings import pose_error_summary, run_annealed, run_sequence, system_noise
 
+    method = _method(arguments)
     require_seed(arguments.seed)
     require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
     require_positive("--near", arguments.near, "metres")
@@ -134,7 +145,12 @@ def run(arguments: argparse.Namespace) -> int:
         )
     start = _start(arguments.start, sequence, "z" if up == "unknown" else up)
     scene_map = SceneMap.load(arguments.map)
-    result = run_sequence(
+    if method == "paper":
+        noise = system_noise(arguments.dof, *_sigma(arguments))
+        localized = partial(run_sequence, **noise)
+    else:
+        localized = run_annealed
+    result = localized(
         scene_map,
         sequence,
         n_particles=arguments.particles,
@@ -147,7 +163,6 @@ def run(arguments: argparse.Namespace) -> int:
         near=arguments.near,
         far=arguments.far,
         progress=progress_bar("localizing"),
-        **system_noise(arguments.dof, *_sigma(arguments)),
     )
     summary = {
         **_options(arguments, up),
@@ -156,7 +171,8 @@ def run(arguments: argparse.Namespace) -> int:
         **{f"frames_{status}": result.statuses.count(status) for status in ("tracked", "doubtful", "lost")},
         "believes": believed(result.frames, result.statuses),
         **(pose_error_summary(result, sequence) if sequence.has_poses else {}),
-        "renders_per_frame": arguments.particles,
+        "renders_per_frame": float(np.mean(result.renders)),
+        "most_renders": int(result.renders.max()),
         "ms_per_frame": result.ms_per_frame,
     }
     if arguments.out:
@@ -167,6 +183,22 @@ def run(arguments: argparse.Namespace) -> int:
     if not arguments.json:
         print(summary["believes"])
     return 0
+
+
+def _method(arguments: argparse.Namespace) -> str:
+    """The filter to use; `ValueError` for options that it does not have."""
+    method = arguments.method or ("annealed" if arguments.dof == "6" else "paper")
+    if method == "paper":
+        return method
+    if arguments.dof != "6":
+        raise ValueError("--method annealed estimates six degrees of freedom: leave out --dof xyyaw, or --method")
+    for option in ("sigma_position", "sigma_rotation"):
+        if getattr(arguments, option) is not None:
+            raise ValueError(
+                f"--{option.replace('_', '-')} goes with --method paper: the annealed filter takes its noise from how "
+                "far the camera has been moving"
+            )
+    return method
 
 
 def _start(given: str | None, sequence: DepthSequence, up: str) -> np.ndarray:
@@ -208,17 +240,20 @@ def _sigma(arguments: argparse.Namespace) -> tuple[float, float]:
 
 def _options(arguments: argparse.Namespace, up: str) -> dict:
     """What was asked for, as the results keep it."""
-    position, rotation_deg = _sigma(arguments)
+    method = _method(arguments)
+    own = {"method": method}
+    if method == "paper":
+        position, rotation_deg = _sigma(arguments)
+        own |= {"sigma_position_m": position, "sigma_rotation_deg": rotation_deg}
     return {
+        **own,
+        "n_particles": arguments.particles,
         "map": str(arguments.map),
         "sequence": str(arguments.sequence),
         "start": arguments.start or "first row of poses.txt",
         "dof": arguments.dof,
         "up": up,
         "seed": arguments.seed,
-        "n_particles": arguments.particles,
-        "sigma_position_m": position,
-        "sigma_rotation_deg": rotation_deg,
         "depth_units_per_metre": arguments.depth_scale,
         "near_m": arguments.near,
         "far_m": arguments.far,
@@ -252,7 +287,8 @@ def believed(frames: list[int], statuses: list[str]) -> str:
 
 def _table(s: dict) -> str:
     estimated = "all six degrees of freedom" if s["dof"] == "6" else "x, y and yaw"
-    lines = [f"{s['frames']} frames, {estimated} estimated with {s['renders_per_frame']} particles", ""]
+    by = f"{s['n_particles']} particles" if s["method"] == "paper" else "the annealed filter"
+    lines = [f"{s['frames']} frames, {estimated} estimated with {by}", ""]
     if "median_position_m" in s:
         lines += [
             "                      median   90th percentile",
@@ -266,7 +302,7 @@ def _table(s: dict) -> str:
         lines += ["no poses.txt: errors are not known", ""]
     if s["frames_without_measurement"]:
         lines.append(f"{s['frames_without_measurement']} frames held no measurement between --near and --far")
-    lines.append(f"{s['renders_per_frame']} renders and {s['ms_per_frame']:.0f} ms a frame")
+    lines.append(f"{s['renders_per_frame']:.0f} renders and {s['ms_per_frame']:.0f} ms a frame")
     return "\n".join(lines)
 
 

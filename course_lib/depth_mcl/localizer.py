@@ -20,6 +20,7 @@ from course_lib.depth_mcl.likelihood import ALPHA, BETA, DepthImageError, valid_
 from course_lib.depth_mcl.motion import BODY_AXES, Motion, checked_sigma
 from course_lib.depth_mcl.particle_filter import Scheme, effective_sample_size, initial_particles, resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, positive_part
 from course_lib.depth_mcl.weighting import Weighting, paper_weighting
 
@@ -113,13 +114,7 @@ class MonteCarloLocalizer:
 
         Raises `ValueError` for a state that is not finite or lies outside the map (by more than a metre).
         """
-        particles = initial_particles(state0, self.n_particles)
-        scene_map = self.renderer.scene_map
-        if not scene_map.contains(particles[0, :3], MAP_MARGIN):
-            raise ValueError(
-                f"the initial position {particles[0, :3].round(3).tolist()} lies outside the map, which reaches from "
-                f"{scene_map.bounds[0].round(2).tolist()} to {scene_map.bounds[1].round(2).tolist()} m"
-            )
+        particles = initial_particles(checked_start(state0, self.renderer.scene_map), self.n_particles)
         self.particles = particles
         self._centre_covariance = np.zeros((6, 6))
 
@@ -169,3 +164,15 @@ class MonteCarloLocalizer:
         self._centre_covariance = positive_part(error - spread)
         ess = effective_sample_size(w)
         return Estimate(state, spread, float(scores.max()), ess, particles, w, status, error)
+
+
+def checked_start(state0: np.ndarray, scene_map: SceneMap) -> np.ndarray:
+    """The start `(6,)` of a filter. Raises `ValueError` where it is not finite or lies outside the map (by more than a
+    metre)."""
+    start = initial_particles(state0, 1)[0]
+    if not scene_map.contains(start[:3], MAP_MARGIN):
+        raise ValueError(
+            f"the initial position {start[:3].round(3).tolist()} lies outside the map, which reaches from "
+            f"{scene_map.bounds[0].round(2).tolist()} to {scene_map.bounds[1].round(2).tolist()} m"
+        )
+    return start

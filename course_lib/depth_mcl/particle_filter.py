@@ -60,22 +60,24 @@ def effective_sample_size(w: np.ndarray) -> float:
     return float(1.0 / np.sum(np.asarray(w, dtype=np.float64) ** 2))
 
 
-def resample(w: np.ndarray, rng: np.random.Generator, scheme: Scheme = "systematic") -> np.ndarray:
-    """Indices `(N,)` of the particles that live on: heavy ones are copied, light ones vanish (A-3).
+def resample(
+    w: np.ndarray, rng: np.random.Generator, scheme: Scheme = "systematic", n: int | None = None
+) -> np.ndarray:
+    """Indices `(n,)` of the particles that live on: heavy ones are copied, light ones vanish (A-3).
 
-    Every scheme is unbiased: particle i is drawn N w~_i times in the mean. They differ in how far single draws stray.
-        systematic   one random offset, then N equal steps through the cumulative weights
-        stratified   one random point in each of N equal strata
-        multinomial  N independent draws
-        residual     floor(N w~_i) copies for certain, the rest by multinomial draws from N w~_i - floor(N w~_i)
-    w: `(N,)` not negative, with a positive sum. Indices ascend.
+    Every scheme is unbiased: particle i is drawn n w~_i times in the mean. They differ in how far single draws stray.
+        systematic   one random offset, then n equal steps through the cumulative weights
+        stratified   one random point in each of n equal strata
+        multinomial  n independent draws
+        residual     floor(n w~_i) copies for certain, the rest by multinomial draws from n w~_i - floor(n w~_i)
+    w: `(N,)` not negative, with a positive sum. n: how many live on (None: N, as in the paper). Indices ascend.
     Raises `ValueError` for bad weights or an unknown scheme. The paper says only that particles are copied and removed
     by weight. Source: paper 1, section 3.4.
     """
     w = np.asarray(w, dtype=np.float64)
     if w.ndim != 1 or len(w) == 0 or not np.isfinite(w).all() or (w < 0).any() or w.sum() <= 0:
         raise ValueError("weights must be a non-empty array (N,) of finite numbers, none negative, not all zero")
-    w, n = w / w.sum(), len(w)
+    w, n = w / w.sum(), len(w) if n is None else n
     if scheme == "systematic":
         return _pick(w, (np.arange(n) + rng.random()) / n)
     if scheme == "stratified":
@@ -87,8 +89,8 @@ def resample(w: np.ndarray, rng: np.random.Generator, scheme: Scheme = "systemat
         n_rest = n - copies.sum()
         if n_rest > 0:
             rest = n * w - copies
-            copies += np.bincount(_pick(rest / rest.sum(), np.sort(rng.random(n_rest))), minlength=n)
-        return np.repeat(np.arange(n), copies)
+            copies += np.bincount(_pick(rest / rest.sum(), np.sort(rng.random(n_rest))), minlength=len(w))
+        return np.repeat(np.arange(len(w)), copies)
     raise ValueError(f"scheme must be systematic, stratified, multinomial or residual; got {scheme!r}")
 
 

@@ -8,13 +8,15 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Callable
-from typing import Literal, NamedTuple
+from functools import partial
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 
+from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
-from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, Estimate, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, Motion
 from course_lib.depth_mcl.rendering.renderer import Backend, DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
@@ -50,6 +52,8 @@ class Run(NamedTuple):
     normalized_errors: np.ndarray
     """`(T,)` squared error in units of the covariance (uncertainty.py); NaN where particles were too few to have one;
     empty where the truth is not known."""
+    renders: np.ndarray
+    """`(T,)` how many images were drawn to find each estimate."""
     ms_per_frame: float
     """Milliseconds, the mean over steps; reading the images is not counted."""
     frames_without_measurement: int
@@ -63,6 +67,16 @@ def system_noise(dof: Literal["6", "xyyaw"], position: float, rotation_deg: floa
     return {"sigma": [position, position, 0.0, 0.0, 0.0, rotation], "motion": BODY_AXES}
 
 
+class Localizer(Protocol):
+    """What a filter must have to be run on a recording."""
+
+    motion: Motion
+
+    def initialize(self, state0: np.ndarray) -> None: ...
+
+    def step(self, depth: np.ndarray) -> Estimate | AnnealedEstimate: ...
+
+
 def run_sequence(
     scene_map: SceneMap,
     sequence: DepthSequence,
@@ -72,6 +86,29 @@ def run_sequence(
     seed: int = 0,
     motion: Motion = BODY_AXES,
     weighting: Weighting | None = None,
+    **options: object,
+) -> Run:
+    """Localizes a recording by the paper's filter: arguments of `MonteCarloLocalizer`; options: `run_localizer`'s."""
+    filter_options = {"sigma": sigma, "seed": seed, "motion": motion, "weighting": weighting}
+    make = partial(MonteCarloLocalizer, n_particles=n_particles, **filter_options)
+    return run_localizer(make, scene_map, sequence, **options)[0]
+
+
+def run_annealed(
+    scene_map: SceneMap, sequence: DepthSequence, *, n_particles: int = 200, seed: int = 0, **options: object
+) -> Run:
+    """Localizes a recording in six degrees of freedom, annealed and refined; options: `run_localizer`'s."""
+    make = partial(AnnealedLocalizer, n_particles=n_particles, seed=seed)
+    run, estimates = run_localizer(make, scene_map, sequence, **options)
+    own = ["doubtful" if e.status == "no measurement" else e.status for e in estimates]
+    return run._replace(statuses=own)
+
+
+def run_localizer(
+    make: Callable[[DepthRenderer], Localizer],
+    scene_map: SceneMap,
+    sequence: DepthSequence,
+    *,
     coarse: bool = False,
     up: str | None = None,
     start: np.ndarray | None = None,
@@ -81,14 +118,15 @@ def run_sequence(
     near: float = NEAR,
     far: float = FAR,
     progress: Callable = iter,
-) -> Run:
-    """Localizes a recording and gives one estimate a frame, each with what the filter thinks of it.
+) -> tuple[Run, list[Estimate] | list[AnnealedEstimate]]:
+    """Localizes a recording; every frame's estimate, and all of them as plain arrays, judged as `judge_track` does.
 
+    make: the filter, from a renderer of the map.
     start: camera-to-world matrix `(4, 4)` in the recording's own world, optical convention (None: the recording's first
     true pose; `SequenceError` where it has none).
     up: the axis of map and recording that points up (None: what the recording says, else z); the filter works in a
     world turned to z up. coarse: compare 20 x 15 pixels instead of all. frames: only so many from the start.
-    progress: wraps the frame indices (tqdm). Other arguments as in `MonteCarloLocalizer` and `DepthRenderer`.
+    progress: wraps the frame indices (tqdm). Other arguments as in `DepthRenderer`.
     """
     to_z_up = rotation_to_z_up(up or sequence.up or "z")
     camera = used = sequence.camera(near, far)
@@ -101,7 +139,7 @@ def run_sequence(
     true = state_from_optical_pose(to_z_up @ sequence.camera_to_world[:count]) if sequence.has_poses else ()
     estimates, agreements, seconds = [], [], 0.0
     with DepthRenderer(scene_map.transformed(to_z_up), used, backend, exact=exact) as renderer:
-        localizer = MonteCarloLocalizer(renderer, n_particles, sigma, seed=seed, motion=motion, weighting=weighting)
+        localizer = make(renderer)
         localizer.initialize(state_from_optical_pose(to_z_up @ start))
         with warnings.catch_warnings():
             # They are counted instead, below.
@@ -116,7 +154,8 @@ def run_sequence(
                 measured = renderer.render_points(used.points(depth))
                 agreements.append(agreement(measured, renderer.render(estimates[-1].state)[0]))
     states = np.array([e.state for e in estimates])
-    return Run(
+    deviations = localizer.motion.deviations
+    run = Run(
         frames=sequence.frames[:count],
         states=states,
         camera_to_world=np.linalg.inv(to_z_up) @ optical_pose(states),
@@ -126,13 +165,15 @@ def run_sequence(
         statuses=judge_track(agreements),
         normalized_errors=np.array(
             [
-                normalized_error(motion.deviations(state[None], e.state)[0], e.error_covariance)
+                normalized_error(deviations(state[None], e.state)[0], e.error_covariance)
                 for e, state in zip(estimates, true, strict=False)
             ]
         ),
+        renders=np.array([getattr(e, "renders", len(e.particles)) for e in estimates]),
         ms_per_frame=1000 * seconds / count,
-        frames_without_measurement=sum(e.status != "ok" for e in estimates),
+        frames_without_measurement=sum(e.status == "no measurement" for e in estimates),
     )
+    return run, estimates
 
 
 def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float | None]:

@@ -44,11 +44,29 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, capsys)
 
 
 def test_a_hand_carried_run_is_followed_in_six_degrees(corridor_folder, capsys):
-    assert main(arguments(corridor_folder, "hand", dof="6", frames=4, particles=80, json=True)) == 0
-    summary = json.loads(capsys.readouterr().out)
-    assert summary["median_position_m"] < 0.3
-    assert summary["median_rotation_deg"] < 8
-    assert 0.05 < summary["mean_normalized_error"] < 20
+    """By the paper's filter roughly, annealed to a few centimetres: no other tests measure so with so little."""
+    found = {}
+    for method in ("paper", "annealed"):
+        words = arguments(corridor_folder, "hand", dof="6", frames=4, particles=80, method=method, json=True)
+        assert main(words) == 0
+        found[method] = json.loads(capsys.readouterr().out)
+        assert found[method]["method"] == method
+    assert found["paper"]["median_position_m"] < 0.3
+    assert found["paper"]["median_rotation_deg"] < 8
+    assert 0.05 < found["paper"]["mean_normalized_error"] < 20
+    assert found["annealed"]["median_position_m"] < 0.04
+    assert found["annealed"]["median_rotation_deg"] < 0.5
+    assert found["annealed"]["renders_per_frame"] < found["annealed"]["most_renders"] <= 600
+
+
+def test_six_degrees_are_annealed_unless_told_otherwise(corridor_folder, capsys):
+    for dof, method in (("6", "annealed"), ("xyyaw", "paper")):
+        assert main(arguments(corridor_folder, "hand", dof=dof, frames=1, particles=20, json=True)) == 0
+        assert json.loads(capsys.readouterr().out)["method"] == method
+    assert main(arguments(corridor_folder, dof="xyyaw", method="annealed")) == 2
+    assert "six degrees of freedom" in capsys.readouterr().err
+    assert main([*arguments(corridor_folder), "--sigma-position", "0.1"]) == 2
+    assert "--sigma-position goes with --method paper" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("particles", [1, 3])
@@ -73,8 +91,8 @@ def test_the_kitchen_is_localized_in_six_degrees_through_gimbal_lock(kitchen_fol
     assert main(arguments(kitchen_folder, ".", dof="6", frames=5, particles=100, json=True)) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["up"] == "unknown"
-    assert summary["median_position_m"] < 0.2
-    assert summary["median_rotation_deg"] < 8
+    assert summary["median_position_m"] < 0.03
+    assert summary["median_rotation_deg"] < 1.5
 
 
 @pytest.mark.slow
@@ -87,7 +105,7 @@ def test_the_kitchens_last_frames_are_read_and_run(kitchen_folder, tmp_path, cap
         tmp_path, kitchen.intrinsics, [kitchen.frames[i] for i in kept], depths, kitchen.camera_to_world[kept]
     )
     (tmp_path / "map.ply").symlink_to(kitchen_folder / "map.ply")
-    assert main(arguments(tmp_path, ".", dof="6", particles=20, json=True)) == 0
+    assert main(arguments(tmp_path, ".", dof="6", particles=20, method="paper", json=True)) == 0
     summary = json.loads(capsys.readouterr().out)
     assert (summary["frames"], summary["renders_per_frame"]) == (42, 20)
     assert summary["median_position_m"] < 3

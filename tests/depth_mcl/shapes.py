@@ -23,6 +23,20 @@ def room(size=6.0, offset=(0.0, 0.0, 0.0)):
     return SceneMap(box.vertices + offset, box.faces)
 
 
+def furnished_room():
+    """The cube with boxes on its floor, walls and ceiling, which look alike from no two places."""
+    boxes = [
+        ((1.2, 0.6, 2.0), (2.2, -1.5, -2.0)), ((0.8, 1.6, 0.7), (-1.0, 2.0, -2.65)),
+        ((0.5, 0.5, 1.5), (1.5, 1.8, -2.25)), ((1.5, 0.9, 1.0), (-2.0, -1.2, -2.5)),
+        ((0.4, 1.0, 0.8), (2.8, 0.9, 0.4)), ((0.5, 0.6, 1.3), (2.75, -0.5, 1.1)), ((1.1, 0.3, 0.5), (0.4, -2.85, 0.6)),
+        ((0.7, 0.4, 0.4), (0.8, 0.2, 2.8)), ((0.3, 0.9, 0.5), (2.85, -2.2, 0.2)), ((0.9, 0.3, 1.2), (1.6, 2.85, 0.9)),
+    ]  # fmt: skip
+    meshes = [trimesh.creation.box((6.0,) * 3)]
+    meshes += [trimesh.creation.box(size, trimesh.transformations.translation_matrix(at)) for size, at in boxes]
+    joined = trimesh.util.concatenate(meshes)
+    return SceneMap(joined.vertices, joined.faces)
+
+
 def room_depth(camera, states, size=6.0, offset=(0.0, 0.0, 0.0)):
     """Closed form of the depth inside `room`: the nearest wall along each pixel's ray. `(N, H, W)`."""
     poses = optical_pose(np.atleast_2d(states))

@@ -41,6 +41,7 @@ class DayModel:
     apart: float = 2.1  # m along x between the middles of two things, so that a wagon gets past; chosen
     stretch: tuple[float, float] = (4.5, 37.0)  # m along x where things may stand; chosen
     starts: tuple[float, float] = (1.8, 6.0)  # m along x, from where to where the wagon may start; chosen
+    hand_starts: tuple[float, float] = (1.8, 26.0)  # m along x, the same of a camera carried by hand; chosen
 
 
 def another_day(building: Building, model: DayModel, rng: np.random.Generator) -> RunDay:

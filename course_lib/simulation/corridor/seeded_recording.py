@@ -19,9 +19,11 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.simulation.corridor.another_day import DayModel, another_day
 from course_lib.simulation.corridor.recorded_runs import (
     FloorSurveyModel,
+    HandModel,
     PushModel,
     WagonModel,
     draw_pushing,
+    hand_run,
     wagon_run,
 )
 from course_lib.simulation.corridor.recording import record
@@ -37,6 +39,8 @@ Hardship = Literal["focal length", "lens distortion", "mount position", "mount a
 """What a recording may have that the shipped one has not."""
 HARDSHIPS: tuple[Hardship, ...] = get_args(Hardship)
 
+Carried = Literal["wagon", "hand"]
+
 
 @dataclass(frozen=True)
 class SeedModels:
@@ -44,6 +48,7 @@ class SeedModels:
 
     day: DayModel = field(default_factory=DayModel)
     wagon: WagonModel = field(default_factory=WagonModel)
+    hand: HandModel = field(default_factory=HandModel)
     push: PushModel = field(default_factory=PushModel)
     camera: TimeOfFlightModel = field(default_factory=TimeOfFlightModel)
     calibration: CalibrationModel = field(default_factory=CalibrationModel)
@@ -75,9 +80,11 @@ def record_seed(
     camera: DepthCamera | None = None,
     frames: int | None = None,
     progress: Callable[[Iterable], Iterable] = iter,
+    carried: Carried = "wagon",
 ) -> None:
     """Writes the recording of a seed to a new `folder`. camera: what the user is told (default: the SR4000's).
-    frames: only the first so many.
+    frames: only the first so many. carried: on a wagon, or by hand with all six degrees of freedom moving; what else
+    the seed draws, the day among it, is the same.
 
     Raises `ValueError` for an unknown hardship, or a folder that holds a recording.
     """
@@ -93,7 +100,11 @@ def record_seed(
     pushing = draw_pushing(models.push, wagon.frames, push_rng) if "pushed by hand" in hardships else None
     errors = _only(models.calibration.draw(calibration_rng), hardships)
     instrument = TimeOfFlightCamera(camera or DepthCamera.sr4000(), models.camera, pattern_rng, errors)
-    run = wagon_run(wagon, day.clutter_boxes, path_rng, pushing)
+    if carried == "wagon":
+        run = wagon_run(wagon, day.clutter_boxes, path_rng, pushing)
+    else:
+        hand = dataclasses.replace(models.hand, start=path_rng.uniform(*models.day.hand_starts))
+        run = hand_run(hand, day.clutter_boxes, path_rng)
     record(folder, day.mesh, instrument, run, models.floor_survey, noise_rng, progress, frames)
 
 

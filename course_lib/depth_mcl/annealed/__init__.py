@@ -1,0 +1,10 @@
+"""Beyond paper 1, section 5: six degrees of freedom. Each idea is a module that can be used alone.
+
+twists         small motions along and about a camera's own axes
+prediction     where the camera may be next, as wide as it has been moving
+pyramid        the same view in three sizes
+tempering      weights as sharp as leave enough particles
+refinement     Gauss-Newton on the rendered depth; compiled_refinement: the same in a compiled loop
+covariance     how far off a refined pose may be
+localizer      all of it in order
+"""

@@ -1,0 +1,317 @@
+"""Six degrees of freedom, which paper 1 leaves for the future (section 5): its filter, annealed and refined.
+
+    localizer = AnnealedLocalizer(renderer, seed=0)
+    localizer.initialize(state0)
+    for depth in recording:
+        estimate = localizer.step(depth)
+
+A frame goes through the paper's steps several times, each time closer:
+
+    predict    particles about where the camera may be, as wide as it has been moving (prediction.py)
+    anneal     weigh them on coarse images, as sharply as leaves enough of them (tempering.py); resample; less noise
+    refine     the best that differ, by Gauss-Newton on finer and finer images (refinement.py), dropping the worst
+    doubt      where the best agrees less with the map than frames did before: once more, with a wider cloud
+
+Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention: noise, means and deviations are taken in
+their tangent space, which knows no gimbal lock. Estimates are states, as `MonteCarloLocalizer` gives them.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from course_lib.depth_mcl.annealed.covariance import fused, in_world_and_body, pose_information
+from course_lib.depth_mcl.annealed.prediction import MotionPrediction, widened
+from course_lib.depth_mcl.annealed.pyramid import Level, pyramid
+from course_lib.depth_mcl.annealed.refinement import gauss_newton_step
+from course_lib.depth_mcl.annealed.tempering import Tempered, temper
+from course_lib.depth_mcl.annealed.twists import lengths, motion_between, moved
+from course_lib.depth_mcl.likelihood import ALPHA, DepthImageError, valid_pixels
+from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
+from course_lib.depth_mcl.motion import TANGENT_SPACE
+from course_lib.depth_mcl.particle_filter import resample
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.tracking import Agreement, agreement, refined_is_lost
+from course_lib.geometry import optical_pose, state_from_optical_pose
+
+
+class Layer(NamedTuple):
+    """One round of drawing, weighing and resampling within a frame, on coarse images."""
+
+    particles: float
+    """How many, as a share of the filter's `n_particles`."""
+    spread: float
+    """Of the noise, as a share of the prediction's spread."""
+    survivors: float
+    """Effective sample size that the weights leave, as a share of the particles."""
+
+
+class Step(NamedTuple):
+    """One Gauss-Newton step for the hypotheses that are left."""
+
+    level: Literal[0, 1, 2]
+    """Of the pyramid: coarse, middle, fine."""
+    scale: float
+    """Metres: a residual as large counts a quarter."""
+    hypotheses: int
+    """How many are taken along, the best that differ."""
+
+
+# All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th.
+LAYERS = (Layer(1.0, 1.0, 0.1), Layer(0.4, 0.35, 0.1))
+SECOND_LOOK = (Layer(0.45, 1.0, 0.1),)
+STEPS = (
+    Step(0, 0.25, 30), Step(0, 0.20, 20), Step(0, 0.15, 10), Step(0, 0.10, 6),
+    Step(1, 0.10, 5), Step(1, 0.07, 4), Step(1, 0.05, 3),
+    Step(2, 0.05, 3), Step(2, 0.03, 2), Step(2, 0.03, 1),
+)  # fmt: skip
+APART = 0.2  # of the prediction's spread: particles nearer to each other are one hypothesis
+DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same between two refined poses
+PRIOR_SHARE = 0.002  # what one unit of the prediction's log density is worth in score: it decides between equals
+FALLEN = 0.85  # of the usual support: a frame that agrees less is doubted
+MEMORY = 0.1  # share of a new frame in the usual support
+
+
+Status = Literal["tracked", "doubtful", "lost", "no measurement"]
+
+
+class AnnealedEstimate(NamedTuple):
+    """What one frame gave: as `Estimate`, and how it was reached."""
+
+    state: np.ndarray
+    """`(6,)` the best refined hypothesis."""
+    covariance: np.ndarray
+    """`(6, 6)` of the last layer's weighted particles about the state, metres along the world's axes and radians about
+    the body's: how wide the search was. `error_covariance` says how far off the state may be."""
+    score: float
+    """Raw score of the state, eq. (8) as a mean over pixels of the finest image; NaN without a measurement."""
+    ess: float
+    """Effective sample size of the last layer's weights."""
+    particles: np.ndarray
+    """`(N, 6)` of the last layer."""
+    weights: np.ndarray
+    """`(N,)` of these particles."""
+    status: Status
+    """"lost" where the state cannot be right (`refined_is_lost`); "doubtful" where it agrees with the map clearly less
+    than frames did before, after a second look too."""
+    error_covariance: np.ndarray
+    """`(6, 6)`, the same units and axes: of the error to expect where it is tracked."""
+    agreement: Agreement
+    """How the measured image agrees with the map as seen from the state (tracking.py)."""
+    layers: tuple[Tempered, ...]
+    """Of every layer, in order: weights, sharpness, effective sample size."""
+    renders: int
+    """How many images were drawn."""
+
+
+class _Found(NamedTuple):
+    """What one look at a frame gave."""
+
+    pose: np.ndarray
+    image: np.ndarray
+    """Of the map from there, on the finest level."""
+    score: float
+    agreement: Agreement
+    particles: np.ndarray
+    layers: tuple[Tempered, ...]
+
+
+class AnnealedLocalizer:
+    """Annealed particle filter with Gauss-Newton refinement, for a depth camera that moves freely.
+
+    renderer: draws the map for the camera. n_particles: of a layer whose share is 1. seed: of the one generator that
+    all draws come from. layers: of the first
+    look at a frame; second_look: of the look after a doubted one (empty: none); steps: of the refinement (empty: the
+    best particle is the estimate). alpha: of eq. (8), metres.
+    Raises `ValueError` for a seed or alpha that is none, or no layer.
+    """
+
+    def __init__(
+        self,
+        renderer: DepthRenderer,
+        n_particles: int = 200,
+        *,
+        seed: int = 0,
+        layers: tuple[Layer, ...] = LAYERS,
+        second_look: tuple[Layer, ...] = SECOND_LOOK,
+        steps: tuple[Step, ...] = STEPS,
+        alpha: float = ALPHA,
+    ) -> None:
+        if int(n_particles) != n_particles or n_particles < 1:
+            raise ValueError(f"n_particles must be a whole number, at least 1; got {n_particles!r}")
+        if int(seed) != seed or seed < 0:
+            raise ValueError(f"seed must be a whole number, 0 or more; got {seed!r}")
+        if not layers:
+            raise ValueError("at least one layer is needed: it draws the particles")
+        self.renderer = renderer
+        self.n_particles = int(n_particles)
+        self.levels = pyramid(renderer, alpha)
+        self.layers, self.second_look, self.steps = tuple(layers), tuple(second_look), tuple(steps)
+        self.rng = np.random.default_rng(int(seed))
+        self.motion = TANGENT_SPACE
+        self._prediction: MotionPrediction | None = None
+        self._usual_support: float | None = None
+        self._covariance = np.zeros((6, 6))
+        self._renders = 0
+
+    def initialize(self, state0: np.ndarray) -> None:
+        """Says where the camera is before the first frame, to within some decimetres and degrees (`START_SPREAD`).
+
+        Raises `ValueError` for a state that is not finite or lies outside the map (by more than a metre).
+        """
+        self._prediction = MotionPrediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
+        self._usual_support = None
+        self._covariance = np.zeros((6, 6))
+
+    def step(self, depth: np.ndarray, increment: np.ndarray | None = None) -> AnnealedEstimate:
+        """Where the camera is, from a depth image `(H, W)` in metres, NaN = no measurement.
+
+        increment: what an odometer or an IMU says of the motion since the last frame, `(6,)`: metres along and radians
+        about the camera's own axes (optical: right, down, forward); None where there is neither.
+        A frame without any measurement warns (`NoMeasurementWarning`); the state is then the prediction. Raises
+        `DepthImageError` for an image of another size, `RuntimeError` before `initialize`.
+        """
+        prediction = self._prediction
+        if prediction is None:
+            raise RuntimeError("call initialize(state0) before the first step: the filter is given its start")
+        self._take(depth)
+        self._renders = 0
+        spread = prediction.spread(increment)
+        fine = self.levels[-1]
+        if not valid_pixels(fine.measured).any():
+            return self._not_measured(spread, increment)
+        found = self._look(self.layers, spread, increment)
+        if self.second_look and self._doubts(found):
+            again = self._look(self.second_look, widened(spread), increment)
+            found = max(found, again, key=lambda one: one.score)
+        status = self._judge(found)
+        if status != "tracked":
+            prediction.not_found(found.pose, spread)
+        else:
+            prediction.found(found.pose)
+        self._remember(found)
+        information = pose_information(fine.measured, found.image, fine.renderer.camera)
+        return self._estimate(found, status, information, spread)
+
+    def _take(self, depth: np.ndarray) -> None:
+        depth = np.asarray(depth)
+        if depth.shape != self.renderer.camera.shape:
+            raise DepthImageError(
+                f"the depth image has shape {depth.shape}; the camera gives {self.renderer.camera.shape} "
+                "(height, width)"
+            )
+        for level in self.levels:
+            level.measure(depth)
+
+    def _look(self, layers: tuple[Layer, ...], spread: np.ndarray, increment: np.ndarray | None) -> _Found:
+        """Particles through the layers, the best of them through the steps of refinement, the best of those."""
+
+        def merit(scores: np.ndarray, poses: np.ndarray) -> np.ndarray:
+            return scores + PRIOR_SHARE * self._prediction.log_prior(poses, spread, increment)
+
+        drawn, scores, tempered = self._anneal(layers, spread, increment)
+        all_poses, all_scores = np.concatenate(drawn), np.concatenate(scores)
+        first = self.steps[0].hypotheses if self.steps else 1
+        poses = all_poses[distinct(all_poses, merit(all_scores, all_poses), first, APART * spread[[0, 3]])]
+        for k, step in enumerate(self.steps):
+            level = self.levels[step.level]
+            images = self._draw(level, poses)
+            kept = distinct(poses, merit(level.score(images), poses), step.hypotheses, DISTINCT) if k else slice(None)
+            poses = gauss_newton_step(level.measured, images[kept], level.renderer.camera, poses[kept], step.scale)
+        fine = self.levels[-1]
+        images = self._draw(fine, poses)
+        scores = fine.score(images)
+        best = int(np.argmax(merit(scores, poses)))
+        return _Found(
+            poses[best], images[best], float(scores[best]), agreement(fine.measured, images[best]), drawn[-1], tempered
+        )
+
+    def _anneal(
+        self, layers: tuple[Layer, ...], spread: np.ndarray, increment: np.ndarray | None
+    ) -> tuple[list[np.ndarray], list[np.ndarray], tuple[Tempered, ...]]:
+        """Particles, their scores and their weights, layer by layer."""
+        coarse = self.levels[0]
+        drawn, scores, tempered = [], [], []
+        for layer in layers:
+            n = max(1, round(layer.particles * self.n_particles))
+            if not drawn:
+                poses = self._prediction.draw(n, layer.spread * spread, self.rng, increment)
+            else:
+                parents = drawn[-1][resample(tempered[-1].weights, self.rng, n=n)]
+                poses = moved(parents, layer.spread * spread * self.rng.standard_normal((n, 6)))
+            drawn.append(poses)
+            scores.append(np.concatenate([coarse.score(images) for images in self._batches(coarse, poses)]))
+            tempered.append(temper(scores[-1], layer.survivors * n))
+        return drawn, scores, tuple(tempered)
+
+    def _batches(self, level: Level, poses: np.ndarray) -> Iterator[np.ndarray]:
+        size = level.renderer.batch_size
+        return (self._draw(level, poses[start : start + size]) for start in range(0, len(poses), size))
+
+    def _draw(self, level: Level, poses: np.ndarray) -> np.ndarray:
+        self._renders += len(poses)
+        return level.renderer.render_poses(poses)
+
+    def _doubts(self, found: _Found) -> bool:
+        return self._usual_support is not None and found.agreement.support < FALLEN * self._usual_support
+
+    def _judge(self, found: _Found) -> Status:
+        if refined_is_lost(found.agreement):
+            return "lost"
+        return "doubtful" if self._doubts(found) else "tracked"
+
+    def _remember(self, found: _Found) -> None:
+        support, usual = found.agreement.support, self._usual_support
+        self._usual_support = support if usual is None else (1 - MEMORY) * usual + MEMORY * support
+
+    def _not_measured(self, spread: np.ndarray, increment: np.ndarray | None) -> AnnealedEstimate:
+        """The prediction alone, when nothing was seen."""
+        warnings.warn(
+            "this frame holds no measurement between the camera's near and far planes; the pose is predicted only",
+            NoMeasurementWarning,
+            stacklevel=3,
+        )
+        poses = self._prediction.draw(self.n_particles, spread, self.rng, increment)
+        pose = moved(self._prediction.pose, np.zeros(6) if increment is None else increment)
+        self._prediction.not_found(pose, spread)
+        nothing = Agreement(0, np.nan, np.nan, np.nan)
+        found = _Found(pose, np.empty(0), np.nan, nothing, poses, (temper(np.zeros(len(poses)), len(poses)),))
+        return self._estimate(found, "no measurement", np.zeros((6, 6)), spread)
+
+    def _estimate(self, found: _Found, status: Status, information: np.ndarray, spread: np.ndarray) -> AnnealedEstimate:
+        state, particles = state_from_optical_pose(found.pose), state_from_optical_pose(found.particles)
+        w = found.layers[-1].weights
+        deviations = self.motion.deviations(particles, state)
+        self._covariance = fused(self._covariance + np.diag(spread**2), information)
+        return AnnealedEstimate(
+            state,
+            (w[:, None] * deviations).T @ deviations,
+            found.score,
+            found.layers[-1].ess,
+            particles,
+            w,
+            status,
+            in_world_and_body(self._covariance, found.pose),
+            found.agreement,
+            found.layers,
+            self._renders,
+        )
+
+
+def distinct(poses: np.ndarray, scores: np.ndarray, count: int, apart: np.ndarray) -> np.ndarray:
+    """Indices of the best `count` poses `(N, 4, 4)` of which no two are alike: nearer than `apart`, metres and radians.
+
+    scores: `(N,)`. Best first; fewer than `count` where there are no more that differ.
+    """
+    kept: list[int] = []
+    for index in np.argsort(-scores, kind="stable"):
+        differences = lengths(motion_between(poses[index], poses[kept]))
+        if (differences >= apart).any(axis=-1).all():
+            kept.append(int(index))
+        if len(kept) == count:
+            break
+    return np.array(kept)
