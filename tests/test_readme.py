@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.cli import find_command
+from course_lib.cli import find_command, main
 from course_lib.commands.bench_table import table
 from course_lib.commands.demo_corridor import table_1
 
@@ -68,6 +68,19 @@ def test_the_rows_over_recordings_are_the_medians_and_ranges_of_five(name, metho
         values = [one[part][method][key] for one in stored["recordings"]]
         expected = np.round([np.median(values), min(values), max(values)], digits)
         assert np.array_equal([float(v) for v in re.findall(r"\d+\.\d+", cell)[:3]], expected)
+
+
+def test_the_table_with_intervals_is_what_the_sweep_prints_of_its_stored_rows(tmp_path, capsys):
+    """The command itself, which finds every row finished."""
+    stored = (CORRIDOR_RESULTS / "sweep_corridor.jsonl").read_text()
+    (tmp_path / "corridor.jsonl").write_text(stored)
+    count = len(stored.splitlines()) - 1
+    assert count >= 20
+    assert main(["sweep", "corridor", "--seeds", str(count), "--out", str(tmp_path)]) == 0
+    table = capsys.readouterr().out.rstrip()
+    assert "\n".join(f"    {line}".rstrip() for line in table.splitlines()) in RESULTS
+    assert f"With `--seeds {count}` it prints this" in RESULTS
+    assert (tmp_path / "corridor.jsonl").read_text() == stored, "nothing was run"
 
 
 def test_the_speed_is_what_the_benchmark_printed():
