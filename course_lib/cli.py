@@ -25,6 +25,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "sweep": ("sweep", "run an experiment for many seeds on all processors: table 1 with confidence intervals"),
     "bench": ("bench", "measure the depth filter side by side with Embree, PyVista and others"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
+    "compare": ("compare", "compare filters in six degrees of freedom on a recording with its truth"),
     "locate": ("locate", "find where two panoramas were taken, on a semantic map"),
     "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),

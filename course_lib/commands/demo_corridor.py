@@ -50,6 +50,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"measure instead what the simulator's kindnesses are worth, on small images (seeds {KINDNESS_SEEDS})",
     )
     parser.add_argument(
+        "--dof",
+        choices=["xyyaw", "6"],
+        default="xyyaw",
+        help="xyyaw: the paper's experiment on a wagon (default); 6: cameras carried by hand, the annealed filter "
+        "beside the paper's and the floor",
+    )
+    parser.add_argument(
         "--methods",
         metavar="NAMES",
         help="with --seeds: rows of the table by name, with commas, among them proposed and fallon (default: all)",
@@ -77,6 +84,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.frames is not None and arguments.frames < 1:
         raise ValueError(f"--frames must be at least 1; got {arguments.frames}")
     require_output_folder(arguments.out)
+    if arguments.dof == "6":
+        return _run_by_hand(arguments, seeds or [arguments.seed])
     _require_methods(arguments)
     if arguments.kindnesses:
         return _run_kindnesses(arguments, seeds or parse_seeds(KINDNESS_SEEDS))
@@ -143,6 +152,34 @@ def _run_seeds(arguments: argparse.Namespace, seeds: list[int]) -> int:
     }
     write_results(arguments.out / "recordings.json", result)
     print(json.dumps(result) if arguments.json else table_over_recordings(result))
+    return 0
+
+
+def _run_by_hand(arguments: argparse.Namespace, seeds: list[int]) -> int:
+    """Recordings carried by hand, made anew from each seed, in six degrees of freedom."""
+    from course_lib.commands.progress import progress_bar
+    from course_lib.commands.six_degrees_table import NAMES, six_degrees_table
+    from course_lib.experiments import sweep
+    from course_lib.experiments.results import write_results
+    from course_lib.experiments.six_degrees import METHODS, corridor_hand, pooled
+
+    for option, usual in (("recording", "own"), ("kindnesses", False), ("particles", 200), ("backend", "raster")):
+        if getattr(arguments, option) != usual:
+            raise ValueError(f"--{option} does not go with --dof 6")
+    methods = arguments.methods.split(",") if arguments.methods else list(METHODS)
+    if not set(methods) <= set(METHODS):
+        raise ValueError(f"--methods must name {', '.join(METHODS)}, with commas; got {arguments.methods}")
+    common = {"data": str(_data(arguments).absolute()), "frames": arguments.frames, "methods": methods}
+    points = [{**common, "seed": seed} for seed in seeds]
+    bar = progress_bar("carried by hand", "seed")
+    runs = [row["result"] for row in sweep(corridor_hand, points, results=arguments.out / "hand.jsonl", progress=bar)]
+    rows = {
+        NAMES[method] + told: pooled([run[part][method] for run in runs])
+        for part, told in (("methods", ""), ("methods_less_kind", ", less kind"))
+        for method in methods
+    }
+    write_results(arguments.out / "hand.json", {"seeds": seeds, "rows": rows})
+    print(json.dumps({"seeds": seeds, "rows": rows}) if arguments.json else six_degrees_table(rows))
     return 0
 
 

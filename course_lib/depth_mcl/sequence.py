@@ -83,6 +83,27 @@ class DepthSequence:
     def __len__(self) -> int:
         return len(self.frames)
 
+    def thinned(self, every: int, offset: int = 0) -> DepthSequence:
+        """Every so many frames of the recording, from `offset` on: as if the camera had been moved so much faster.
+
+        Raises `ValueError` where no frame is left.
+        """
+        kept = slice(offset, None, every)
+        if every < 1 or offset < 0 or not self.frames[kept]:
+            raise ValueError(f"every {every}-th of {len(self)} frames from {offset} on: no frame is left")
+        return DepthSequence(
+            self.folder,
+            self.frames[kept],
+            self.files[kept],
+            None if self._camera_to_world is None else self._camera_to_world[kept],
+            self.intrinsics,
+            self.image_shape,
+            self.up,
+            None if self.times is None else self.times[kept],
+            self.path_on_floor,
+            self.units_per_metre,
+        )
+
     def camera(self, near: float = NEAR, far: float = FAR) -> DepthCamera:
         """The depth camera that made the recording; near, far: its clip planes, metres."""
         height, width = self.image_shape

@@ -91,11 +91,13 @@ REFINED_LOST = 0.4
 THROUGH_WEIGHT = 3.0  # what a pixel measured behind the map counts against a pose, in pixels that agree
 
 
-def refined_is_lost(frame: Agreement) -> bool:
-    """Whether a *refined* pose is wrong, from its own frame: agreeing - 3 through is below `REFINED_LOST`.
+def judge_refined(frame: Agreement) -> TrackStatus:
+    """Whether a *refined* pose is wrong, from its own frame: lost where agreeing - 3 through is below `REFINED_LOST`.
 
     A pose that was refined fits as well as it can. If measurements still lie behind the map, where no light comes from,
     it is in the wrong place, however much agrees; a particle filter's estimate may lag by centimetres and look so.
-    With hardly any pixel it is not said to be lost.
+    With hardly any pixel it is doubtful.
     """
-    return frame.pixels >= _LEAST_PIXELS and frame.agreeing - THROUGH_WEIGHT * frame.through < REFINED_LOST
+    if frame.pixels < _LEAST_PIXELS:
+        return "doubtful"
+    return "lost" if frame.agreeing - THROUGH_WEIGHT * frame.through < REFINED_LOST else "tracked"

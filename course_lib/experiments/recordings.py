@@ -52,6 +52,10 @@ class Run(NamedTuple):
     normalized_errors: np.ndarray
     """`(T,)` squared error in units of the covariance (uncertainty.py); NaN where particles were too few to have one;
     empty where the truth is not known."""
+    deviations: np.ndarray
+    """`(T, 6)` the true states from the estimates, as the motion measures them; empty where the truth is not known."""
+    error_sigmas: np.ndarray
+    """`(T, 6)` how far off the filter expects to be in each, one sigma."""
     renders: np.ndarray
     """`(T,)` how many images were drawn to find each estimate."""
     ms_per_frame: float
@@ -154,7 +158,10 @@ def run_localizer(
                 measured = renderer.render_points(used.points(depth))
                 agreements.append(agreement(measured, renderer.render(estimates[-1].state)[0]))
     states = np.array([e.state for e in estimates])
-    deviations = localizer.motion.deviations
+    deviations = np.array(
+        [localizer.motion.deviations(t[None], e.state)[0] for e, t in zip(estimates, true, strict=False)]
+    )
+    covariances = [e.error_covariance for e in estimates]
     run = Run(
         frames=sequence.frames[:count],
         states=states,
@@ -163,12 +170,9 @@ def run_localizer(
         ess=np.array([e.ess for e in estimates]),
         agreements=agreements,
         statuses=judge_track(agreements),
-        normalized_errors=np.array(
-            [
-                normalized_error(deviations(state[None], e.state)[0], e.error_covariance)
-                for e, state in zip(estimates, true, strict=False)
-            ]
-        ),
+        normalized_errors=np.array([normalized_error(d, c) for d, c in zip(deviations, covariances, strict=False)]),
+        deviations=deviations,
+        error_sigmas=np.sqrt([np.diag(c) for c in covariances]),
         renders=np.array([getattr(e, "renders", len(e.particles)) for e in estimates]),
         ms_per_frame=1000 * seconds / count,
         frames_without_measurement=sum(e.status == "no measurement" for e in estimates),

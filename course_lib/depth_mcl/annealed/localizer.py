@@ -35,7 +35,7 @@ from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.particle_filter import resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.tracking import Agreement, agreement, refined_is_lost
+from course_lib.depth_mcl.tracking import Agreement, agreement, judge_refined
 from course_lib.geometry import optical_pose, state_from_optical_pose
 
 
@@ -96,7 +96,7 @@ class AnnealedEstimate(NamedTuple):
     weights: np.ndarray
     """`(N,)` of these particles."""
     status: Status
-    """"lost" where the state cannot be right (`refined_is_lost`); "doubtful" where it agrees with the map clearly less
+    """"lost" where the state cannot be right (`judge_refined`); "doubtful" where it agrees with the map clearly less
     than frames did before, after a second look too."""
     error_covariance: np.ndarray
     """`(6, 6)`, the same units and axes: of the error to expect where it is tracked."""
@@ -260,9 +260,8 @@ class AnnealedLocalizer:
         return self._usual_support is not None and found.agreement.support < FALLEN * self._usual_support
 
     def _judge(self, found: _Found) -> Status:
-        if refined_is_lost(found.agreement):
-            return "lost"
-        return "doubtful" if self._doubts(found) else "tracked"
+        status = judge_refined(found.agreement)
+        return "doubtful" if status == "tracked" and self._doubts(found) else status
 
     def _remember(self, found: _Found) -> None:
         support, usual = found.agreement.support, self._usual_support

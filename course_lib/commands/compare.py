@@ -1,0 +1,82 @@
+"""Compare filters in six degrees of freedom on a recording with its truth: errors, thinned frames, being lost said.
+
+Every `--every`-th frame, from every offset, is as if the camera had been moved so much faster. Each run is written to
+the results file when it is done; called again, the command runs what is missing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from course_lib.commands.arguments import parse_seeds, require_output_folder
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options of `compare`."""
+    parser.add_argument("--map", required=True, type=Path, metavar="MESH", help="mesh in metres (PLY, OBJ, STL, GLB)")
+    parser.add_argument(
+        "--sequence", required=True, type=Path, metavar="FOLDER", help="folder of the recording, with its poses.txt"
+    )
+    parser.add_argument(
+        "--methods",
+        default="annealed,paper,floor",
+        metavar="NAMES",
+        help="with commas: annealed, paper (its filter, six degrees of freedom), floor (what refinement makes of the "
+        "truth, every frame, once); default: all",
+    )
+    parser.add_argument(
+        "--every", default="1", metavar="NUMBERS", help="thin the recording: 1,2,4,8 runs each (default: 1)"
+    )
+    parser.add_argument("--seeds", default="1", metavar="A-B", help="seeds of the filters (default: 1)")
+    parser.add_argument(
+        "--out", type=Path, default=Path("results/compare"), metavar="FOLDER", help="for compare.jsonl and compare.json"
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Runs what is missing, then tells what all runs of a method and a thinning gave together."""
+    from course_lib.commands.progress import progress_bar
+    from course_lib.commands.six_degrees_table import NAMES, six_degrees_table
+    from course_lib.depth_mcl.scene_map import SceneMap
+    from course_lib.depth_mcl.sequence import read_sequence
+    from course_lib.experiments import sweep
+    from course_lib.experiments.results import write_results
+    from course_lib.experiments.six_degrees import METHODS, pooled, thinned_points, thinned_run
+
+    seeds = parse_seeds(arguments.seeds)
+    everies = _numbers("--every", arguments.every)
+    methods = arguments.methods.split(",")
+    if not set(methods) <= set(METHODS):
+        raise ValueError(f"--methods must name {', '.join(METHODS)}, with commas; got {arguments.methods}")
+    require_output_folder(arguments.out)
+    SceneMap.load(arguments.map)
+    recording = read_sequence(arguments.sequence)
+    recording.camera_to_world  # noqa: B018 - a recording without truth is told now
+    recording.thinned(max(everies), max(everies) - 1)
+    points = thinned_points(arguments.map.absolute(), arguments.sequence.absolute(), methods, everies, seeds)
+    bar = progress_bar("comparing", "run")
+    runs = sweep(thinned_run, points, results=arguments.out / "compare.jsonl", progress=bar)
+    grouped: dict[str, list[dict]] = {}
+    for row in runs:
+        point = row["point"]
+        thinned = "" if point["method"] == "floor" or everies == [1] else f", every {point['every']}"
+        grouped.setdefault(NAMES[point["method"]] + thinned, []).append(row["result"])
+    rows = {name: pooled(results) for name, results in grouped.items()}
+    result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
+    write_results(arguments.out / "compare.json", result)
+    print(json.dumps(result) if arguments.json else six_degrees_table(rows))
+    return 0
+
+
+def _numbers(option: str, text: str) -> list[int]:
+    """Whole numbers, at least 1, with commas. Raises `ValueError` for anything else."""
+    try:
+        numbers = [int(part) for part in text.split(",")]
+    except ValueError:
+        numbers = [0]
+    if min(numbers) < 1:
+        raise ValueError(f"{option} must be whole numbers, at least 1, with commas, such as 1,2,4,8; got {text!r}")
+    return numbers

@@ -1,0 +1,138 @@
+"""Six degrees of freedom side by side: the annealed filter, the paper's, and how well the truth itself fits.
+
+A run gives plain lists, one entry a frame, so that runs of several seeds, recordings and offsets can be pooled before
+anything is told of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from course_lib.depth_mcl.annealed.pyramid import pyramid
+from course_lib.depth_mcl.annealed.refinement import refine
+from course_lib.depth_mcl.evaluation import pose_errors
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.depth_mcl.tracking import agreement, judge_refined
+from course_lib.experiments.recordings import SIGMA, Run, run_annealed, run_sequence, system_noise
+from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
+
+METHODS = ("annealed", "paper", "floor")
+FLOOR_SCALES = (0.1, 0.05, 0.05, 0.03, 0.03)  # metres, of the steps from the truth
+WRONG_POSITION, WRONG_ROTATION_DEG = 0.20, 20.0  # beyond either a pose is wrong, and should be said to be lost
+# What a camera that is carried by hand may have wrong: all but how a wagon is pushed.
+HAND_HARDSHIPS = tuple(h for h in HARDSHIPS if h != "pushed by hand")
+
+
+def run_frames(
+    method: str, scene_map: SceneMap, sequence: DepthSequence, seed: int, progress: Callable = iter
+) -> dict[str, list]:
+    """Errors, statuses and renders of every frame of a recording; of `METHODS`, where "floor" has no seed."""
+    if method == "floor":
+        return floor_frames(scene_map, sequence, progress)
+    paper = partial(run_sequence, **system_noise("6", *SIGMA["6"]))
+    run: Run = {"annealed": run_annealed, "paper": paper}[method](scene_map, sequence, seed=seed, progress=progress)
+    position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
+    return {
+        "position_m": position.tolist(),
+        "rotation_deg": np.rad2deg(rotation).tolist(),
+        "status": list(run.statuses),
+        "renders": run.renders.tolist(),
+        "score": run.scores.tolist(),
+        "normalized_error": run.normalized_errors.tolist(),
+        "within_3_sigma": (np.abs(run.deviations) <= 3 * run.error_sigmas).mean(axis=1).tolist(),
+    }
+
+
+def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callable = iter) -> dict[str, list]:
+    """What refinement makes of the *true* pose: the recording's truth, map and camera agree no better than this.
+
+    score: at the truth itself, before refinement.
+    """
+    position, rotation, scores, statuses = [], [], [], []
+    true = sequence.camera_to_world
+    with DepthRenderer(scene_map, sequence.camera()) as renderer:
+        fine = pyramid(renderer)[-1]
+        for index in progress(range(len(sequence))):
+            fine.measure(sequence.depth(index))
+            scores.append(float(fine.score(fine.renderer.render_poses(true[index][None]))[0]))
+            refined = refine(fine.renderer, fine.measured, true[index][None], FLOOR_SCALES)
+            off = pose_errors(refined[0], true[index])
+            position.append(float(off[0]))
+            rotation.append(float(np.rad2deg(off[1])))
+            statuses.append(judge_refined(agreement(fine.measured, fine.renderer.render_poses(refined)[0])))
+    return {
+        "position_m": position,
+        "rotation_deg": rotation,
+        "status": statuses,
+        "renders": [len(FLOOR_SCALES)] * len(position),
+        "score": scores,
+    }
+
+
+def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:
+    """The numbers of a row of the table, of all frames of some runs together."""
+    position, rotation = (np.concatenate([run[name] for run in runs]) for name in ("position_m", "rotation_deg"))
+    lost = np.concatenate([run["status"] for run in runs]) == "lost"
+    wrong = (position > WRONG_POSITION) | (rotation > WRONG_ROTATION_DEG)
+    close = (position <= 0.05) & (rotation <= 5.0)
+    row = {
+        "frames": len(position),
+        "median_position_m": float(np.median(position)),
+        "median_rotation_deg": float(np.median(rotation)),
+        "within_5cm_5deg_percent": float(100 * close.mean()),
+        "within_10cm_percent": float(100 * (position <= 0.10).mean()),
+        "wrong": int(wrong.sum()),
+        "wrong_called_lost": int((wrong & lost).sum()),
+        "good": int(close.sum()),
+        "good_called_lost": int((close & lost).sum()),
+        "median_score": float(np.nanmedian(np.concatenate([run["score"] for run in runs]))),
+        "mean_renders": float(np.mean(np.concatenate([run["renders"] for run in runs]))),
+        "most_renders": int(max(max(run["renders"]) for run in runs)),
+    }
+    if "normalized_error" in runs[0]:
+        row["mean_normalized_error"] = float(np.mean(np.concatenate([run["normalized_error"] for run in runs])))
+        row["within_3_sigma_percent"] = float(100 * np.mean(np.concatenate([run["within_3_sigma"] for run in runs])))
+    return row
+
+
+def thinned_run(map_file: str, sequence: str, method: str, every: int, offset: int, seed: int) -> dict[str, list]:
+    """A point of a sweep: every so many frames of a recording from an offset on, by one method."""
+    recording = read_sequence(sequence).thinned(every, offset)
+    return run_frames(method, SceneMap.load(map_file), recording, seed)
+
+
+def thinned_points(
+    map_file: Path, sequence: Path, methods: Iterable[str], everies: Iterable[int], seeds: Sequence[int]
+) -> list[dict]:
+    """Points of `thinned_run`: every method, thinning, offset and seed; the floor has neither thinning nor seeds."""
+    points = []
+    for method in methods:
+        for every in (1,) if method == "floor" else everies:
+            for offset in range(every):
+                for seed in seeds[:1] if method == "floor" else seeds:
+                    where = {"map_file": str(map_file), "sequence": str(sequence)}
+                    points.append({**where, "method": method, "every": every, "offset": offset, "seed": seed})
+    return points
+
+
+def corridor_hand(data: str, seed: int, frames: int | None, methods: list[str]) -> dict[str, dict[str, dict]]:
+    """A point of a sweep: a seed's recording carried by hand through the corridor, even and less kind, by each method.
+
+    Less kind: focal length, lens, and mount are wrong by what is usual; the filter is told the nominal values.
+    """
+    scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
+    result = {}
+    with TemporaryDirectory() as temporary:
+        for part, hardships in (("methods", ()), ("methods_less_kind", HAND_HARDSHIPS)):
+            folder = Path(temporary) / part
+            record_seed(folder, building, seed, hardships, frames=frames, carried="hand")
+            recording = read_sequence(folder)
+            result[part] = {method: run_frames(method, scene_map, recording, seed) for method in methods}
+    return result

@@ -1,0 +1,69 @@
+"""`compare` and `demo corridor --dof 6`: filters in six degrees of freedom side by side."""
+
+import json
+
+import pytest
+
+from course_lib.cli import main
+from course_lib.depth_mcl.sequence import read_sequence, write_sequence
+
+
+@pytest.fixture
+def short(corridor_folder, tmp_path):
+    """Six frames of the shipped recording."""
+    hand = read_sequence(corridor_folder / "hand")
+    depths = [hand.depth(i) for i in range(6)]
+    write_sequence(tmp_path / "short", hand.intrinsics, list(range(6)), depths, hand.camera_to_world[:6], up="z")
+    return ["--map", str(corridor_folder / "map.ply"), "--sequence", str(tmp_path / "short")]
+
+
+@pytest.mark.slow
+def test_the_table_has_a_row_for_each_method_and_thinning(short, tmp_path, capsys):
+    words = ["compare", *short, "--every", "1,3", "--seeds", "10001", "--out", str(tmp_path / "out")]
+    assert main(words) == 0
+    table = capsys.readouterr().out
+    for name, frames in (("annealed and refined, every 1", 6), ("the paper's filter, every 3", 6)):
+        row = next(line for line in table.splitlines() if line.startswith(name))
+        assert row.split(name)[1].split()[0] == str(frames)
+    assert "floor: refined from the truth" in table
+    assert main([*words, "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert rows["annealed and refined, every 3"]["median_position_m"] < 0.04
+    assert rows["floor: refined from the truth"]["most_renders"] == 5
+    assert len((tmp_path / "out" / "compare.jsonl").read_text().splitlines()) == 1 + 2 * 4 + 1, "each run once"
+
+
+@pytest.mark.slow
+def test_a_seeds_recording_by_hand_and_its_less_kind_sister(tmp_path, capsys):
+    words = ["demo", "corridor", "--dof", "6", "--seed", "10001", "--frames", "3", "--out", str(tmp_path), "--json"]
+    assert main(words) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert len(rows) == 6
+    for name, row in rows.items():
+        assert row["frames"] == 3
+        if not name.startswith("the paper's"):
+            assert row["median_position_m"] < 0.05
+    less, kind = (rows[f"annealed and refined{part}"]["median_rotation_deg"] for part in (", less kind", ""))
+    assert less > kind, "a mount that is off by 0.3 degrees an axis"
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--every", "0"], "--every"),
+        (["--every", "two"], "--every"),
+        (["--every", "7"], "no frame is left"),
+        (["--methods", "magic"], "--methods"),
+        (["--seeds", "x"], "--seeds"),
+    ],
+)
+def test_bad_options_are_told(short, tmp_path, capsys, options, said):
+    assert main(["compare", *short, "--out", str(tmp_path / "out"), *options]) == 2
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_what_does_not_go_with_six_degrees_is_told(tmp_path, capsys):
+    for options in (["--kindnesses"], ["--recording", "shipped"], ["--methods", "fallon"]):
+        assert main(["demo", "corridor", "--dof", "6", "--out", str(tmp_path / "out"), *options]) == 2
+        assert options[0] in capsys.readouterr().err

@@ -1,0 +1,67 @@
+"""Six degrees of freedom side by side: what is pooled, thinned, and said of frames that are wrong."""
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.experiments.six_degrees import METHODS, pooled, run_frames, thinned_points
+
+
+@pytest.fixture(scope="module")
+def corridor(corridor_folder):
+    return SceneMap.load(corridor_folder / "map.ply"), read_sequence(corridor_folder / "hand").thinned(30, 7)
+
+
+def test_a_thinned_recording_keeps_what_belongs_together(corridor_folder):
+    whole = read_sequence(corridor_folder / "hand")
+    thinned = whole.thinned(8, 3)
+    assert thinned.frames == whole.frames[3::8]
+    assert len(thinned) == len(thinned.camera_to_world) == len(thinned.times) == 19
+    assert np.array_equal(thinned.depth(2), whole.depth(19), equal_nan=True)
+    assert np.array_equal(thinned.camera_to_world[2], whole.camera_to_world[19])
+    assert thinned.up == whole.up
+    for every, offset in ((0, 0), (8, -1), (1, len(whole))):
+        with pytest.raises(ValueError, match="no frame is left"):
+            whole.thinned(every, offset)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_run_tells_every_frame(corridor, method):
+    """Two metres from frame to frame: the floor does not move, the filters are lost from the second frame on."""
+    frames = run_frames(method, *corridor, seed=10_001)
+    assert {len(values) for values in frames.values()} == {5}
+    if method == "floor":
+        assert max(frames["position_m"]) < 0.05
+        assert "lost" not in frames["status"]
+    else:
+        assert frames["position_m"][0] < 0.05 < 0.2 < min(frames["position_m"][1:])
+    if method == "annealed":
+        assert frames["status"][0] == "tracked"
+        assert frames["status"].count("lost") >= 3
+
+
+def test_frames_of_several_runs_are_pooled_not_their_medians():
+    def run(position, rotation, status):
+        n = len(position)
+        nothing = {"renders": [100] * n, "score": [0.5] * n, "normalized_error": [1.0] * n, "within_3_sigma": [1.0] * n}
+        return {"position_m": position, "rotation_deg": rotation, "status": status, **nothing}
+
+    row = pooled([
+        run([0.01, 0.02, 0.5], [1.0, 1.0, 1.0], ["tracked", "lost", "lost"]),
+        run([0.01, 0.07, 0.01, 0.04, 0.3], [1.0, 1.0, 30.0, 6.0, 1.0], ["tracked", "lost", "tracked", "lost", "lost"]),
+    ])  # fmt: skip
+    assert row["frames"] == 8
+    assert row["median_position_m"] == pytest.approx(0.03)
+    assert row["within_5cm_5deg_percent"] == pytest.approx(100 * 3 / 8)
+    assert row["within_10cm_percent"] == pytest.approx(75.0)
+    assert (row["wrong"], row["wrong_called_lost"]) == (3, 2)
+    assert (row["good"], row["good_called_lost"]) == (3, 1)
+    assert (row["most_renders"], row["within_3_sigma_percent"]) == (100, 100.0)
+
+
+def test_every_offset_of_a_thinning_is_a_run(tmp_path):
+    points = thinned_points(tmp_path / "m.ply", tmp_path, ["annealed", "floor"], [1, 4], [1, 2])
+    annealed = [(p["every"], p["offset"], p["seed"]) for p in points if p["method"] == "annealed"]
+    assert annealed == [(1, 0, 1), (1, 0, 2)] + [(4, offset, seed) for offset in range(4) for seed in (1, 2)]
+    assert [(p["every"], p["seed"]) for p in points if p["method"] == "floor"] == [(1, 1)]
