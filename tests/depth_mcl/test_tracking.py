@@ -10,6 +10,7 @@ from course_lib.depth_mcl.tracking import (
     TRACKED_SUPPORT,
     Agreement,
     agreement,
+    judge_refined,
     judge_track,
 )
 
@@ -76,3 +77,15 @@ def test_a_judgement_does_not_change_with_what_comes_after(rng):
     assert set(statuses) == {"tracked", "doubtful", "lost"}
     for count in (1, 7, 30):
         assert judge_track(run[:count]) == statuses[:count]
+
+
+@pytest.mark.parametrize(
+    ("agreeing", "through", "expected"),
+    [(0.9, 0.02, "tracked"), (0.72, 0.14, "lost"), (0.6, 0.01, "tracked"), (0.35, 0.0, "lost")],
+)
+def test_a_refined_pose_that_still_sees_through_walls_is_lost(agreeing, through, expected):
+    assert judge_refined(Agreement(1000, 0.6, agreeing, through)) == expected
+
+
+def test_a_refined_pose_with_hardly_a_pixel_is_doubtful():
+    assert judge_refined(Agreement(5, 0.1, 0.0, 1.0)) == judge_refined(BLIND) == "doubtful"

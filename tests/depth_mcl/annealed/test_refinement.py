@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.annealed import compiled_refinement, refinement
-from course_lib.depth_mcl.annealed.refinement import DAMPING, LONGEST_STEP, normal_equations, refine, solve
+from course_lib.depth_mcl.annealed.refinement import (
+    DAMPING,
+    LONGEST_STEP,
+    NormalEquations,
+    normal_equations,
+    refine,
+    solve,
+)
 from course_lib.depth_mcl.annealed.twists import lengths, motion_between, moved
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.geometry import optical_pose
@@ -109,3 +116,10 @@ def test_damping_is_the_only_difference_from_the_plain_solution(renderer, rng):
     plain = -np.linalg.solve(system.matrices[0], system.vectors[0])
     assert solve(system, damping=0.0)[0] == pytest.approx(plain)
     assert solve(system, damping=DAMPING)[0] == pytest.approx(plain, abs=0.01)
+
+
+def test_rounding_along_what_is_not_seen_moves_nothing():
+    matrices = np.diag([1.0, 0.0, 1.0, 1.0, 1.0, 0.0])[None] * 500
+    vectors = np.array([[0.0, 1e-7, 0.0, 0.0, 0.0, 1e-7]]) * 500
+    motion = solve(NormalEquations(matrices, vectors, np.ones(1), np.full(1, 500.0)))
+    assert np.abs(motion).max() < 0.01
