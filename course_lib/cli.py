@@ -22,6 +22,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
     "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
     "demo rooms": ("demo_rooms", "run paper 2's experiment in generated rooms that nobody shaped, with intervals"),
+    "demo lost": ("demo_lost", "kidnap the camera, start it anywhere, and count how often it finds itself"),
     "sweep": ("sweep", "run an experiment for many seeds on all processors: table 1 with confidence intervals"),
     "bench": ("bench", "measure the depth filter side by side with Embree, PyVista and others"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),

@@ -8,13 +8,15 @@ from course_lib.depth_mcl.rendering.embree import EmbreeCaster
 from course_lib.depth_mcl.scene_map import SceneMap
 
 CLEARANCE = 0.15  # metres to the nearest surface (chosen: no camera is nearer, and sees nothing if it is)
-ENCLOSED = 0.5  # share of directions that must meet the map, in a map of a building (chosen)
+ENCLOSED = (
+    0.65  # share of directions that must meet the map, in a map of a building (chosen: just outside a wall it is half)
+)
 # A map smaller than this, cubic metres of its box, is searched whole: it may show one side of one room, and a camera
 # stands where the scanner stood, on the open side (chosen: a large room).
 SMALL_MAP = 100.0
 _DIRECTIONS = 32
 _TRIES = 20_000  # places drawn at once
-_MOST_ROUNDS = 200
+_MOST_ROUNDS = 30
 
 
 class FreeSpaceError(ValueError):

@@ -30,7 +30,7 @@ from course_lib.depth_mcl.lost_and_found.free_space import FreeSpace
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.tracking import THROUGH_WEIGHT, agreement
 from course_lib.depth_mcl.weighting import paper_weighting
-from course_lib.geometry import rotation_exp, state_from_optical_pose
+from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
 
 # All chosen on development recordings (the kitchen, the shipped corridor, corridor seeds from 10,001 on).
 COARSEST = (20, 15)  # pixels: of these, thousands are drawn
@@ -119,8 +119,20 @@ class GlobalSearch:
         self._count = most
         self._renders = 0
 
-    def step(self, depth: np.ndarray, gravity: np.ndarray) -> Places:
-        """What a depth image `(H, W)` in metres adds. gravity: `(3,)` down, in the camera's optical frame, any length.
+    def forget(self) -> None:
+        """Starts anew: no place is known."""
+        self._followed, self._count = [], self.most
+
+    def step(
+        self,
+        depth: np.ndarray,
+        gravity: np.ndarray,
+        tilt_sigma: float = TILT_SIGMA,
+        suggested: np.ndarray | None = None,
+    ) -> Places:
+        """What a depth image `(H, W)` in metres adds. gravity: `(3,)` down, in the camera's optical frame, any length,
+        known to within `tilt_sigma` radians. suggested: the state `(6,)` where somebody thinks the camera is; it is
+        judged like every other place.
 
         Raises `ValueError` for gravity that is not three finite numbers, or zero.
         """
@@ -131,18 +143,18 @@ class GlobalSearch:
             level.measure(depth)
         self._renders = 0
         self._follow()
-        drawn = self._draw(gravity)
-        self._add_new(drawn)
+        drawn = self._draw(gravity, tilt_sigma)
+        self._add_new(drawn, suggested)
         self._drop()
         return self._answer(len(drawn[0]))
 
-    def _draw(self, gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _draw(self, gravity: np.ndarray, tilt_sigma: float) -> tuple[np.ndarray, np.ndarray]:
         """Poses from free space and their scores on the coarsest image, as many as the count or the time allows."""
         begun = time.perf_counter()
         poses, scores, piece = [], [], 500
         while sum(len(p) for p in poses) < self._count:
             n = min(piece, self._count - sum(len(p) for p in poses))
-            poses.append(upright_poses(self.free_space.draw(n, self.rng), gravity, self.rng))
+            poses.append(upright_poses(self.free_space.draw(n, self.rng), gravity, tilt_sigma, self.rng))
             scores.append(self._coarsest.score(self._render(self._coarsest, poses[-1])))
             if self.seconds is not None and time.perf_counter() - begun > self.seconds:
                 break
@@ -170,7 +182,7 @@ class GlobalSearch:
             best = mine[np.argmax(values[mine])]
             one.saw(poses[best], values[best])
 
-    def _add_new(self, drawn: tuple[np.ndarray, np.ndarray]) -> None:
+    def _add_new(self, drawn: tuple[np.ndarray, np.ndarray], suggested: np.ndarray | None) -> None:
         """The best of the new poses, refined, become places unless they are known ones."""
         coarse = self.levels[0]
         poses = drawn[0][distinct(*drawn, STARTS[0], APART)]
@@ -179,9 +191,11 @@ class GlobalSearch:
             kept = distinct(poses, coarse.score(images), keep, DISTINCT)
             poses = gauss_newton_step(coarse.measured, images[kept], coarse.renderer.camera, poses[kept], scale)
         poses = self._finish(poses)
+        if suggested is not None:
+            poses = np.concatenate([poses, optical_pose(suggested)[None]])
         values = self._values(poses)
         for index in distinct(poses, values, MOST_PLACES, ELSEWHERE):
-            known = any(_same_place(one.pose, poses[index]) for one in self._followed)
+            known = any(same_place(one.pose, poses[index]) for one in self._followed)
             if values[index] >= LEAST_VALUE and not known:
                 self._followed.append(_Followed(poses[index], float(values[index])))
 
@@ -203,11 +217,11 @@ class GlobalSearch:
         """Places that no longer agree go, of two that became one the better stays, and the worst beyond a number."""
         kept: list[_Followed] = []
         for one in sorted(self._followed, key=lambda o: (-min(o.frames, FRAMES_TO_BELIEVE), -o.evidence)):
-            if one.evidence >= LEAST_VALUE and not any(_same_place(one.pose, other.pose) for other in kept):
+            if one.evidence >= LEAST_VALUE and not any(same_place(one.pose, other.pose) for other in kept):
                 kept.append(one)
         self._followed = kept[:MOST_PLACES]
         bins = occupied_bins(np.array([one.pose for one in self._followed]), 0.5, 0.5)
-        self._count = self.most if bins == 0 else kld_count(10 * bins, self.least, self.most)
+        self._count = self.most if bins == 0 else kld_count(bins, self.least, self.most)
 
     def _answer(self, particles: int) -> Places:
         places = [
@@ -226,11 +240,13 @@ class GlobalSearch:
         return level.renderer.render_poses(poses)
 
 
-def upright_poses(positions: np.ndarray, gravity: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def upright_poses(
+    positions: np.ndarray, gravity: np.ndarray, tilt_sigma: float, rng: np.random.Generator
+) -> np.ndarray:
     """Camera-to-world poses `(N, 4, 4)` at positions `(N, 3)`, any heading, whose down is that of gravity `(3,)` in the
-    camera's optical frame, within `TILT_SIGMA`. The world's z is up."""
+    camera's optical frame, within `tilt_sigma`. The world's z is up."""
     n, down = len(positions), gravity / np.linalg.norm(gravity)
-    tilt = np.concatenate([TILT_SIGMA * rng.standard_normal((n, 2)), np.zeros((n, 1))], axis=1)
+    tilt = np.concatenate([tilt_sigma * rng.standard_normal((n, 2)), np.zeros((n, 1))], axis=1)
     heading = np.concatenate([np.zeros((n, 2)), rng.uniform(-np.pi, np.pi, (n, 1))], axis=1)
     poses = np.tile(np.eye(4), (n, 1, 1))
     poses[:, :3, :3] = rotation_exp(heading) @ rotation_exp(tilt) @ _turn(down, np.array([0.0, 0.0, -1.0]))
@@ -250,5 +266,6 @@ def _turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return rotation_exp(axis / sine * np.arctan2(sine, cosine))
 
 
-def _same_place(a: np.ndarray, b: np.ndarray) -> bool:
+def same_place(a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether two camera poses `(4, 4)` are nearer to each other than `ELSEWHERE`."""
     return bool((lengths(motion_between(a, b)) < ELSEWHERE).all())
