@@ -10,6 +10,7 @@ import pytest
 from course_lib.cli import find_command, main
 from course_lib.commands.bench_table import table
 from course_lib.commands.demo_corridor import table_1
+from course_lib.commands.six_degrees_table import six_degrees_table
 
 ROOT = Path(__file__).parents[1]
 README, RESULTS = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "RESULTS.md"))
@@ -81,6 +82,13 @@ def test_the_table_with_intervals_is_what_the_sweep_prints_of_its_stored_rows(tm
     assert "\n".join(f"    {line}".rstrip() for line in table.splitlines()) in RESULTS
     assert f"With `--seeds {count}` it prints this" in RESULTS
     assert (tmp_path / "corridor.jsonl").read_text() == stored, "nothing was run"
+
+
+@pytest.mark.parametrize("name", ["kitchen_six_degrees.json", "hand_1-5.json"])
+def test_the_tables_in_six_degrees_are_what_the_commands_print_of_their_stored_numbers(name):
+    stored = json.loads((CORRIDOR_RESULTS / name).read_text())
+    printed = six_degrees_table(stored["rows"])
+    assert "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in RESULTS
 
 
 def test_the_speed_is_what_the_benchmark_printed():
