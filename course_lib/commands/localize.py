@@ -31,6 +31,8 @@ the folder of the recording:
 examples:
   own recording, no truth; the camera starts 1.2 m up at x = 2, y = -0.5 and looks along +y:
     localize --map home.ply --sequence walk --start 2 -0.5 1.2 0 0 90 --up z --out results/walk
+  nobody knows where it starts; z is up (gravity.txt tells which way is down, else the camera is held upright):
+    localize --map home.ply --sequence walk --start unknown --up z --recover
   depth as TUM RGB-D files have it (5000 units a metre), start from a file with a 4 x 4 matrix:
     localize --map desk.ply --sequence desk --depth-scale 5000 --far 5 --start first_pose.txt
   a wagon on a level floor, with truth:
@@ -75,7 +77,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="pose of the camera's body (x forward, y left, z up) in the first frame: six numbers, X Y Z in metres in "
         "the map's own axes, then ROLL PITCH YAW in degrees (all 0: level and towards x in a world whose z is up, into "
         "which --up turns another one); or a file with a 4 x 4 camera-to-world matrix, or whose first row is one of "
-        "poses.txt (default: that of the recording)",
+        "poses.txt; or unknown: it is searched for in the whole map, which needs --up (default: that of the recording)",
     )
     parser.add_argument(
         "--depth-scale",
@@ -102,6 +104,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="the filter: annealed and refined, which adapts to the camera's motion (default with --dof 6, six degrees "
         "of freedom only), or the paper's (default with --dof xyyaw), whose particles and noise are set by hand",
     )
+    parser.add_argument(
+        "--recover",
+        action="store_true",
+        help="search the whole map when the annealed filter is lost: seconds a frame until it is found again",
+    )
     parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
     parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames")
@@ -125,7 +132,13 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
-    from course_lib.experiments.recordings import pose_error_summary, run_annealed, run_sequence, system_noise
+    from course_lib.experiments.recordings import (
+        pose_error_summary,
+        run_annealed,
+        run_recovering,
+        run_sequence,
+        system_noise,
+    )
 
     method = _method(arguments)
     require_seed(arguments.seed)
@@ -143,13 +156,17 @@ def run(arguments: argparse.Namespace) -> int:
             "--dof xyyaw moves the camera on a horizontal plane, and which way is up in this world is unknown; give "
             "--up AXIS (x, -x, y, -y, z, -z) if you know it, else use --dof 6"
         )
-    start = _start(arguments.start, sequence, "z" if up == "unknown" else up)
     scene_map = SceneMap.load(arguments.map)
+    searched = {}
+    if arguments.start == "unknown":
+        sequence, start, searched = _found_start(arguments, scene_map, sequence, up)
+    else:
+        start = _start(arguments.start, sequence, "z" if up == "unknown" else up)
     if method == "paper":
         noise = system_noise(arguments.dof, *_sigma(arguments))
         localized = partial(run_sequence, **noise)
     else:
-        localized = run_annealed
+        localized = run_recovering if arguments.recover else run_annealed
     result = localized(
         scene_map,
         sequence,
@@ -166,6 +183,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     summary = {
         **_options(arguments, up),
+        **searched,
         "frames": len(result.frames),
         "frames_without_measurement": result.frames_without_measurement,
         **{f"frames_{status}": result.statuses.count(status) for status in ("tracked", "doubtful", "lost")},
@@ -188,6 +206,8 @@ def run(arguments: argparse.Namespace) -> int:
 def _method(arguments: argparse.Namespace) -> str:
     """The filter to use; `ValueError` for options that it does not have."""
     method = arguments.method or ("annealed" if arguments.dof == "6" else "paper")
+    if arguments.recover and method == "paper":
+        raise ValueError("--recover goes with the annealed filter: --dof 6, and not --method paper")
     if method == "paper":
         return method
     if arguments.dof != "6":
@@ -199,6 +219,35 @@ def _method(arguments: argparse.Namespace) -> str:
                 "far the camera has been moving"
             )
     return method
+
+
+def _found_start(
+    arguments: argparse.Namespace, scene_map: SceneMap, sequence: DepthSequence, up: str
+) -> tuple[DepthSequence, np.ndarray, dict]:
+    """The recording from the frame in which its place was found, the pose there, and what the results tell of it.
+
+    Raises `ValueError` where no place was found, or several that nobody can tell apart.
+    """
+    from course_lib.commands.progress import progress_bar
+    from course_lib.experiments.recordings import find_start
+
+    if up == "unknown":
+        raise ValueError("--start unknown needs --up AXIS: only with gravity known can the whole map be searched")
+    bar = progress_bar("searching")
+    options = {"seed": arguments.seed, "up": up, "near": arguments.near, "far": arguments.far, "progress": bar}
+    index, places, start = find_start(scene_map, sequence, **options)
+    if places.status != "found":
+        where = "; ".join(
+            f"({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.rad2deg(yaw):.0f} degrees (evidence {place.evidence:.2f})"
+            for place in places.places
+            for x, y, z, yaw in [(*place.state[:3], place.state[5])]
+        )
+        raise ValueError(
+            f"the start was not found in {index + 1} frames: "
+            + (f"it may be at {where}; in a world whose z is up" if where else "no place agrees with the images")
+            + ". Give --start, or a recording that begins where the building looks like no other place"
+        )
+    return sequence.thinned(1, index), start, {"found_in_frame": sequence.frames[index]}
 
 
 def _start(given: str | None, sequence: DepthSequence, up: str) -> np.ndarray:
@@ -247,6 +296,7 @@ def _options(arguments: argparse.Namespace, up: str) -> dict:
         own |= {"sigma_position_m": position, "sigma_rotation_deg": rotation_deg}
     return {
         **own,
+        "recover": arguments.recover,
         "n_particles": arguments.particles,
         "map": str(arguments.map),
         "sequence": str(arguments.sequence),

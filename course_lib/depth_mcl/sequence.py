@@ -7,6 +7,8 @@ poses.txt           optional, the truth: frame number, then a row-major 4 x 4 ca
                     z forward)
 up.txt              optional: which world axis points up (x, -x, y, -y, z, -z); without it nothing is known
 groundtruth.txt     optional: the same poses with time stamps, TUM format (t tx ty tz qx qy qz qw)
+gravity.txt         optional: frame number, then down as an accelerometer has it, x y z along the camera's axes (right,
+                    down, forward), of any length
 path_on_floor.txt   optional: the surveyed line on the floor below the camera, x y z per row (the paper's truth)
 
 A folder of the TUM RGB-D dataset is read too: depth.txt (a time and a file name a row) then says which images there are
@@ -38,7 +40,7 @@ class DepthSequence:
     frames: frame numbers, ascending. camera_to_world: `(T, 4, 4)` float64, optical convention; None where the truth is
     not known, and asking for it is then a `SequenceError`. intrinsics: `(3, 3)`. image_shape: (height, width). up: "z"
     and the like, or None where nothing is known. times: `(T,)` seconds or None. path_on_floor: `(P, 3)` metres or None.
-    units_per_metre: of the depth images.
+    units_per_metre: of the depth images. gravity: `(T, 3)` down in the camera's optical frame, or None.
     """
 
     def __init__(
@@ -53,6 +55,7 @@ class DepthSequence:
         times: np.ndarray | None,
         path_on_floor: np.ndarray | None,
         units_per_metre: float = UNITS_PER_METRE,
+        gravity: np.ndarray | None = None,
     ) -> None:
         self.folder = folder
         self.frames = frames
@@ -64,6 +67,7 @@ class DepthSequence:
         self.times = times
         self.path_on_floor = path_on_floor
         self.units_per_metre = units_per_metre
+        self.gravity = gravity
 
     @property
     def has_poses(self) -> bool:
@@ -102,6 +106,7 @@ class DepthSequence:
             None if self.times is None else self.times[kept],
             self.path_on_floor,
             self.units_per_metre,
+            None if self.gravity is None else self.gravity[kept],
         )
 
     def camera(self, near: float = NEAR, far: float = FAR) -> DepthCamera:
@@ -164,7 +169,7 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
         raise SequenceError(f"{path_file} must hold x y z per row; got shape {path_on_floor.shape}")
     return DepthSequence(
         folder, frames, [images[f] for f in frames], camera_to_world, intrinsics, image_shape, _read_up(folder),
-        times, path_on_floor, units_per_metre,
+        times, path_on_floor, units_per_metre, _read_gravity(folder, frames),
     )  # fmt: skip
 
 
@@ -324,6 +329,22 @@ def _read_times(folder: Path, camera_to_world: np.ndarray) -> np.ndarray | None:
             f"groundtruth.txt and poses.txt in {folder} do not hold the same {len(camera_to_world)} poses"
         )
     return times
+
+
+def _read_gravity(folder: Path, frames: list[int]) -> np.ndarray | None:
+    path = folder / "gravity.txt"
+    if not path.is_file():
+        return None
+    rows = read_numbers(path)
+    if rows.shape[1] != 4 or not (rows[:, 1:] != 0).any(axis=1).all():
+        raise SequenceError(
+            f"{path} must hold a frame number and x y z, not all zero, per row; got {rows.shape[1]} columns"
+        )
+    by_frame = {int(row[0]): row[1:] for row in rows}
+    missing = [frame for frame in frames if frame not in by_frame]
+    if missing:
+        raise SequenceError(f"{path} has no row for frame {missing[0]} (and {len(missing) - 1} others)")
+    return np.array([by_frame[frame] for frame in frames])
 
 
 def _read_up(folder: Path) -> str | None:

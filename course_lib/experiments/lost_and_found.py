@@ -7,6 +7,7 @@ frame in another place. Gravity is what an accelerometer would say: the truth's,
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,6 +15,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from course_lib.depth_mcl.evaluation import pose_errors
+from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.depth_mcl.lost_and_found.global_search import GlobalSearch
 from course_lib.depth_mcl.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
@@ -77,7 +79,8 @@ def kidnapping(map_file: str, sequence: str, seed: int) -> dict:
     first, after = _places_of_kidnapping(recording, rng)
     frames = [*range(first, first + BEFORE), *[None] * COVERED, *range(after, after + AFTER)]
     statuses, recovered = [], None
-    with DepthRenderer(SceneMap.load(map_file), recording.camera()) as renderer:
+    with warnings.catch_warnings(), DepthRenderer(SceneMap.load(map_file), recording.camera()) as renderer:
+        warnings.simplefilter("ignore", NoMeasurementWarning)  # the camera is covered on purpose
         localizer = RecoveringLocalizer(renderer, seed=seed)
         localizer.initialize(state_from_optical_pose(recording.camera_to_world[first]))
         for number, depth, pose in _played(recording, frames):

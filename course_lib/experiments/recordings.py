@@ -17,6 +17,8 @@ from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate, AnnealedLo
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, Estimate, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.lost_and_found.global_search import TILT_SIGMA, GlobalSearch, Places
+from course_lib.depth_mcl.lost_and_found.recovery import UNKNOWN_TILT_SIGMA, RecoveringLocalizer
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, Motion
 from course_lib.depth_mcl.rendering.renderer import Backend, DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
@@ -71,6 +73,64 @@ def system_noise(dof: Literal["6", "xyyaw"], position: float, rotation_deg: floa
     return {"sigma": [position, position, 0.0, 0.0, 0.0, rotation], "motion": BODY_AXES}
 
 
+def run_recovering(
+    scene_map: SceneMap, sequence: DepthSequence, *, n_particles: int = 200, seed: int = 0, **options: object
+) -> Run:
+    """As `run_annealed`, and where it is lost, a global search (`RecoveringLocalizer`)."""
+    make = partial(_Recovering, gravity=sequence.gravity, n_particles=n_particles, seed=seed)
+    run, estimates = run_localizer(make, scene_map, sequence, **options)
+    return run._replace(statuses=_own_statuses(estimates))
+
+
+class _Recovering:
+    """`RecoveringLocalizer` as a recording is run: an image at a time."""
+
+    def __init__(self, renderer: DepthRenderer, gravity: np.ndarray | None, n_particles: int, seed: int) -> None:
+        self.motion = TANGENT_SPACE
+        self._localizer = RecoveringLocalizer(renderer, n_particles, seed=seed)
+        self._gravity = iter(()) if gravity is None else iter(gravity)
+
+    def initialize(self, state0: np.ndarray) -> None:
+        self._localizer.initialize(state0)
+
+    def step(self, depth: np.ndarray) -> AnnealedEstimate:
+        found = self._localizer.step(depth, gravity=next(self._gravity, None))
+        searched = 0 if found.places is None else found.places.renders
+        return found.estimate._replace(renders=found.estimate.renders + searched)
+
+
+def find_start(
+    scene_map: SceneMap,
+    sequence: DepthSequence,
+    *,
+    seed: int = 0,
+    up: str | None = None,
+    near: float = NEAR,
+    far: float = FAR,
+    frames: int = 20,
+    progress: Callable = iter,
+) -> tuple[int, Places, np.ndarray]:
+    """Where a recording begins whose start nobody knows: the frame in which it was clear, what was found there, and the
+    first place's camera-to-world matrix `(4, 4)` in the recording's own world (all NaN where none was found).
+
+    Without gravity.txt the camera is taken to be held upright, to within `UNKNOWN_TILT_SIGMA`.
+    """
+    to_z_up = rotation_to_z_up(up or sequence.up or "z")
+    upright, tilt_sigma = np.array([0.0, 1.0, 0.0]), UNKNOWN_TILT_SIGMA
+    if sequence.gravity is not None:
+        tilt_sigma = TILT_SIGMA
+    with DepthRenderer(scene_map.transformed(to_z_up), sequence.camera(near, far)) as renderer:
+        search = GlobalSearch(renderer, seed=seed)
+        for index in progress(range(min(frames, len(sequence)))):
+            gravity = upright if sequence.gravity is None else sequence.gravity[index]
+            places = search.step(sequence.depth(index), gravity, tilt_sigma)
+            if places.status == "found":
+                break
+    if not places.places:
+        return index, places, np.full((4, 4), np.nan)
+    return index, places, np.linalg.inv(to_z_up) @ optical_pose(places.places[0].state)
+
+
 class Localizer(Protocol):
     """What a filter must have to be run on a recording."""
 
@@ -104,8 +164,11 @@ def run_annealed(
     """Localizes a recording in six degrees of freedom, annealed and refined; options: `run_localizer`'s."""
     make = partial(AnnealedLocalizer, n_particles=n_particles, seed=seed)
     run, estimates = run_localizer(make, scene_map, sequence, **options)
-    own = ["doubtful" if e.status == "no measurement" else e.status for e in estimates]
-    return run._replace(statuses=own)
+    return run._replace(statuses=_own_statuses(estimates))
+
+
+def _own_statuses(estimates: list[AnnealedEstimate]) -> list[TrackStatus]:
+    return ["doubtful" if e.status == "no measurement" else e.status for e in estimates]
 
 
 def run_localizer(

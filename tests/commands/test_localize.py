@@ -8,7 +8,7 @@ import pytest
 
 from course_lib.cli import main
 from course_lib.commands.localize import believed, join_words
-from course_lib.depth_mcl.poses import read_tum
+from course_lib.depth_mcl.poses import SequenceError, read_tum
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
@@ -59,6 +59,56 @@ def test_a_hand_carried_run_is_followed_in_six_degrees(corridor_folder, capsys):
     assert found["annealed"]["renders_per_frame"] < found["annealed"]["most_renders"] <= 600
 
 
+@pytest.fixture
+def cut(corridor_folder, tmp_path):
+    """The shipped recording by hand without its truth, in two stretches that lie six metres apart, with gravity."""
+    hand = read_sequence(corridor_folder / "hand")
+    kept = [*range(40, 46), *range(125, 134)]
+    folder = tmp_path / "cut"
+    write_sequence(folder, hand.intrinsics, kept, [hand.depth(i) for i in kept], hand.camera_to_world[kept], up="z")
+    (folder / "poses.txt").rename(tmp_path / "poses.txt")
+    (folder / "groundtruth.txt").unlink(missing_ok=True)
+    down = -hand.camera_to_world[kept][:, 2, :3]
+    np.savetxt(folder / "gravity.txt", np.column_stack([kept, 9.81 * down]))
+    return folder, hand.camera_to_world[kept]
+
+
+@pytest.mark.slow
+def test_from_an_unknown_start_through_a_kidnapping(corridor_folder, cut, tmp_path, capsys):
+    folder, true = cut
+    words = ["localize", "--map", str(corridor_folder / "map.ply"), "--sequence", str(folder), "--out", str(tmp_path)]
+    assert main([*words, "--start", "unknown", "--recover", "--seed", "1"]) == 0
+    assert "lost" in capsys.readouterr().out.splitlines()[-1]
+    stored = json.loads((tmp_path / "localize.json").read_text())
+    first = stored["found_in_frame"] - 40
+    assert 3 <= first < 6
+    track = read_tum(tmp_path / "trajectory.txt")[1]
+    assert len(track) == 15 - first
+    off = np.linalg.norm(track[:, :3, 3] - true[first:, :3, 3], axis=1)
+    assert off[: 6 - first].max() < 0.05
+    assert off[6 - first] > 1
+    assert off[-1] < 0.05
+
+
+def test_an_unknown_start_needs_gravity(kitchen_folder, capsys):
+    assert main([*arguments(kitchen_folder, "."), "--start", "unknown"]) == 2
+    assert "needs --up" in capsys.readouterr().err
+
+
+def test_gravity_is_read_and_thinned_with_the_frames(cut):
+    folder, true = cut
+    sequence = read_sequence(folder)
+    assert sequence.gravity == pytest.approx(-9.81 * true[:, 2, :3], abs=1e-5)
+    assert sequence.thinned(4, 1).gravity == pytest.approx(sequence.gravity[1::4])
+    rows = (folder / "gravity.txt").read_text().splitlines()
+    (folder / "gravity.txt").write_text("\n".join(rows[:-1]))
+    with pytest.raises(SequenceError, match="no row for frame 133"):
+        read_sequence(folder)
+    (folder / "gravity.txt").write_text("40 0 0\n")
+    with pytest.raises(SequenceError, match=r"gravity\.txt must hold"):
+        read_sequence(folder)
+
+
 def test_six_degrees_are_annealed_unless_told_otherwise(corridor_folder, capsys):
     for dof, method in (("6", "annealed"), ("xyyaw", "paper")):
         assert main(arguments(corridor_folder, "hand", dof=dof, frames=1, particles=20, json=True)) == 0
@@ -67,6 +117,8 @@ def test_six_degrees_are_annealed_unless_told_otherwise(corridor_folder, capsys)
     assert "six degrees of freedom" in capsys.readouterr().err
     assert main([*arguments(corridor_folder), "--sigma-position", "0.1"]) == 2
     assert "--sigma-position goes with --method paper" in capsys.readouterr().err
+    assert main([*arguments(corridor_folder), "--method", "paper", "--recover"]) == 2
+    assert "--recover goes with the annealed filter" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("particles", [1, 3])

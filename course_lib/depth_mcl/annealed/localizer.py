@@ -19,7 +19,7 @@ their tangent space, which knows no gimbal lock. Estimates are states, as `Monte
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -124,10 +124,10 @@ class AnnealedLocalizer:
     """Annealed particle filter with Gauss-Newton refinement, for a depth camera that moves freely.
 
     renderer: draws the map for the camera. n_particles: of a layer whose share is 1. seed: of the one generator that
-    all draws come from. layers: of the first
-    look at a frame; second_look: of the look after a doubted one (empty: none); steps: of the refinement (empty: the
-    best particle is the estimate). alpha: of eq. (8), metres.
-    Raises `ValueError` for a seed or alpha that is none, or no layer.
+    all draws come from. layers: of the first look at a frame; second_look: of the look after a doubted one (empty:
+    none); steps: of the refinement (empty: the best particle is the estimate). prediction: where the camera may be
+    next, made from its first pose. alpha: of eq. (8), metres.
+    Raises `ValueError` for a number of particles, a seed or an alpha that is none, or no layer.
     """
 
     def __init__(
@@ -139,6 +139,7 @@ class AnnealedLocalizer:
         layers: tuple[Layer, ...] = LAYERS,
         second_look: tuple[Layer, ...] = SECOND_LOOK,
         steps: tuple[Step, ...] = STEPS,
+        prediction: Callable[[np.ndarray], MotionPrediction] = MotionPrediction,
         alpha: float = ALPHA,
     ) -> None:
         if int(n_particles) != n_particles or n_particles < 1:
@@ -153,6 +154,7 @@ class AnnealedLocalizer:
         self.layers, self.second_look, self.steps = tuple(layers), tuple(second_look), tuple(steps)
         self.rng = np.random.default_rng(int(seed))
         self.motion = TANGENT_SPACE
+        self._new_prediction = prediction
         self._prediction: MotionPrediction | None = None
         self._usual_support: float | None = None
         self._covariance = np.zeros((6, 6))
@@ -163,7 +165,7 @@ class AnnealedLocalizer:
 
         Raises `ValueError` for a state that is not finite or lies outside the map (by more than a metre).
         """
-        self._prediction = MotionPrediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
+        self._prediction = self._new_prediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
         self._usual_support = None
         self._covariance = np.zeros((6, 6))
 

@@ -81,6 +81,8 @@ class RecoveringLocalizer:
         places = self.search.step(depth, self._down if gravity is None else gravity, tilt, estimate.state)
         self._searched += 1
         mode = self._decide(estimate, places)
+        if mode == "found again":
+            estimate = self.localizer.step(depth)
         return RecoveryEstimate(estimate, mode, places, self._short, self._long)
 
     def _decide(self, estimate: AnnealedEstimate, places: Places) -> Literal["following", "searching", "found again"]:
