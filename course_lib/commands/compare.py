@@ -24,7 +24,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="annealed,paper,floor",
         metavar="NAMES",
         help="with commas: annealed, paper (its filter, six degrees of freedom), floor (what refinement makes of the "
-        "truth, every frame, once); default: all",
+        "truth, every frame, once); all: the annealed filter with one idea switched off, too (default: "
+        "annealed,paper,floor)",
     )
     parser.add_argument(
         "--every", default="1", metavar="NUMBERS", help="thin the recording: 1,2,4,8 runs each (default: 1)"
@@ -39,18 +40,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, then tells what all runs of a method and a thinning gave together."""
     from course_lib.commands.progress import progress_bar
-    from course_lib.commands.six_degrees_table import NAMES, six_degrees_table
+    from course_lib.commands.six_degrees_table import row_name, six_degrees_table
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments import sweep
     from course_lib.experiments.results import write_results
-    from course_lib.experiments.six_degrees import METHODS, pooled, thinned_points, thinned_run
+    from course_lib.experiments.six_degrees import ABLATIONS, METHODS, pooled, thinned_points, thinned_run
 
     seeds = parse_seeds(arguments.seeds)
     everies = _numbers("--every", arguments.every)
-    methods = arguments.methods.split(",")
-    if not set(methods) <= set(METHODS):
-        raise ValueError(f"--methods must name {', '.join(METHODS)}, with commas; got {arguments.methods}")
+    methods = [*METHODS, *ABLATIONS] if arguments.methods == "all" else arguments.methods.split(",")
+    if not set(methods) <= {*METHODS, *ABLATIONS}:
+        known = ", ".join([*METHODS, *ABLATIONS])
+        raise ValueError(f"--methods must name {known}, with commas, or be all; got {arguments.methods!r}")
     require_output_folder(arguments.out)
     SceneMap.load(arguments.map)
     recording = read_sequence(arguments.sequence)
@@ -63,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     for row in runs:
         point = row["point"]
         thinned = "" if point["method"] == "floor" or everies == [1] else f", every {point['every']}"
-        grouped.setdefault(NAMES[point["method"]] + thinned, []).append(row["result"])
+        grouped.setdefault(row_name(point["method"]) + thinned, []).append(row["result"])
     rows = {name: pooled(results) for name, results in grouped.items()}
     result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
     write_results(arguments.out / "compare.json", result)

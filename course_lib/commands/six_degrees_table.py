@@ -9,6 +9,11 @@ NAMES = {
 }
 
 
+def row_name(method: str) -> str:
+    """What a row of the table is called."""
+    return NAMES.get(method, method)
+
+
 def six_degrees_table(rows: dict[str, dict]) -> str:
     """A line a row, of `experiments.six_degrees.pooled`; the keys of `rows` are what stands at the beginning."""
     lines = [

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
+from types import MappingProxyType
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -159,10 +160,17 @@ def run_sequence(
 
 
 def run_annealed(
-    scene_map: SceneMap, sequence: DepthSequence, *, n_particles: int = 200, seed: int = 0, **options: object
+    scene_map: SceneMap,
+    sequence: DepthSequence,
+    *,
+    n_particles: int = 200,
+    seed: int = 0,
+    parts: Mapping[str, object] = MappingProxyType({}),
+    **options: object,
 ) -> Run:
-    """Localizes a recording in six degrees of freedom, annealed and refined; options: `run_localizer`'s."""
-    make = partial(AnnealedLocalizer, n_particles=n_particles, seed=seed)
+    """Localizes a recording in six degrees of freedom, annealed and refined. parts: other arguments of
+    `AnnealedLocalizer`; options: `run_localizer`'s."""
+    make = partial(AnnealedLocalizer, n_particles=n_particles, seed=seed, **parts)
     run, estimates = run_localizer(make, scene_map, sequence, **options)
     return run._replace(statuses=_own_statuses(estimates))
 

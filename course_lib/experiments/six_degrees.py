@@ -13,6 +13,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from course_lib.depth_mcl.annealed.localizer import LAYERS, STEPS
+from course_lib.depth_mcl.annealed.prediction import MotionPrediction
 from course_lib.depth_mcl.annealed.pyramid import pyramid
 from course_lib.depth_mcl.annealed.refinement import refine
 from course_lib.depth_mcl.evaluation import pose_errors
@@ -24,6 +26,25 @@ from course_lib.experiments.recordings import SIGMA, Run, run_annealed, run_sequ
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
 
 METHODS = ("annealed", "paper", "floor")
+
+
+class StandingStill(MotionPrediction):
+    """A prediction that knows no motion: the cloud lies about the last pose, as wide as for a start."""
+
+    def found(self, pose: np.ndarray) -> None:
+        """The camera is at `pose`; how it came there is forgotten."""
+        super().found(pose)
+        self.motion, self._lengths = np.zeros(6), []
+
+
+# The annealed filter with one idea switched off.
+ABLATIONS: dict[str, dict] = {
+    "without refinement": {"steps": ()},
+    "without annealing": {"layers": (LAYERS[0]._replace(particles=LAYERS[0].particles + LAYERS[1].particles),)},
+    "without a second look": {"second_look": ()},
+    "without prediction": {"prediction": StandingStill},
+    "without hypotheses": {"steps": tuple(step._replace(hypotheses=1) for step in STEPS)},
+}
 FLOOR_SCALES = (0.1, 0.05, 0.05, 0.03, 0.03)  # metres, of the steps from the truth
 WRONG_POSITION, WRONG_ROTATION_DEG = 0.20, 20.0  # beyond either a pose is wrong, and should be said to be lost
 # What a camera that is carried by hand may have wrong: all but how a wagon is pushed.
@@ -33,11 +54,14 @@ HAND_HARDSHIPS = tuple(h for h in HARDSHIPS if h != "pushed by hand")
 def run_frames(
     method: str, scene_map: SceneMap, sequence: DepthSequence, seed: int, progress: Callable = iter
 ) -> dict[str, list]:
-    """Errors, statuses and renders of every frame of a recording; of `METHODS`, where "floor" has no seed."""
+    """Errors, statuses and renders of every frame of a recording; of `METHODS` or `ABLATIONS`; "floor" has no seed."""
     if method == "floor":
         return floor_frames(scene_map, sequence, progress)
-    paper = partial(run_sequence, **system_noise("6", *SIGMA["6"]))
-    run: Run = {"annealed": run_annealed, "paper": paper}[method](scene_map, sequence, seed=seed, progress=progress)
+    if method == "paper":
+        localized = partial(run_sequence, **system_noise("6", *SIGMA["6"]))
+    else:
+        localized = partial(run_annealed, parts=ABLATIONS.get(method, {}))
+    run: Run = localized(scene_map, sequence, seed=seed, progress=progress)
     position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
     return {
         "position_m": position.tolist(),

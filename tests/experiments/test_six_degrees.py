@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from course_lib.depth_mcl.annealed.prediction import START_SPREAD
+from course_lib.depth_mcl.annealed.twists import moved
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.six_degrees import METHODS, pooled, run_frames, thinned_points
+from course_lib.experiments.six_degrees import ABLATIONS, METHODS, StandingStill, pooled, run_frames, thinned_points
 
 
 @pytest.fixture(scope="module")
@@ -39,6 +41,24 @@ def test_a_run_tells_every_frame(corridor, method):
     if method == "annealed":
         assert frames["status"][0] == "tracked"
         assert frames["status"].count("lost") >= 3
+
+
+def test_what_is_switched_off_is_off(corridor):
+    """From frame to frame two metres: what is searched for, and how often, tells each idea's absence."""
+    scene_map, sequence = corridor
+    two = sequence.thinned(4)
+    whole = run_frames("annealed", scene_map, two, seed=10_001)
+    renders = {name: run_frames(name, scene_map, two, seed=10_001)["renders"] for name in ABLATIONS}
+    assert max(renders["without refinement"]) < min(whole["renders"])
+    assert max(renders["without a second look"]) < max(whole["renders"])
+    assert max(renders["without hypotheses"]) < max(whole["renders"])
+    pose = np.eye(4)
+    still = StandingStill(pose)
+    for step in range(1, 4):
+        pose = moved(pose, np.full(6, 0.1 * step))
+        still.found(pose)
+    assert not still.motion.any()
+    assert still.spread()[0] == START_SPREAD[0]
 
 
 def test_frames_of_several_runs_are_pooled_not_their_medians():
