@@ -1,0 +1,188 @@
+"""Rooms that look alike: the poses that everything seen agrees on, how sure the best one is, and which others there are.
+
+hypotheses (every two matches give a pose) -> score (one-to-one assignment, unmatched allowed) -> refit -> the best few
+distinct poses -> confidence. Beyond the paper, whose own matcher (`association`) decides without asking for a pose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.stats import chi2
+
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.pose.evidence import (
+    CLUTTER_DENSITY,
+    colour_costs,
+    detection_probabilities,
+    free_space_costs,
+    place_distances,
+)
+from course_lib.spherical_stereo.pose.hypotheses import Scene, fit_poses, pair_poses, scene_of
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.semantic_map.association import (
+    Association,
+    Observation,
+    PenaltyWeights,
+    penalty_table,
+)
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+SAME_POSE_M, SAME_POSE_RAD = 0.5, np.deg2rad(10.0)
+"""Metres and radians within which two poses are one answer."""
+SHORT_LIST = 30
+"""Distinct poses that are assigned and refitted."""
+ALTERNATIVES = 3
+"""Poses that an answer keeps beside the best."""
+ROUNDS = 2
+"""Assignments and refits in turn; the second changes few pairs, a third none that mattered."""
+TEMPER = 0.5
+"""Share of the evidence that is believed when hypotheses are weighed against each other: errors of one room, such as a
+wrong baseline or a colour of light, are in all its observations at once, and do not count as often as they are seen."""
+NOTHING_FITS = 2.0
+"""Nats an observation that a right pose must win over "none of this is on the map"; what chance finds wins less."""
+FEWEST_INLIERS = 3
+"""Matched observations that a pose needs: two always fit."""
+LEAST_CONFIDENCE = 0.9
+"""Confidence below which no pose is given out."""
+
+
+class Evidence(NamedTuple):
+    """Which parts of the score count: all of them, or for an ablation all but one."""
+
+    one_to_one: bool = True
+    """An assignment; False: every observation takes the landmark it likes best, be it taken or not."""
+    stereo_covariance: bool = True
+    """Residuals weighed by the covariance of their observation; False: by one number in every direction."""
+    colour: bool = True
+    refit: bool = True
+    """The pose fitted to all its matches; False: the pose of the two it came from."""
+    negative: bool = True
+    """What should be seen and is not."""
+    free_space: bool = True
+    absolute: bool = True
+    """Confidence asks for an absolute fit too; False: for the gap to the runner-up alone."""
+
+
+class PoseHypothesis(NamedTuple):
+    """One pose, and how well it explains what was seen."""
+
+    pose: Pose2D
+    covariance: np.ndarray
+    """`(3, 3)` of [x, y, theta], metres and radians, squared."""
+    pairs: tuple[tuple[int, int], ...]
+    """(observation, landmark) that it matches."""
+    score: float
+    """Nats; the higher the better. 0: as good as "no observation is on the map"."""
+    chi_square: float
+    """Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers."""
+    missed: tuple[int, ...]
+    """Landmarks that would have been seen from there more likely than not, and were not."""
+    share: float = 0.0
+    """Of the belief, among all distinct poses and "none of them": 0 to 1."""
+
+
+def rank_poses(
+    observations: Sequence[Observation], semantic_map: SemanticMap, evidence: Evidence = Evidence()
+) -> tuple[PoseHypothesis, ...]:
+    """The best few distinct poses, best first, each with its share of the belief; () where no two matches agree."""
+    scene = scene_of(observations, semantic_map)
+    if not evidence.stereo_covariance:
+        mean = np.trace(scene.covariances, axis1=1, axis2=2).mean() / 2 if len(observations) else 1.0
+        scene = scene._replace(covariances=np.tile(mean * np.eye(2), (len(observations), 1, 1)))
+    found = pair_poses(scene)
+    if not len(found.poses):
+        return ()
+    first = quick_scores(scene, found.poses, found.covariances, evidence)
+    chosen = distinct(found.poses, first, SHORT_LIST)
+    ranked = []
+    for k in chosen:
+        one = explain(scene, found.poses[k], found.covariances[k], evidence)
+        if one is not None:
+            ranked.append(one)
+    if not ranked:
+        return ()
+    scores = np.array([one.score for one in ranked])
+    kept = distinct(np.array([one.pose for one in ranked]), scores, len(ranked))
+    ranked = [ranked[k] for k in kept]
+    return with_shares(ranked, len(observations))[: 1 + ALTERNATIVES]
+
+
+def match_costs(scene: Scene, poses, covariances, evidence: Evidence) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Costs `(h, n, m)` of every match, against leaving observation and landmark unmatched; base `(h,)`; chances."""
+    squared, log_size = place_distances(scene, poses, covariances)
+    cost = squared / 2 + log_size[..., None] / 2 + np.log(2 * np.pi) + np.log(CLUTTER_DENSITY)
+    if evidence.colour:
+        cost = cost + colour_costs(scene)
+    base = free_space_costs(scene.semantic_map, poses) if evidence.free_space else np.zeros(len(poses))
+    chance = detection_probabilities(scene.semantic_map, poses)
+    if evidence.negative:
+        cost = cost - np.log(chance / (1 - chance))[:, None]
+        base = base - np.log(1 - chance).sum(axis=1)
+    return np.where(scene.like, cost, np.inf), base, chance
+
+
+def quick_scores(scene: Scene, poses, covariances, evidence: Evidence) -> np.ndarray:
+    """Scores `(h,)` of many poses, every observation taking what it likes best: no less than the assignment's."""
+    cost, base, _ = match_costs(scene, poses, covariances, evidence)
+    return -np.minimum(cost.min(axis=2), 0.0).sum(axis=1) - base
+
+
+def assign(cost: np.ndarray, one_to_one: bool = True) -> tuple[tuple[int, int], ...]:
+    """The one-to-one pairs of least total cost `(n, m)`; whatever costs more than 0 is left unmatched."""
+    if not one_to_one:
+        best = cost.argmin(axis=1)
+        return tuple((i, int(j)) for i, j in enumerate(best) if cost[i, j] < 0)
+    gains = np.minimum(cost, 0.0)
+    return tuple((int(i), int(j)) for i, j in zip(*linear_sum_assignment(gains), strict=True) if gains[i, j] < 0)
+
+
+def explain(scene: Scene, pose, covariance, evidence: Evidence) -> PoseHypothesis | None:
+    pose, spread = np.asarray(pose)[None], np.asarray(covariance)[None]
+    for _ in range(ROUNDS if evidence.refit else 1):
+        cost, base, chance = match_costs(scene, pose, spread, evidence)
+        pairs = assign(cost[0], evidence.one_to_one)
+        if len(pairs) < 2:
+            return None
+        i, j = np.array(pairs).T
+        if evidence.refit:
+            pose, refitted = fit_poses(
+                pose, scene.places[None, i], scene.semantic_map.positions[None, j], scene.covariances[None, i]
+            )
+            spread = refitted
+    tight = None if evidence.refit else spread
+    cost, base, chance = match_costs(scene, pose, tight, evidence)
+    pairs = assign(cost[0], evidence.one_to_one)
+    if len(pairs) < 2:
+        return None
+    i, j = np.array(pairs).T
+    squared, _ = place_distances(scene, pose, tight)
+    score = -sum(cost[0][i, j]) - base[0]
+    missed = sorted(set(np.flatnonzero(chance[0] > 0.5)) - set(j))
+    return PoseHypothesis(
+        Pose2D(*map(float, pose[0])), spread[0], pairs, float(score), float(squared[0][i, j].sum()), tuple(map(int, missed))
+    )
+
+
+def distinct(poses: np.ndarray, scores: np.ndarray, n: int) -> list[int]:
+    """Indices of the n best poses `(h, 3)` of which no two are one answer, best first."""
+    chosen: list[int] = []
+    left = np.isfinite(scores) & np.isfinite(poses).all(axis=1)
+    while left.any() and len(chosen) < n:
+        k = int(np.argmax(np.where(left, scores, -np.inf)))
+        chosen.append(k)
+        near = np.hypot(*(poses[:, :2] - poses[k, :2]).T) < SAME_POSE_M
+        left &= ~(near & (np.abs(wrap_angle(poses[:, 2] - poses[k, 2])) < SAME_POSE_RAD))
+        left[k] = False
+    return chosen
+
+
+def with_shares(ranked: Sequence[PoseHypothesis], n_observations: int) -> tuple[PoseHypothesis, ...]:
+    """The same with their shares of the belief: exp(`TEMPER` score), and "none of them" wins `NOTHING_FITS` an observation."""
+    scores = np.array([*(one.score for one in ranked), NOTHING_FITS * n_observations]) * TEMPER
+    weight = np.exp(scores - scores.max())
+    shares = weight / weight.sum()
+    return tuple(one._replace(share=float(w)) for one, w in zip(ranked, shares[:-1], strict=True))
