@@ -98,11 +98,7 @@ def rank_poses(
         return ()
     first = quick_scores(scene, found.poses, found.covariances, evidence)
     chosen = distinct(found.poses, first, SHORT_LIST)
-    ranked = []
-    for k in chosen:
-        one = explain(scene, found.poses[k], found.covariances[k], evidence)
-        if one is not None:
-            ranked.append(one)
+    ranked = explain(scene, found.poses[chosen], found.covariances[chosen], evidence)
     if not ranked:
         return ()
     scores = np.array([one.score for one in ranked])
@@ -140,31 +136,53 @@ def assign(cost: np.ndarray, one_to_one: bool = True) -> tuple[tuple[int, int], 
     return tuple((int(i), int(j)) for i, j in zip(*linear_sum_assignment(gains), strict=True) if gains[i, j] < 0)
 
 
-def explain(scene: Scene, pose, covariance, evidence: Evidence) -> PoseHypothesis | None:
-    pose, spread = np.asarray(pose)[None], np.asarray(covariance)[None]
-    for _ in range(ROUNDS if evidence.refit else 1):
-        cost, base, chance = match_costs(scene, pose, spread, evidence)
-        pairs = assign(cost[0], evidence.one_to_one)
+def explain(
+    scene: Scene, poses: np.ndarray, covariances: np.ndarray, evidence: Evidence = Evidence()
+) -> list[PoseHypothesis]:
+    """What each pose `(h, 3)`, uncertain by its covariance `(h, 3, 3)`, makes of the scene: assigned, refitted, scored.
+
+    A pose that explains fewer than two observations is left out.
+    """
+    poses, spread = np.asarray(poses, dtype=np.float64), covariances
+    for _ in range(ROUNDS if evidence.refit else 0):
+        cost = match_costs(scene, poses, spread, evidence)[0]
+        pairs = [assign(one, evidence.one_to_one) for one in cost]
+        enough = [k for k, one in enumerate(pairs) if len(one) >= 2]
+        if not enough:
+            return []
+        poses, spread = refit(scene, poses[enough], [pairs[k] for k in enough])
+    # A refitted pose has no error of its own: its matches have made it, and their noise is counted already.
+    cost, base, chance = match_costs(scene, poses, None if evidence.refit else spread, evidence)
+    squared, _ = place_distances(scene, poses, None if evidence.refit else spread)
+    explained = []
+    for k, pose in enumerate(poses):
+        pairs = assign(cost[k], evidence.one_to_one)
         if len(pairs) < 2:
-            return None
+            continue
         i, j = np.array(pairs).T
-        if evidence.refit:
-            pose, refitted = fit_poses(
-                pose, scene.places[None, i], scene.semantic_map.positions[None, j], scene.covariances[None, i]
+        missed = sorted(set(np.flatnonzero(chance[k] > 0.5)) - set(j))
+        explained.append(
+            PoseHypothesis(
+                Pose2D(*map(float, pose)),
+                spread[k],
+                pairs,
+                float(-cost[k][i, j].sum() - base[k]),
+                float(squared[k][i, j].sum()),
+                tuple(map(int, missed)),
             )
-            spread = refitted
-    tight = None if evidence.refit else spread
-    cost, base, chance = match_costs(scene, pose, tight, evidence)
-    pairs = assign(cost[0], evidence.one_to_one)
-    if len(pairs) < 2:
-        return None
-    i, j = np.array(pairs).T
-    squared, _ = place_distances(scene, pose, tight)
-    score = -sum(cost[0][i, j]) - base[0]
-    missed = sorted(set(np.flatnonzero(chance[0] > 0.5)) - set(j))
-    return PoseHypothesis(
-        Pose2D(*map(float, pose[0])), spread[0], pairs, float(score), float(squared[0][i, j].sum()), tuple(map(int, missed))
-    )
+        )
+    return explained
+
+
+def refit(scene: Scene, poses: np.ndarray, pairs: Sequence[tuple[tuple[int, int], ...]]) -> tuple:
+    """Each pose `(h, 3)` fitted to its own pairs, each weighed by its observation's covariance: poses, covariances."""
+    landmark = np.zeros((len(poses), len(scene.places)), dtype=int)
+    used = np.zeros(landmark.shape, dtype=bool)
+    for k, one in enumerate(pairs):
+        i, j = np.array(one).T
+        landmark[k, i], used[k, i] = j, True
+    targets = scene.semantic_map.positions[landmark]
+    return fit_poses(poses, scene.places[None], targets, scene.covariances[None], used)
 
 
 def distinct(poses: np.ndarray, scores: np.ndarray, n: int) -> list[int]:

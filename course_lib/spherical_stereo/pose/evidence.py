@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.spherical_stereo.pose.hypotheses import MAP_SIGMA, Scene, rotations
+from course_lib.spherical_stereo.pose.hypotheses import MAP_SIGMA, Scene, seen_from
 from course_lib.spherical_stereo.semantic_map.association import hue_difference
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -48,17 +48,12 @@ def place_distances(scene: Scene, poses: np.ndarray, pose_covariances: np.ndarra
 
     f: `NOISE_FACTOR`. P: covariances `(h, 3, 3)` of the poses; None: the poses are taken as exact.
     """
-    rotation = rotations(poses[:, 2])[:, None]
-    turned = (rotation @ scene.places[None, ..., None])[..., 0]
-    spread = NOISE_FACTOR**2 * (rotation @ scene.covariances[None] @ np.swapaxes(rotation, -1, -2))
-    spread = spread + MAP_SIGMA**2 * np.eye(2)
+    places, jacobians, spread = seen_from(poses, scene.places[None], scene.covariances[None])
+    spread = NOISE_FACTOR**2 * spread + MAP_SIGMA**2 * np.eye(2)
     if pose_covariances is not None:
-        jacobians = np.zeros((*turned.shape, 3))
-        jacobians[..., 0, 0] = jacobians[..., 1, 1] = 1.0
-        jacobians[..., 0, 2], jacobians[..., 1, 2] = -turned[..., 1], turned[..., 0]
-        spread = spread + np.einsum("hnai,hij,hnbj->hnab", jacobians, pose_covariances, jacobians)
-    residuals = (turned + poses[:, None, :2])[:, :, None] - scene.semantic_map.positions
-    squared = np.einsum("hnma,hnab,hnmb->hnm", residuals, np.linalg.inv(spread), residuals)
+        spread = spread + jacobians @ pose_covariances[:, None] @ np.swapaxes(jacobians, -1, -2)
+    residuals = places[:, :, None] - scene.semantic_map.positions
+    squared = ((residuals @ np.linalg.inv(spread)) * residuals).sum(axis=-1)
     return squared, np.log(np.linalg.det(spread))
 
 

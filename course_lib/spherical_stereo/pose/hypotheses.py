@@ -113,30 +113,47 @@ def pair_poses(scene: Scene, gate: float = DISTANCE_GATE) -> PairPoses:
 
 
 def fit_poses(
-    start: np.ndarray, places: np.ndarray, targets: np.ndarray, covariances: np.ndarray
+    start: np.ndarray,
+    places: np.ndarray,
+    targets: np.ndarray,
+    covariances: np.ndarray,
+    used: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Anisotropic fits of many poses at once: poses `(h, 3)` and their covariances `(h, 3, 3)`.
 
     Gauss-Newton steps from `start` `(h, 3)` on sum_k r_k^T (R C_k R^T + `MAP_SIGMA`^2 I)^-1 r_k. places, targets:
-    `(h, k, 2)` in the body frame and on the map; covariances: `(h, k, 2, 2)` in the body frame. A stereo camera knows
-    where an object's bearing is to centimetres and its distance to decimetres: counted alike, as in the paper's fit,
-    the distances spoil what the bearings know.
+    `(h, k, 2)` in the body frame and on the map; covariances: `(h, k, 2, 2)` in the body frame; used: `(h, k)` bool,
+    the matches that count (None: all), two or more of each pose. A stereo camera knows where an object's bearing is to
+    centimetres and its distance to decimetres: counted alike, as in the paper's fit, the distances spoil what the
+    bearings know.
     """
     poses = np.array(start, dtype=np.float64).reshape(-1, 3)
     normal = np.tile(np.eye(3), (len(poses), 1, 1))
     for _ in range(GAUSS_NEWTON_STEPS if len(poses) else 0):
-        rotation = rotations(poses[:, 2])[:, None]
-        turned = (rotation @ places[..., None])[..., 0]
-        residuals = turned + poses[:, None, :2] - targets
-        information = np.linalg.inv(rotation @ covariances @ np.swapaxes(rotation, -1, -2) + MAP_SIGMA**2 * np.eye(2))
-        jacobians = np.zeros((*residuals.shape, 3))
-        jacobians[..., 0, 0] = jacobians[..., 1, 1] = 1.0
-        jacobians[..., 0, 2], jacobians[..., 1, 2] = -turned[..., 1], turned[..., 0]
-        normal = np.einsum("hkai,hkab,hkbj->hij", jacobians, information, jacobians)
-        slope = np.einsum("hkai,hkab,hkb->hi", jacobians, information, residuals)
-        poses = poses - np.linalg.solve(normal, slope[..., None])[..., 0]
+        turned, jacobians, spread = seen_from(poses, places, covariances)
+        information = np.linalg.inv(spread + MAP_SIGMA**2 * np.eye(2))
+        if used is not None:
+            information = information * used[..., None, None]
+        weighted = np.swapaxes(jacobians, -1, -2) @ information
+        normal = (weighted @ jacobians).sum(axis=1)
+        slope = (weighted @ (turned - targets)[..., None]).sum(axis=1)
+        poses = poses - np.linalg.solve(normal, slope)[..., 0]
     poses[:, 2] = wrap_angle(poses[:, 2])
     return poses, np.linalg.inv(normal)
+
+
+def seen_from(poses: np.ndarray, places: np.ndarray, covariances: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Observations as they lie on the map, seen from each pose `(h, 3)`: places `(h, k, 2)`, their derivative with
+    respect to the pose `(h, k, 2, 3)`, and their covariances R C R^T `(h, k, 2, 2)`.
+
+    places `(h or 1, k, 2)`, covariances `(h or 1, k, 2, 2)`: body frame.
+    """
+    rotation = rotations(poses[:, 2])[:, None]
+    turned = (rotation @ places[..., None])[..., 0]
+    jacobians = np.zeros((*turned.shape, 3))
+    jacobians[..., 0, 0] = jacobians[..., 1, 1] = 1.0
+    jacobians[..., 0, 2], jacobians[..., 1, 2] = -turned[..., 1], turned[..., 0]
+    return turned + poses[:, None, :2], jacobians, rotation @ covariances @ np.swapaxes(rotation, -1, -2)
 
 
 def rotations(theta: np.ndarray) -> np.ndarray:
