@@ -46,8 +46,15 @@ NOTHING_FITS = 2.0
 """Nats an observation that a right pose must win over "none of this is on the map"; what chance finds wins less."""
 FEWEST_INLIERS = 3
 """Matched observations that a pose needs: two always fit."""
+DOUBT = 0.001
+"""Share of the right poses whose residuals may be called too large, were the covariances exact."""
 LEAST_CONFIDENCE = 0.9
 """Confidence below which no pose is given out."""
+
+# Reasons why no pose is given out.
+NOTHING_AGREES = "no two objects agree on a pose"
+TOO_FEW_INLIERS = "fewer than three objects agree on a pose"
+AMBIGUOUS = "ambiguous"  # another pose, or none at all, explains what is seen nearly as well
 
 
 class Evidence(NamedTuple):
@@ -86,9 +93,12 @@ class PoseHypothesis(NamedTuple):
 
 
 def rank_poses(
-    observations: Sequence[Observation], semantic_map: SemanticMap, evidence: Evidence = Evidence()
+    observations: Sequence[Observation],
+    semantic_map: SemanticMap,
+    evidence: Evidence = Evidence(),  # noqa: B008 (it cannot change)
+    n: int = 1 + ALTERNATIVES,
 ) -> tuple[PoseHypothesis, ...]:
-    """The best few distinct poses, best first, each with its share of the belief; () where no two matches agree."""
+    """The n best distinct poses, best first, each with its share of the belief; () where no two matches agree."""
     scene = scene_of(observations, semantic_map)
     if not evidence.stereo_covariance:
         mean = np.trace(scene.covariances, axis1=1, axis2=2).mean() / 2 if len(observations) else 1.0
@@ -104,7 +114,7 @@ def rank_poses(
     scores = np.array([one.score for one in ranked])
     kept = distinct(np.array([one.pose for one in ranked]), scores, len(ranked))
     ranked = [ranked[k] for k in kept]
-    return with_shares(ranked, len(observations))[: 1 + ALTERNATIVES]
+    return with_shares(ranked, len(observations))[:n]
 
 
 def match_costs(scene: Scene, poses, covariances, evidence: Evidence) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -204,3 +214,26 @@ def with_shares(ranked: Sequence[PoseHypothesis], n_observations: int) -> tuple[
     weight = np.exp(scores - scores.max())
     shares = weight / weight.sum()
     return tuple(one._replace(share=float(w)) for one, w in zip(ranked, shares[:-1], strict=True))
+
+
+def confidence_of(best: PoseHypothesis, evidence: Evidence = Evidence()) -> float:  # noqa: B008
+    """How sure the best pose is, 0 to 1: its share of the belief, and whether it fits at all.
+
+    share min(1, p / `DOUBT`), p the probability of a chi^2 as large as this one; 0 for fewer than `FEWEST_INLIERS`
+    matches. The share knows the runner-up, and the negative evidence, which is in the scores; a pose that is wrong may
+    be far ahead of all others and still leave its observations far from their landmarks.
+    """
+    if not evidence.absolute:
+        return best.share
+    if len(best.pairs) < FEWEST_INLIERS:
+        return 0.0
+    return best.share * min(1.0, float(chi2.sf(best.chi_square, 2 * len(best.pairs) - 3)) / DOUBT)
+
+
+def why_unable(ranked: Sequence[PoseHypothesis], least_confidence: float = LEAST_CONFIDENCE) -> str | None:
+    """The reason why the best of these poses is not given out; None when it is."""
+    if not ranked:
+        return NOTHING_AGREES
+    if len(ranked[0].pairs) < FEWEST_INLIERS:
+        return TOO_FEW_INLIERS
+    return AMBIGUOUS if confidence_of(ranked[0]) < least_confidence else None
