@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs both experiments, from images and from exact boxes; returns the exit code."""
     from course_lib.commands.arguments import require_output_folder, require_seed
     from course_lib.paths import data_path
-    from course_lib.spherical_stereo.semantic_map.association import ASSOCIATIONS
+    from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
 
     if arguments.seed is not None and arguments.data is not None:
         raise ValueError(

@@ -23,6 +23,7 @@ from course_lib.spherical_stereo.pose.evidence import (
 )
 from course_lib.spherical_stereo.pose.hypotheses import Scene, fit_poses, pair_poses, scene_of
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.semantic_map.assignment import association_of
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     Observation,
@@ -115,6 +116,25 @@ def rank_poses(
     kept = distinct(np.array([one.pose for one in ranked]), scores, len(ranked))
     ranked = [ranked[k] for k in kept]
     return with_shares(ranked, len(observations))[:n]
+
+
+def associate_consistent(
+    observations: Sequence[Observation],
+    semantic_map: SemanticMap,
+    weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
+    distance_term: str = "absolute",
+    evidence: Evidence = Evidence(),  # noqa: B008
+) -> Association:
+    """The pairs of the pose that explains everything best, that pose, its alternatives, and how sure it is.
+
+    The interface of `associate_greedy`, whose weights and distance_term serve for the table of penalties only: eq. (1)
+    decides nothing here. Pairs are given however unsure they are; whoever wants a pose asks `confidence` first, as
+    `SemanticLocalizer` does. Raises `AssociationError` as `penalty_table` does.
+    """
+    table = penalty_table(observations, semantic_map, weights, distance_term)
+    ranked = rank_poses(observations, semantic_map, evidence)
+    found = association_of(ranked[0].pairs if ranked else (), observations, table)
+    return found._replace(hypotheses=ranked, confidence=confidence_of(ranked[0], evidence) if ranked else 0.0)
 
 
 def match_costs(scene: Scene, poses, covariances, evidence: Evidence) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -230,10 +250,12 @@ def confidence_of(best: PoseHypothesis, evidence: Evidence = Evidence()) -> floa
     return best.share * min(1.0, float(chi2.sf(best.chi_square, 2 * len(best.pairs) - 3)) / DOUBT)
 
 
-def why_unable(ranked: Sequence[PoseHypothesis], least_confidence: float = LEAST_CONFIDENCE) -> str | None:
+def why_unable(
+    ranked: Sequence[PoseHypothesis], confidence: float, least_confidence: float = LEAST_CONFIDENCE
+) -> str | None:
     """The reason why the best of these poses is not given out; None when it is."""
+    if confidence >= least_confidence and ranked:
+        return None
     if not ranked:
         return NOTHING_AGREES
-    if len(ranked[0].pairs) < FEWEST_INLIERS:
-        return TOO_FEW_INLIERS
-    return AMBIGUOUS if confidence_of(ranked[0]) < least_confidence else None
+    return TOO_FEW_INLIERS if len(ranked[0].pairs) < FEWEST_INLIERS else AMBIGUOUS

@@ -201,13 +201,12 @@ def answer(belief: Belief, evidence: Evidence = Evidence(), least_confidence: fl
     alternatives = tuple(
         (Pose2D(*map(float, one.mean)), float(s)) for one, s in zip(belief.hypotheses, share, strict=True)
     )
-    if not alternatives:
-        return Track(None, UNABLE, why_unable((), least_confidence), 0.0, None, ())
-    best = belief.hypotheses[0]
-    confidence = confidence_of(best.view._replace(share=alternatives[0][1]), evidence)
-    if confidence < least_confidence:
-        return Track(None, UNABLE, why_unable((best.view,), least_confidence), confidence, None, alternatives)
-    return Track(alternatives[0][0], OK, None, confidence, best.covariance, alternatives)
+    ranked = [one.view for one in belief.hypotheses]
+    confidence = confidence_of(ranked[0]._replace(share=float(share[0])), evidence) if ranked else 0.0
+    reason = why_unable(ranked, confidence, least_confidence)
+    if reason is not None:
+        return Track(None, UNABLE, reason, confidence, None, alternatives)
+    return Track(alternatives[0][0], OK, None, confidence, belief.hypotheses[0].covariance, alternatives)
 
 
 def area(semantic_map: SemanticMap) -> float:

@@ -1,0 +1,244 @@
+"""Rooms that look alike: answers within half a metre and 10 degrees, wrong ones given out, and none given.
+
+Table 2 of the paper calls a pose correct when every match is right and the errors are below 2 m. Here a pose is judged
+by where it is: within `LARGEST_ERROR_M` and `LARGEST_TURN_DEG` it is correct, given out and not correct it is wrong,
+and not given out it is unanswered. The paper's measure, all matches right, stands beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.experiments.room_evaluation import NO_OBJECT
+from course_lib.experiments.room_views import stored_sequences
+from course_lib.experiments.rooms import stored_map, stored_observations
+from course_lib.experiments.rooms_summary import bootstrap_percent, wilson_percent
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.panorama import StereoRig
+from course_lib.spherical_stereo.pose.consistent import Evidence, associate_consistent
+from course_lib.spherical_stereo.pose.hypotheses import rotations
+from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.pose.tracker import Motion, SemanticTracker
+
+CORRECT, WRONG, UNANSWERED = "correct", "wrong", "unanswered"
+KINDS = (CORRECT, WRONG, UNANSWERED)
+LARGEST_ERROR_M, LARGEST_TURN_DEG = 0.5, 10.0
+ODOMETRY_STREAM = 0x0D0  # joins a room's seed
+# Without each part in turn: what it is worth.
+ABLATION: dict[str, Evidence] = {
+    "everything": Evidence(),
+    "no colour": Evidence(colour=False),
+    "no one-to-one": Evidence(one_to_one=False),
+    "no stereo covariance": Evidence(stereo_covariance=False),
+    "no refit": Evidence(refit=False),
+    "no negative evidence": Evidence(negative=False),
+    "no free space": Evidence(free_space=False),
+    "gap alone": Evidence(absolute=False),
+    "geometry alone": Evidence(colour=False, negative=False, free_space=False),
+}
+
+
+class OdometryModel(NamedTuple):
+    """How well a rig on wheels knows its steps: standard deviations."""
+
+    distance: float = 0.01
+    """Metres, however short the step; chosen."""
+    distance_share: float = 0.05
+    """Of the step; chosen: wheels slip."""
+    turn: float = float(np.deg2rad(1.0))
+    """Radians, however small the turn; chosen."""
+    turn_share: float = 0.05
+    """Of the turn; chosen."""
+
+
+class Answer(NamedTuple):
+    """One pose that was asked for, and what came."""
+
+    seed: int
+    experiment: int
+    name: str
+    method: str
+    kind: str
+    """ "correct", "wrong" or "unanswered"."""
+    confidence: float
+    """0 to 1; of a method that has none, 1 for what is given out."""
+    best_is_right: bool
+    """Whether the most believed pose is right, given out or not."""
+    dx_m: float
+    """Absolute error of the pose given out; NaN without one."""
+    dy_m: float
+    dtheta_deg: float
+    all_matches_right: bool
+    """The paper's measure, of a pose given out."""
+
+
+def pose_errors(pose: Pose2D | None, true_pose: Sequence[float]) -> tuple[float, float, float]:
+    """|dx|, |dy| in metres and |dtheta| in degrees; NaN without a pose."""
+    if pose is None:
+        return (np.nan,) * 3
+    dx, dy = (abs(float(a - b)) for a, b in zip(pose[:2], true_pose[:2], strict=True))
+    return dx, dy, abs(float(np.degrees(wrap_angle(pose.theta - true_pose[2]))))
+
+
+def is_right(errors: tuple[float, float, float]) -> bool:
+    """Whether an error is within half a metre and 10 degrees; False for NaN."""
+    return bool(np.hypot(*errors[:2]) <= LARGEST_ERROR_M and errors[2] <= LARGEST_TURN_DEG)
+
+
+def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None, confidence, true_pose, pairs_right):
+    """The `Answer` of one pose. where: (seed, experiment, name). best: the most believed pose, be it given or not."""
+    errors = pose_errors(given, true_pose)
+    kind = UNANSWERED if given is None else CORRECT if is_right(errors) else WRONG
+    right = is_right(pose_errors(best, true_pose))
+    return Answer(*where, method, kind, float(confidence), right, *errors, bool(given is not None and pairs_right))
+
+
+def answers_of_rooms(
+    rooms: Sequence[dict],
+    methods: Sequence[str] = tuple(ASSOCIATIONS),
+    source: str = "images",
+    progress: Callable[[Iterable], Iterable] = iter,
+) -> list[Answer]:
+    """Every pose of every room by every matcher, one view each. The paper's fit and no rejection for those of eq. (1)."""
+    answers = []
+    for room in progress(rooms):
+        semantic_map = stored_map(room)
+        # The observations are made: of the rig nothing is asked any more.
+        localizers = {
+            name: SemanticLocalizer(StereoRig(0.3), semantic_map, association=name, reject_implausible=False)
+            for name in methods
+        }
+        for pose in room["poses"]:
+            observations = stored_observations(pose["sources"][source])
+            truth = pose["sources"][source]["true_landmarks"]
+            where = (room["seed"], pose["experiment"], pose["name"])
+            for name, localizer in localizers.items():
+                found = localizer.localize_observations(observations)
+                best = found.alternatives[0].pose if found.alternatives else found.pose
+                confidence = float(found.pose is not None) if found.confidence is None else found.confidence
+                right = all(truth[i] == j for i, j in found.used_pairs)
+                answers.append(judged(where, name, found.pose, best, confidence, pose["pose"], right))
+    return answers
+
+
+def answers_of_evidence(
+    rooms: Sequence[dict], variants: dict[str, Evidence] = ABLATION, progress: Callable[[Iterable], Iterable] = iter
+) -> list[Answer]:
+    """Every pose of every room by the consistent matcher with other evidence; all poses given out that it is sure of."""
+    answers = []
+    for room in progress(rooms):
+        semantic_map = stored_map(room)
+        localizer = SemanticLocalizer(StereoRig(0.3), semantic_map, association="consistent")
+        for pose in room["poses"]:
+            entry = pose["sources"]["images"]
+            observations, truth = stored_observations(entry), entry["true_landmarks"]
+            where = (room["seed"], pose["experiment"], pose["name"])
+            for name, evidence in variants.items():
+                found = associate_consistent(observations, semantic_map, evidence=evidence)
+                best = found.hypotheses[0].pose if found.hypotheses else None
+                given = best if found.confidence >= localizer.least_confidence else None
+                right = all(truth[i] == j for i, j in found.pairs)
+                answers.append(judged(where, name, given, best, found.confidence, pose["pose"], right))
+    return answers
+
+
+def measured_motion(
+    start: np.ndarray, end: np.ndarray, rng: np.random.Generator, model: OdometryModel = OdometryModel()
+) -> Motion:
+    """What odometry says of the way between two poses `(3,)` [x, y, theta], with its noise."""
+    forward, left = rotations(np.array(start[2])).T @ (np.asarray(end[:2]) - start[:2])
+    turn = wrap_angle(end[2] - start[2])
+    along = model.distance + model.distance_share * np.hypot(forward, left)
+    sigma = np.array([along, along, model.turn + model.turn_share * abs(turn)])
+    return Motion(*(np.array([forward, left, turn]) + sigma * rng.standard_normal(3)), np.diag(sigma**2))
+
+
+def answers_of_sequences(
+    rooms: Sequence[dict], views: Sequence[dict], progress: Callable[[Iterable], Iterable] = iter
+) -> list[Answer]:
+    """Every sequence of views, followed with odometry and without; the answer after the last view is judged.
+
+    views: records of `room_views.observe_views`, in the order of the rooms.
+    """
+    answers = []
+    for room, further in progress(list(zip(rooms, views, strict=True))):
+        semantic_map = stored_map(room)
+        for number, sequence in enumerate(stored_sequences(room, further)):
+            where = (room["seed"], sequence.experiment, sequence.name)
+            for method in ("odometry", "no odometry"):
+                rng = np.random.default_rng([ODOMETRY_STREAM, room["seed"], number])
+                tracker = SemanticTracker(semantic_map)
+                for k, observations in enumerate(sequence.observations):
+                    known = method == "odometry" and k > 0
+                    motion = measured_motion(*sequence.poses[k - 1 : k + 1], rng) if known else None
+                    track = tracker.step(observations, motion)
+                best = track.alternatives[0][0] if track.alternatives else None
+                answers.append(judged(where, method, track.pose, best, track.confidence, sequence.poses[-1], True))
+    return answers
+
+
+def answers_table(answers: Sequence[Answer]) -> dict:
+    """Shares in percent with their 95 % intervals (Wilson's, and over rooms by bootstrap), and errors when correct."""
+    seeds, n = np.array([one.seed for one in answers]), len(answers)
+    table: dict = {"n": n}
+    for kind in KINDS:
+        hits = np.array([one.kind == kind for one in answers])
+        table[f"{kind}_percent"] = 100.0 * float(hits.mean())
+        table[f"{kind}_wilson_percent"] = wilson_percent(int(hits.sum()), n)
+        table[f"{kind}_rooms_percent"] = bootstrap_percent(
+            np.array([hits[seeds == seed].mean() for seed in np.unique(seeds)])
+        )
+    for name in ("all_matches_right", "best_is_right"):
+        hits = np.array([getattr(one, name) for one in answers])
+        table[f"{name}_percent"] = 100.0 * float(hits.mean())
+        table[f"{name}_wilson_percent"] = wilson_percent(int(hits.sum()), n)
+    correct = np.array([one[-4:-1] for one in answers if one.kind == CORRECT]).reshape(-1, 3)
+    for statistic, reduce in (("mean", np.mean), ("median", np.median)):
+        for column, name in enumerate(("dx_m", "dy_m", "dtheta_deg")):
+            table[f"{statistic}_{name}"] = float(reduce(correct[:, column])) if len(correct) else None
+    return table
+
+
+def tables_by_method(answers: Sequence[Answer]) -> dict[str, dict]:
+    """`answers_table` of every method, in the order in which they came."""
+    return {
+        method: answers_table([one for one in answers if one.method == method])
+        for method in dict.fromkeys(one.method for one in answers)
+    }
+
+
+def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
+    """What a threshold on the confidence buys: share answered, and share of the answered that is wrong, in percent.
+
+    One point for every different confidence, from the surest on; the threshold is the least confidence answered. Poses
+    of confidence 0 (too few matches, or none) are never answered.
+    """
+    confidence = np.array([one.confidence for one in answers])
+    wrong = ~np.array([one.best_is_right for one in answers], dtype=bool)
+    thresholds = np.unique(confidence[confidence > 0])[::-1]
+    given = [confidence >= threshold for threshold in thresholds]
+    return {
+        "threshold": [float(threshold) for threshold in thresholds],
+        "coverage_percent": [100.0 * float(one.mean()) for one in given],
+        "risk_percent": [100.0 * float(wrong[one].mean()) for one in given],
+    }
+
+
+def why_not_answered(rooms: Sequence[dict], answers: Sequence[Answer], source: str = "images") -> dict[str, float | None]:
+    """Observations of landmarks a pose, of answered poses and of the others: too few of them, or enough and alike?"""
+    seen = {
+        (room["seed"], pose["experiment"], pose["name"]): sum(
+            landmark != NO_OBJECT for landmark in pose["sources"][source]["true_landmarks"]
+        )
+        for room in rooms
+        for pose in room["poses"]
+    }
+    counts: dict[str, list[int]] = {kind: [] for kind in KINDS}
+    for one in answers:
+        counts[one.kind].append(seen[one.seed, one.experiment, one.name])
+    return {f"{kind}_observations": float(np.mean(found)) if found else None for kind, found in counts.items()}
