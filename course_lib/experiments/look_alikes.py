@@ -19,7 +19,7 @@ from course_lib.experiments.rooms_summary import bootstrap_percent, wilson_perce
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.pose.consistent import Evidence, associate_consistent
+from course_lib.spherical_stereo.pose.consistent import LEAST_CONFIDENCE, Evidence, associate_consistent
 from course_lib.spherical_stereo.pose.hypotheses import rotations
 from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
@@ -127,23 +127,35 @@ def answers_of_rooms(
 
 
 def answers_of_evidence(
-    rooms: Sequence[dict], variants: dict[str, Evidence] = ABLATION, progress: Callable[[Iterable], Iterable] = iter
+    rooms: Sequence[dict],
+    variants: dict[str, Evidence] = ABLATION,
+    wrong_map: bool = False,
+    progress: Callable[[Iterable], Iterable] = iter,
 ) -> list[Answer]:
-    """Every pose of every room by the consistent matcher with other evidence; all poses given out that it is sure of."""
+    """Every pose of every room by the consistent matcher, its evidence switched off in parts.
+
+    wrong_map: every room is looked for on the map of the next one, where no answer is right: what tells an absolute fit
+    from a gap to the runner-up.
+    """
     answers = []
-    for room in progress(rooms):
-        semantic_map = stored_map(room)
-        localizer = SemanticLocalizer(StereoRig(0.3), semantic_map, association="consistent")
+    for number, room in enumerate(progress(rooms)):
+        semantic_map = stored_map(rooms[(number + 1) % len(rooms)] if wrong_map else room)
         for pose in room["poses"]:
             entry = pose["sources"]["images"]
-            observations, truth = stored_observations(entry), entry["true_landmarks"]
-            where = (room["seed"], pose["experiment"], pose["name"])
+            kept = [
+                pair
+                for pair in zip(stored_observations(entry), entry["true_landmarks"], strict=True)
+                if pair[0].label in semantic_map.labels
+            ]
+            observations, truth = [one for one, _ in kept], [landmark for _, landmark in kept]
+            true_pose = (np.inf, np.inf, 0.0) if wrong_map else pose["pose"]
             for name, evidence in variants.items():
                 found = associate_consistent(observations, semantic_map, evidence=evidence)
                 best = found.hypotheses[0].pose if found.hypotheses else None
-                given = best if found.confidence >= localizer.least_confidence else None
-                right = all(truth[i] == j for i, j in found.pairs)
-                answers.append(judged(where, name, given, best, found.confidence, pose["pose"], right))
+                given = best if found.confidence >= LEAST_CONFIDENCE else None
+                right = not wrong_map and all(truth[i] == j for i, j in found.pairs)
+                where = (room["seed"], pose["experiment"], pose["name"])
+                answers.append(judged(where, name, given, best, found.confidence, true_pose, right))
     return answers
 
 

@@ -49,7 +49,7 @@ FEWEST_INLIERS = 3
 """Matched observations that a pose needs: two always fit."""
 DOUBT = 0.001
 """Share of the right poses whose residuals may be called too large, were the covariances exact."""
-LEAST_CONFIDENCE = 0.9
+LEAST_CONFIDENCE = 0.8
 """Confidence below which no pose is given out."""
 
 # Reasons why no pose is given out.
@@ -72,7 +72,7 @@ class Evidence(NamedTuple):
     """What should be seen and is not."""
     free_space: bool = True
     absolute: bool = True
-    """Confidence asks for an absolute fit too; False: for the gap to the runner-up alone."""
+    """Confidence asks for an absolute fit too; False: for the gap to the other poses alone."""
 
 
 class PoseHypothesis(NamedTuple):
@@ -115,7 +115,7 @@ def rank_poses(
     scores = np.array([one.score for one in ranked])
     kept = distinct(np.array([one.pose for one in ranked]), scores, len(ranked))
     ranked = [ranked[k] for k in kept]
-    return with_shares(ranked, len(observations))[:n]
+    return with_shares(ranked, len(observations), evidence)[:n]
 
 
 def associate_consistent(
@@ -228,12 +228,22 @@ def distinct(poses: np.ndarray, scores: np.ndarray, n: int) -> list[int]:
     return chosen
 
 
-def with_shares(ranked: Sequence[PoseHypothesis], n_observations: int) -> tuple[PoseHypothesis, ...]:
-    """The same with their shares of the belief: exp(`TEMPER` score), and "none of them" wins `NOTHING_FITS` an observation."""
-    scores = np.array([*(one.score for one in ranked), NOTHING_FITS * n_observations]) * TEMPER
-    weight = np.exp(scores - scores.max())
-    shares = weight / weight.sum()
-    return tuple(one._replace(share=float(w)) for one, w in zip(ranked, shares[:-1], strict=True))
+def with_shares(
+    ranked: Sequence[PoseHypothesis],
+    n_observations: int,
+    evidence: Evidence = Evidence(),  # noqa: B008
+) -> tuple[PoseHypothesis, ...]:
+    """The same poses with their shares of the belief: exp(`TEMPER` score) over the sum of all.
+
+    Among them is "none of these", which wins `NOTHING_FITS` for every observation: a pose that is ahead of all others
+    must be ahead of it too. Without `absolute` evidence it is left out, and the share is the gap to the others alone.
+    """
+    scores = [one.score for one in ranked]
+    if evidence.absolute:
+        scores.append(NOTHING_FITS * n_observations)
+    weights = np.exp(TEMPER * (np.array(scores) - max(scores)))
+    shares = weights / weights.sum()
+    return tuple(one._replace(share=float(share)) for one, share in zip(ranked, shares, strict=False))
 
 
 def confidence_of(best: PoseHypothesis, evidence: Evidence = Evidence()) -> float:  # noqa: B008
