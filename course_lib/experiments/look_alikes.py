@@ -32,14 +32,14 @@ ODOMETRY_STREAM = 0x0D0  # joins a room's seed
 # Without each part in turn: what it is worth.
 ABLATION: dict[str, Evidence] = {
     "everything": Evidence(),
-    "no colour": Evidence(colour=False),
-    "no one-to-one": Evidence(one_to_one=False),
-    "no stereo covariance": Evidence(stereo_covariance=False),
-    "no refit": Evidence(refit=False),
-    "no negative evidence": Evidence(negative=False),
-    "no free space": Evidence(free_space=False),
-    "gap alone": Evidence(absolute=False),
-    "geometry alone": Evidence(colour=False, negative=False, free_space=False),
+    "no_colour": Evidence(colour=False),
+    "no_one_to_one": Evidence(one_to_one=False),
+    "no_stereo_covariance": Evidence(stereo_covariance=False),
+    "no_refit": Evidence(refit=False),
+    "no_negative_evidence": Evidence(negative=False),
+    "no_free_space": Evidence(free_space=False),
+    "gap_alone": Evidence(absolute=False),
+    "geometry_alone": Evidence(colour=False, negative=False, free_space=False),
 }
 
 
@@ -73,8 +73,8 @@ class Answer(NamedTuple):
     """Absolute error of the pose given out; NaN without one."""
     dy_m: float
     dtheta_deg: float
-    all_matches_right: bool
-    """The paper's measure, of a pose given out."""
+    all_matches_right: bool | None
+    """The paper's measure, of a pose given out; None where nobody told what each observation shows."""
 
 
 def pose_errors(pose: Pose2D | None, true_pose: Sequence[float]) -> tuple[float, float, float]:
@@ -95,7 +95,8 @@ def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None,
     errors = pose_errors(given, true_pose)
     kind = UNANSWERED if given is None else CORRECT if is_right(errors) else WRONG
     right = is_right(pose_errors(best, true_pose))
-    return Answer(*where, method, kind, float(confidence), right, *errors, bool(given is not None and pairs_right))
+    pairs_right = None if pairs_right is None else bool(given is not None and pairs_right)
+    return Answer(*where, method, kind, float(confidence), right, *errors, pairs_right)
 
 
 def answers_of_rooms(
@@ -182,7 +183,7 @@ def answers_of_sequences(
         semantic_map = stored_map(room)
         for number, sequence in enumerate(stored_sequences(room, further)):
             where = (room["seed"], sequence.experiment, sequence.name)
-            for method in ("odometry", "no odometry"):
+            for method in ("odometry", "no_odometry"):
                 rng = np.random.default_rng([ODOMETRY_STREAM, room["seed"], number])
                 tracker = SemanticTracker(semantic_map)
                 for k, observations in enumerate(sequence.observations):
@@ -190,7 +191,7 @@ def answers_of_sequences(
                     motion = measured_motion(*sequence.poses[k - 1 : k + 1], rng) if known else None
                     track = tracker.step(observations, motion)
                 best = track.alternatives[0][0] if track.alternatives else None
-                answers.append(judged(where, method, track.pose, best, track.confidence, sequence.poses[-1], True))
+                answers.append(judged(where, method, track.pose, best, track.confidence, sequence.poses[-1], None))
     return answers
 
 
@@ -206,9 +207,10 @@ def answers_table(answers: Sequence[Answer]) -> dict:
             np.array([hits[seeds == seed].mean() for seed in np.unique(seeds)])
         )
     for name in ("all_matches_right", "best_is_right"):
-        hits = np.array([getattr(one, name) for one in answers])
-        table[f"{name}_percent"] = 100.0 * float(hits.mean())
-        table[f"{name}_wilson_percent"] = wilson_percent(int(hits.sum()), n)
+        hits = [getattr(one, name) for one in answers]
+        known = None not in hits
+        table[f"{name}_percent"] = 100.0 * float(np.mean(hits)) if known else None
+        table[f"{name}_wilson_percent"] = wilson_percent(sum(hits), n) if known else None
     correct = np.array([one[-4:-1] for one in answers if one.kind == CORRECT]).reshape(-1, 3)
     for statistic, reduce in (("mean", np.mean), ("median", np.median)):
         for column, name in enumerate(("dx_m", "dy_m", "dtheta_deg")):
@@ -254,3 +256,28 @@ def why_not_answered(rooms: Sequence[dict], answers: Sequence[Answer], source: s
     for one in answers:
         counts[one.kind].append(seen[one.seed, one.experiment, one.name])
     return {f"{kind}_observations": float(np.mean(found)) if found else None for kind, found in counts.items()}
+
+
+def answers_summary(
+    rooms: Sequence[dict],
+    methods: Sequence[str] = tuple(ASSOCIATIONS),
+    views: Sequence[dict] | None = None,
+    ablation: bool = False,
+    progress: Callable[[Iterable], Iterable] = iter,
+) -> dict:
+    """All of it: one view, several views where there are any, risk over coverage, and the ablation on either map."""
+    one_view = answers_of_rooms(rooms, methods, progress=progress)
+    found: dict = {"one_view": tables_by_method(one_view)}
+    if "consistent" in methods:
+        consistent = [one for one in one_view if one.method == "consistent"]
+        found["risk_coverage"] = risk_coverage(consistent)
+        found["why_unanswered"] = why_not_answered(rooms, consistent)
+    if views is not None:
+        found["n_views"] = views[0]["options"]["views"]
+        found["several_views"] = tables_by_method(answers_of_sequences(rooms, views, progress))
+    if ablation:
+        found["ablation"] = {
+            name: tables_by_method(answers_of_evidence(rooms, ABLATION, wrong_map, progress))
+            for name, wrong_map in (("right_map", False), ("wrong_map", True))
+        }
+    return found

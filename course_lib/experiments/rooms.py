@@ -48,6 +48,7 @@ class RoomsOptions:
         return json.loads(json.dumps(asdict(self)))
 
 
+Observe = Callable[[int, RoomsOptions, object], dict]
 LoadDetector = Callable[[], object]  # a plain function of a module, or a partial of one: it is sent to other processes
 
 
@@ -140,11 +141,11 @@ def observe_rooms(
     folder: str | Path,
     processes: int = 1,
     progress: Callable[[Iterable], Iterable] = iter,
-    observe: Callable[[int, RoomsOptions, object], dict] = observe_room,
+    observe: Observe | None = None,
 ) -> list[dict]:
     """The records of many rooms, in the order of the seeds; rooms that the folder holds already are not made again.
 
-    observe: what makes the record of one room: `observe_room`, or `room_views.observe_views` with options of its own.
+    observe: what makes the record of one room; None: `observe_room`. `room_views.observe_views` has options of its own.
 
     Every finished room is written to the folder at once as room_SEED.json, and read back when the options agree.
     load_detector: called once in every process. processes: how many rooms are made at a time, each in a fresh process
@@ -153,7 +154,7 @@ def observe_rooms(
     """
     if processes < 1 or any(seed < 0 for seed in seeds):
         raise ValueError(f"processes {processes}, seeds {list(seeds)}: expected one or more, and no negative seed")
-    folder = Path(folder)
+    folder, observe = Path(folder), observe or observe_room
     rooms = {seed: _read_room(folder, seed, options) for seed in seeds}
     missing = [seed for seed, room in rooms.items() if room is None]
     if processes == 1 or len(missing) <= 1:
@@ -184,7 +185,7 @@ def _start_worker(load_detector: LoadDetector) -> None:
     _worker["detector"] = load_detector()
 
 
-def _observe_in_worker(observe: Callable, seed: int, options: RoomsOptions) -> dict:
+def _observe_in_worker(observe: Observe, seed: int, options: RoomsOptions) -> dict:
     return observe(seed, options, _worker["detector"])
 
 
