@@ -243,7 +243,9 @@ def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
     }
 
 
-def why_not_answered(rooms: Sequence[dict], answers: Sequence[Answer], source: str = "images") -> dict[str, float | None]:
+def why_not_answered(
+    rooms: Sequence[dict], answers: Sequence[Answer], source: str = "images"
+) -> dict[str, float | None]:
     """Observations of landmarks a pose, of answered poses and of the others: too few of them, or enough and alike?"""
     seen = {
         (room["seed"], pose["experiment"], pose["name"]): sum(

@@ -42,9 +42,7 @@ def observe_views(seed: int, options: ViewsOptions, detector) -> dict:
     room, semantic_map = surveyed_room(seed, models)
     sequences = []
     with tempfile.TemporaryDirectory() as folder:
-        walks = photograph_walks(
-            Path(folder), room, seed, options.rooms.poses, options.views - 1, models, options.walk
-        )
+        walks = photograph_walks(Path(folder), room, seed, options.rooms.poses, options.views - 1, models, options.walk)
         for k, walk in enumerate(walks):
             upper, lower = CAMERA_HEIGHTS[experiment_of(k)]
             localizer = SemanticLocalizer(

@@ -39,7 +39,9 @@ def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str 
     return figure
 
 
-def risk_coverage_figure(curves: Mapping[str, Mapping[str, list[float]]], title: str = "What a threshold buys") -> Figure:
+def risk_coverage_figure(
+    curves: Mapping[str, Mapping[str, list[float]]], title: str = "What a threshold buys"
+) -> Figure:
     """Share of the answers that are wrong over the share of poses answered, as the threshold falls; a line a name."""
     figure, axes = new_figure()
     for index, (name, curve) in enumerate(curves.items()):

@@ -196,9 +196,7 @@ class SemanticLocalizer:
         pairs = np.array(ranked[0].pairs)
         source = np.array([[one.x, one.y] for one in found.observations])[pairs[:, 0]]
         residuals = ranked[0].pose.apply(source) - self.semantic_map.positions[pairs[:, 1]]
-        return replace(
-            found, pose=ranked[0].pose, status=OK, covariance=ranked[0].covariance, residuals=residuals
-        )
+        return replace(found, pose=ranked[0].pose, status=OK, covariance=ranked[0].covariance, residuals=residuals)
 
     def _fit(self, found: Localization) -> Localization:
         used = [found.observations[i] for i, _ in found.used_pairs]

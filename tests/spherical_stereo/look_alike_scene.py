@@ -59,3 +59,13 @@ def turned(semantic_map, angle, shift=(0.0, 0.0)):
         for one in semantic_map.landmarks
     ]
     return SemanticMap(landmarks, np.asarray(semantic_map.walls) @ rotation.T + shift)
+
+
+def scattered(rng):
+    """A room of eight blue objects of four classes, anywhere."""
+    labels = ("sofa", "sofa", "sofa", "chair", "chair", "table", "table", "potted plant")
+    places = [rng.uniform(-3, 3, 2).round(1) for _ in labels]
+    return SemanticMap(
+        [Landmark(label, *map(float, place), *BLUE) for label, place in zip(labels, places, strict=True)],
+        SYMMETRIC.walls,
+    )

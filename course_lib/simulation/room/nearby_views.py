@@ -61,7 +61,9 @@ def walk_from(
     for _ in range(n):
         lengths, directions = rng.uniform(*model.step, MOST_STEPS), rng.uniform(-np.pi, np.pi, MOST_STEPS)
         places = last[:2] + lengths[:, None] * np.stack([np.cos(directions), np.sin(directions)], axis=1)
-        free = clear_of(footprints, places, model.clearance) & (places >= low).all(axis=1) & (places <= high).all(axis=1)
+        free = (
+            clear_of(footprints, places, model.clearance) & (places >= low).all(axis=1) & (places <= high).all(axis=1)
+        )
         place = places[np.argmax(free)] if free.any() else last[:2]
         turn = np.deg2rad(rng.uniform(-model.turn_deg, model.turn_deg))
         last = np.array([*place, wrap_angle(last[2] + turn)])

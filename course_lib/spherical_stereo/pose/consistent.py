@@ -43,8 +43,6 @@ ROUNDS = 2
 TEMPER = 0.5
 """Share of the evidence that is believed when hypotheses are weighed against each other: errors of one room, such as a
 wrong baseline or a colour of light, are in all its observations at once, and do not count as often as they are seen."""
-NOTHING_FITS = 2.0
-"""Nats an observation that a right pose must win over "none of this is on the map"; what chance finds wins less."""
 FEWEST_INLIERS = 3
 """Matched observations that a pose needs: two always fit."""
 DOUBT = 0.001
@@ -84,7 +82,7 @@ class PoseHypothesis(NamedTuple):
     pairs: tuple[tuple[int, int], ...]
     """(observation, landmark) that it matches."""
     score: float
-    """Nats; the higher the better. 0: as good as "no observation is on the map"."""
+    """Nats; the higher the better. 0: as good as calling every observation clutter."""
     chi_square: float
     """Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers."""
     missed: tuple[int, ...]
@@ -115,7 +113,7 @@ def rank_poses(
     scores = np.array([one.score for one in ranked])
     kept = distinct(np.array([one.pose for one in ranked]), scores, len(ranked))
     ranked = [ranked[k] for k in kept]
-    return with_shares(ranked, len(observations), evidence)[:n]
+    return with_shares(ranked, len(observations) * score_of_nothing(semantic_map), evidence)[:n]
 
 
 def associate_consistent(
@@ -228,19 +226,36 @@ def distinct(poses: np.ndarray, scores: np.ndarray, n: int) -> list[int]:
     return chosen
 
 
+def score_of_nothing(semantic_map: SemanticMap) -> float:
+    """What "none of these poses" wins for every observation, nats: 1 / area of the map against `CLUTTER_DENSITY`.
+
+    In a place that is not on the map, or not where any pose says, an object is seen anywhere in the room; a pose that
+    leaves it unmatched calls it clutter, which is rarer. So a pose must earn what it leaves unexplained.
+    """
+    return -float(np.log(CLUTTER_DENSITY * area(semantic_map)))
+
+
+def area(semantic_map: SemanticMap) -> float:
+    """Square metres that a pose may lie in: of the box around landmarks and walls, a square metre at least."""
+    points = semantic_map.positions
+    if semantic_map.walls is not None:
+        points = np.concatenate([points, semantic_map.walls])
+    return max(1.0, float(np.prod(np.ptp(points, axis=0))))
+
+
 def with_shares(
     ranked: Sequence[PoseHypothesis],
-    n_observations: int,
+    score_of_none: float,
     evidence: Evidence = Evidence(),  # noqa: B008
 ) -> tuple[PoseHypothesis, ...]:
     """The same poses with their shares of the belief: exp(`TEMPER` score) over the sum of all.
 
-    Among them is "none of these", which wins `NOTHING_FITS` for every observation: a pose that is ahead of all others
-    must be ahead of it too. Without `absolute` evidence it is left out, and the share is the gap to the others alone.
+    Among them is "none of these" (`score_of_nothing` for every observation): a pose that is ahead of all others must
+    be ahead of it too. Without `absolute` evidence it is left out, and the share is the gap to the others alone.
     """
     scores = [one.score for one in ranked]
     if evidence.absolute:
-        scores.append(NOTHING_FITS * n_observations)
+        scores.append(score_of_none)
     weights = np.exp(TEMPER * (np.array(scores) - max(scores)))
     shares = weights / weights.sum()
     return tuple(one._replace(share=float(share)) for one, share in zip(ranked, shares, strict=False))

@@ -15,15 +15,16 @@ from filterpy.kalman import KalmanFilter
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.consistent import (
     LEAST_CONFIDENCE,
-    NOTHING_FITS,
     SHORT_LIST,
     TEMPER,
     Evidence,
     PoseHypothesis,
+    area,
     confidence_of,
     distinct,
     explain,
     rank_poses,
+    score_of_nothing,
     why_unable,
 )
 from course_lib.spherical_stereo.pose.hypotheses import rotations, scene_of
@@ -168,9 +169,11 @@ def updated(
         # Where the belief is, the view is asked too, though its own search found other places better.
         means, covariances = (np.array([getattr(one, name) for one in predicted]) for name in ("mean", "covariance"))
         views += explain(scene_of(observations, semantic_map), means, covariances, evidence)
-        kept = distinct(np.array([one.pose for one in views]).reshape(-1, 3), np.array([v.score for v in views]), SHORT_LIST)
+        kept = distinct(
+            np.array([one.pose for one in views]).reshape(-1, 3), np.array([v.score for v in views]), SHORT_LIST
+        )
         views = [views[k] for k in kept]
-    log_nothing = belief.log_nothing + TEMPER * NOTHING_FITS * len(observations)
+    log_nothing = belief.log_nothing + TEMPER * len(observations) * score_of_nothing(semantic_map)
     prior = -np.log(2 * np.pi * area(semantic_map))
     new = [fused(one, view, prior) for one in predicted for view in views]
     elsewhere = 0.0
@@ -178,9 +181,7 @@ def updated(
         elsewhere = np.log(ELSEWHERE) + np.logaddexp.reduce(
             [belief.log_nothing, *(one.log_weight for one in belief.hypotheses)]
         )
-    new += [
-        CarriedPose(np.array(view.pose), view.covariance, elsewhere + TEMPER * view.score, view) for view in views
-    ]
+    new += [CarriedPose(np.array(view.pose), view.covariance, elsewhere + TEMPER * view.score, view) for view in views]
     if not new:
         # Nothing could be made of this view: what was believed is carried on, no surer than before.
         return Belief(tuple(predicted), belief.log_nothing, belief.n_views)
@@ -207,11 +208,3 @@ def answer(belief: Belief, evidence: Evidence = Evidence(), least_confidence: fl
     if reason is not None:
         return Track(None, UNABLE, reason, confidence, None, alternatives)
     return Track(alternatives[0][0], OK, None, confidence, belief.hypotheses[0].covariance, alternatives)
-
-
-def area(semantic_map: SemanticMap) -> float:
-    """Square metres that a pose may lie in: of the box around landmarks and walls, a square metre at least."""
-    points = semantic_map.positions
-    if semantic_map.walls is not None:
-        points = np.concatenate([points, semantic_map.walls])
-    return max(1.0, float(np.prod(np.ptp(points, axis=0))))

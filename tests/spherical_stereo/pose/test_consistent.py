@@ -23,13 +23,13 @@ from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
 from course_lib.spherical_stereo.semantic_map.association import associate_greedy
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from tests.spherical_stereo.look_alike_scene import (
-    BLUE,
     OTHER_POSE,
     PLANTED,
     POSE,
     RED,
     SYMMETRIC,
     observed,
+    scattered,
     turned,
     with_landmarks,
 )
@@ -85,22 +85,26 @@ def test_colour_tells_look_alikes_apart_where_they_have_any():
     assert with_colour.confidence > 0.8 > 0.6 > without.confidence
 
 
-def test_the_room_in_a_mirror_is_refused():
-    mirrored = [one._replace(y=-one.y, covariance=None) for one in observed(PLANTED, POSE)]
-    found = localizer(PLANTED).localize_observations(mirrored)
-    assert found.status == "unable"
-    assert found.confidence < LEAST_CONFIDENCE
+MIDDLE = np.array([0.5, 0.3, 1.0])
+
+
+def test_the_room_in_a_mirror_is_refused_however_far_ahead_its_best_pose_is():
+    """Wrong poses with large gaps: by the gap alone one is sure of a pose that no rotation makes right."""
+    room = scattered(np.random.default_rng(6))
+    seen = observed(room, MIDDLE)
+    flip = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    mirrored = [one._replace(y=-one.y, covariance=flip * one.covariance) for one in seen]
+    assert localizer(room).localize_observations(seen).status == "ok"
+    assert associate_consistent(mirrored, room, evidence=Evidence(absolute=False)).confidence > LEAST_CONFIDENCE
+    found = localizer(room).localize_observations(mirrored)
+    assert (found.status, found.reason) == ("unable", AMBIGUOUS)
 
 
 def test_another_room_is_refused_however_far_ahead_its_best_pose_is():
-    """Wrong poses with large gaps: of the gap alone one is sure of the wrong room, and of the fit nobody is."""
-    other = SemanticMap(
-        [Landmark("sofa", 0, 0, *BLUE), Landmark("sofa", 3.1, 0, *BLUE), Landmark("chair", 0.4, 2.2, *RED),
-         Landmark("chair", -1.5, 1.0, *RED), Landmark("potted plant", 2.0, 2.9, 120.0, 50.0)]
-    )  # fmt: skip
-    seen = observed(PLANTED, POSE)
-    alone = associate_consistent(seen, other, evidence=Evidence(absolute=False))
-    assert alone.confidence > LEAST_CONFIDENCE
+    rng = np.random.default_rng(27)
+    room, other = scattered(rng), scattered(rng)
+    seen = observed(room, MIDDLE)
+    assert associate_consistent(seen, other, evidence=Evidence(absolute=False)).confidence > LEAST_CONFIDENCE
     assert associate_consistent(seen, other).confidence < 0.5
 
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.pose.consistent import AMBIGUOUS, NOTHING_AGREES
+from course_lib.spherical_stereo.pose.consistent import AMBIGUOUS, NOTHING_AGREES, PoseHypothesis, area
 from course_lib.spherical_stereo.pose.hypotheses import rotations
-from course_lib.spherical_stereo.pose.tracker import CarriedPose, Motion, SemanticTracker, area, carried_on, fused
+from course_lib.spherical_stereo.pose.tracker import CarriedPose, Motion, SemanticTracker, carried_on, fused
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from tests.spherical_stereo.look_alike_scene import OTHER_POSE, PLANTED, POSE, SYMMETRIC, observed
 
 SURE = np.diag([0.02, 0.02, 0.02]) ** 2
@@ -38,9 +39,6 @@ def test_an_uncertain_heading_makes_the_way_uncertain():
 
 
 def test_fusing_two_equally_sure_poses_meets_in_the_middle_also_across_the_cut_of_the_circle():
-    from course_lib.spherical_stereo.pose.consistent import PoseHypothesis
-    from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-
     spread = np.diag([0.1, 0.1, 0.1]) ** 2
     carried = CarriedPose(np.array([0.0, 0.0, 3.1]), spread, 0.0, None)
     view = PoseHypothesis(Pose2D(0.2, 0.0, -3.1), spread, (), 4.0, 0.0, ())

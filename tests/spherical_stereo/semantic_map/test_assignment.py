@@ -11,7 +11,11 @@ MAP = SemanticMap([Landmark("sofa", 0, 0, 10, 50), Landmark("sofa", 5, 0, 30, 50
 
 def test_the_total_is_least_where_the_greedy_search_pays_for_its_first_choice():
     """The first observation likes landmark 0 best, but the second has nothing else as good."""
-    seen = [Observation("sofa", 1, 0, 19.0, 50), Observation("sofa", 0, 1, 1.0, 50), Observation("plant", 1, 1, 120, 40)]
+    seen = [
+        Observation("sofa", 1, 0, 19.0, 50),
+        Observation("sofa", 0, 1, 1.0, 50),
+        Observation("plant", 1, 1, 120, 40),
+    ]
     found = associate_hungarian(seen, MAP)
     assert found.pairs == ((0, 1), (1, 0), (2, 2))
     assert found.same_class == (True, True, True)
