@@ -13,8 +13,8 @@ HEAD = (
 def answer_tables(answers: dict) -> str:
     """Shares in percent with Wilson's 95 % intervals; mean errors of the correct ones."""
     lines = [
-        f"Answers [%]: correct within {LARGEST_ERROR_M:g} m and {LARGEST_TURN_DEG:g} degrees, wrong when given out and not; "
-        "both heights, from images;",
+        f"Answers [%]: correct within {LARGEST_ERROR_M:g} m and {LARGEST_TURN_DEG:g} degrees, wrong when given out and "
+        "not; both heights, from images;",
         "95 % intervals as if poses were independent; mean errors when correct",
     ]
     groups = {"One view": answers["one_view"]}

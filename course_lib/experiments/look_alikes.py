@@ -105,7 +105,7 @@ def answers_of_rooms(
     source: str = "images",
     progress: Callable[[Iterable], Iterable] = iter,
 ) -> list[Answer]:
-    """Every pose of every room by every matcher, one view each. The paper's fit and no rejection for those of eq. (1)."""
+    """Every pose of every room by every matcher, one view each; those of eq. (1) with the paper's fit, none rejected."""
     answers = []
     for room in progress(rooms):
         semantic_map = stored_map(room)
@@ -161,7 +161,10 @@ def answers_of_evidence(
 
 
 def measured_motion(
-    start: np.ndarray, end: np.ndarray, rng: np.random.Generator, model: OdometryModel = OdometryModel()
+    start: np.ndarray,
+    end: np.ndarray,
+    rng: np.random.Generator,
+    model: OdometryModel = OdometryModel(),  # noqa: B008 (it cannot change)
 ) -> Motion:
     """What odometry says of the way between two poses `(3,)` [x, y, theta], with its noise."""
     forward, left = rotations(np.array(start[2])).T @ (np.asarray(end[:2]) - start[:2])
@@ -249,7 +252,7 @@ def why_not_answered(
     """Observations of landmarks a pose, of answered poses and of the others: too few of them, or enough and alike?"""
     seen = {
         (room["seed"], pose["experiment"], pose["name"]): sum(
-            landmark != NO_OBJECT for landmark in pose["sources"][source]["true_landmarks"]
+            landmark != NO_OBJECT for landmark in pose["sources"]["images"]["true_landmarks"]
         )
         for room in rooms
         for pose in room["poses"]

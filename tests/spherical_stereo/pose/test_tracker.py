@@ -6,8 +6,8 @@ import pytest
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.consistent import AMBIGUOUS, NOTHING_AGREES, PoseHypothesis, area
 from course_lib.spherical_stereo.pose.hypotheses import rotations
-from course_lib.spherical_stereo.pose.tracker import CarriedPose, Motion, SemanticTracker, carried_on, fused
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.pose.tracker import CarriedPose, Motion, SemanticTracker, carried_on, fused
 from tests.spherical_stereo.look_alike_scene import OTHER_POSE, PLANTED, POSE, SYMMETRIC, observed
 
 SURE = np.diag([0.02, 0.02, 0.02]) ** 2
