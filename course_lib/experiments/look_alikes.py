@@ -105,7 +105,7 @@ def answers_of_rooms(
     source: str = "images",
     progress: Callable[[Iterable], Iterable] = iter,
 ) -> list[Answer]:
-    """Every pose of every room by every matcher, one view each; those of eq. (1) with the paper's fit, none rejected."""
+    """Every pose of every room by every matcher, one view each; none is rejected by its residuals."""
     answers = []
     for room in progress(rooms):
         semantic_map = stored_map(room)

@@ -16,7 +16,7 @@ LEAST_SHARE = 0.01  # of the belief, below which a confusion is not drawn
 
 
 def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str = "Ambiguity") -> Figure:
-    """The room from above: dark squares where the right pose is not sure, dashed lines between objects confused there."""
+    """The room from above: dark squares where the right pose is not sure, dashed lines between objects confused."""
     figure, axes = new_figure(size=(6.4, 5.2))
     map_axes(axes, semantic_map, title)
     squares = axes.scatter(

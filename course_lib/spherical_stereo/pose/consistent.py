@@ -1,4 +1,4 @@
-"""Rooms that look alike: the poses that everything seen agrees on, how sure the best one is, and which others there are.
+"""Rooms that look alike: the poses that everything seen agrees on, how sure the best is, and which others there are.
 
 hypotheses (every two matches give a pose) -> score (one-to-one assignment, unmatched allowed) -> refit -> the best few
 distinct poses -> confidence. Beyond the paper, whose own matcher (`association`) decides without asking for a pose.
@@ -135,7 +135,9 @@ def associate_consistent(
     return found._replace(hypotheses=ranked, confidence=confidence_of(ranked[0], evidence) if ranked else 0.0)
 
 
-def match_costs(scene: Scene, poses, covariances, evidence: Evidence) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def match_costs(
+    scene: Scene, poses: np.ndarray, covariances: np.ndarray | None, evidence: Evidence
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Costs `(h, n, m)` of every match, against leaving observation and landmark unmatched; base `(h,)`; chances."""
     squared, log_size = place_distances(scene, poses, covariances)
     cost = squared / 2 + log_size[..., None] / 2 + np.log(2 * np.pi) + np.log(CLUTTER_DENSITY)
@@ -149,7 +151,7 @@ def match_costs(scene: Scene, poses, covariances, evidence: Evidence) -> tuple[n
     return np.where(scene.like, cost, np.inf), base, chance
 
 
-def quick_scores(scene: Scene, poses, covariances, evidence: Evidence) -> np.ndarray:
+def quick_scores(scene: Scene, poses: np.ndarray, covariances: np.ndarray, evidence: Evidence) -> np.ndarray:
     """Scores `(h,)` of many poses, every observation taking what it likes best: no less than the assignment's."""
     cost, base, _ = match_costs(scene, poses, covariances, evidence)
     return -np.minimum(cost.min(axis=2), 0.0).sum(axis=1) - base
@@ -165,7 +167,10 @@ def assign(cost: np.ndarray, one_to_one: bool = True) -> tuple[tuple[int, int], 
 
 
 def explain(
-    scene: Scene, poses: np.ndarray, covariances: np.ndarray, evidence: Evidence = Evidence()
+    scene: Scene,
+    poses: np.ndarray,
+    covariances: np.ndarray,
+    evidence: Evidence = Evidence(),  # noqa: B008
 ) -> list[PoseHypothesis]:
     """What each pose `(h, 3)`, uncertain by its covariance `(h, 3, 3)`, makes of the scene: assigned, refitted, scored.
 

@@ -73,7 +73,7 @@ def colour_costs(scene: Scene) -> np.ndarray:
 
 
 def detection_probabilities(semantic_map: SemanticMap, poses: np.ndarray, greatest_range: float = np.inf) -> np.ndarray:
-    """Probability `(h, m)` that each landmark is observed from each pose: negative evidence is what this makes of a miss.
+    """Probability `(h, m)` that each landmark is observed from each pose: what makes evidence of a miss.
 
     It falls from `DETECTION_NEAR` to `DETECTION_FAR` with the distance, is at most `DETECTION_HIDDEN` for a landmark
     that stands behind another one (as seen from the pose: within its half width, and further away), and 0 beyond
@@ -91,7 +91,7 @@ def detection_probabilities(semantic_map: SemanticMap, poses: np.ndarray, greate
 
 
 def free_space_costs(semantic_map: SemanticMap, poses: np.ndarray) -> np.ndarray:
-    """Cost `(h,)`: `OUTSIDE_COST` where a pose is inside furniture or outside the walls, as far as the map knows; else 0."""
+    """Cost `(h,)`: `OUTSIDE_COST` for a pose inside furniture or outside the walls, as far as the map knows; else 0."""
     distance = np.linalg.norm(semantic_map.positions[None] - poses[:, None, :2], axis=-1)
     blocked = (distance < BODY_RADIUS).any(axis=1)
     if semantic_map.walls is not None:

@@ -107,7 +107,7 @@ class Association(NamedTuple):
     steps: tuple[AssociationStep, ...] = ()
     """The rounds, for who wants to watch."""
     hypotheses: tuple = ()
-    """Poses that a matcher weighed against each other (`pose.consistent`), best first; () for one that asks for none."""
+    """Poses that a matcher weighed against each other (`pose.consistent`), best first; () where it asks for none."""
     confidence: float | None = None
     """How sure the best of them is, 0 to 1; None for a matcher that asks for no pose."""
 

@@ -65,7 +65,7 @@ def test_one_plant_tells_the_two_apart():
 
 
 def test_a_plant_that_should_be_seen_and_is_not_tells_too_but_only_as_negative_evidence():
-    """Seen from POSE it would be in plain sight, from OTHER_POSE it is as near: put it where only one of them sees it."""
+    """From POSE the plant would be in plain sight, from OTHER_POSE it is behind the middle sofa."""
     hidden = with_landmarks(SYMMETRIC, Landmark("potted plant", 2.0, -0.5, 120.0, 50.0))
     at_other = observed(hidden, OTHER_POSE, which=range(5))
     with_negative, without = (rank_poses(at_other, hidden, Evidence(negative=value)) for value in (True, False))

@@ -32,7 +32,7 @@ def test_distances_are_measured_in_the_observations_own_standard_deviations():
     covariance = np.diag([0.3, 0.1]) ** 2
     pose = np.array([[0.0, 0.0, np.pi / 2]])
     for shift, sigma in (((0.0, 0.2), 0.3), ((0.2, 0.0), 0.1)):
-        moved = pose + [[*shift, 0.0]]
+        moved = pose + np.array([[*shift, 0.0]])
         scene = scene_of([Observation("sofa", 1.0, 0.0, 0.0, 50.0, covariance)], semantic_map)
         squared, log_size = place_distances(scene, moved)
         assert squared[0, 0, 0] == pytest.approx(0.2**2 / ((NOISE_FACTOR * sigma) ** 2 + MAP_SIGMA**2))

@@ -54,7 +54,7 @@ def test_the_anisotropic_fit_trusts_bearings_and_not_distances():
     places = np.array([[one.x, one.y] for one in observed(PLANTED, POSE)])
     covariances = np.array([one.covariance for one in observed(PLANTED, POSE)])
     far = places * np.array([1.0, 1.2, 1.0, 1.2, 1.0, 1.2])[:, None]
-    start = POSE + [0.2, -0.2, 0.1]
+    start = POSE + np.array([0.2, -0.2, 0.1])
     weighed, spread = fit_poses(start, far[None], PLANTED.positions[None], covariances[None])
     alike, _ = fit_poses(start, far[None], PLANTED.positions[None], 0.1**2 * np.eye(2) * np.ones((1, 6, 1, 1)))
     errors = [np.hypot(*(one[0, :2] - POSE[:2])) for one in (weighed, alike)]

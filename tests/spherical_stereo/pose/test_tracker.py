@@ -18,7 +18,7 @@ def motion(start, end, covariance=SURE):
     return Motion(forward, left, wrap_angle(end[2] - start[2]), covariance)
 
 
-WALK = [POSE, POSE + [0.3, -0.1, 0.2], POSE + [0.5, 0.2, 0.3]]
+WALK = list(POSE + np.array([[0.0, 0.0, 0.0], [0.3, -0.1, 0.2], [0.5, 0.2, 0.3]]))
 
 
 def near(pose, other):
