@@ -113,6 +113,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments.room_views import ViewsOptions, observe_views
     from course_lib.experiments.rooms import RoomsOptions, observe_rooms
     from course_lib.experiments.rooms_summary import judge_rooms, pose_rows, rooms_summary
+    from course_lib.plots.look_alike_figures import risk_coverage_figure
     from course_lib.simulation.room.look_alike_recording import RecordingModels
 
     options = RoomsOptions(arguments.poses, RecordingModels(), detector_identity(arguments))
@@ -137,6 +138,9 @@ def run(arguments: argparse.Namespace) -> int:
         both = rooms_summary(rooms, judge_rooms(rooms))["both"]
         summary.setdefault("tilts", {})[f"{tilt:g}"] = both
     write_results(arguments.out / "rooms.json", summary, pose_rows(judged))
+    if "risk_coverage" in summary["answers"]:
+        figure = risk_coverage_figure({"consistent, one view": summary["answers"]["risk_coverage"]})
+        figure.savefig(arguments.out / "risk_coverage.png", dpi=110)
     if arguments.json:
         print(json.dumps(summary))
     else:
