@@ -12,19 +12,33 @@ HEAD = (
 
 def answer_tables(answers: dict) -> str:
     """Shares in percent with Wilson's 95 % intervals; mean errors of the correct ones."""
-    lines = [
+    lines = [*_what_is_counted("both heights, from images"), *_group("One view", answers["one_view"])]
+    if "several_views" in answers:
+        lines += _several(answers)
+    for which, tables in answers.get("ablation", {}).items():
+        lines += _group(f"Evidence switched off, {which.replace('_', ' ')}", tables)
+    return "\n".join(lines)
+
+
+def views_table(found: dict) -> str:
+    """Several views alone: n_views and several_views of a summary."""
+    return "\n".join([*_what_is_counted("both experiments, from images"), *_several(found)])
+
+
+def _what_is_counted(of: str) -> list[str]:
+    return [
         f"Answers [%]: correct within {LARGEST_ERROR_M:g} m and {LARGEST_TURN_DEG:g} degrees, wrong when given out and "
-        "not; both heights, from images;",
+        f"not; {of};",
         "95 % intervals as if poses were independent; mean errors when correct",
     ]
-    groups = {"One view": answers["one_view"]}
-    if "several_views" in answers:
-        groups[f"{answers['n_views']} views, consistent"] = answers["several_views"]
-    for which, tables in answers.get("ablation", {}).items():
-        groups[f"Evidence switched off, {which.replace('_', ' ')}"] = tables
-    for title, tables in groups.items():
-        lines += ["", title, HEAD, *(_row(name, table) for name, table in tables.items())]
-    return "\n".join(lines)
+
+
+def _several(found: dict) -> list[str]:
+    return _group(f"{found['n_views']} views, consistent", found["several_views"])
+
+
+def _group(title: str, tables: dict) -> list[str]:
+    return ["", title, HEAD, *(_row(name, table) for name, table in tables.items())]
 
 
 def _row(name: str, table: dict) -> str:

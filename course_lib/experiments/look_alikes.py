@@ -8,10 +8,12 @@ and not given out it is unanswered. The paper's measure, all matches right, stan
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from course_lib.experiments.room import PairResult
 from course_lib.experiments.room_evaluation import NO_OBJECT
 from course_lib.experiments.room_views import stored_sequences
 from course_lib.experiments.rooms import stored_map, stored_observations
@@ -24,11 +26,13 @@ from course_lib.spherical_stereo.pose.hypotheses import rotations
 from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.pose.tracker import Motion, SemanticTracker
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 CORRECT, WRONG, UNANSWERED = "correct", "wrong", "unanswered"
 KINDS = (CORRECT, WRONG, UNANSWERED)
 LARGEST_ERROR_M, LARGEST_TURN_DEG = 0.5, 10.0
 ODOMETRY_STREAM = 0x0D0  # joins a room's seed
+SAME_PLACE = 0.05  # m, within which two poses of a recording are one place
 # Without each part in turn: what it is worth.
 ABLATION: dict[str, Evidence] = {
     "everything": Evidence(),
@@ -186,15 +190,37 @@ def answers_of_sequences(
         semantic_map = stored_map(room)
         for number, sequence in enumerate(stored_sequences(room, further)):
             where = (room["seed"], sequence.experiment, sequence.name)
-            for method in ("odometry", "no_odometry"):
-                rng = np.random.default_rng([ODOMETRY_STREAM, room["seed"], number])
-                tracker = SemanticTracker(semantic_map)
-                for k, observations in enumerate(sequence.observations):
-                    known = method == "odometry" and k > 0
-                    motion = measured_motion(*sequence.poses[k - 1 : k + 1], rng) if known else None
-                    track = tracker.step(observations, motion)
-                best = track.alternatives[0][0] if track.alternatives else None
-                answers.append(judged(where, method, track.pose, best, track.confidence, sequence.poses[-1], None))
+            answers += followed(where, semantic_map, sequence.poses, sequence.observations, number)
+    return answers
+
+
+def answers_of_places(results: Sequence[PairResult], semantic_map: SemanticMap, experiment: int = 1) -> list[Answer]:
+    """The paper's own recording: at every place the rig is turned once, and the two views are followed."""
+    answers = []
+    for number, (first, second) in enumerate(pairwise(results)):
+        start, end = first.pair.pose, second.pair.pose
+        if np.hypot(*(end[:2] - start[:2])) < SAME_PLACE:
+            observations = [one.localization.observations for one in (first, second)]
+            where = (0, experiment, second.pair.name)
+            answers += followed(where, semantic_map, np.array([start, end]), observations, number)
+    return answers
+
+
+def followed(where: tuple, semantic_map: SemanticMap, poses: np.ndarray, views: Sequence, number: int) -> list[Answer]:
+    """One sequence of views, followed with odometry and without, and judged after the last.
+
+    poses: `(n, 3)` where the rig really stood. views: the observations from each. number: of the sequence in its room,
+    for the odometry's noise.
+    """
+    answers = []
+    for method in ("odometry", "no_odometry"):
+        rng = np.random.default_rng([ODOMETRY_STREAM, where[0], number])
+        tracker = SemanticTracker(semantic_map)
+        for k, observations in enumerate(views):
+            known = method == "odometry" and k > 0
+            track = tracker.step(observations, measured_motion(poses[k - 1], poses[k], rng) if known else None)
+        best = track.alternatives[0][0] if track.alternatives else None
+        answers.append(judged(where, method, track.pose, best, track.confidence, poses[-1], None))
     return answers
 
 
