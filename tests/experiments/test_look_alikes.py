@@ -134,7 +134,9 @@ def test_the_table_counts_kinds_and_averages_the_errors_of_the_correct():
 
 
 def test_risk_over_coverage_goes_through_every_threshold():
-    answers = [answer(confidence=c, right=r) for c, r in ((0.9, True), (0.8, False), (0.7, True), (0.7, True), (0, False))]
+    answers = [
+        answer(confidence=c, right=r) for c, r in ((0.9, True), (0.8, False), (0.7, True), (0.7, True), (0, False))
+    ]
     curve = risk_coverage(answers)
     assert curve["threshold"] == [0.9, 0.8, 0.7]
     assert curve["coverage_percent"] == [20.0, 40.0, 80.0]
