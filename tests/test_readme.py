@@ -219,9 +219,9 @@ def test_the_rows_of_the_look_alikes_are_the_stored_shares_and_errors(group, wor
 
 def test_the_rows_of_the_ablation_are_the_stored_shares():
     stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["answers"]["ablation"]
-    for name, table in stored["right_map"].items():
+    for name, shown in stored["right_map"].items():
         row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name.replace('_', ' ')} |"))
-        shares = [table[f"{kind}_percent"] for kind in ("correct", "wrong", "unanswered")]
+        shares = [shown[f"{kind}_percent"] for kind in ("correct", "wrong", "unanswered")]
         shares.append(stored["wrong_map"][name]["wrong_percent"])
         assert [cell.strip() for cell in row.split("|")[2:6]] == [f"{share:.1f}" for share in shares]
 
