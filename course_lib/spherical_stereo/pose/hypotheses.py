@@ -76,12 +76,12 @@ def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> 
 def pairs_of_matches(scene: Scene, gate: float = DISTANCE_GATE) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of matches that can both be right: indices `(h, 2)` of observations and of landmarks.
 
-    Like classes, distinct landmarks, and | |z_i - z_k| - |m_j - m_l| | <= gate sigma, with sigma^2 = u^T (C_i + C_k) u
+    Like classes, landmarks `LEAST_DISTANCE` apart (so distinct ones), and | |z_i - z_k| - |m_j - m_l| | <= gate sigma, with sigma^2 = u^T (C_i + C_k) u
     along the line u between the observations. A distance does not change with the pose: what a pair is kept or thrown
     away for is known before there is one.
     """
     i, j = np.nonzero(scene.like)
-    first, second = np.nonzero((i[:, None] < i[None]) & (j[:, None] != j[None]))
+    first, second = np.nonzero(i[:, None] < i[None])
     observations = np.stack([i[first], i[second]], axis=1)
     landmarks = np.stack([j[first], j[second]], axis=1)
     seen = scene.places[observations[:, 1]] - scene.places[observations[:, 0]]

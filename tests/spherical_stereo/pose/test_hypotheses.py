@@ -34,6 +34,12 @@ def test_pairs_join_like_classes_to_distinct_landmarks_at_compatible_distances()
     assert 0 < len(narrow) < len(seen)
 
 
+def test_two_observations_of_one_sofa_are_not_laid_on_it_together():
+    seen = [Observation("sofa", 1.0, 0.0, 0.0, 50.0), Observation("sofa", 1.6, 0.0, 0.0, 50.0)]
+    _, on_map = pairs_of_matches(scene_of(seen, PLANTED))
+    assert (on_map[:, 0] != on_map[:, 1]).all()
+
+
 def test_two_objects_in_one_place_tell_no_heading():
     observations = [Observation("sofa", 1.0, 0.0, 0.0, 50.0), Observation("chair", 1.2, 0.0, 0.0, 50.0)]
     assert len(pairs_of_matches(scene_of(observations, PLANTED))[0]) == 0
