@@ -76,9 +76,9 @@ def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> 
 def pairs_of_matches(scene: Scene, gate: float = DISTANCE_GATE) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of matches that can both be right: indices `(h, 2)` of observations and of landmarks.
 
-    Like classes, landmarks `LEAST_DISTANCE` apart (so distinct ones), and | |z_i - z_k| - |m_j - m_l| | <= gate sigma, with sigma^2 = u^T (C_i + C_k) u
-    along the line u between the observations. A distance does not change with the pose: what a pair is kept or thrown
-    away for is known before there is one.
+    Like classes, landmarks `LEAST_DISTANCE` apart (so distinct ones), and | |z_i - z_k| - |m_j - m_l| | <= gate sigma,
+    with sigma^2 = u^T (C_i + C_k) u along the line u between the observations. A distance does not change with the
+    pose: what a pair is kept or thrown away for is known before there is one.
     """
     i, j = np.nonzero(scene.like)
     first, second = np.nonzero(i[:, None] < i[None])
