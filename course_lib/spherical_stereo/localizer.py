@@ -193,16 +193,27 @@ class SemanticLocalizer:
             )
             explanation = f"confidence {confidence:.2f}, {self.least_confidence:.2f} is asked for"
             return replace(found, reason=reason, explanation=explanation + (f"; poses: {others}" if others else ""))
-        pairs = np.array(ranked[0].pairs)
-        source = np.array([[one.x, one.y] for one in found.observations])[pairs[:, 0]]
-        residuals = ranked[0].pose.apply(source) - self.semantic_map.positions[pairs[:, 1]]
-        return replace(found, pose=ranked[0].pose, status=OK, covariance=ranked[0].covariance, residuals=residuals)
+        pose = ranked[0].pose
+        source, target, noise = self._used_points(found)
+        return replace(
+            found,
+            pose=pose,
+            status=OK,
+            covariance=ranked[0].covariance,
+            residuals=pose.apply(source) - target,
+            statistics=None if noise is None else residual_statistics(pose, source, target, noise, noise),
+        )
 
-    def _fit(self, found: Localization) -> Localization:
+    def _used_points(self, found: Localization) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+        """Points `(n, 2)` of the used pairs in the body frame and on the map, and the first ones' covariances."""
         used = [found.observations[i] for i, _ in found.used_pairs]
         source = np.array([[one.x, one.y] for one in used]).reshape(-1, 2)
         target = self.semantic_map.positions[[j for _, j in found.used_pairs]].reshape(-1, 2)
         noise = None if any(one.covariance is None for one in used) else np.array([one.covariance for one in used])
+        return source, target, noise
+
+    def _fit(self, found: Localization) -> Localization:
+        source, target, noise = self._used_points(found)
         covariances = noise if self.weighted_fit else None
         try:
             pose = fit_rigid_2d(source, target, covariances=covariances)
@@ -214,7 +225,7 @@ class SemanticLocalizer:
         statistics = residual_statistics(pose, source, target, noise, covariances)
         if self.reject_implausible and statistics.contradict_the_pose:
             explanation = (
-                f"the {len(used)} objects miss their landmarks by {found.rms_residual:.2f} m (root mean square), and "
+                f"the {len(source)} objects miss their landmarks by {found.rms_residual:.2f} m (root mean square), and "
                 f"{statistics.expected_rms:.2f} m may be expected: wrong pairs, a wrong baseline, or another map"
             )
             return replace(
