@@ -185,7 +185,7 @@ class SemanticLocalizer:
     def _weigh(self, found: Localization) -> Localization:
         """The pose of a matcher that weighed poses, which is fitted already, or why it is not sure enough."""
         ranked, confidence = found.association.hypotheses, found.association.confidence
-        reason = why_unable(ranked, confidence, self.least_confidence)
+        reason = why_unable(len(ranked), len(found.association.pairs), confidence, self.least_confidence)
         if reason is not None:
             others = ", ".join(
                 f"({one.pose.x:.2f}, {one.pose.y:.2f}) m at {np.degrees(one.pose.theta):.0f} degrees ({one.share:.0%})"

@@ -266,26 +266,28 @@ def with_shares(
     return tuple(one._replace(share=float(share)) for one, share in zip(ranked, shares, strict=False))
 
 
-def confidence_of(best: PoseHypothesis, evidence: Evidence = Evidence()) -> float:  # noqa: B008
-    """How sure the best pose is, 0 to 1: its share of the belief, and whether it fits at all.
+def plausibility(found: PoseHypothesis) -> float:
+    """min(1, p / `DOUBT`), p the probability of a chi^2 as large as this pose's: 1 unless the residuals are too large.
 
-    share min(1, p / `DOUBT`), p the probability of a chi^2 as large as this one; 0 for fewer than `FEWEST_INLIERS`
-    matches. The share knows the runner-up, and the negative evidence, which is in the scores; a pose that is wrong may
-    be far ahead of all others and still leave its observations far from their landmarks.
+    A pose that is wrong may be far ahead of all others and still leave its observations far from their landmarks.
+    """
+    return min(1.0, float(chi2.sf(found.chi_square, 2 * len(found.pairs) - 3)) / DOUBT)
+
+
+def confidence_of(best: PoseHypothesis, evidence: Evidence = Evidence()) -> float:  # noqa: B008
+    """How sure the best pose is, 0 to 1: its share of the belief times its `plausibility`; 0 below `FEWEST_INLIERS`.
+
+    The share knows the runner-up, and the negative evidence, which is in the scores.
     """
     if not evidence.absolute:
         return best.share
-    if len(best.pairs) < FEWEST_INLIERS:
-        return 0.0
-    return best.share * min(1.0, float(chi2.sf(best.chi_square, 2 * len(best.pairs) - 3)) / DOUBT)
+    return best.share * plausibility(best) if len(best.pairs) >= FEWEST_INLIERS else 0.0
 
 
-def why_unable(
-    ranked: Sequence[PoseHypothesis], confidence: float, least_confidence: float = LEAST_CONFIDENCE
-) -> str | None:
-    """The reason why the best of these poses is not given out; None when it is."""
-    if confidence >= least_confidence and ranked:
+def why_unable(n_poses: int, n_matches: int, confidence: float, least_confidence: float) -> str | None:
+    """The reason why the best of n poses, which has n matches, is not given out; None when it is."""
+    if confidence >= least_confidence and n_poses:
         return None
-    if not ranked:
+    if not n_poses:
         return NOTHING_AGREES
-    return TOO_FEW_INLIERS if len(ranked[0].pairs) < FEWEST_INLIERS else AMBIGUOUS
+    return TOO_FEW_INLIERS if n_matches < FEWEST_INLIERS else AMBIGUOUS

@@ -14,15 +14,16 @@ from filterpy.kalman import KalmanFilter
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.consistent import (
+    FEWEST_INLIERS,
     LEAST_CONFIDENCE,
     SHORT_LIST,
     TEMPER,
     Evidence,
     PoseHypothesis,
     area,
-    confidence_of,
     distinct,
     explain,
+    plausibility,
     rank_poses,
     score_of_nothing,
     why_unable,
@@ -69,6 +70,8 @@ class CarriedPose(NamedTuple):
     """Nats; "none of them" has the belief's own (`Belief.log_nothing`)."""
     view: PoseHypothesis
     """What it makes of the last view."""
+    n_matches: int = 0
+    """In all the views that it has explained."""
 
 
 class Belief(NamedTuple):
@@ -124,7 +127,9 @@ def fused(carried: CarriedPose, view: PoseHypothesis, prior_log_density: float) 
     mean = kalman.x.ravel()
     mean[2] = wrap_angle(mean[2])
     agreement = float(kalman.log_likelihood) - prior_log_density
-    return CarriedPose(mean, kalman.P, carried.log_weight + TEMPER * view.score + agreement, view)
+    return CarriedPose(
+        mean, kalman.P, carried.log_weight + TEMPER * view.score + agreement, view, carried.n_matches + len(view.pairs)
+    )
 
 
 class SemanticTracker:
@@ -181,7 +186,10 @@ def updated(
         elsewhere = np.log(ELSEWHERE) + np.logaddexp.reduce(
             [belief.log_nothing, *(one.log_weight for one in belief.hypotheses)]
         )
-    new += [CarriedPose(np.array(view.pose), view.covariance, elsewhere + TEMPER * view.score, view) for view in views]
+    new += [
+        CarriedPose(np.array(view.pose), view.covariance, elsewhere + TEMPER * view.score, view, len(view.pairs))
+        for view in views
+    ]
     if not new:
         # Nothing could be made of this view: what was believed is carried on, no surer than before.
         return Belief(tuple(predicted), belief.log_nothing, belief.n_views)
@@ -202,9 +210,12 @@ def answer(belief: Belief, evidence: Evidence = Evidence(), least_confidence: fl
     alternatives = tuple(
         (Pose2D(*map(float, one.mean)), float(s)) for one, s in zip(belief.hypotheses, share, strict=True)
     )
-    ranked = [one.view for one in belief.hypotheses]
-    confidence = confidence_of(ranked[0]._replace(share=float(share[0])), evidence) if ranked else 0.0
-    reason = why_unable(ranked, confidence, least_confidence)
+    n_matches, confidence = 0, 0.0
+    if alternatives:
+        best, n_matches, confidence = belief.hypotheses[0], belief.hypotheses[0].n_matches, float(share[0])
+        if evidence.absolute:
+            confidence *= plausibility(best.view) if n_matches >= FEWEST_INLIERS else 0.0
+    reason = why_unable(len(alternatives), n_matches, confidence, least_confidence)
     if reason is not None:
         return Track(None, UNABLE, reason, confidence, None, alternatives)
-    return Track(alternatives[0][0], OK, None, confidence, belief.hypotheses[0].covariance, alternatives)
+    return Track(alternatives[0][0], OK, None, confidence, best.covariance, alternatives)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.pose.consistent import AMBIGUOUS, NOTHING_AGREES, PoseHypothesis, area
+from course_lib.spherical_stereo.pose.consistent import AMBIGUOUS, NOTHING_AGREES, TOO_FEW_INLIERS, PoseHypothesis, area
 from course_lib.spherical_stereo.pose.hypotheses import rotations
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.pose.tracker import CarriedPose, Motion, SemanticTracker, carried_on, fused
@@ -77,6 +77,15 @@ def test_without_odometry_a_step_is_short_and_that_is_enough():
         track = tracker.step(observed(PLANTED, pose, which=None if k == 0 else range(5)))
     assert track.status == "ok"
     assert near(track.pose, WALK[-1])
+
+
+def test_a_last_view_of_two_objects_is_enough_where_the_place_is_known():
+    tracker = SemanticTracker(PLANTED)
+    tracker.step(observed(PLANTED, WALK[0]))
+    track = tracker.step(observed(PLANTED, WALK[1], which=(3, 5)), motion(WALK[0], WALK[1]))
+    assert track.status == "ok"
+    assert near(track.pose, WALK[1])
+    assert SemanticTracker(PLANTED).step(observed(PLANTED, WALK[1], which=(3, 5))).reason == TOO_FEW_INLIERS
 
 
 def test_a_rig_that_is_carried_away_is_found_again():
