@@ -15,6 +15,7 @@ def answer_tables(answers: dict) -> str:
     lines = [*_what_is_counted("both heights, from images"), *_group("One view", answers["one_view"])]
     if "several_views" in answers:
         lines += _several(answers)
+        lines += _group("Half of all observations left out", answers["thinned_views"])
     for which, tables in answers.get("ablation", {}).items():
         lines += _group(f"Evidence switched off, {which.replace('_', ' ')}", tables)
     return "\n".join(lines)

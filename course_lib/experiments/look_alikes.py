@@ -32,6 +32,8 @@ CORRECT, WRONG, UNANSWERED = "correct", "wrong", "unanswered"
 KINDS = (CORRECT, WRONG, UNANSWERED)
 LARGEST_ERROR_M, LARGEST_TURN_DEG = 0.5, 10.0
 ODOMETRY_STREAM = 0x0D0  # joins a room's seed
+THINNING_STREAM = 0x7117  # likewise
+LEFT_OUT = 0.5  # share of the observations, drawn one by one; chosen
 SAME_PLACE = 0.05  # m, within which two poses of a recording are one place
 # Without each part in turn: what it is worth.
 ABLATION: dict[str, Evidence] = {
@@ -194,6 +196,26 @@ def answers_of_sequences(
     return answers
 
 
+def answers_of_thinned_sequences(
+    rooms: Sequence[dict], views: Sequence[dict], progress: Callable[[Iterable], Iterable] = iter
+) -> list[Answer]:
+    """The same sequences with `LEFT_OUT` of all observations, after one view, after two, and so on.
+
+    Where one view tells nearly everything, more of them cannot tell more: this is what they are worth where it does not.
+    """
+    answers = []
+    for room, further in progress(list(zip(rooms, views, strict=True))):
+        semantic_map = stored_map(room)
+        for number, sequence in enumerate(stored_sequences(room, further)):
+            rng = np.random.default_rng([THINNING_STREAM, room["seed"], number])
+            seen = [[one for one in view if rng.random() >= LEFT_OUT] for view in sequence.observations]
+            where = (room["seed"], sequence.experiment, sequence.name)
+            for n in range(1, len(seen) + 1):
+                for one in followed(where, semantic_map, sequence.poses[:n], seen[:n], number):
+                    answers.append(one._replace(method=f"{n}_views_{one.method}"))
+    return answers
+
+
 def answers_of_places(results: Sequence[PairResult], semantic_map: SemanticMap, experiment: int = 1) -> list[Answer]:
     """The paper's own recording: at every place the rig is turned once, and the two views are followed."""
     answers = []
@@ -306,6 +328,7 @@ def answers_summary(
     if views is not None:
         found["n_views"] = views[0]["options"]["views"]
         found["several_views"] = tables_by_method(answers_of_sequences(rooms, views, progress))
+        found["thinned_views"] = tables_by_method(answers_of_thinned_sequences(rooms, views, progress))
     if ablation:
         found["ablation"] = {
             name: tables_by_method(answers_of_evidence(rooms, ABLATION, wrong_map, progress))

@@ -13,6 +13,7 @@ from course_lib.experiments.look_alikes import (
     answers_of_rooms,
     answers_of_sequences,
     answers_summary,
+    answers_of_thinned_sequences,
     answers_table,
     is_right,
     measured_motion,
@@ -110,6 +111,18 @@ def test_what_the_first_view_told_is_known_after_the_last():
     assert {one.kind for one in nothing} == {"unanswered"}
 
 
+def test_thinned_sequences_are_judged_after_every_view_and_see_less(monkeypatch):
+    monkeypatch.setattr(look_alikes, "LEFT_OUT", 0.0)
+    whole = answers_of_thinned_sequences([record_of(PLANTED)], [views_of(PLANTED)])
+    assert [one.method for one in whole] == [
+        f"{n}_views_{way}" for n in (1, 2, 3) for way in ("odometry", "no_odometry")
+    ]
+    assert {one.kind for one in whole} == {"correct"}
+    monkeypatch.setattr(look_alikes, "LEFT_OUT", 1.0)
+    nothing = answers_of_thinned_sequences([record_of(PLANTED)], [views_of(PLANTED)])
+    assert {one.kind for one in nothing} == {"unanswered"}
+
+
 def test_odometry_is_the_true_motion_with_its_noise():
     rng, model = np.random.default_rng(2), OdometryModel()
     start, end = np.array([1.0, 1.0, np.pi / 2]), np.array([1.0, 3.0, np.pi / 2 + 0.5])
@@ -156,7 +169,15 @@ def test_the_summary_holds_what_was_asked_for_and_is_json(monkeypatch):
     short = answers_summary(rooms, ["greedy"])
     assert set(short) == {"one_view"}
     whole = answers_summary(rooms, views=views, ablation=True)
-    assert set(whole) == {"one_view", "risk_coverage", "why_unanswered", "n_views", "several_views", "ablation"}
+    assert set(whole) == {
+        "one_view",
+        "risk_coverage",
+        "why_unanswered",
+        "n_views",
+        "several_views",
+        "thinned_views",
+        "ablation",
+    }
     assert list(whole["one_view"]) == ["greedy", "hungarian", "consistent"]
     assert whole["n_views"] == 3
     json.dumps(whole, allow_nan=False)
