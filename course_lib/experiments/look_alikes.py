@@ -201,7 +201,7 @@ def answers_of_thinned_sequences(
 ) -> list[Answer]:
     """The same sequences with `LEFT_OUT` of all observations, after one view, after two, and so on.
 
-    Where one view tells nearly everything, more of them cannot tell more: this is what they are worth where it does not.
+    Where one view tells nearly everything, more cannot tell more: this is what they are worth where it does not.
     """
     answers = []
     for room, further in progress(list(zip(rooms, views, strict=True))):
