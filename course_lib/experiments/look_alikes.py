@@ -21,7 +21,9 @@ from course_lib.experiments.rooms_summary import bootstrap_percent, wilson_perce
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.pose.consistent import LEAST_CONFIDENCE, Evidence, associate_consistent
+from course_lib.spherical_stereo.pose.confidence import LEAST_CONFIDENCE
+from course_lib.spherical_stereo.pose.consistent import associate_consistent
+from course_lib.spherical_stereo.pose.evidence import Evidence
 from course_lib.spherical_stereo.pose.hypotheses import rotations
 from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D

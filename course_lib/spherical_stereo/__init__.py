@@ -21,7 +21,7 @@ The walk of an image, figure 2 in order; each folder imports only those above it
   semantic_map/        2.5. The map, its files, eq. (1) and the greedy search: observations to landmarks
     assignment         for comparison: the assignment of least cost on class and colour alone
   pose/                2.6. The least-squares fit, whether its residuals contradict it, and what is answered
-    hypotheses, evidence, consistent
+    hypotheses, evidence, confidence, consistent
                        beyond the paper: rooms that look alike. Poses of two matches, what speaks for each, how sure
     tracker            several views over time
     matchers           the matchers by name
@@ -49,7 +49,9 @@ from course_lib.spherical_stereo.panorama import (
     pixel_to_direction,
     read_panorama,
 )
-from course_lib.spherical_stereo.pose.consistent import Evidence, PoseHypothesis, associate_consistent, rank_poses
+from course_lib.spherical_stereo.pose.consistent import associate_consistent, rank_poses
+from course_lib.spherical_stereo.pose.evidence import Evidence
+from course_lib.spherical_stereo.pose.hypotheses import PoseHypothesis
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
 from course_lib.spherical_stereo.pose.tracker import Motion, SemanticTracker, Track

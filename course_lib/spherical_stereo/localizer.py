@@ -19,7 +19,7 @@ from course_lib.spherical_stereo.matching.features import find_features
 from course_lib.spherical_stereo.matching.object_matching import match_views, matched_indices
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 from course_lib.spherical_stereo.pose import localization as outcomes
-from course_lib.spherical_stereo.pose.consistent import LEAST_CONFIDENCE, why_unable
+from course_lib.spherical_stereo.pose.confidence import LEAST_CONFIDENCE, why_unable
 from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Localization, PlacedObject
 from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS, Matcher
 from course_lib.spherical_stereo.pose.plausibility import residual_statistics

@@ -23,7 +23,7 @@ from course_lib.experiments.look_alikes import (
 )
 from course_lib.experiments.room_views import ViewsOptions, stored_sequences
 from course_lib.experiments.rooms import record_of_observations
-from course_lib.spherical_stereo.pose.consistent import Evidence
+from course_lib.spherical_stereo.pose.evidence import Evidence
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from tests.spherical_stereo.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed, scattered
 

@@ -7,21 +7,21 @@ distinct poses -> confidence. Beyond the paper, whose own matcher (`association`
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
-from scipy.stats import chi2
 
 from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.pose.confidence import confidence_of, score_of_nothing, with_shares
 from course_lib.spherical_stereo.pose.evidence import (
     CLUTTER_DENSITY,
+    Evidence,
     colour_costs,
     detection_probabilities,
     free_space_costs,
     place_distances,
 )
-from course_lib.spherical_stereo.pose.hypotheses import Scene, fit_poses, pair_poses, scene_of
+from course_lib.spherical_stereo.pose.hypotheses import PoseHypothesis, Scene, fit_poses, pair_poses, scene_of
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.assignment import association_of
 from course_lib.spherical_stereo.semantic_map.association import (
@@ -40,55 +40,6 @@ ALTERNATIVES = 3
 """Poses that an answer keeps beside the best."""
 ROUNDS = 2
 """Assignments and refits in turn; the second changes few pairs, a third none that mattered."""
-TEMPER = 0.5
-"""Share of the evidence that is believed when hypotheses are weighed against each other: errors of one room, such as a
-wrong baseline or a colour of light, are in all its observations at once, and do not count as often as they are seen."""
-FEWEST_INLIERS = 3
-"""Matched observations that a pose needs: two always fit."""
-DOUBT = 0.001
-"""Share of the right poses whose residuals may be called too large, were the covariances exact."""
-LEAST_CONFIDENCE = 0.8
-"""Confidence below which no pose is given out."""
-
-# Reasons why no pose is given out.
-NOTHING_AGREES = "no two objects agree on a pose"
-TOO_FEW_INLIERS = "fewer than three objects agree on a pose"
-AMBIGUOUS = "ambiguous"  # another pose, or none at all, explains what is seen nearly as well
-
-
-class Evidence(NamedTuple):
-    """Which parts of the score count: all of them, or for an ablation all but one."""
-
-    one_to_one: bool = True
-    """An assignment; False: every observation takes the landmark it likes best, be it taken or not."""
-    stereo_covariance: bool = True
-    """Residuals weighed by the covariance of their observation; False: by one number in every direction."""
-    colour: bool = True
-    refit: bool = True
-    """The pose fitted to all its matches; False: the pose of the two it came from."""
-    negative: bool = True
-    """What should be seen and is not."""
-    free_space: bool = True
-    absolute: bool = True
-    """Confidence asks for an absolute fit too; False: for the gap to the other poses alone."""
-
-
-class PoseHypothesis(NamedTuple):
-    """One pose, and how well it explains what was seen."""
-
-    pose: Pose2D
-    covariance: np.ndarray
-    """`(3, 3)` of [x, y, theta], metres and radians, squared."""
-    pairs: tuple[tuple[int, int], ...]
-    """(observation, landmark) that it matches."""
-    score: float
-    """Nats; the higher the better. 0: as good as calling every observation clutter."""
-    chi_square: float
-    """Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers."""
-    missed: tuple[int, ...]
-    """Landmarks that would have been seen from there more likely than not, and were not."""
-    share: float = 0.0
-    """Of the belief, among all distinct poses and "none of them": 0 to 1."""
 
 
 def rank_poses(
@@ -229,65 +180,3 @@ def distinct(poses: np.ndarray, scores: np.ndarray, n: int) -> list[int]:
         left &= ~(near & (np.abs(wrap_angle(poses[:, 2] - poses[k, 2])) < SAME_POSE_RAD))
         left[k] = False
     return chosen
-
-
-def score_of_nothing(semantic_map: SemanticMap) -> float:
-    """What "none of these poses" wins for every observation, nats: 1 / area of the map against `CLUTTER_DENSITY`.
-
-    In a place that is not on the map, or not where any pose says, an object is seen anywhere in the room; a pose that
-    leaves it unmatched calls it clutter, which is rarer. So a pose must earn what it leaves unexplained.
-    """
-    return -float(np.log(CLUTTER_DENSITY * area(semantic_map)))
-
-
-def area(semantic_map: SemanticMap) -> float:
-    """Square metres that a pose may lie in: of the box around landmarks and walls, a square metre at least."""
-    points = semantic_map.positions
-    if semantic_map.walls is not None:
-        points = np.concatenate([points, semantic_map.walls])
-    return max(1.0, float(np.prod(np.ptp(points, axis=0))))
-
-
-def with_shares(
-    ranked: Sequence[PoseHypothesis],
-    score_of_none: float,
-    evidence: Evidence = Evidence(),  # noqa: B008
-) -> tuple[PoseHypothesis, ...]:
-    """The same poses with their shares of the belief: exp(`TEMPER` score) over the sum of all.
-
-    Among them is "none of these" (`score_of_nothing` for every observation): a pose that is ahead of all others must
-    be ahead of it too. Without `absolute` evidence it is left out, and the share is the gap to the others alone.
-    """
-    scores = [one.score for one in ranked]
-    if evidence.absolute:
-        scores.append(score_of_none)
-    weights = np.exp(TEMPER * (np.array(scores) - max(scores)))
-    shares = weights / weights.sum()
-    return tuple(one._replace(share=float(share)) for one, share in zip(ranked, shares, strict=False))
-
-
-def plausibility(found: PoseHypothesis) -> float:
-    """min(1, p / `DOUBT`), p the probability of a chi^2 as large as this pose's: 1 unless the residuals are too large.
-
-    A pose that is wrong may be far ahead of all others and still leave its observations far from their landmarks.
-    """
-    return min(1.0, float(chi2.sf(found.chi_square, 2 * len(found.pairs) - 3)) / DOUBT)
-
-
-def confidence_of(best: PoseHypothesis, evidence: Evidence = Evidence()) -> float:  # noqa: B008
-    """How sure the best pose is, 0 to 1: its share of the belief times its `plausibility`; 0 below `FEWEST_INLIERS`.
-
-    The share knows the runner-up, and the negative evidence, which is in the scores.
-    """
-    if not evidence.absolute:
-        return best.share
-    return best.share * plausibility(best) if len(best.pairs) >= FEWEST_INLIERS else 0.0
-
-
-def why_unable(n_poses: int, n_matches: int, confidence: float, least_confidence: float) -> str | None:
-    """The reason why the best of n poses, which has n matches, is not given out; None when it is."""
-    if confidence >= least_confidence and n_poses:
-        return None
-    if not n_poses:
-        return NOTHING_AGREES
-    return TOO_FEW_INLIERS if n_matches < FEWEST_INLIERS else AMBIGUOUS

@@ -6,6 +6,8 @@ h poses at once. Beyond the paper.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from course_lib.spherical_stereo.pose.hypotheses import MAP_SIGMA, Scene, seen_from
@@ -39,6 +41,23 @@ BODY_RADIUS = 0.2
 """Metres about a landmark's centroid where no rig can stand."""
 OUTSIDE_COST = 20.0
 """Nats for a pose inside a piece of furniture or outside the walls."""
+
+
+class Evidence(NamedTuple):
+    """Which parts of the score count: all of them, or for an ablation all but one."""
+
+    one_to_one: bool = True
+    """An assignment; False: every observation takes the landmark it likes best, be it taken or not."""
+    stereo_covariance: bool = True
+    """Residuals weighed by the covariance of their observation; False: by one number in every direction."""
+    colour: bool = True
+    refit: bool = True
+    """The pose fitted to all its matches; False: the pose of the two it came from."""
+    negative: bool = True
+    """What should be seen and is not."""
+    free_space: bool = True
+    absolute: bool = True
+    """Confidence asks for an absolute fit too; False: for the gap to the other poses alone."""
 
 
 def place_distances(scene: Scene, poses: np.ndarray, pose_covariances: np.ndarray | None = None) -> tuple:

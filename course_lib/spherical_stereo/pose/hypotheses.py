@@ -13,6 +13,7 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -56,6 +57,24 @@ class PairPoses(NamedTuple):
     """`(h, 2)` indices of the two observations."""
     landmarks: np.ndarray
     """`(h, 2)` indices of the landmarks they were laid on."""
+
+
+class PoseHypothesis(NamedTuple):
+    """One pose, and how well it explains what was seen."""
+
+    pose: Pose2D
+    covariance: np.ndarray
+    """`(3, 3)` of [x, y, theta], metres and radians, squared."""
+    pairs: tuple[tuple[int, int], ...]
+    """(observation, landmark) that it matches."""
+    score: float
+    """Nats; the higher the better. 0: as good as calling every observation clutter."""
+    chi_square: float
+    """Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers."""
+    missed: tuple[int, ...]
+    """Landmarks that would have been seen from there more likely than not, and were not."""
+    share: float = 0.0
+    """Of the belief, among all distinct poses and "none of them": 0 to 1."""
 
 
 def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> Scene:

@@ -13,22 +13,18 @@ import numpy as np
 from filterpy.kalman import KalmanFilter
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.pose.consistent import (
+from course_lib.spherical_stereo.pose.confidence import (
     FEWEST_INLIERS,
     LEAST_CONFIDENCE,
-    SHORT_LIST,
     TEMPER,
-    Evidence,
-    PoseHypothesis,
     area,
-    distinct,
-    explain,
     plausibility,
-    rank_poses,
     score_of_nothing,
     why_unable,
 )
-from course_lib.spherical_stereo.pose.hypotheses import rotations, scene_of
+from course_lib.spherical_stereo.pose.consistent import SHORT_LIST, distinct, explain, rank_poses
+from course_lib.spherical_stereo.pose.evidence import Evidence
+from course_lib.spherical_stereo.pose.hypotheses import PoseHypothesis, rotations, scene_of
 from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Status
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation

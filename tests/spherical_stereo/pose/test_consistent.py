@@ -7,18 +7,15 @@ from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose import consistent
-from course_lib.spherical_stereo.pose.consistent import (
+from course_lib.spherical_stereo.pose.confidence import (
     AMBIGUOUS,
     LEAST_CONFIDENCE,
     NOTHING_AGREES,
     TOO_FEW_INLIERS,
-    Evidence,
-    assign,
-    associate_consistent,
     confidence_of,
-    distinct,
-    rank_poses,
 )
+from course_lib.spherical_stereo.pose.consistent import assign, associate_consistent, distinct, rank_poses
+from course_lib.spherical_stereo.pose.evidence import Evidence
 from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
 from course_lib.spherical_stereo.semantic_map.association import associate_greedy
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap

@@ -4,10 +4,17 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.pose.consistent import AMBIGUOUS, NOTHING_AGREES, TOO_FEW_INLIERS, PoseHypothesis, area
-from course_lib.spherical_stereo.pose.hypotheses import rotations
+from course_lib.spherical_stereo.pose.confidence import (
+    AMBIGUOUS,
+    NOTHING_AGREES,
+    TOO_FEW_INLIERS,
+    area,
+    score_of_nothing,
+)
+from course_lib.spherical_stereo.pose.hypotheses import PoseHypothesis, rotations
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.pose.tracker import CarriedPose, Motion, SemanticTracker, carried_on, fused
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from tests.spherical_stereo.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed
 
 SURE = np.diag([0.02, 0.02, 0.02]) ** 2
@@ -117,5 +124,8 @@ def test_views_make_the_pose_better():
     assert np.mean(errors[3]) < 0.8 * np.mean(errors[1])
 
 
-def test_the_area_is_that_of_walls_and_landmarks():
+def test_the_area_is_that_of_the_walls_or_of_the_landmarks_and_a_margin():
     assert area(PLANTED) == pytest.approx(36.0)
+    assert area(SemanticMap(PLANTED.landmarks)) == pytest.approx(6.0 * 6.0)  # 4 by 4 metres, and one all around
+    hall = SemanticMap(PLANTED.landmarks, [[-90, -90], [90, -90], [90, 90], [-90, 90]])
+    assert 1.5 < score_of_nothing(hall) < score_of_nothing(PLANTED), "nobody sees all of a hall"
