@@ -217,6 +217,27 @@ def test_the_rows_of_the_look_alikes_are_the_stored_shares_and_errors(group, wor
     assert [cell.strip() for cell in row.split("|")[2:7]] == cells
 
 
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [
+        ("half seen, one view", "1_views_odometry"),
+        ("half seen, two views, odometry", "2_views_odometry"),
+        ("half seen, two views, no odometry", "2_views_no_odometry"),
+        ("half seen, three views, odometry", "3_views_odometry"),
+        ("half seen, three views, no odometry", "3_views_no_odometry"),
+    ],
+)
+def test_the_rows_of_the_thinned_views_are_the_stored_shares_and_errors(name, method):
+    stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["answers"]["thinned_views"][method]
+    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name} |"))
+    cells = [
+        "{:.1f} ({:.1f} to {:.1f})".format(stored[f"{kind}_percent"], *stored[f"{kind}_wilson_percent"])
+        for kind in ("correct", "wrong", "unanswered")
+    ]
+    cells.append("{mean_dx_m:.2f}, {mean_dy_m:.2f}, {mean_dtheta_deg:.1f}".format(**stored))
+    assert [cell.strip() for cell in row.split("|")[2:6]] == cells
+
+
 def test_the_rows_of_the_ablation_are_the_stored_shares():
     stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["answers"]["ablation"]
     for name, shown in stored["right_map"].items():
