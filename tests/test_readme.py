@@ -214,6 +214,60 @@ def test_the_rows_of_the_rooms_are_the_stored_shares_and_intervals(name, source,
     assert [cell.strip() for cell in row.split("|")[2:5]] == list(shares)
 
 
+@pytest.mark.parametrize(
+    ("group", "words", "method"),
+    [
+        ("one_view", "one view", "greedy"),
+        ("one_view", "one view", "hungarian"),
+        ("one_view", "one view", "consistent"),
+        ("several_views", "three views", "odometry"),
+        ("several_views", "three views", "no_odometry"),
+    ],
+)
+def test_the_rows_of_the_look_alikes_are_the_stored_shares_and_errors(group, words, method):
+    stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["answers"][group][method]
+    name = f"| {words}, {method.replace('_', ' ')} |"
+    row = next(line for line in RESULTS.splitlines() if line.startswith(name))
+    cells = [
+        "{:.1f} ({:.1f} to {:.1f})".format(stored[f"{kind}_percent"], *stored[f"{kind}_wilson_percent"])
+        for kind in ("correct", "wrong", "unanswered")
+    ]
+    right = stored["all_matches_right_percent"]
+    cells.append("-" if right is None else f"{right:.1f}")
+    cells.append("{mean_dx_m:.2f}, {mean_dy_m:.2f}, {mean_dtheta_deg:.1f}".format(**stored))
+    assert [cell.strip() for cell in row.split("|")[2:7]] == cells
+
+
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [
+        ("half seen, one view", "1_views_odometry"),
+        ("half seen, two views, odometry", "2_views_odometry"),
+        ("half seen, two views, no odometry", "2_views_no_odometry"),
+        ("half seen, three views, odometry", "3_views_odometry"),
+        ("half seen, three views, no odometry", "3_views_no_odometry"),
+    ],
+)
+def test_the_rows_of_the_thinned_views_are_the_stored_shares_and_errors(name, method):
+    stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["answers"]["thinned_views"][method]
+    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name} |"))
+    cells = [
+        "{:.1f} ({:.1f} to {:.1f})".format(stored[f"{kind}_percent"], *stored[f"{kind}_wilson_percent"])
+        for kind in ("correct", "wrong", "unanswered")
+    ]
+    cells.append("{mean_dx_m:.2f}, {mean_dy_m:.2f}, {mean_dtheta_deg:.1f}".format(**stored))
+    assert [cell.strip() for cell in row.split("|")[2:6]] == cells
+
+
+def test_the_rows_of_the_ablation_are_the_stored_shares():
+    stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["answers"]["ablation"]
+    for name, shown in stored["right_map"].items():
+        row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name.replace('_', ' ')} |"))
+        shares = [shown[f"{kind}_percent"] for kind in ("correct", "wrong", "unanswered")]
+        shares.append(stored["wrong_map"][name]["wrong_percent"])
+        assert [cell.strip() for cell in row.split("|")[2:6]] == [f"{share:.1f}" for share in shares]
+
+
 @pytest.mark.parametrize("source", ["images", "exact_boxes"])
 @pytest.mark.parametrize("tilt", ["0", "0.1", "0.3", "1"])
 def test_the_rows_of_the_tilts_are_the_stored_shares_and_errors(source, tilt):

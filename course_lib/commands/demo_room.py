@@ -39,7 +39,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, metavar="FOLDER", help="made by make-data room (default: data/room)")
     add_detector_arguments(parser)
     parser.add_argument(
-        "--association", default="greedy", metavar="NAME", help="how objects are matched to the map (default: greedy)"
+        "--association",
+        default="greedy",
+        metavar="NAME",
+        help="how objects are matched to the map: greedy (the paper's), hungarian, consistent (default: greedy)",
+    )
+    parser.add_argument(
+        "--views",
+        type=int,
+        default=1,
+        choices=(1, 2),
+        help="2: with --association consistent, also follow the two views of every place as the rig turns there, with "
+        "and without odometry (default: 1)",
     )
     parser.add_argument(
         "--out",
@@ -64,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs both experiments, from images and from exact boxes; returns the exit code."""
     from course_lib.commands.arguments import require_output_folder, require_seed
     from course_lib.paths import data_path
-    from course_lib.spherical_stereo.semantic_map.association import ASSOCIATIONS
+    from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
 
     if arguments.seed is not None and arguments.data is not None:
         raise ValueError(
@@ -80,6 +91,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise ValueError("--roll must not be 0: images that are not rolled are the experiment itself")
     if arguments.association not in ASSOCIATIONS:
         raise ValueError(f"--association must be one of {', '.join(ASSOCIATIONS)}; got {arguments.association!r}")
+    if arguments.views > 1 and arguments.association != "consistent":
+        raise ValueError(f"--views {arguments.views} needs --association consistent; got {arguments.association}")
     if seed == SEED:
         return _run_on(arguments.data or data_path("room"), arguments)
     detector = chosen_detector(arguments)  # before the photographs: an error then costs no minutes
@@ -96,7 +109,9 @@ def _photograph(folder: Path, seed: int) -> None:
 
 
 def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector | None = None) -> int:
+    from course_lib.commands.look_alike_tables import views_table
     from course_lib.commands.progress import progress_bar
+    from course_lib.experiments.look_alikes import answers_of_places, tables_by_method
     from course_lib.experiments.room import SOURCES, run_experiment, weighted_summary
     from course_lib.experiments.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -136,11 +151,22 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
     summary = summarize(arguments, recording, results, weighted, semantic_map, recording.rig.baseline)
     if arguments.roll:
         summary["rolled_images"] = {name: turn_summary(pairs) for name, pairs in rolled.items()}
+    if arguments.views > 1:
+        summary["n_views"] = arguments.views
+        summary["several_views"] = tables_by_method(
+            [
+                answer
+                for number in (1, 2)
+                for answer in answers_of_places(results[f"experiment_{number}"]["images"], semantic_map, number)
+            ]
+        )
     written = write(arguments.out, summary, results, draw(semantic_map, results))
     if arguments.json:
         print(json.dumps(summary))
     else:
         print(tables(summary))
+        if arguments.views > 1:
+            print("\n" + views_table(summary))
         print(f"\nWritten to {arguments.out}: " + ", ".join(written))
     return 0
 

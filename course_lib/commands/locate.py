@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.spherical_stereo.detection.detector import find_objects
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
     from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
-    from course_lib.spherical_stereo.semantic_map.association import ASSOCIATIONS
+    from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
     by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]
@@ -120,6 +120,10 @@ def localization_summary(found: Localization, semantic_map: SemanticMap) -> dict
         "sigma_heading_deg": None if sigma[2] is None else float(np.degrees(sigma[2])),
         "covariance": None if found.covariance is None else found.covariance.tolist(),
         "rejected_pose": None if rejected is None else [rejected.x, rejected.y, float(np.degrees(rejected.theta))],
+        "confidence": found.confidence,
+        "alternatives": [
+            [one.pose.x, one.pose.y, float(np.degrees(one.pose.theta)), one.share] for one in found.alternatives
+        ],
         "rms_residual_m": found.rms_residual,
         "expected_rms_residual_m": None if statistics is None else statistics.expected_rms,
         "normalized_residual": None if statistics is None else statistics.normalized,
@@ -168,6 +172,8 @@ def _text(s: dict) -> str:
         ]
     else:
         lines = [f"no pose, {s['reason']}: {s['explanation']}"]
+    if s["confidence"] is not None:
+        lines.append(f"confidence {s['confidence']:.2f}")
     if s["rms_residual_m"] is not None:
         lines.append(
             f"residuals: {s['rms_residual_m']:.2f} m (root mean square), {s['expected_rms_residual_m']:.2f} m may be "

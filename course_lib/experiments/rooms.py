@@ -48,6 +48,7 @@ class RoomsOptions:
         return json.loads(json.dumps(asdict(self)))
 
 
+Observe = Callable[[int, RoomsOptions, object], dict]
 LoadDetector = Callable[[], object]  # a plain function of a module, or a partial of one: it is sent to other processes
 
 
@@ -78,6 +79,7 @@ def observe_room(seed: int, options: RoomsOptions, detector) -> dict:
         "options": options.as_dict(),
         "look_alike": {"label": alike, "n": sum(thing.label == alike for thing in room.objects)},
         "map": [[one.label, one.x, one.y, _or_none(one.hue), one.saturation] for one in semantic_map.landmarks],
+        "walls": semantic_map.walls.tolist(),
         "poses": poses,
     }
 
@@ -96,10 +98,7 @@ def _seen(results: dict[str, PairResult]) -> dict:
     return {
         "sources": {
             source: {
-                "observations": [
-                    [one.label, one.x, one.y, _or_none(one.hue), one.saturation, np.asarray(one.covariance).tolist()]
-                    for one in result.localization.observations
-                ],
+                "observations": record_of_observations(result.localization.observations),
                 "true_landmarks": list(result.true_landmarks),
             }
             for source, result in results.items()
@@ -109,6 +108,14 @@ def _seen(results: dict[str, PairResult]) -> dict:
         "detections": sum(len(one.correct) for one in counted),
         "seconds": from_images.seconds,
     }
+
+
+def record_of_observations(observations: Sequence[Observation]) -> list[list]:
+    """Observations as a room's record holds them: label, x, y, hue (None: grey), saturation, covariance."""
+    return [
+        [one.label, one.x, one.y, _or_none(one.hue), one.saturation, np.asarray(one.covariance).tolist()]
+        for one in observations
+    ]
 
 
 def stored_observations(entry: dict) -> list[Observation]:
@@ -122,7 +129,8 @@ def stored_observations(entry: dict) -> list[Observation]:
 def stored_map(room: dict) -> SemanticMap:
     """The semantic map of a room's record."""
     return SemanticMap(
-        [Landmark(label, x, y, np.nan if hue is None else hue, s) for label, x, y, hue, s in room["map"]]
+        [Landmark(label, x, y, np.nan if hue is None else hue, s) for label, x, y, hue, s in room["map"]],
+        walls=room.get("walls"),
     )
 
 
@@ -133,8 +141,11 @@ def observe_rooms(
     folder: str | Path,
     processes: int = 1,
     progress: Callable[[Iterable], Iterable] = iter,
+    observe: Observe | None = None,
 ) -> list[dict]:
     """The records of many rooms, in the order of the seeds; rooms that the folder holds already are not made again.
+
+    observe: what makes the record of one room; None: `observe_room`. `room_views.observe_views` has options of its own.
 
     Every finished room is written to the folder at once as room_SEED.json, and read back when the options agree.
     load_detector: called once in every process. processes: how many rooms are made at a time, each in a fresh process
@@ -143,18 +154,18 @@ def observe_rooms(
     """
     if processes < 1 or any(seed < 0 for seed in seeds):
         raise ValueError(f"processes {processes}, seeds {list(seeds)}: expected one or more, and no negative seed")
-    folder = Path(folder)
+    folder, observe = Path(folder), observe or observe_room
     rooms = {seed: _read_room(folder, seed, options) for seed in seeds}
     missing = [seed for seed, room in rooms.items() if room is None]
     if processes == 1 or len(missing) <= 1:
         detector = load_detector() if missing else None
         for seed in progress(missing):
-            rooms[seed] = _keep(folder, observe_room(seed, options, detector))
+            rooms[seed] = _keep(folder, observe(seed, options, detector))
         return [rooms[seed] for seed in seeds]
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(processes, len(missing)), context, _start_worker, (load_detector,)) as pool:
         try:
-            jobs = [pool.submit(_observe_in_worker, seed, options) for seed in missing]
+            jobs = [pool.submit(_observe_in_worker, observe, seed, options) for seed in missing]
             for job in progress(finished(jobs)):
                 room = _keep(folder, job.result())
                 rooms[room["seed"]] = room
@@ -174,8 +185,8 @@ def _start_worker(load_detector: LoadDetector) -> None:
     _worker["detector"] = load_detector()
 
 
-def _observe_in_worker(seed: int, options: RoomsOptions) -> dict:
-    return observe_room(seed, options, _worker["detector"])
+def _observe_in_worker(observe: Observe, seed: int, options: RoomsOptions) -> dict:
+    return observe(seed, options, _worker["detector"])
 
 
 def _file(folder: Path, seed: int) -> Path:

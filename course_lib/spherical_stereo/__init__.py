@@ -19,7 +19,12 @@ The walk of an image, figure 2 in order; each folder imports only those above it
     vertical_disparity a second distance, from the matched features
     object_places      the place of every matched object
   semantic_map/        2.5. The map, its files, eq. (1) and the greedy search: observations to landmarks
+    assignment         for comparison: the assignment of least cost on class and colour alone
   pose/                2.6. The least-squares fit, whether its residuals contradict it, and what is answered
+    hypotheses, evidence, confidence, consistent
+                       beyond the paper: rooms that look alike. Poses of two matches, what speaks for each, how sure
+    tracker            several views over time
+    matchers           the matchers by name
   localizer            the walk itself
 
 Beside it: recording, a folder of stereo panoramas with the truth beside them.
@@ -44,8 +49,12 @@ from course_lib.spherical_stereo.panorama import (
     pixel_to_direction,
     read_panorama,
 )
+from course_lib.spherical_stereo.pose.consistent import associate_consistent, rank_poses
+from course_lib.spherical_stereo.pose.evidence import Evidence
+from course_lib.spherical_stereo.pose.hypotheses import PoseHypothesis
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
+from course_lib.spherical_stereo.pose.tracker import Motion, SemanticTracker, Track
 from course_lib.spherical_stereo.ranging.triangulation import (
     TriangulationError,
     triangulate,
@@ -53,6 +62,7 @@ from course_lib.spherical_stereo.ranging.triangulation import (
     triangulation_outcome,
 )
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
+from course_lib.spherical_stereo.semantic_map.assignment import associate_hungarian
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     AssociationError,
@@ -71,25 +81,32 @@ __all__ = [
     "Detection",
     "DetectionError",
     "DetectorError",
+    "Evidence",
     "Landmark",
     "Localization",
     "LocalizerError",
+    "Motion",
     "ObjectMatch",
     "Observation",
     "PanoramaError",
     "Penalty",
     "PenaltyWeights",
     "Pose2D",
+    "PoseHypothesis",
     "RigidFitError",
     "SemanticLocalizer",
     "SemanticMap",
     "SemanticMapError",
+    "SemanticTracker",
     "StereoRig",
     "SwappedImagesError",
+    "Track",
     "TriangulationError",
     "View",
     "YoloDetector",
+    "associate_consistent",
     "associate_greedy",
+    "associate_hungarian",
     "direction_to_pixel",
     "disparity_distance",
     "extend_seam",
@@ -101,6 +118,7 @@ __all__ = [
     "penalty",
     "penalty_table",
     "pixel_to_direction",
+    "rank_poses",
     "read_panorama",
     "triangulate",
     "triangulation_covariance",

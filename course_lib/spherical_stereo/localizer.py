@@ -19,18 +19,15 @@ from course_lib.spherical_stereo.matching.features import find_features
 from course_lib.spherical_stereo.matching.object_matching import match_views, matched_indices
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 from course_lib.spherical_stereo.pose import localization as outcomes
+from course_lib.spherical_stereo.pose.confidence import LEAST_CONFIDENCE, why_unable
 from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Localization, PlacedObject
+from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS, Matcher
 from course_lib.spherical_stereo.pose.plausibility import residual_statistics
 from course_lib.spherical_stereo.pose.rigid_fit import TOO_FEW_PAIRS, RigidFitError, fit_covariance, fit_rigid_2d
 from course_lib.spherical_stereo.ranging.object_places import DISTANCES, Distance, greatest_range, place_objects
 from course_lib.spherical_stereo.ranging.triangulation import DIVERGING
 from course_lib.spherical_stereo.ranging.vertical_disparity import FEWEST_MATCHES
-from course_lib.spherical_stereo.semantic_map.association import (
-    ASSOCIATIONS,
-    DISTANCE_TERMS,
-    Observation,
-    PenaltyWeights,
-)
+from course_lib.spherical_stereo.semantic_map.association import DISTANCE_TERMS, Observation, PenaltyWeights
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 IMAGE_SIZE = (1280, 640)
@@ -45,7 +42,8 @@ class SemanticLocalizer:
     """Pose of a spherical stereo camera on a semantic map.
 
     rig: baseline and heights. semantic_map: where things are. detector: anything with `detect(image_bgr)` giving
-    detections, needed by `localize` only. association: "greedy" (the paper's), a name in `ASSOCIATIONS`.
+    detections, needed by `localize` only. association: "greedy" (the paper's), or another name in `ASSOCIATIONS`;
+    "consistent" weighs whole poses against each other, and one less sure than least_confidence, 0 to 1, is not given.
     distance: "box_centre", the paper's way, or "disparity", from the features matched inside the boxes. weights and
     distance_term: of eq. (1). weighted_fit: False, the paper's way, counts all pairs alike; True weighs each by the
     covariance of its observation. image_size: (width, height) of the panoramas that detections given without their
@@ -62,13 +60,14 @@ class SemanticLocalizer:
         rig: StereoRig,
         semantic_map: SemanticMap,
         detector=None,
-        association: str = "greedy",
+        association: Matcher = "greedy",
         distance: Distance = "box_centre",
         weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008 (it cannot change)
         distance_term: str = "absolute",
         weighted_fit: bool = False,
         image_size: tuple[int, int] = IMAGE_SIZE,
         reject_implausible: bool = True,
+        least_confidence: float = LEAST_CONFIDENCE,
     ):
         for name, value, allowed in (
             ("association", association, tuple(ASSOCIATIONS)),
@@ -86,6 +85,9 @@ class SemanticLocalizer:
         self.weights, self.distance_term, self.weighted_fit = PenaltyWeights(*weights), distance_term, weighted_fit
         self.image_size = View.of_detections([], image_size).size
         self.reject_implausible = bool(reject_implausible)
+        if not 0 <= least_confidence <= 1:
+            raise LocalizerError(f"least_confidence must lie between 0 and 1; got {least_confidence!r}")
+        self.least_confidence = float(least_confidence)
 
     def localize(self, upper_image: np.ndarray, lower_image: np.ndarray) -> Localization:
         """Pose from two panoramas: uint8 BGR `(H, W, 3)`, W = 2 H, one size.
@@ -178,13 +180,40 @@ class SemanticLocalizer:
             observations, self.semantic_map, weights=self.weights, distance_term=self.distance_term
         )
         found = Localization(None, UNABLE, observations=observations, association=association)
-        return self._fit(found)
+        return self._fit(found) if association.confidence is None else self._weigh(found)
 
-    def _fit(self, found: Localization) -> Localization:
+    def _weigh(self, found: Localization) -> Localization:
+        """The pose of a matcher that weighed poses, which is fitted already, or why it is not sure enough."""
+        ranked, confidence = found.association.hypotheses, found.association.confidence
+        reason = why_unable(len(ranked), len(found.association.pairs), confidence, self.least_confidence)
+        if reason is not None:
+            others = ", ".join(
+                f"({one.pose.x:.2f}, {one.pose.y:.2f}) m at {np.degrees(one.pose.theta):.0f} degrees ({one.share:.0%})"
+                for one in ranked
+            )
+            explanation = f"confidence {confidence:.2f}, {self.least_confidence:.2f} is asked for"
+            return replace(found, reason=reason, explanation=explanation + (f"; poses: {others}" if others else ""))
+        pose = ranked[0].pose
+        source, target, noise = self._used_points(found)
+        return replace(
+            found,
+            pose=pose,
+            status=OK,
+            covariance=ranked[0].covariance,
+            residuals=pose.apply(source) - target,
+            statistics=None if noise is None else residual_statistics(pose, source, target, noise, noise),
+        )
+
+    def _used_points(self, found: Localization) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+        """Points `(n, 2)` of the used pairs in the body frame and on the map, and the first ones' covariances."""
         used = [found.observations[i] for i, _ in found.used_pairs]
         source = np.array([[one.x, one.y] for one in used]).reshape(-1, 2)
         target = self.semantic_map.positions[[j for _, j in found.used_pairs]].reshape(-1, 2)
         noise = None if any(one.covariance is None for one in used) else np.array([one.covariance for one in used])
+        return source, target, noise
+
+    def _fit(self, found: Localization) -> Localization:
+        source, target, noise = self._used_points(found)
         covariances = noise if self.weighted_fit else None
         try:
             pose = fit_rigid_2d(source, target, covariances=covariances)
@@ -196,7 +225,7 @@ class SemanticLocalizer:
         statistics = residual_statistics(pose, source, target, noise, covariances)
         if self.reject_implausible and statistics.contradict_the_pose:
             explanation = (
-                f"the {len(used)} objects miss their landmarks by {found.rms_residual:.2f} m (root mean square), and "
+                f"the {len(source)} objects miss their landmarks by {found.rms_residual:.2f} m (root mean square), and "
                 f"{statistics.expected_rms:.2f} m may be expected: wrong pairs, a wrong baseline, or another map"
             )
             return replace(

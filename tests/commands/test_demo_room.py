@@ -90,6 +90,7 @@ def test_the_tables_hold_the_papers_numbers_beside_ours(demo):
         (["--seed", "-1"], "--seed must be 0 or more"),
         (["--roll", "97", "0"], "--roll must not be 0"),
         (["--association", "psychic"], "association must be one of"),
+        (["--views", "2"], "--views 2 needs --association consistent"),
         (["--data", "nowhere"], "nowhere"),
         (["--data", "elsewhere", "--seed", "4"], "give one of the two"),
         (["--detector", "nowhere"], "nowhere"),

@@ -80,10 +80,47 @@ def test_every_tilt_is_a_set_of_rooms_of_its_own(made, tmp_path, capsys):
     assert text.count("\n0.3 degrees\n") == 3, "shares, errors of correct poses, errors of all"
 
 
+def test_the_three_matchers_are_counted_beside_each_other_or_the_named_one_alone(made, tmp_path, capsys):
+    words = ["demo", "rooms", "--seeds", "10001", "--poses", "2", "--processes", "1", "--out", str(tmp_path), "--json"]
+    assert main(words) == 0
+    found = json.loads(capsys.readouterr().out)["answers"]
+    assert list(found["one_view"]) == ["greedy", "hungarian", "consistent"]
+    assert found["one_view"]["consistent"]["n"] == 4
+    assert (tmp_path / "risk_coverage.png").stat().st_size > 1000
+    assert main([*words, "--association", "greedy"]) == 0
+    assert list(json.loads(capsys.readouterr().out)["answers"]["one_view"]) == ["greedy"]
+
+
+def test_further_views_are_made_once_and_followed(made, tmp_path, capsys, monkeypatch):
+    asked = []
+
+    def walk(seed, options, detector):
+        asked.append((seed, options.views, options.rooms.poses))
+        views = [{"pose": entry()["pose"], "observations": entry()["sources"]["images"]["observations"]}]
+        return {
+            "seed": seed,
+            "options": options.as_dict(),
+            "sequences": [{"experiment": 1, "name": "00", "views": views}],
+        }
+
+    monkeypatch.setattr("course_lib.experiments.room_views.observe_views", walk)
+    words = ["demo", "rooms", "--seeds", "10001", "--processes", "1", "--out", str(tmp_path)]
+    words += ["--poses", "2", "--views", "2", "--view-poses", "1", "--ablation"]
+    for _ in range(2):
+        assert main(words) == 0
+    text = capsys.readouterr().out
+    assert asked == [(10001, 2, 1)]
+    for part in ("2 views, consistent", "no odometry", "Evidence switched off, wrong map", "all matches right"):
+        assert part in text
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         (["--seeds", "3-1"], "--seeds must be"),
+        (["--views", "0"], "--views must be at least 1"),
+        (["--view-poses", "21"], "--view-poses between 1 and --poses (20)"),
+        (["--views", "2", "--association", "greedy"], "--views above 1 and --ablation are of the consistent matcher"),
         (["--poses", "0"], "--poses must be at least 1"),
         (["--processes", "0"], "--processes must be at least 1"),
         (["--tilts", "0", "11"], "--tilts must be between 0 and 10 degrees; got 11"),

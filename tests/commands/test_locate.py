@@ -57,6 +57,18 @@ def test_the_pose_comes_with_its_sigmas_pairs_and_residuals(pair, capsys):
     assert ranges == {key: pytest.approx(value, rel=0.1) for key, value in expected.items()}
 
 
+def test_the_consistent_matcher_says_how_sure_it_is_and_which_poses_there_are(pair, capsys):
+    found = answer(capsys, *words(pair, "--association", "consistent"))
+    assert found["status"] == "ok"
+    assert math.hypot(found["x_m"] - TRUE_POSE.x, found["y_m"] - TRUE_POSE.y) < 0.15
+    assert found["confidence"] > 0.8
+    assert found["alternatives"][0][:2] == [found["x_m"], found["y_m"]]
+    assert found["rms_residual_m"] < 2 * found["expected_rms_residual_m"]
+    assert main(words(pair, "--association", "consistent")) == 0
+    assert f"confidence {found['confidence']:.2f}" in capsys.readouterr().out
+    assert answer(capsys, *words(pair))["confidence"] is None
+
+
 def test_each_residual_is_that_of_its_own_landmark(pair, capsys):
     """Where the pose puts the object, from its range and azimuth, against the landmark of its row."""
     found = answer(capsys, *words(pair))

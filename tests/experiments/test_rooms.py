@@ -10,6 +10,7 @@ from scipy.stats import norm
 from course_lib.experiments import rooms as rooms_module
 from course_lib.experiments.room import localize_pair
 from course_lib.experiments.room_evaluation import NO_OBJECT, PoseOutcome
+from course_lib.experiments.room_views import ViewsOptions, observe_views
 from course_lib.experiments.rooms import RoomsOptions, observe_room, observe_rooms, stored_map, stored_observations
 from course_lib.experiments.rooms_summary import (
     METHODS,
@@ -23,7 +24,7 @@ from course_lib.experiments.rooms_summary import (
 )
 from course_lib.geometry import wrap_angle
 from course_lib.paths import data_path
-from course_lib.simulation.room.look_alike_recording import RecordingModels
+from course_lib.simulation.room.look_alike_recording import RecordingModels, measurement_poses, surveyed_room
 from course_lib.simulation.room.survey import RoomSurveyModel
 from course_lib.simulation.sensors.panorama_rig import RigModel
 from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -67,6 +68,12 @@ def test_a_record_gives_its_map_and_observations_back_grey_ones_too():
     assert np.isnan(table.hue)
     np.testing.assert_allclose((table.x, table.y), (0.0, 2.0))
     np.testing.assert_allclose(table.covariance, NOISE)
+
+
+def test_a_map_keeps_its_walls_and_does_without():
+    assert stored_map(record()).walls is None
+    walls = [[0.0, 0.0], [5.0, 0.0], [5.0, 4.0]]
+    np.testing.assert_allclose(stored_map(record() | {"walls": walls}).walls, walls)
 
 
 def test_poses_are_judged_by_the_truth_of_the_record():
@@ -287,3 +294,25 @@ def test_rooms_made_by_two_processes_are_the_rooms_that_one_makes(tmp_path):
     for one, other in zip(made[1]["poses"], alone["poses"], strict=True):
         assert one | {"seconds": 0} == other | {"seconds": 0}
     assert made[1]["map"] == alone["map"]
+
+
+@pytest.mark.slow
+def test_the_views_that_follow_are_of_the_same_room_a_few_steps_on(tmp_path):
+    """Made for real, by the course's detector: what is seen of the room lies where its landmarks are."""
+    options = ViewsOptions(RoomsOptions(poses=1, models=PERFECT), views=2)
+    record_ = observe_views(10_210, options, YoloDetector.load(data_path("detector")))
+    assert json.loads(json.dumps(record_)) == record_
+    (sequence,) = record_["sequences"]
+    (view,) = sequence["views"]
+    x, y, heading = view["pose"]
+    room, semantic_map = surveyed_room(10_210, PERFECT)
+    start = measurement_poses(room, 1, 10_210)[0]
+    assert 0.2 <= np.hypot(x - start[0], y - start[1]) <= 0.5
+    turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+    misses = []
+    for one in stored_observations(view):
+        same = [k for k, label in enumerate(semantic_map.labels) if label == one.label]
+        there = turn @ (one.x, one.y) + (x, y)
+        misses.append(np.linalg.norm(semantic_map.positions[same] - there, axis=1).min())
+    assert len(misses) >= 5
+    assert np.median(misses) < 0.3

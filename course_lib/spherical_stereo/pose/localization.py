@@ -83,6 +83,16 @@ class Localization:
     """`(3,)` radians about x, y, z: of the lower camera against the upper one, as the images tell; None: not known."""
 
     @property
+    def confidence(self) -> float | None:
+        """0 to 1; None from a matcher that asks for no pose, or without observations."""
+        return None if self.association is None else self.association.confidence
+
+    @property
+    def alternatives(self) -> tuple:
+        """The poses that were weighed (`PoseHypothesis`), best first; () from a matcher that asks for no pose."""
+        return () if self.association is None else self.association.hypotheses
+
+    @property
     def rms_residual(self) -> float | None:
         """Root mean square of the residuals, metres; None without a fit. `statistics.expected_rms` is its measure."""
         return None if self.residuals is None else float(np.sqrt((self.residuals**2).sum(axis=1).mean()))

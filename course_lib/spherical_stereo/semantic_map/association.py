@@ -8,7 +8,7 @@ is its use, and is blunt, which is its price.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -106,6 +106,10 @@ class Association(NamedTuple):
     """Every observation with every landmark, `(n_observations, n_landmarks)` arrays."""
     steps: tuple[AssociationStep, ...] = ()
     """The rounds, for who wants to watch."""
+    hypotheses: tuple = ()
+    """Poses that a matcher weighed against each other (`pose.consistent`), best first; () where it asks for none."""
+    confidence: float | None = None
+    """How sure the best of them is, 0 to 1; None for a matcher that asks for no pose."""
 
     @property
     def usable_pairs(self) -> tuple[tuple[int, int], ...]:
@@ -243,10 +247,6 @@ def associate_greedy(
         table,
         tuple(steps),
     )
-
-
-ASSOCIATIONS: dict[str, Callable[..., Association]] = {"greedy": associate_greedy}
-"""Matchers by name; all are called as `associate_greedy` is."""
 
 
 def _like_classes(observations: Sequence[Observation], semantic_map: SemanticMap) -> np.ndarray:

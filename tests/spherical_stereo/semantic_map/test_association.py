@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import (
-    ASSOCIATIONS,
     LEAST_DISTANCE,
     AssociationError,
     Observation,
@@ -248,10 +247,6 @@ def test_no_observations_give_no_pairs():
     found = associate_greedy([], ROOM)
     assert found.pairs == found.unassigned == found.steps == ()
     assert found.table.total.shape == (0, 5)
-
-
-def test_the_greedy_matcher_is_found_by_name():
-    assert ASSOCIATIONS["greedy"] is associate_greedy
 
 
 @pytest.mark.parametrize(

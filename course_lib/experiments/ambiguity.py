@@ -1,0 +1,126 @@
+"""Ambiguity of a room before any run: from where would which objects be taken for which others?
+
+Only the map is needed. At every place of a grid the rig is imagined to stand; what it would observe is drawn from the
+stereo camera's covariance and the chances of detection, and a matcher says what it makes of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.spherical_stereo.panorama import StereoRig
+from course_lib.spherical_stereo.pose.evidence import detection_probabilities, free_space_costs
+from course_lib.spherical_stereo.pose.hypotheses import rotations
+from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS, Matcher
+from course_lib.spherical_stereo.ranging.object_places import BOX_CENTRE_SIGMA, CENTROID_SIGMA
+from course_lib.spherical_stereo.ranging.triangulation import triangulation_covariance
+from course_lib.spherical_stereo.semantic_map.association import Association, Observation
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+OBJECT_HEIGHT = 0.5
+"""Metres above the floor of an object's middle, which a 2D map does not know; chosen: a sofa's or a chair's back."""
+RIG = StereoRig(0.3, 1.32)
+"""The paper's, at its lower height."""
+
+
+class AmbiguityMap(NamedTuple):
+    """k places of a grid, and what would be believed there."""
+
+    places: np.ndarray
+    """`(k, 2)` metres, on the map; only where a rig can stand."""
+    confidence: np.ndarray
+    """`(k,)` mean confidence of the right pose, 0 to 1: 0 where it is not the most believed one. Of a matcher that asks
+    for no pose, the share of draws in which all its matches are right."""
+    confused: np.ndarray
+    """`(k, m, m)` share of the belief by which landmark i is taken for landmark j."""
+    step: float
+    """Metres between neighbours."""
+
+    def most_confused(self, n: int = 5) -> list[tuple[int, int, float]]:
+        """The n pairs of landmarks that are confused most, (i, j, mean share over all places), i < j."""
+        both = self.confused.mean(axis=0)
+        both = both + both.T
+        i, j = np.triu_indices(len(both), 1)
+        order = np.argsort(-both[i, j])[:n]
+        return [(int(i[k]), int(j[k]), float(both[i[k], j[k]])) for k in order if both[i[k], j[k]] > 0]
+
+
+def imagined_observations(
+    semantic_map: SemanticMap, pose: np.ndarray, rng: np.random.Generator, rig: StereoRig = RIG
+) -> tuple[list[Observation], list[int]]:
+    """What a rig at a pose `(3,)` [x, y, theta] would observe, and which landmark each observation shows.
+
+    Every landmark is seen with its chance (`detection_probabilities`), at its place with noise of the stereo
+    covariance, in the colour of the map: what is confused here is confused by its place.
+    """
+    chance = detection_probabilities(semantic_map, np.asarray(pose, dtype=np.float64)[None])[0]
+    seen = np.flatnonzero(rng.random(len(semantic_map)) < chance)
+    places = (semantic_map.positions[seen] - pose[:2]) @ rotations(np.array(pose[2]))  # R^T (m - t), row by row
+    observations = []
+    for landmark, place in zip(seen, places, strict=True):
+        covariance = stereo_covariance(place, rig)
+        x, y = rng.multivariate_normal(place, covariance)
+        one = semantic_map.landmarks[landmark]
+        observations.append(Observation(one.label, float(x), float(y), one.hue, one.saturation, covariance))
+    return observations, [int(landmark) for landmark in seen]
+
+
+def stereo_covariance(place: np.ndarray, rig: StereoRig = RIG) -> np.ndarray:
+    """`(2, 2)` of an object at a place `(2,)` in the body frame, square metres, as `object_places` gives it."""
+    upper = np.array([*place, OBJECT_HEIGHT - rig.upper_height])
+    lower = upper + np.array([0.0, 0.0, rig.baseline])
+    sigma = BOX_CENTRE_SIGMA
+    return triangulation_covariance(upper, lower, rig.baseline, sigma, sigma)[:2, :2] + CENTROID_SIGMA**2 * np.eye(2)
+
+
+def ambiguity_map(
+    semantic_map: SemanticMap,
+    rng: np.random.Generator,
+    step: float = 0.5,
+    draws: int = 4,
+    rig: StereoRig = RIG,
+    association: Matcher = "consistent",
+    progress: Callable[[Iterable], Iterable] = iter,
+) -> AmbiguityMap:
+    """The belief at every free place of a grid over the map, averaged over `draws` of what would be seen.
+
+    step: metres between places. The heading is drawn anew each time; a panorama sees all around, and nothing depends
+    on it. association: the matcher whose confusions are asked for. progress: wraps the loop over the places (tqdm).
+    Raises `ValueError` for a step that is not positive or no draw.
+    """
+    if not step > 0 or draws < 1:
+        raise ValueError(f"step must be positive and draws at least 1; got {step!r} and {draws!r}")
+    outline = semantic_map.positions if semantic_map.walls is None else semantic_map.walls
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    x, y = (np.arange(a + step / 2, b, step) for a, b in zip(low, high, strict=True))
+    grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    grid = grid[free_space_costs(semantic_map, np.column_stack([grid, np.zeros(len(grid))])) == 0]
+    confidence, confused = np.zeros(len(grid)), np.zeros((len(grid), len(semantic_map), len(semantic_map)))
+    for k, place in enumerate(progress(grid)):
+        for _ in range(draws):
+            pose = np.array([*place, rng.uniform(-np.pi, np.pi)])
+            observations, shown = imagined_observations(semantic_map, pose, rng, rig)
+            if not observations:
+                continue
+            found = ASSOCIATIONS[association](observations, semantic_map)
+            right, wrong = judged_belief(found, shown, place, step)
+            confidence[k] += right / draws
+            for i, j, share in wrong:
+                confused[k, i, j] += share / draws
+    return AmbiguityMap(grid, confidence, confused, step)
+
+
+def judged_belief(found: Association, shown: list[int], place: np.ndarray, near: float) -> tuple[float, list]:
+    """How sure an association is of what is right, and its wrong matches: (landmark shown, landmark taken, share).
+
+    shown: the landmark of every observation. A pose is right within `near` metres of the place.
+    """
+    if found.confidence is None:
+        wrong = [(shown[i], j, 1.0) for i, j in found.usable_pairs if shown[i] != j]
+        return float(not wrong), wrong
+    wrong = [(shown[i], j, one.share) for one in found.hypotheses for i, j in one.pairs if shown[i] != j]
+    is_near = bool(found.hypotheses) and np.hypot(*(np.array(found.hypotheses[0].pose[:2]) - place)) < near
+    return found.confidence if is_near else 0.0, wrong

@@ -1,0 +1,53 @@
+"""Figures of rooms that look alike: from where which objects are confused, and what a threshold on confidence buys."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from matplotlib.figure import Figure
+
+from course_lib.experiments.ambiguity import AmbiguityMap
+from course_lib.plots.figures import VERMILION, line_style, new_figure
+from course_lib.plots.room_figures import map_axes
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+CONFUSIONS_DRAWN = 6
+LEAST_SHARE = 0.01  # of the belief, below which a confusion is not drawn
+
+
+def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str = "Ambiguity") -> Figure:
+    """The room from above: dark squares where the right pose is not sure, dashed lines between objects confused."""
+    figure, axes = new_figure(size=(6.4, 5.2))
+    map_axes(axes, semantic_map, title)
+    squares = axes.scatter(
+        *found.places.T,
+        c=1.0 - found.confidence,
+        cmap="cividis_r",
+        vmin=0.0,
+        vmax=1.0,
+        marker="s",
+        s=(found.step * 46) ** 2,
+        zorder=0,
+    )
+    figure.colorbar(squares, ax=axes, label="doubt about the right pose (0: sure)", shrink=0.85)
+    for i, j, share in found.most_confused(CONFUSIONS_DRAWN):
+        if share >= LEAST_SHARE:
+            (x1, y1), (x2, y2) = semantic_map.positions[[i, j]]
+            axes.plot([x1, x2], [y1, y2], "--", color=VERMILION, linewidth=0.8 + 5.0 * min(share, 0.6))
+            axes.text((x1 + x2) / 2, (y1 + y2) / 2, f"{100 * share:.0f} %", color=VERMILION, fontsize=8)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.12), ncols=4, fontsize=8)
+    return figure
+
+
+def risk_coverage_figure(
+    curves: Mapping[str, Mapping[str, list[float]]], title: str = "What a threshold buys"
+) -> Figure:
+    """Share of the answers that are wrong over the share of poses answered, as the threshold falls; a line a name."""
+    figure, axes = new_figure()
+    for index, (name, curve) in enumerate(curves.items()):
+        style = line_style(index) | {"marker": ""}
+        axes.step(curve["coverage_percent"], curve["risk_percent"], where="post", label=name, **style)
+    axes.set(title=title, xlabel="poses answered [%]", ylabel="of them wrong [%]", xlim=(0, 101))
+    axes.set_ylim(bottom=-0.2)
+    axes.legend()
+    return figure

@@ -1,0 +1,181 @@
+"""Poses that two matches are enough for: every pair of observations laid on every pair of landmarks that it may show.
+
+Beyond the paper, which matches first and fits afterwards. Where objects look alike no match can be believed alone; but
+two matches already give a pose, and a pose can be judged by everything else that is seen (`evidence`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.semantic_map.association import Observation
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+DISTANCE_GATE = 3.5
+"""Standard deviations by which two distances may differ and still be one (chosen: of right pairs 1 in 2,000 are lost,
+were the covariances exact)."""
+LEAST_DISTANCE = 0.5
+"""Metres between two landmarks, and between two observations, below which they tell no heading worth having."""
+UNKNOWN_SIGMA = 0.3
+"""Metres, standard deviation of a place whose covariance nobody gave (chosen)."""
+MAP_SIGMA = 0.02
+"""Metres, standard deviation of a landmark's coordinates: a tape measure, and what counts as an object's middle."""
+GAUSS_NEWTON_STEPS = 4
+
+
+class Scene(NamedTuple):
+    """Observations and map as arrays, once: what every part of the search reads."""
+
+    places: np.ndarray
+    """`(n, 2)` of the observations, body frame, metres."""
+    covariances: np.ndarray
+    """`(n, 2, 2)` of the places, body frame, square metres."""
+    hues: np.ndarray
+    """`(n,)` degrees, NaN: grey."""
+    saturations: np.ndarray
+    """`(n,)` percent."""
+    like: np.ndarray
+    """`(n, m)` bool: whether the classes of an observation and a landmark agree."""
+    semantic_map: SemanticMap
+    """Its m landmarks."""
+
+
+class PairPoses(NamedTuple):
+    """Poses of pairs of matches, h of them."""
+
+    poses: np.ndarray
+    """`(h, 3)` [x, y, theta], metres and radians."""
+    covariances: np.ndarray
+    """`(h, 3, 3)` of them: what two matches leave open."""
+    observations: np.ndarray
+    """`(h, 2)` indices of the two observations."""
+    landmarks: np.ndarray
+    """`(h, 2)` indices of the landmarks they were laid on."""
+
+
+class PoseHypothesis(NamedTuple):
+    """One pose, and how well it explains what was seen."""
+
+    pose: Pose2D
+    covariance: np.ndarray
+    """`(3, 3)` of [x, y, theta], metres and radians, squared."""
+    pairs: tuple[tuple[int, int], ...]
+    """(observation, landmark) that it matches."""
+    score: float
+    """Nats; the higher the better. 0: as good as calling every observation clutter."""
+    chi_square: float
+    """Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers."""
+    missed: tuple[int, ...]
+    """Landmarks that would have been seen from there more likely than not, and were not."""
+    share: float = 0.0
+    """Of the belief, among all distinct poses and "none of them": 0 to 1."""
+
+
+def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> Scene:
+    """The arrays of observations and map. An observation without covariance gets `UNKNOWN_SIGMA` in each direction."""
+    n = len(observations)
+    labels = np.array([canonical_label(one.label) for one in observations], dtype=object)
+    unknown = UNKNOWN_SIGMA**2 * np.eye(2)
+    return Scene(
+        np.array([[one.x, one.y] for one in observations], dtype=np.float64).reshape(n, 2),
+        np.array([unknown if one.covariance is None else one.covariance for one in observations]).reshape(n, 2, 2),
+        np.array([one.hue for one in observations], dtype=np.float64),
+        np.array([one.saturation for one in observations], dtype=np.float64),
+        labels[:, None] == np.array(semantic_map.labels, dtype=object)[None],
+        semantic_map,
+    )
+
+
+def pairs_of_matches(scene: Scene, gate: float = DISTANCE_GATE) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of matches that can both be right: indices `(h, 2)` of observations and of landmarks.
+
+    Like classes, landmarks `LEAST_DISTANCE` apart (so distinct ones), and | |z_i - z_k| - |m_j - m_l| | <= gate sigma,
+    with sigma^2 = u^T (C_i + C_k) u along the line u between the observations. A distance does not change with the
+    pose: what a pair is kept or thrown away for is known before there is one.
+    """
+    i, j = np.nonzero(scene.like)
+    first, second = np.nonzero(i[:, None] < i[None])
+    observations = np.stack([i[first], i[second]], axis=1)
+    landmarks = np.stack([j[first], j[second]], axis=1)
+    seen = scene.places[observations[:, 1]] - scene.places[observations[:, 0]]
+    true = scene.semantic_map.positions[landmarks[:, 1]] - scene.semantic_map.positions[landmarks[:, 0]]
+    seen_length, true_length = np.linalg.norm(seen, axis=1), np.linalg.norm(true, axis=1)
+    along = seen / np.maximum(seen_length, 1e-9)[:, None]
+    noise = scene.covariances[observations].sum(axis=1) + 2 * MAP_SIGMA**2 * np.eye(2)
+    sigma = np.sqrt(np.einsum("hi,hij,hj->h", along, noise, along))
+    kept = (np.abs(seen_length - true_length) <= gate * sigma) & (
+        np.minimum(seen_length, true_length) >= LEAST_DISTANCE
+    )
+    return observations[kept], landmarks[kept]
+
+
+def pair_poses(scene: Scene, gate: float = DISTANCE_GATE) -> PairPoses:
+    """The pose of every pair of matches (`pairs_of_matches`), with its covariance.
+
+    min over x, y, theta of sum_{k=1,2} r_k^T (R C_k R^T)^-1 r_k,  r_k = R z_k + t - m_k: `fit_poses`, begun where the
+    line between the observations lies on the line between the landmarks.
+    """
+    observations, landmarks = pairs_of_matches(scene, gate)
+    places, targets = scene.places[observations], scene.semantic_map.positions[landmarks]
+    seen, true = places[:, 1] - places[:, 0], targets[:, 1] - targets[:, 0]
+    theta = np.arctan2(true[:, 1], true[:, 0]) - np.arctan2(seen[:, 1], seen[:, 0])
+    middle = targets.mean(axis=1) - (rotations(theta) @ places.mean(axis=1)[..., None])[..., 0]
+    start = np.column_stack([middle, theta])
+    poses, covariances = fit_poses(start, places, targets, scene.covariances[observations])
+    return PairPoses(poses, covariances, observations, landmarks)
+
+
+def fit_poses(
+    start: np.ndarray,
+    places: np.ndarray,
+    targets: np.ndarray,
+    covariances: np.ndarray,
+    used: np.ndarray | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Anisotropic fits of many poses at once: poses `(h, 3)` and their covariances `(h, 3, 3)`.
+
+    Gauss-Newton steps from `start` `(h, 3)` on sum_k r_k^T (R C_k R^T + `MAP_SIGMA`^2 I)^-1 r_k. places, targets:
+    `(h, k, 2)` in the body frame and on the map; covariances: `(h, k, 2, 2)` in the body frame; used: `(h, k)` bool,
+    the matches that count (None: all), two or more of each pose. A stereo camera knows where an object's bearing is to
+    centimetres and its distance to decimetres: counted alike, as in the paper's fit, the distances spoil what the
+    bearings know.
+    """
+    poses = np.array(start, dtype=np.float64).reshape(-1, 3)
+    normal = np.tile(np.eye(3), (len(poses), 1, 1))
+    for _ in range(GAUSS_NEWTON_STEPS if len(poses) else 0):
+        turned, jacobians, spread = seen_from(poses, places, covariances)
+        information = np.linalg.inv(spread + MAP_SIGMA**2 * np.eye(2))
+        if used is not None:
+            information = information * used[..., None, None]
+        weighted = np.swapaxes(jacobians, -1, -2) @ information
+        normal = (weighted @ jacobians).sum(axis=1)
+        slope = (weighted @ (turned - targets)[..., None]).sum(axis=1)
+        poses = poses - np.linalg.solve(normal, slope)[..., 0]
+    poses[:, 2] = wrap_angle(poses[:, 2])
+    return poses, np.linalg.inv(normal)
+
+
+def seen_from(poses: np.ndarray, places: np.ndarray, covariances: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Observations as they lie on the map, seen from each pose `(h, 3)`: places `(h, k, 2)`, their derivative with
+    respect to the pose `(h, k, 2, 3)`, and their covariances R C R^T `(h, k, 2, 2)`.
+
+    places `(h or 1, k, 2)`, covariances `(h or 1, k, 2, 2)`: body frame.
+    """
+    rotation = rotations(poses[:, 2])[:, None]
+    turned = (rotation @ places[..., None])[..., 0]
+    jacobians = np.zeros((*turned.shape, 3))
+    jacobians[..., 0, 0] = jacobians[..., 1, 1] = 1.0
+    jacobians[..., 0, 2], jacobians[..., 1, 2] = -turned[..., 1], turned[..., 0]
+    return turned + poses[:, None, :2], jacobians, rotation @ covariances @ np.swapaxes(rotation, -1, -2)
+
+
+def rotations(theta: np.ndarray) -> np.ndarray:
+    """R(theta) `(..., 2, 2)` of angles `(...)`, radians."""
+    cosine, sine = np.cos(theta), np.sin(theta)
+    return np.stack([np.stack([cosine, -sine], axis=-1), np.stack([sine, cosine], axis=-1)], axis=-2)

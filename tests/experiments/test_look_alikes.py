@@ -1,0 +1,183 @@
+"""Answers within half a metre and 10 degrees: who is counted as what, how surely, and what a threshold buys."""
+
+import json
+
+import numpy as np
+import pytest
+
+from course_lib.experiments import look_alikes
+from course_lib.experiments.look_alikes import (
+    Answer,
+    OdometryModel,
+    answers_of_evidence,
+    answers_of_rooms,
+    answers_of_sequences,
+    answers_of_thinned_sequences,
+    answers_summary,
+    answers_table,
+    is_right,
+    measured_motion,
+    pose_errors,
+    risk_coverage,
+    why_not_answered,
+)
+from course_lib.experiments.room_views import ViewsOptions, stored_sequences
+from course_lib.experiments.rooms import record_of_observations
+from course_lib.spherical_stereo.pose.evidence import Evidence
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from tests.spherical_stereo.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed, scattered
+
+STEPS = (POSE, POSE + [0.3, -0.1, 0.2], POSE + [0.5, 0.2, 0.3])  # noqa: RUF005 (they are arrays)
+
+
+def record_of(semantic_map, seed=7, which=None):
+    """A room's record with one pose at each height; which: the landmarks that are seen."""
+    indices = list(range(len(semantic_map))) if which is None else list(which)
+    entry = {
+        "observations": record_of_observations(observed(semantic_map, POSE, indices)),
+        "true_landmarks": indices,
+    }
+    pose = {"pose": POSE.tolist(), "name": "00", "sources": {"images": entry, "exact_boxes": entry}}
+    return {
+        "seed": seed,
+        "map": [[one.label, one.x, one.y, one.hue, one.saturation] for one in semantic_map.landmarks],
+        "walls": np.asarray(semantic_map.walls).tolist(),
+        "poses": [pose | {"experiment": 1}, pose | {"experiment": 2}],
+    }
+
+
+def views_of(semantic_map, seed=7, which=None):
+    views = [
+        {"pose": list(map(float, pose)), "observations": record_of_observations(observed(semantic_map, pose, which))}
+        for pose in STEPS[1:]
+    ]
+    options = ViewsOptions().as_dict()
+    return {"seed": seed, "options": options, "sequences": [{"experiment": 2, "name": "00", "views": views}]}
+
+
+def answer(kind="correct", confidence=0.9, right=True, seed=1, errors=(0.1, 0.2, 3.0), all_right=True):
+    return Answer(seed, 1, "00", "consistent", kind, confidence, right, *errors, all_right)
+
+
+@pytest.mark.parametrize(
+    ("error", "right"),
+    [((0.3, 0.39, 9.9), True), ((0.4, 0.4, 0.0), False), ((0.0, 0.0, 10.1), False), ((np.nan,) * 3, False)],
+)
+def test_correct_is_within_half_a_metre_and_ten_degrees(error, right):
+    assert is_right(error) is right
+
+
+def test_a_heading_is_wrong_the_short_way_round():
+    errors = pose_errors(Pose2D(1.0, 2.0, np.pi - 0.01), (1.1, 1.8, -np.pi + 0.01))
+    assert errors == pytest.approx((0.1, 0.2, np.degrees(0.02)))
+
+
+def test_every_matcher_answers_and_only_the_consistent_one_says_that_it_cannot():
+    found = {one.method: one for one in answers_of_rooms([record_of(SYMMETRIC)])}
+    assert found["consistent"].kind == "unanswered"
+    assert {found[name].kind for name in ("greedy", "hungarian")} <= {"correct", "wrong"}
+    assert found["greedy"].confidence == 1.0
+    right = {one.method: one for one in answers_of_rooms([record_of(PLANTED)])}["consistent"]
+    assert (right.kind, right.all_matches_right, right.best_is_right) == ("correct", True, True)
+    assert right.dx_m < 0.01
+
+
+def test_on_a_wrong_map_every_answer_is_wrong():
+    rng = np.random.default_rng(27)
+    rooms = [record_of(scattered(rng), seed=1), record_of(scattered(rng), seed=2)]
+    variants = {"everything": Evidence(), "gap_alone": Evidence(absolute=False)}
+    found = answers_of_evidence(rooms, variants, wrong_map=True)
+    assert {one.kind for one in found} <= {"wrong", "unanswered"}
+    assert not any(one.all_matches_right or one.best_is_right for one in found)
+    assert {one.kind for one in found if one.method == "everything"} == {"unanswered"}
+    own = answers_of_evidence(rooms, variants)
+    assert {one.kind for one in own if one.method == "everything"} == {"correct"}
+
+
+def test_a_sequence_begins_with_the_rooms_own_pose():
+    room, views = record_of(PLANTED), views_of(PLANTED)
+    (sequence,) = stored_sequences(room, views)
+    np.testing.assert_allclose(sequence.poses, STEPS)
+    assert [len(one) for one in sequence.observations] == [6, 6, 6]
+    assert sequence.experiment == 2
+
+
+def test_what_the_first_view_told_is_known_after_the_last():
+    """The plant is in the first view only; the views after it are of a symmetric room."""
+    found = answers_of_sequences([record_of(PLANTED)], [views_of(PLANTED, which=range(5))])
+    assert {one.method: one.kind for one in found} == {"odometry": "correct", "no_odometry": "correct"}
+    assert {one.all_matches_right for one in found} == {None}
+    nothing = answers_of_sequences([record_of(PLANTED, which=range(5))], [views_of(PLANTED, which=range(5))])
+    assert {one.kind for one in nothing} == {"unanswered"}
+
+
+def test_thinned_sequences_are_judged_after_every_view_and_see_less(monkeypatch):
+    monkeypatch.setattr(look_alikes, "LEFT_OUT", 0.0)
+    whole = answers_of_thinned_sequences([record_of(PLANTED)], [views_of(PLANTED)])
+    assert [one.method for one in whole] == [
+        f"{n}_views_{way}" for n in (1, 2, 3) for way in ("odometry", "no_odometry")
+    ]
+    assert {one.kind for one in whole} == {"correct"}
+    monkeypatch.setattr(look_alikes, "LEFT_OUT", 1.0)
+    nothing = answers_of_thinned_sequences([record_of(PLANTED)], [views_of(PLANTED)])
+    assert {one.kind for one in nothing} == {"unanswered"}
+
+
+def test_odometry_is_the_true_motion_with_its_noise():
+    rng, model = np.random.default_rng(2), OdometryModel()
+    start, end = np.array([1.0, 1.0, np.pi / 2]), np.array([1.0, 3.0, np.pi / 2 + 0.5])
+    drawn = np.array([measured_motion(start, end, rng, model)[:3] for _ in range(400)])
+    np.testing.assert_allclose(drawn.mean(axis=0), [2.0, 0.0, 0.5], atol=0.03)
+    covariance = measured_motion(start, end, rng, model).covariance
+    np.testing.assert_allclose(np.sqrt(np.diag(covariance)), [0.11, 0.11, np.deg2rad(1.0) + 0.025])
+    np.testing.assert_allclose(drawn.std(axis=0), np.sqrt(np.diag(covariance)), rtol=0.15)
+
+
+def test_the_table_counts_kinds_and_averages_the_errors_of_the_correct():
+    answers = [answer(), answer(errors=(0.3, 0.0, 1.0), all_right=False), answer("wrong", right=False, seed=2)]
+    answers.append(answer("unanswered", 0.2, True, 2, (np.nan,) * 3, False))
+    table = answers_table(answers)
+    assert (table["correct_percent"], table["wrong_percent"], table["unanswered_percent"]) == (50.0, 25.0, 25.0)
+    assert (table["all_matches_right_percent"], table["best_is_right_percent"]) == (50.0, 75.0)
+    assert (table["mean_dx_m"], table["mean_dy_m"], table["mean_dtheta_deg"]) == pytest.approx((0.2, 0.1, 2.0))
+    assert table["wrong_wilson_percent"][0] > 0
+    assert table["correct_rooms_percent"] == [0.0, 100.0]
+    unknown = answers_table([one._replace(all_matches_right=None) for one in answers])
+    assert unknown["all_matches_right_percent"] is None
+
+
+def test_risk_over_coverage_goes_through_every_threshold():
+    answers = [
+        answer(confidence=c, right=r) for c, r in ((0.9, True), (0.8, False), (0.7, True), (0.7, True), (0, False))
+    ]
+    curve = risk_coverage(answers)
+    assert curve["threshold"] == [0.9, 0.8, 0.7]
+    assert curve["coverage_percent"] == [20.0, 40.0, 80.0]
+    assert curve["risk_percent"] == [0.0, 50.0, 25.0]
+
+
+def test_too_few_objects_are_told_from_too_like_ones():
+    rooms = [record_of(PLANTED, seed=1, which=(0, 5)), record_of(PLANTED, seed=2)]
+    counts = why_not_answered(rooms, answers_of_rooms(rooms, ["consistent"]))
+    assert (counts["unanswered_observations"], counts["correct_observations"]) == (2.0, 6.0)
+    assert counts["wrong_observations"] is None
+
+
+def test_the_summary_holds_what_was_asked_for_and_is_json(monkeypatch):
+    monkeypatch.setattr(look_alikes, "ABLATION", {"everything": Evidence()})
+    rooms, views = [record_of(PLANTED)], [views_of(PLANTED)]
+    short = answers_summary(rooms, ["greedy"])
+    assert set(short) == {"one_view"}
+    whole = answers_summary(rooms, views=views, ablation=True)
+    assert set(whole) == {
+        "one_view",
+        "risk_coverage",
+        "why_unanswered",
+        "n_views",
+        "several_views",
+        "thinned_views",
+        "ablation",
+    }
+    assert list(whole["one_view"]) == ["greedy", "hungarian", "consistent"]
+    assert whole["n_views"] == 3
+    json.dumps(whole, allow_nan=False)
