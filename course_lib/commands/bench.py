@@ -57,13 +57,9 @@ def run(arguments: argparse.Namespace) -> int:
     arguments.out.mkdir(parents=True, exist_ok=True)
     words = ["--quick"] if arguments.quick else ["--figure", str((arguments.out / "bench.png").resolve())]
     words += ["--recording", str(arguments.recording.resolve())] if arguments.recording else []
-    path = os.pathsep.join([str(ROOT / "benchmarks"), str(TOOLS), os.environ.get("PYTHONPATH", "")])
-    environment = os.environ | {"PYTHONPATH": path.rstrip(os.pathsep)}
-    if sys.platform.startswith("linux"):
-        environment["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
     done = subprocess.run(
         [sys.executable, "-P", str(ROOT / "benchmarks" / "measure.py"), *words],
-        env=environment,
+        env=tools_environment(),
         stdout=subprocess.PIPE,
         text=True,
     )
@@ -74,6 +70,15 @@ def run(arguments: argparse.Namespace) -> int:
     (arguments.out / "bench.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     print(json.dumps(result) if arguments.json else table(result))
     return 0
+
+
+def tools_environment() -> dict[str, str]:
+    """The environment of a process that finds benchmarks/ and the tools in `.bench`."""
+    path = os.pathsep.join([str(ROOT), str(ROOT / "benchmarks"), str(TOOLS), os.environ.get("PYTHONPATH", "")])
+    environment = os.environ | {"PYTHONPATH": path.rstrip(os.pathsep)}
+    if sys.platform.startswith("linux"):
+        environment["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
+    return environment
 
 
 def install_tools() -> str | None:

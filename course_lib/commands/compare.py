@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 from course_lib.commands.arguments import parse_seeds, require_output_folder
@@ -33,6 +35,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seeds", default="1", metavar="A-B", help="seeds of the filters (default: 1)")
     parser.add_argument(
         "--out", type=Path, default=Path("results/compare"), metavar="FOLDER", help="for compare.jsonl and compare.json"
+    )
+    parser.add_argument(
+        "--icp",
+        action="store_true",
+        help="beside them, point-to-plane ICP of each frame against the map: Open3D, installed as for bench",
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
 
@@ -67,10 +74,40 @@ def run(arguments: argparse.Namespace) -> int:
         thinned = "" if point["method"] == "floor" or everies == [1] else f", every {point['every']}"
         grouped.setdefault(row_name(point["method"]) + thinned, []).append(row["result"])
     rows = {name: pooled(results) for name, results in grouped.items()}
+    if arguments.icp:
+        rows |= {name: pooled([run]) for name, run in icp_runs(arguments.map, arguments.sequence, everies).items()}
     result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
     write_results(arguments.out / "compare.json", result)
     print(json.dumps(result) if arguments.json else six_degrees_table(rows))
     return 0
+
+
+def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, dict[str, list]]:
+    """Errors of every frame by ICP, by variant and thinning, as `run_frames` has them; ICP never says that it is lost.
+
+    Raises `RuntimeError` where Open3D cannot be installed or ends with an error.
+    """
+    from course_lib.commands.bench import ROOT, install_tools, tools_environment
+
+    why = install_tools()
+    if why:
+        raise RuntimeError(f"--icp needs Open3D, which could not be installed: {why}")
+    words = ["--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
+    done = subprocess.run(
+        [sys.executable, "-P", ROOT / "benchmarks" / "icp.py", *words],
+        env=tools_environment(),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    if done.returncode:
+        raise RuntimeError(f"ICP ended with code {done.returncode}; what it said stands above")
+    runs = {}
+    for name, thinned in json.loads(done.stdout.splitlines()[-1]).items():
+        for every, run in thinned.items():
+            n = len(run["position_m"])
+            told = name if everies == [1] else f"{name}, every {every}"
+            runs[told] = run | {"status": ["tracked"] * n, "renders": [0] * n, "score": [float("nan")] * n}
+    return runs
 
 
 def _numbers(option: str, text: str) -> list[int]:

@@ -103,6 +103,7 @@ def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callabl
 def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:
     """The numbers of a row of the table, of all frames of some runs together."""
     position, rotation = (np.concatenate([run[name] for run in runs]) for name in ("position_m", "rotation_deg"))
+    scores = np.concatenate([run["score"] for run in runs])
     lost = np.concatenate([run["status"] for run in runs]) == "lost"
     wrong = (position > WRONG_POSITION) | (rotation > WRONG_ROTATION_DEG)
     close = (position <= 0.05) & (rotation <= 5.0)
@@ -116,7 +117,7 @@ def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:
         "wrong_called_lost": int((wrong & lost).sum()),
         "good": int(close.sum()),
         "good_called_lost": int((close & lost).sum()),
-        "median_score": float(np.nanmedian(np.concatenate([run["score"] for run in runs]))),
+        "median_score": None if np.isnan(scores).all() else float(np.nanmedian(scores)),
         "mean_renders": float(np.mean(np.concatenate([run["renders"] for run in runs]))),
         "most_renders": int(max(max(run["renders"]) for run in runs)),
     }

@@ -1,6 +1,7 @@
 """`compare` and `demo corridor --dof 6`: filters in six degrees of freedom side by side."""
 
 import json
+from subprocess import CompletedProcess
 
 import pytest
 
@@ -67,3 +68,21 @@ def test_what_does_not_go_with_six_degrees_is_told(tmp_path, capsys):
     for options in (["--kindnesses"], ["--recording", "shipped"], ["--methods", "fallon"]):
         assert main(["demo", "corridor", "--dof", "6", "--out", str(tmp_path / "out"), *options]) == 2
         assert options[0] in capsys.readouterr().err
+
+
+def test_icp_stands_beside_them_pooled_as_they_are(short, tmp_path, capsys, monkeypatch):
+    """Open3D lives in an environment of its own: here its errors are given."""
+    told = {"ICP, gates 0.15, 0.05 m": {"1": {"position_m": [0.01, 0.02, 0.5], "rotation_deg": [1.0, 1.0, 1.0]}}}
+    monkeypatch.setattr("course_lib.commands.bench.install_tools", lambda: None)
+    monkeypatch.setattr(
+        "course_lib.commands.compare.subprocess.run",
+        lambda *words, **options: CompletedProcess(words, 0, stdout=json.dumps(told) + "\n"),
+    )
+    words = ["compare", *short, "--methods", "floor", "--icp", "--out", str(tmp_path / "out"), "--json"]
+    assert main(words) == 0
+    row = json.loads(capsys.readouterr().out)["rows"]["ICP, gates 0.15, 0.05 m"]
+    assert (row["frames"], row["wrong"], row["wrong_called_lost"]) == (3, 1, 0)
+    assert row["within_5cm_5deg_percent"] == pytest.approx(200 / 3)
+    monkeypatch.setattr("course_lib.commands.bench.install_tools", lambda: "no network")
+    assert main(words) != 0
+    assert "no network" in capsys.readouterr().err
