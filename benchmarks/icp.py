@@ -24,6 +24,7 @@ from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 GATES = {"gates 0.15, 0.05 m": (0.15, 0.05), "gates 0.5, 0.15, 0.05 m": (0.5, 0.15, 0.05)}
 MAP_POINTS = 300_000
 ITERATIONS = 30
+VOXEL = 0.03  # metres: of the frame's points, one a voxel; all of them give the same errors and take three times as long
 
 
 def map_cloud(scene_map: SceneMap) -> o3d.geometry.PointCloud:
@@ -48,6 +49,7 @@ def follow(
         points = camera.points(sequence.depth(index)).reshape(-1, 3)
         source = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points[np.isfinite(points).all(axis=1)]))
         guess = pose @ motion if velocity else pose
+        source = source.voxel_down_sample(VOXEL)
         for gate in gates:
             result = o3d.pipelines.registration.registration_icp(source, target, gate, guess, estimation, criteria)
             guess = result.transformation

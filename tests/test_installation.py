@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 METHODS = ("geometry.py", "depth_mcl", "spherical_stereo")
 # What only the lessons, the commands or the tests have.
-LESSONS_ONLY = ("jupyterlab", "ipywidgets", "IPython", "matplotlib", "pyvista", "tqdm", "filterpy", "pytest", "nbval")
+LESSONS_ONLY = ("jupyterlab", "ipywidgets", "IPython", "matplotlib", "pyvista", "tqdm", "pytest", "nbval")
 
 # Refuses the named packages, imports every module of the two methods, and takes one step of each.
 USE_THE_METHODS = """
