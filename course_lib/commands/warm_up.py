@@ -8,14 +8,18 @@ from __future__ import annotations
 
 
 def compile_loops() -> None:
-    """Renders one depth image and weighs it, as every frame of the filter does."""
+    """Renders one depth image, weighs it and refines by it, as every frame of the filters does."""
     import numpy as np
 
     from course_lib.commands.depth_image_probe import measure
+    from course_lib.depth_mcl.annealed.compiled_refinement import normal_equations
+    from course_lib.depth_mcl.camera import DepthCamera
     from course_lib.depth_mcl.compiled_likelihood import likelihood
 
     measure("raster")
     likelihood(np.ones((2, 2), dtype=np.float32), np.ones((1, 2, 2), dtype=np.float32))
+    small = DepthCamera.from_fov(4, 3, 60.0, 45.0)
+    normal_equations(np.ones(small.shape, dtype=np.float32), np.ones((1, *small.shape), dtype=np.float32), small, 0.1)
 
 
 def simplify_corridor() -> None:

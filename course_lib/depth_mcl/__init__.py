@@ -15,14 +15,19 @@
   beyond the paper
     uncertainty          how far off the estimate may be, which the paper's weights cannot say
     tracking             whether the filter still holds the track
+    annealed/            section 5: six degrees of freedom
+    lost_and_found/      from an unknown start, and after the camera was carried away
 
 State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`.
 """
 
+from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.lost_and_found.global_search import GlobalSearch, Places
+from course_lib.depth_mcl.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, Motion, propagate
 from course_lib.depth_mcl.particle_filter import (
     effective_sample_size,
@@ -40,14 +45,19 @@ __all__ = [
     "BODY_AXES",
     "TANGENT_SPACE",
     "WORLD_AXES",
+    "AnnealedEstimate",
+    "AnnealedLocalizer",
     "DepthCamera",
     "DepthImageError",
     "DepthRenderer",
     "Estimate",
+    "GlobalSearch",
     "MonteCarloLocalizer",
     "Motion",
     "NoMeasurementWarning",
     "OpenGLError",
+    "Places",
+    "RecoveringLocalizer",
     "RendererClosedError",
     "SceneMap",
     "SceneMapError",

@@ -5,6 +5,7 @@ import pytest
 
 from course_lib.commands.warm_up import compile_loops, simplify_corridor
 from course_lib.depth_mcl import (
+    AnnealedLocalizer,
     DepthCamera,
     DepthRenderer,
     MonteCarloLocalizer,
@@ -12,26 +13,28 @@ from course_lib.depth_mcl import (
     compiled_likelihood,
     simplification,
 )
+from course_lib.depth_mcl.annealed import compiled_refinement
 from course_lib.depth_mcl.rendering import rasterizer
 
 
 def compiled_forms():
     """How many forms, one for each set of types, of each compiled loop there are."""
-    loops = [loop for module in (rasterizer, compiled_likelihood) for loop in vars(module).values()]
-    return {loop.__name__: len(loop.signatures) for loop in loops if hasattr(loop, "signatures")}
+    modules = (rasterizer, compiled_likelihood, compiled_refinement)
+    loops = {(m.__name__, name): loop for m in modules for name, loop in vars(m).items() if hasattr(loop, "signatures")}
+    return {name: len(loop.signatures) for name, loop in loops.items()}
 
 
 def test_the_filter_compiles_nothing_that_the_set_up_did_not():
     compile_loops()
     before = compiled_forms()
-    assert before["draw_views"]
-    assert before["_sums"]
+    for module, loop in ((rasterizer, "draw_views"), (compiled_likelihood, "_sums"), (compiled_refinement, "_sums")):
+        assert before[module.__name__, loop]
     vertices = np.array([[2.0, -5, -5], [-2, 5, -5], [2, 0, 5]])
     camera = DepthCamera.from_fov(16, 12, 60.0, 45.0)
     with DepthRenderer(SceneMap(vertices, np.array([[0, 1, 2]])), camera) as renderer:
-        localizer = MonteCarloLocalizer(renderer, n_particles=20, seed=1)
-        localizer.initialize(np.zeros(6))
-        localizer.step(np.full((12, 16), 2.0, dtype=np.float32))
+        for localizer in (MonteCarloLocalizer(renderer, 20, seed=1), AnnealedLocalizer(renderer, 20, seed=1)):
+            localizer.initialize(np.zeros(6))
+            localizer.step(np.full((12, 16), 2.0, dtype=np.float32))
     assert compiled_forms() == before
 
 
