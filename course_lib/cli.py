@@ -23,6 +23,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
     "demo rooms": ("demo_rooms", "run paper 2's experiment in generated rooms that nobody shaped, with intervals"),
     "demo lost": ("demo_lost", "kidnap the camera, start it anywhere, and count how often it finds itself"),
+    "demo finale": (
+        "demo_finale",
+        "both papers in one world: panoramas find the robot, the depth camera makes it exact",
+    ),
     "sweep": ("sweep", "run an experiment for many seeds on all processors: table 1 with confidence intervals"),
     "bench": ("bench", "measure the depth filter side by side with Embree, PyVista and others"),
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),

@@ -1,0 +1,96 @@
+"""Both methods joined: the best of several starts, and what is told of the places."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.experiments.finale import CAMERA_HEIGHT, best_start, one_place, robot_states, summarize
+from course_lib.simulation.room.depth_world import depth_caster, room_triangles
+from course_lib.simulation.room.look_alike_room import make_look_alike_room
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from tests.depth_mcl.shapes import SMALL, furnished_room
+
+TRUE = np.array([-1.2, 0.5, -0.3])
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    """A room whose floor is at z = -3, seen from a metre above z = 0."""
+    with DepthRenderer(furnished_room(), SMALL) as opened:
+        yield opened
+
+
+class Sensor:
+    """A camera that measures the map itself."""
+
+    def __init__(self, renderer):
+        self.renderer = renderer
+
+    def capture(self, caster, state, rng):
+        return SimpleNamespace(depth=self.renderer.render(state)[0])
+
+
+def place(renderer, found):
+    return one_place(found, TRUE, renderer, Sensor(renderer), None, np.random.default_rng(1))
+
+
+def test_a_pose_that_is_decimetres_off_becomes_exact(renderer):
+    found = SimpleNamespace(status="ok", pose=Pose2D(TRUE[0] + 0.1, TRUE[1] - 0.08, TRUE[2] + 0.03), alternatives=())
+    result = place(renderer, found)
+    assert result["semantic_m"] == pytest.approx(np.hypot(0.1, 0.08))
+    assert result["reached"]
+    assert result["position_m"] < 0.005
+    assert result["starts"] == 1
+
+
+def test_of_several_poses_the_depth_camera_takes_the_right_one(renderer):
+    wrong = [Pose2D(1.5, -0.5, 2.0), Pose2D(0.0, 2.0, 1.0)]
+    right = Pose2D(TRUE[0] + 0.05, TRUE[1], TRUE[2])
+    alternatives = tuple(SimpleNamespace(pose=pose) for pose in (wrong[0], right, wrong[1]))
+    result = place(renderer, SimpleNamespace(status="unable", pose=None, alternatives=alternatives))
+    assert result["starts"] == 3
+    assert result["reached"]
+    assert "semantic_m" not in result
+    states = robot_states(TRUE, np.random.default_rng(1))
+    alone = best_start(renderer, [wrong[0]], renderer.render(states), seed=1)
+    assert np.hypot(*(alone.state[:2] - TRUE[:2])) > 0.5
+
+
+def test_without_any_pose_nothing_is_reached(renderer):
+    result = place(renderer, SimpleNamespace(status="unable", pose=None, alternatives=()))
+    assert result == {"semantic_status": "unable", "starts": 0, "reached": False}
+
+
+def test_the_robot_rolls_on_level_but_for_a_little(rng):
+    states = robot_states(TRUE, rng)
+    assert states[0, [0, 1, 5]] == pytest.approx(TRUE)
+    assert states[:, 2] == pytest.approx(CAMERA_HEIGHT, abs=0.05)
+    assert np.abs(states[:, 3:5]).max() < np.deg2rad(2)
+    assert np.linalg.norm(np.diff(states[:, :2], axis=0), axis=1) == pytest.approx(0.03, rel=0.05)
+
+
+def test_places_are_counted():
+    places = [
+        {"semantic_status": "ok", "starts": 1, "semantic_m": 0.1, "position_m": 0.01, "rotation_deg": 0.2,
+         "status": "tracked", "reached": True},
+        {"semantic_status": "unable", "starts": 3, "position_m": 0.5, "rotation_deg": 0.2, "status": "tracked",
+         "reached": False},
+        {"semantic_status": "unable", "starts": 0, "reached": False},
+    ]  # fmt: skip
+    told = summarize(places)
+    assert (told["places"], told["reached"], told["semantic_ok"]) == (3, 1, 1)
+    assert (told["started_from_several"], told["wrong_called_tracked"]) == (1, 1)
+    assert told["median_semantic_m"] == 0.1
+
+
+def test_the_depth_cameras_world_is_the_whole_room():
+    room = make_look_alike_room(10_001)
+    vertices, faces = room_triangles(room)
+    parts = [*room.shell, *(mesh for thing in room.objects for mesh in thing.meshes)]
+    assert len(faces) == sum(len(mesh.faces) for mesh in parts)
+    assert vertices[faces[-1]] == pytest.approx(parts[-1].vertices[parts[-1].faces[-1]])
+    middle = np.append(room.walls.mean(axis=0), 0.5 * room.height)
+    hits = depth_caster(room).cast(middle, np.random.default_rng(0).standard_normal((500, 3)))
+    assert np.isfinite(hits.distance).all(), "a room is closed"
