@@ -10,7 +10,9 @@ import pytest
 from course_lib.cli import find_command, main
 from course_lib.commands.bench_table import table
 from course_lib.commands.demo_corridor import table_1
+from course_lib.commands.demo_lost import lost_table
 from course_lib.commands.six_degrees_table import six_degrees_table
+from course_lib.experiments.lost_and_found import summarize
 
 ROOT = Path(__file__).parents[1]
 README, RESULTS = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "RESULTS.md"))
@@ -84,11 +86,19 @@ def test_the_table_with_intervals_is_what_the_sweep_prints_of_its_stored_rows(tm
     assert (tmp_path / "corridor.jsonl").read_text() == stored, "nothing was run"
 
 
-@pytest.mark.parametrize("name", ["kitchen_six_degrees.json", "hand_1-5.json"])
+@pytest.mark.parametrize("name", ["kitchen_six_degrees.json", "kitchen_ablation.json", "hand_1-5.json"])
 def test_the_tables_in_six_degrees_are_what_the_commands_print_of_their_stored_numbers(name):
     stored = json.loads((CORRIDOR_RESULTS / name).read_text())
     printed = six_degrees_table(stored["rows"])
     assert "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in RESULTS
+
+
+@pytest.mark.parametrize("name", ["lost_kitchen.json", "lost_corridor.json"])
+def test_lost_and_found_is_what_the_command_prints_of_its_stored_trials(name):
+    stored = json.loads((CORRIDOR_RESULTS / name).read_text())
+    again = {"seeds": stored["seeds"], **summarize(stored["trials_in_full"])}
+    assert again == {key: stored[key] for key in again}
+    assert "\n".join(f"    {line}".rstrip() for line in lost_table(again).splitlines()) in RESULTS
 
 
 def test_the_speed_is_what_the_benchmark_printed():
