@@ -20,9 +20,8 @@ What neither can say: a filter that is lost has all its particles in the wrong p
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
-from course_lib.depth_mcl.particle_filter import effective_sample_size
+from course_lib.depth_mcl.annealed.tempering import temper
 
 # How many independent pixels an image is worth, kappa, and how many effective particles beyond the number of moving
 # components are left at least. Both chosen on tuning worlds: see above.
@@ -38,20 +37,7 @@ def tempered_weights(scores: np.ndarray, least_sample_size: float) -> np.ndarray
     scores: `(N,)` raw scores s, a mean over pixels. kappa is `INDEPENDENT_PIXELS`, or the smaller number at which the
     effective sample size is `least_sample_size`; N where that is more than N.
     """
-    below = np.asarray(scores, dtype=np.float64) - np.max(scores)
-
-    def at(kappa: float) -> np.ndarray:
-        w = np.exp(kappa * below)
-        return w / w.sum()
-
-    def missing(kappa: float) -> float:
-        return effective_sample_size(at(kappa)) - least_sample_size
-
-    if len(below) <= least_sample_size:
-        return at(0.0)
-    if missing(INDEPENDENT_PIXELS) >= 0:
-        return at(INDEPENDENT_PIXELS)
-    return at(brentq(missing, 0.0, INDEPENDENT_PIXELS))
+    return temper(scores, least_sample_size, sharpest=INDEPENDENT_PIXELS).weights
 
 
 def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
