@@ -34,7 +34,16 @@ def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str 
         if share >= LEAST_SHARE:
             (x1, y1), (x2, y2) = semantic_map.positions[[i, j]]
             axes.plot([x1, x2], [y1, y2], "--", color=VERMILION, linewidth=0.8 + 5.0 * min(share, 0.6))
-            axes.text((x1 + x2) / 2, (y1 + y2) / 2, f"{100 * share:.0f} %", color=VERMILION, fontsize=8)
+            axes.text(
+                (x1 + x2) / 2,
+                (y1 + y2) / 2,
+                f"{100 * share:.0f} %",
+                color=VERMILION,
+                fontsize=9,
+                ha="center",
+                va="center",
+                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},  # readable on dark squares
+            )
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.12), ncols=4, fontsize=8)
     return figure
 
@@ -48,6 +57,6 @@ def risk_coverage_figure(
         style = line_style(index) | {"marker": ""}
         axes.step(curve["coverage_percent"], curve["risk_percent"], where="post", label=name, **style)
     axes.set(title=title, xlabel="poses answered [%]", ylabel="of them wrong [%]", xlim=(0, 101))
-    axes.set_ylim(bottom=-0.2)
+    axes.set_ylim(0, max(0.5, 1.05 * max(max(curve["risk_percent"]) for curve in curves.values())))
     axes.legend()
     return figure

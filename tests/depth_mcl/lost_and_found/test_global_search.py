@@ -8,7 +8,7 @@ from course_lib.depth_mcl.lost_and_found.global_search import GlobalSearch, upri
 from course_lib.depth_mcl.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.geometry import optical_pose
+from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix
 from tests.depth_mcl.shapes import SMALL, furnished_room, room, wall
 
 PLACE = np.array([-1.2, 0.5, -0.6, 0.15, 0.2, -0.3])
@@ -44,6 +44,16 @@ def test_the_camera_is_found_from_nowhere(renderer, start):
     assert best.evidence > 0.9
     assert answers[0].particles == 1_500
     assert answers[-1].particles < 1_500, "a place that is known needs fewer"
+
+
+def test_it_knows_no_direction_of_the_world():
+    """The room turned by a quarter, and carried away."""
+    turn = pose_matrix(np.array([20.0, -10.0, 3.0, 0.0, 0.0, np.pi / 2]))
+    states = state_from_matrix(turn @ pose_matrix(walk(PLACE, 5)))
+    with DepthRenderer(furnished_room().transformed(turn), SMALL) as turned:
+        answer = watched(GlobalSearch(turned, seed=1, least=200, most=1_500), turned, states)[-1]
+    assert answer.status == "found"
+    assert answer.places[0].state[:3] == pytest.approx(states[-1][:3], abs=0.02)
 
 
 @pytest.mark.slow
