@@ -32,6 +32,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
     "compare": ("compare", "compare filters in six degrees of freedom on a recording with its truth"),
     "locate": ("locate", "find where two panoramas were taken, on a semantic map"),
+    "ambiguity": ("ambiguity", "tell of a semantic map from where its objects would be confused"),
     "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
     "make-data room": ("make_room", "make data/room again: stereo panoramas, exact boxes, the semantic map"),

@@ -54,6 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
         f"panoramas: {result['semantic_ok']} answered, median {result['median_semantic_m']:.3f} m; "
         f"{result['started_from_several']} left several poses to the depth camera\n"
         f"then the depth camera: median {result['median_position_m']:.4f} m, "
-        f"{result['median_rotation_deg']:.2f} degrees; {result['wrong_called_tracked']} farther off and called tracked"
+        f"{result['median_rotation_deg']:.2f} degrees; at {result['looked_again']} places only after the robot had "
+        "turned and looked again\n"
+        f"not reached: {result['wrong_called_tracked']} called tracked, {result['left_open']} left open"
     )
     return 0
