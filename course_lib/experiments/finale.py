@@ -20,13 +20,22 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
 from course_lib.geometry import optical_pose
-from course_lib.simulation.room.depth_world import DepthSurveyModel, depth_caster, surveyed_mesh
+from course_lib.simulation.room.depth_world import (
+    CAMERA,
+    MAP,
+    PLACE,
+    STREAM,
+    DepthSurveyModel,
+    depth_caster,
+    surveyed_mesh,
+)
 from course_lib.simulation.room.look_alike_recording import RecordingModels, photograph_room, surveyed_room
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.pose.localization import Localization
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.recording import read_stereo_recording
 
 CAMERA_HEIGHT = 1.0  # metres, of the depth camera on the robot (chosen)
@@ -35,7 +44,6 @@ FRAMES = 3  # depth images at each place, the robot rolling on by a few centimet
 STEP, TURN = 0.03, 0.02  # metres, radians a frame
 MOST_ALTERNATIVES = 3
 REACHED = 0.03, 1.0  # metres, degrees
-STREAM = 77  # of a seed's generators: apart from those of the photographs
 
 
 def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[dict]:
@@ -45,8 +53,8 @@ def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[
     """
     models = RecordingModels()
     room, semantic_map = surveyed_room(seed, models)
-    scene_map = SceneMap(*surveyed_mesh(room, DepthSurveyModel(), np.random.default_rng([STREAM, seed, 1])))
-    sensor = TimeOfFlightCamera(DepthCamera.sr4000(), TimeOfFlightModel(), np.random.default_rng([STREAM, seed, 2]))
+    scene_map = SceneMap(*surveyed_mesh(room, DepthSurveyModel(), np.random.default_rng([STREAM, seed, MAP])))
+    sensor = TimeOfFlightCamera(DepthCamera.sr4000(), TimeOfFlightModel(), np.random.default_rng([STREAM, seed, CAMERA]))
     network, caster = YoloDetector.load(detector), depth_caster(room)
     results = []
     with TemporaryDirectory() as temporary:
@@ -56,7 +64,7 @@ def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[
         localizer = SemanticLocalizer(recording.rig, semantic_map, network, image_size=size, association="consistent")
         with DepthRenderer(scene_map, DepthCamera.sr4000(far=FAR)) as renderer:
             for k, pair in enumerate(recording.pairs[::2]):
-                rng = np.random.default_rng([STREAM, seed, 3, k])
+                rng = np.random.default_rng([STREAM, seed, PLACE, k])
                 found = localizer.localize(*pair.images())
                 results.append(one_place(found, pair.pose, renderer, sensor, caster, rng))
     return results
@@ -90,17 +98,33 @@ def one_place(
     }
 
 
-def best_start(renderer: DepthRenderer, starts: Sequence, depths: Sequence[np.ndarray], seed: int) -> AnnealedEstimate:
+def best_start(renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence[np.ndarray], seed: int) -> AnnealedEstimate:
     """The last estimate of the start, `Pose2D`, that explains the depth images best: by its mean raw score."""
     best, best_score = None, -np.inf
     for start in starts:
-        localizer = AnnealedLocalizer(renderer, seed=seed)
-        localizer.initialize(np.array([start.x, start.y, CAMERA_HEIGHT, 0.0, 0.0, start.theta]))
-        estimates = [localizer.step(depth) for depth in depths]
-        score = float(np.mean([estimate.score for estimate in estimates]))
-        if score > best_score:
+        estimates = follow(renderer, start_state(start), depths, seed)
+        if (score := mean_score(estimates)) > best_score:
             best, best_score = estimates[-1], score
     return best
+
+
+def start_state(pose: Pose2D) -> np.ndarray:
+    """State `(6,)` of the depth camera on a robot at a semantic pose: height, roll and pitch are those of standing."""
+    return np.array([pose.x, pose.y, CAMERA_HEIGHT, 0.0, 0.0, pose.theta])
+
+
+def follow(
+    renderer: DepthRenderer, start: np.ndarray, depths: Sequence[np.ndarray], seed: int
+) -> list[AnnealedEstimate]:
+    """What the depth filter makes of the images from one start, a state `(6,)`."""
+    localizer = AnnealedLocalizer(renderer, seed=seed)
+    localizer.initialize(start)
+    return [localizer.step(depth) for depth in depths]
+
+
+def mean_score(estimates: Sequence[AnnealedEstimate]) -> float:
+    """Mean raw score of a run: what starts are compared by."""
+    return float(np.mean([estimate.score for estimate in estimates]))
 
 
 def robot_states(pose: np.ndarray, rng: np.random.Generator) -> np.ndarray:
