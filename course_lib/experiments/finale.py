@@ -24,7 +24,15 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
 from course_lib.geometry import optical_pose, wrap_angle
-from course_lib.simulation.room.depth_world import DepthSurveyModel, depth_caster, surveyed_mesh
+from course_lib.simulation.room.depth_world import (
+    CAMERA,
+    MAP,
+    PLACE,
+    STREAM,
+    DepthSurveyModel,
+    depth_caster,
+    surveyed_mesh,
+)
 from course_lib.simulation.room.look_alike_recording import RecordingModels, photograph_room, surveyed_room
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
@@ -41,11 +49,7 @@ STEP, TURN = 0.03, 0.02  # metres, radians a frame
 MOST_ALTERNATIVES = 3
 REACHED = 0.03, 1.0  # metres, degrees
 VIEWS, VIEW_TURN = 12, np.deg2rad(30.0)  # at most so many views, the robot turning so far to the next: once around
-ODOMETRY_SIGMA = (
-    0.05,
-    np.deg2rad(1.0),
-)  # share of a motion; least of a turn (chosen)
-STREAM = 77  # of a seed's generators: apart from those of the photographs
+ODOMETRY_SIGMA = 0.05, np.deg2rad(1.0)  # share of a motion; least of a turn (chosen)
 
 
 def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[dict]:
@@ -55,8 +59,10 @@ def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[
     """
     models = RecordingModels()
     room, semantic_map = surveyed_room(seed, models)
-    scene_map = SceneMap(*surveyed_mesh(room, DepthSurveyModel(), np.random.default_rng([STREAM, seed, 1])))
-    sensor = TimeOfFlightCamera(DepthCamera.sr4000(), TimeOfFlightModel(), np.random.default_rng([STREAM, seed, 2]))
+    scene_map = SceneMap(*surveyed_mesh(room, DepthSurveyModel(), np.random.default_rng([STREAM, seed, MAP])))
+    sensor = TimeOfFlightCamera(
+        DepthCamera.sr4000(), TimeOfFlightModel(), np.random.default_rng([STREAM, seed, CAMERA])
+    )
     network, caster = YoloDetector.load(detector), depth_caster(room)
     results = []
     with TemporaryDirectory() as temporary:
@@ -66,7 +72,7 @@ def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[
         localizer = SemanticLocalizer(recording.rig, semantic_map, network, image_size=size, association="consistent")
         with DepthRenderer(scene_map, DepthCamera.sr4000(far=FAR)) as renderer:
             for k, pair in enumerate(recording.pairs[::2]):
-                rng = np.random.default_rng([STREAM, seed, 3, k])
+                rng = np.random.default_rng([STREAM, seed, PLACE, k])
                 found = localizer.localize(*pair.images())
                 results.append(one_place(found, pair.pose, renderer, sensor, caster, rng))
     return results
@@ -149,21 +155,40 @@ def carried_on(start: Pose2D, ahead: float, turn: float) -> Pose2D:
     return Pose2D(float(x), float(y), float(wrap_angle(start.theta + turn)))
 
 
-def best_start(renderer: DepthRenderer, starts: Sequence, depths: Sequence[np.ndarray], seed: int) -> AnnealedEstimate:
-    """The last estimate of the start, `Pose2D`, that explains the depth images best: by its mean raw score.
+def best_start(
+    renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence[np.ndarray], seed: int
+) -> AnnealedEstimate:
+    """The last estimate of the start that explains the depth images best: by its mean raw score.
 
     Where nothing was measured, nearer to a wall than the camera sees, it is the first start's prediction.
     """
     best, best_score = None, -np.inf
     for start in starts:
-        localizer = AnnealedLocalizer(renderer, seed=seed)
-        localizer.initialize(np.array([start.x, start.y, CAMERA_HEIGHT, 0.0, 0.0, start.theta]))
-        with warnings.catch_warnings(action="ignore", category=NoMeasurementWarning):  # its status says so
-            estimates = [localizer.step(depth) for depth in depths]
-        score = float(np.mean([estimate.score for estimate in estimates]))
+        estimates = follow(renderer, start_state(start), depths, seed)
+        score = mean_score(estimates)
         if best is None or score > best_score:
             best, best_score = estimates[-1], -np.inf if np.isnan(score) else score
     return best
+
+
+def start_state(pose: Pose2D) -> np.ndarray:
+    """State `(6,)` of the depth camera on a robot at a semantic pose: height, roll and pitch are those of standing."""
+    return np.array([pose.x, pose.y, CAMERA_HEIGHT, 0.0, 0.0, pose.theta])
+
+
+def follow(
+    renderer: DepthRenderer, start: np.ndarray, depths: Sequence[np.ndarray], seed: int
+) -> list[AnnealedEstimate]:
+    """What the depth filter makes of the images from one start, a state `(6,)`."""
+    localizer = AnnealedLocalizer(renderer, seed=seed)
+    localizer.initialize(start)
+    with warnings.catch_warnings(action="ignore", category=NoMeasurementWarning):  # the estimate's status says so
+        return [localizer.step(depth) for depth in depths]
+
+
+def mean_score(estimates: Sequence[AnnealedEstimate]) -> float:
+    """Mean raw score of a run: what starts are compared by. NaN where a frame held no measurement."""
+    return float(np.mean([estimate.score for estimate in estimates]))
 
 
 def robot_states(pose: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -177,9 +202,8 @@ def robot_states(pose: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return np.column_stack([x + ahead * np.cos(headings), y + ahead * np.sin(headings), z, tilt, headings])
 
 
-def summarize(places: Sequence[dict]) -> dict[str, float]:
-    """The numbers of the table."""
-    known = [place for place in places if "position_m" in place]
+def summarize(places: Sequence[dict]) -> dict[str, float | None]:
+    """The numbers of the table; a median of nothing is None."""
     return {
         "places": len(places),
         "reached": sum(place["reached"] for place in places),
@@ -187,8 +211,11 @@ def summarize(places: Sequence[dict]) -> dict[str, float]:
         "started_from_several": sum(place["starts"] > 1 for place in places),
         "looked_again": sum(place.get("views", 1) > 1 for place in places),
         "left_open": sum(place.get("status") == "open" for place in places),
-        "median_semantic_m": float(np.median([p["semantic_m"] for p in places if "semantic_m" in p] or [np.nan])),
-        "median_position_m": float(np.median([place["position_m"] for place in known] or [np.nan])),
-        "median_rotation_deg": float(np.median([place["rotation_deg"] for place in known] or [np.nan])),
         "wrong_called_tracked": sum(not p["reached"] and p.get("status") == "tracked" for p in places),
+        **{
+            f"median_{name}": float(np.median([place[name] for place in places if name in place]))
+            if any(name in place for place in places)
+            else None
+            for name in ("semantic_m", "position_m", "rotation_deg")
+        },
     }

@@ -16,6 +16,8 @@ from course_lib.simulation.room.scene import Room
 from course_lib.simulation.sensors.laser_survey import ScannerModel, survey
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 
+STREAM = 77  # joins a seed's generators of what the depth camera meets: apart from those of the photographs
+MAP, CAMERA, PLACE = 1, 2, 3  # streams of a seed: the mesh map's survey, the camera's fixed pattern, each place
 REFLECTIVITY = 0.6  # of every surface, at 850 nm: textures say nothing of it (chosen: paint and cloth)
 
 

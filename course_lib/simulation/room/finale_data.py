@@ -1,0 +1,58 @@
+"""Everything under data/finale from one seed: the semantic map and the mesh map of one generated room.
+
+The room itself comes of its seed in half a second (`make_look_alike_room`); its mesh map takes half a minute, so it is
+kept. Seed and streams are those of `demo finale`: the files are what that experiment would make of the seed.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from course_lib.simulation.corridor.mesh_files import write_ply
+from course_lib.simulation.data_folder import checksums, move_products, require_folder
+from course_lib.simulation.parameter_tables import parameter_table
+from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh
+from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
+from course_lib.simulation.sensors.time_of_flight import TimeOfFlightModel
+
+SEED = 10_001  # of the shipped room: a tuning seed, so no room of the reported table is looked at here
+PRODUCTS = ("map.ply", "semantic_map.json", "PARAMETERS.md", "SHA256SUMS")
+
+
+@dataclass(frozen=True)
+class FinaleModels:
+    """How the room is drawn, photographed and surveyed, and what its depth camera gets wrong."""
+
+    recording: RecordingModels = field(default_factory=RecordingModels)
+    mesh: DepthSurveyModel = field(default_factory=DepthSurveyModel)
+    depth_camera: TimeOfFlightModel = field(default_factory=TimeOfFlightModel)
+
+
+def make_finale_data(out: str | Path, seed: int, models: FinaleModels | None = None) -> dict:
+    """Makes the data in folder `out`; returns a summary. One seed gives one set of bytes.
+
+    Raises `ValueError` where `out` cannot be a folder.
+    """
+    models, out = models or FinaleModels(), require_folder(out)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        room, semantic_map = surveyed_room(seed, models.recording)
+        semantic_map.save(folder / "semantic_map.json")
+        vertices, faces = surveyed_mesh(room, models.mesh, np.random.default_rng([STREAM, seed, MAP]))
+        write_ply(folder / "map.ply", vertices, faces, "generated room, simulated laser survey; CC BY 4.0")
+        (folder / "PARAMETERS.md").write_text(finale_parameters(models))
+        (folder / "SHA256SUMS").write_text(checksums(folder, PRODUCTS))
+        move_products(folder, out, PRODUCTS)
+    return {"seed": seed, "objects": len(room.objects), "triangles": len(faces)}
+
+
+def finale_parameters(models: FinaleModels) -> str:
+    """PARAMETERS.md: the tables of all models, from their source text."""
+    recording, mesh = models.recording, models.mesh
+    parts = (recording.limits, recording.rig, recording.camera, recording.survey, mesh.scanner, mesh.fusion)
+    head = "# Parameters of the finale's room\n\nWritten by `make-data finale` from the models' source text.\n"
+    return "\n".join([head, *map(parameter_table, (*parts, models.depth_camera))])
