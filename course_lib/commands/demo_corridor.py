@@ -173,12 +173,14 @@ def _run_by_hand(arguments: argparse.Namespace, seeds: list[int]) -> int:
     points = [{**common, "seed": seed} for seed in seeds]
     bar = progress_bar("carried by hand", "seed")
     runs = [row["result"] for row in sweep(corridor_hand, points, results=arguments.out / "hand.jsonl", progress=bar)]
-    rows = {
-        NAMES[method] + told: pooled([run[part][method] for run in runs])
+    by_row = {
+        NAMES[method] + told: [run[part][method] for run in runs]
         for part, told in (("methods", ""), ("methods_less_kind", ", less kind"))
         for method in methods
     }
-    write_results(arguments.out / "hand.json", {"seeds": seeds, "rows": rows})
+    rows = {name: pooled(own) for name, own in by_row.items()}
+    each = {name: [pooled([run]) for run in own] for name, own in by_row.items()}
+    write_results(arguments.out / "hand.json", {"seeds": seeds, "rows": rows, "recordings": each})
     print(json.dumps({"seeds": seeds, "rows": rows}) if arguments.json else six_degrees_table(rows))
     return 0
 
