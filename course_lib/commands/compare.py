@@ -34,7 +34,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seeds", default="1", metavar="A-B", help="seeds of the filters (default: 1)")
     parser.add_argument(
-        "--out", type=Path, default=Path("results/compare"), metavar="FOLDER", help="for compare.jsonl and compare.json"
+        "--out",
+        type=Path,
+        default=Path("results/compare"),
+        metavar="FOLDER",
+        help="for compare.jsonl, compare.json, covariance.png",
     )
     parser.add_argument(
         "--icp",
@@ -53,6 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments import sweep
     from course_lib.experiments.results import write_results
     from course_lib.experiments.six_degrees import ABLATIONS, METHODS, pooled, thinned_points, thinned_run
+    from course_lib.plots.covariance_figure import covariance_figure
 
     seeds = parse_seeds(arguments.seeds)
     everies = _numbers("--every", arguments.every)
@@ -78,6 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         rows |= {name: pooled([run]) for name, run in icp_runs(arguments.map, arguments.sequence, everies).items()}
     result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
     write_results(arguments.out / "compare.json", result)
+    covariance_figure(grouped).savefig(arguments.out / "covariance.png", dpi=110)
     print(json.dumps(result) if arguments.json else six_degrees_table(rows))
     return 0
 

@@ -162,6 +162,7 @@ def _run_by_hand(arguments: argparse.Namespace, seeds: list[int]) -> int:
     from course_lib.experiments import sweep
     from course_lib.experiments.results import write_results
     from course_lib.experiments.six_degrees import METHODS, corridor_hand, pooled
+    from course_lib.plots.covariance_figure import covariance_figure
 
     for option, usual in (("recording", "own"), ("kindnesses", False), ("particles", 200), ("backend", "raster")):
         if getattr(arguments, option) != usual:
@@ -181,6 +182,7 @@ def _run_by_hand(arguments: argparse.Namespace, seeds: list[int]) -> int:
     rows = {name: pooled(own) for name, own in by_row.items()}
     each = {name: [pooled([run]) for run in own] for name, own in by_row.items()}
     write_results(arguments.out / "hand.json", {"seeds": seeds, "rows": rows, "recordings": each})
+    covariance_figure(by_row).savefig(arguments.out / "covariance.png", dpi=110)
     print(json.dumps({"seeds": seeds, "rows": rows}) if arguments.json else six_degrees_table(rows))
     return 0
 
