@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     require_output_folder(arguments.out)
     SceneMap.load(arguments.map)
     recording = read_sequence(arguments.sequence)
-    recording.camera_to_world  # noqa: B018 - a recording without truth is told now
+    recording.require_poses()  # told now, not after the first run
     recording.thinned(max(everies), max(everies) - 1)
     points = thinned_points(arguments.map.absolute(), arguments.sequence.absolute(), methods, everies, seeds)
     bar = progress_bar("comparing", "run")

@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     require_output_folder(arguments.out)
     if arguments.recording:
         recording = read_sequence(arguments.recording)
-        recording.camera_to_world  # noqa: B018 - a recording without truth is told now
+        recording.require_poses()  # told now, not after the first run
         folder = arguments.recording.absolute()
         function, common = trial, {"map_file": str(folder / "map.ply"), "sequence": str(folder)}
     else:

@@ -10,16 +10,14 @@ import argparse
 import json
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from course_lib.commands.arguments import add_backend_argument
+from course_lib.commands.localize_report import believed, localize_table, write_localized
+from course_lib.commands.localize_start import found_start, given_start, join_words
 
-if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
-    from course_lib.depth_mcl.scene_map import SceneMap
-    from course_lib.depth_mcl.sequence import DepthSequence
-    from course_lib.experiments.recordings import Run
+__all__ = ["add_arguments", "join_words", "run"]
 
 EPILOG = """\
 the folder of the recording:
@@ -38,29 +36,6 @@ examples:
   a wagon on a level floor, with truth:
     localize --map data/corridor/map.ply --sequence data/corridor/wagon --dof xyyaw --seed 1
 """
-
-
-def join_words(words: list[str]) -> list[str]:
-    """`--up -y` and `--start 2 -0.5 1e-3 ...` as one word each: argparse would take -y for an option."""
-    joined = list(words)
-    for index in range(len(words) - 2, -1, -1):
-        if words[index] == "--up" and words[index + 1] in ("-x", "-y", "-z"):
-            joined[index : index + 2] = [f"--up={words[index + 1]}"]
-        if words[index] == "--start":
-            end = index + 1
-            while end < len(words) and _are_numbers(words[end]):
-                end += 1
-            if end > index + 1:
-                joined[index:end] = ["--start=" + " ".join(words[index + 1 : end])]
-    return joined
-
-
-def _are_numbers(text: str) -> bool:
-    """Whether a word, or a quoted list of words, is made of numbers."""
-    try:
-        return bool([float(word) for word in text.replace(",", " ").split()])
-    except ValueError:
-        return False
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -159,9 +134,9 @@ def run(arguments: argparse.Namespace) -> int:
     scene_map = SceneMap.load(arguments.map)
     searched = {}
     if arguments.start == "unknown":
-        sequence, start, searched = _found_start(arguments, scene_map, sequence, up)
+        sequence, start, searched = found_start(arguments, scene_map, sequence, up)
     else:
-        start = _start(arguments.start, sequence, "z" if up == "unknown" else up)
+        start = given_start(arguments.start, sequence, "z" if up == "unknown" else up)
     if method == "paper":
         noise = system_noise(arguments.dof, *_sigma(arguments))
         localized = partial(run_sequence, **noise)
@@ -194,8 +169,8 @@ def run(arguments: argparse.Namespace) -> int:
         "ms_per_frame": result.ms_per_frame,
     }
     if arguments.out:
-        _write(arguments.out, summary, result, sequence, scene_map)
-    print(json.dumps(summary) if arguments.json else _table(summary))
+        write_localized(arguments.out, summary, result, sequence, scene_map)
+    print(json.dumps(summary) if arguments.json else localize_table(summary))
     if arguments.out and not arguments.json:
         print(f"Written to {arguments.out}: localize.json, localize.csv, trajectory.txt (TUM), track.png")
     if not arguments.json:
@@ -219,59 +194,6 @@ def _method(arguments: argparse.Namespace) -> str:
                 "far the camera has been moving"
             )
     return method
-
-
-def _found_start(
-    arguments: argparse.Namespace, scene_map: SceneMap, sequence: DepthSequence, up: str
-) -> tuple[DepthSequence, np.ndarray, dict]:
-    """The recording from the frame in which its place was found, the pose there, and what the results tell of it.
-
-    Raises `ValueError` where no place was found, or several that nobody can tell apart.
-    """
-    from course_lib.commands.progress import progress_bar
-    from course_lib.experiments.recordings import find_start
-
-    if up == "unknown":
-        raise ValueError("--start unknown needs --up AXIS: only with gravity known can the whole map be searched")
-    bar = progress_bar("searching")
-    options = {"seed": arguments.seed, "up": up, "near": arguments.near, "far": arguments.far, "progress": bar}
-    index, places, start = find_start(scene_map, sequence, **options)
-    if places.status != "found":
-        where = "; ".join(
-            f"({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.rad2deg(yaw):.0f} degrees (evidence {place.evidence:.2f})"
-            for place in places.places
-            for x, y, z, yaw in [(*place.state[:3], place.state[5])]
-        )
-        raise ValueError(
-            f"the start was not found in {index + 1} frames: "
-            + (f"it may be at {where}; in a world whose z is up" if where else "no place agrees with the images")
-            + ". Give --start, or a recording that begins where the building looks like no other place"
-        )
-    return sequence.thinned(1, index), start, {"found_in_frame": sequence.frames[index]}
-
-
-def _start(given: str | None, sequence: DepthSequence, up: str) -> np.ndarray:
-    """Camera-to-world matrix `(4, 4)` of the first frame in the map's own world, optical convention."""
-    from course_lib.depth_mcl.poses import read_pose
-    from course_lib.geometry import optical_pose, rotation_to_z_up
-
-    if given is None and not sequence.has_poses:
-        raise ValueError(
-            f"where does the camera start? {sequence.folder} holds no poses.txt; give --start X Y Z ROLL PITCH YAW "
-            "(metres, degrees) or --start FILE with a 4 x 4 camera-to-world matrix"
-        )
-    if given is None:
-        return sequence.camera_to_world[0]
-    if not _are_numbers(given):
-        return read_pose(given)
-    numbers = np.array([float(word) for word in given.replace(",", " ").split()])
-    if len(numbers) != 6 or not np.isfinite(numbers).all():
-        raise ValueError(
-            f"--start needs six finite numbers, X Y Z in metres and ROLL PITCH YAW in degrees, or a file; got {given!r}"
-        )
-    start = np.linalg.inv(rotation_to_z_up(up)) @ optical_pose(np.concatenate([np.zeros(3), np.deg2rad(numbers[3:])]))
-    start[:3, 3] = numbers[:3]
-    return start
 
 
 def _sigma(arguments: argparse.Namespace) -> tuple[float, float]:
@@ -310,92 +232,3 @@ def _options(arguments: argparse.Namespace, up: str) -> dict:
         "backend": arguments.backend,
         "exact": arguments.exact,
     }
-
-
-def believed(frames: list[int], statuses: list[str]) -> str:
-    """One line on the track: "lost from frame 41 on (126 of 167 frames)", "tracked in all 167 frames", and the like."""
-    total, lost, tracked = len(frames), statuses.count("lost"), statuses.count("tracked")
-    if tracked == total:
-        return f"tracked in all {total} frames"
-    if not lost:
-        return f"tracked in {tracked} of {total} frames, doubtful in {total - tracked}"
-    stretches = []  # first and last index of every stretch of lost frames
-    for index in (i for i, status in enumerate(statuses) if status == "lost"):
-        if stretches and stretches[-1][1] == index - 1:
-            stretches[-1][1] = index
-        else:
-            stretches.append([index, index])
-    first, last = stretches[0][0], stretches[-1][1]
-    if "tracked" not in statuses[first:]:
-        where = f"from frame {frames[first]} on" if first else "from the first frame on"
-    elif len(stretches) == 1:
-        where = f"from frame {frames[first]} to {frames[last]}"
-    else:
-        where = f"in {len(stretches)} stretches between frames {frames[first]} and {frames[last]}"
-    return f"lost {where} ({lost} of {total} frames; tracked {tracked}, doubtful {total - tracked - lost})"
-
-
-def _table(s: dict) -> str:
-    estimated = "all six degrees of freedom" if s["dof"] == "6" else "x, y and yaw"
-    by = f"{s['n_particles']} particles" if s["method"] == "paper" else "the annealed filter"
-    lines = [f"{s['frames']} frames, {estimated} estimated with {by}", ""]
-    if "median_position_m" in s:
-        lines += [
-            "                      median   90th percentile",
-            f"position error [m]    {s['median_position_m']:6.3f}   {s['p90_position_m']:6.3f}",
-            f"rotation error [deg]  {s['median_rotation_deg']:6.2f}   {s['p90_rotation_deg']:6.2f}",
-            "",
-            f"within 5 cm and 5 degrees: {s['within_5cm_5deg_percent']:.1f} %",
-            f"squared error in units of its covariance: {_in_the_mean(s['mean_normalized_error'])}",
-        ]
-    else:
-        lines += ["no poses.txt: errors are not known", ""]
-    if s["frames_without_measurement"]:
-        lines.append(f"{s['frames_without_measurement']} frames held no measurement between --near and --far")
-    lines.append(f"{s['renders_per_frame']:.0f} renders and {s['ms_per_frame']:.0f} ms a frame")
-    return "\n".join(lines)
-
-
-def _in_the_mean(normalized: float | None) -> str:
-    if normalized is None:
-        return "unknown (too few particles to span the motion)"
-    return f"{normalized:.2f} in the mean (1 is honest)"
-
-
-def _write(folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap) -> None:
-    """Writes options and numbers (JSON), a row a frame (CSV), the trajectory (TUM) and the figure."""
-    from course_lib.depth_mcl.evaluation import pose_errors
-    from course_lib.depth_mcl.poses import write_tum
-    from course_lib.experiments.results import write_results
-    from course_lib.plots.track_figure import track_figure
-
-    count, positions = len(result.frames), result.camera_to_world[:, :3, 3]
-    rows = [
-        {
-            "frame": frame,
-            "status": status,
-            "score": round(float(score), 5),
-            **{f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", position, strict=True)},
-            **{name: round(value, 4) for name, value in agreement._asdict().items()},
-        }
-        for frame, status, score, position, agreement in zip(
-            result.frames, result.statuses, result.scores, positions, result.agreements, strict=True
-        )
-    ]
-    true = sequence.camera_to_world[:count] if sequence.has_poses else None
-    if true is not None:
-        for row, metres, radians in zip(rows, *pose_errors(result.camera_to_world, true), strict=True):
-            row |= {"position_error_m": round(metres, 5), "rotation_error_deg": round(float(np.rad2deg(radians)), 4)}
-    write_results(folder / "localize.json", summary, rows)
-    times = np.asarray(result.frames, float) if sequence.times is None else sequence.times[:count]
-    write_tum(folder / "trajectory.txt", times, result.camera_to_world)
-    figure = track_figure(
-        scene_map,
-        result.frames,
-        positions,
-        result.scores,
-        result.statuses,
-        None if summary["up"] == "unknown" else summary["up"],
-        None if true is None else true[:, :3, 3],
-    )
-    figure.savefig(folder / "track.png", dpi=130)

@@ -77,12 +77,16 @@ class DepthSequence:
     @property
     def camera_to_world(self) -> np.ndarray:
         """The true poses `(T, 4, 4)`, optical convention; `SequenceError` for a recording that came without."""
-        if self._camera_to_world is None:
+        self.require_poses()
+        return self._camera_to_world
+
+    def require_poses(self) -> None:
+        """Raises `SequenceError` for a recording that came without its true poses."""
+        if not self.has_poses:
             raise SequenceError(
                 f"{self.folder} holds no poses.txt: its true poses are not known. The filter must be given its start "
                 "by hand (localize: --start), and errors cannot be measured"
             )
-        return self._camera_to_world
 
     def __len__(self) -> int:
         return len(self.frames)

@@ -1,0 +1,102 @@
+"""What `localize` prints and writes: the table, one line on the track, rows, trajectory, figure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
+    from course_lib.depth_mcl.scene_map import SceneMap
+    from course_lib.depth_mcl.sequence import DepthSequence
+    from course_lib.experiments.recordings import Run
+
+
+def believed(frames: list[int], statuses: list[str]) -> str:
+    """One line on the track: "lost from frame 41 on (126 of 167 frames)", "tracked in all 167 frames", and the like."""
+    total, lost, tracked = len(frames), statuses.count("lost"), statuses.count("tracked")
+    if tracked == total:
+        return f"tracked in all {total} frames"
+    if not lost:
+        return f"tracked in {tracked} of {total} frames, doubtful in {total - tracked}"
+    stretches = []  # first and last index of every stretch of lost frames
+    for index in (i for i, status in enumerate(statuses) if status == "lost"):
+        if stretches and stretches[-1][1] == index - 1:
+            stretches[-1][1] = index
+        else:
+            stretches.append([index, index])
+    first, last = stretches[0][0], stretches[-1][1]
+    if "tracked" not in statuses[first:]:
+        where = f"from frame {frames[first]} on" if first else "from the first frame on"
+    elif len(stretches) == 1:
+        where = f"from frame {frames[first]} to {frames[last]}"
+    else:
+        where = f"in {len(stretches)} stretches between frames {frames[first]} and {frames[last]}"
+    return f"lost {where} ({lost} of {total} frames; tracked {tracked}, doubtful {total - tracked - lost})"
+
+
+def localize_table(s: dict) -> str:
+    estimated = "all six degrees of freedom" if s["dof"] == "6" else "x, y and yaw"
+    by = f"{s['n_particles']} particles" if s["method"] == "paper" else "the annealed filter"
+    lines = [f"{s['frames']} frames, {estimated} estimated with {by}", ""]
+    if "median_position_m" in s:
+        lines += [
+            "                      median   90th percentile",
+            f"position error [m]    {s['median_position_m']:6.3f}   {s['p90_position_m']:6.3f}",
+            f"rotation error [deg]  {s['median_rotation_deg']:6.2f}   {s['p90_rotation_deg']:6.2f}",
+            "",
+            f"within 5 cm and 5 degrees: {s['within_5cm_5deg_percent']:.1f} %",
+            f"squared error in units of its covariance: {_in_the_mean(s['mean_normalized_error'])}",
+        ]
+    else:
+        lines += ["no poses.txt: errors are not known", ""]
+    if s["frames_without_measurement"]:
+        lines.append(f"{s['frames_without_measurement']} frames held no measurement between --near and --far")
+    lines.append(f"{s['renders_per_frame']:.0f} renders and {s['ms_per_frame']:.0f} ms a frame")
+    return "\n".join(lines)
+
+
+def _in_the_mean(normalized: float | None) -> str:
+    if normalized is None:
+        return "unknown (too few particles to span the motion)"
+    return f"{normalized:.2f} in the mean (1 is honest)"
+
+
+def write_localized(folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap) -> None:
+    """Writes options and numbers (JSON), a row a frame (CSV), the trajectory (TUM) and the figure."""
+    from course_lib.depth_mcl.evaluation import pose_errors
+    from course_lib.depth_mcl.poses import write_tum
+    from course_lib.experiments.results import write_results
+    from course_lib.plots.track_figure import track_figure
+
+    count, positions = len(result.frames), result.camera_to_world[:, :3, 3]
+    rows = [
+        {
+            "frame": frame,
+            "status": status,
+            "score": round(float(score), 5),
+            **{f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", position, strict=True)},
+            **{name: round(value, 4) for name, value in agreement._asdict().items()},
+        }
+        for frame, status, score, position, agreement in zip(
+            result.frames, result.statuses, result.scores, positions, result.agreements, strict=True
+        )
+    ]
+    true = sequence.camera_to_world[:count] if sequence.has_poses else None
+    if true is not None:
+        for row, metres, radians in zip(rows, *pose_errors(result.camera_to_world, true), strict=True):
+            row |= {"position_error_m": round(metres, 5), "rotation_error_deg": round(float(np.rad2deg(radians)), 4)}
+    write_results(folder / "localize.json", summary, rows)
+    times = np.asarray(result.frames, float) if sequence.times is None else sequence.times[:count]
+    write_tum(folder / "trajectory.txt", times, result.camera_to_world)
+    figure = track_figure(
+        scene_map,
+        result.frames,
+        positions,
+        result.scores,
+        result.statuses,
+        None if summary["up"] == "unknown" else summary["up"],
+        None if true is None else true[:, :3, 3],
+    )
+    figure.savefig(folder / "track.png", dpi=130)
