@@ -134,10 +134,8 @@ def is_notebook(path: str) -> bool:
 def nbval_options() -> list[str]:
     """Strict comparison of stored outputs, with this environment's kernel; one file says what may differ everywhere, a
     plugin compares numbers with the tolerance that their cell declares."""
-    options = ["--nbval", "--nbval-current-env"]
+    options = ["--nbval", "--nbval-current-env", "-p", "course_lib.commands.nbval_tolerance"]
     options += [f"--nbval-cell-timeout={HANGS_S}", f"--nbval-kernel-startup-timeout={HANGS_S}"]
-    if (ROOT / "tests" / "nbval_tolerance.py").exists():
-        options += ["-p", "tests.nbval_tolerance"]
     sanitize = ROOT / "tests" / "nbval_sanitize.cfg"
     return options + (["--nbval-sanitize-with", str(sanitize)] if sanitize.exists() else [])
 

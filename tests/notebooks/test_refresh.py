@@ -29,7 +29,7 @@ def written(folder, *sources: str):
 
 def run_nbval(*paths) -> subprocess.CompletedProcess:
     options = ["--nbval", "--nbval-current-env", "--nbval-sanitize-with", str(SANITIZE), "-p", "no:cacheprovider"]
-    options += ["-p", "tests.nbval_tolerance"]
+    options += ["-p", "course_lib.commands.nbval_tolerance"]
     options += ["-c", os.devnull, "--rootdir", str(paths[0].parent)]
     environment = os.environ | {"PYTHONPATH": str(REPOSITORY)}
     command = [sys.executable, "-m", "pytest", "-q", *options, *map(str, paths)]

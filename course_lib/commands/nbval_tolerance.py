@@ -8,7 +8,7 @@ A cell declares it in a comment at the end of a line, for whoever reads it:
 
 It holds for every number that the cell prints or writes under a picture: the stored one and the new one may differ by
 so many percent of the stored one, or by so much. A processor that rounds other last digits, after many steps, comes to
-slightly other numbers; the words between them stay. Loaded with `-p tests.nbval_tolerance`.
+slightly other numbers; the words between them stay. Loaded with `-p course_lib.commands.nbval_tolerance`.
 """
 
 from __future__ import annotations
