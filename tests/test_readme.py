@@ -10,9 +10,11 @@ import pytest
 from course_lib.cli import find_command, main
 from course_lib.commands.bench_table import table
 from course_lib.commands.demo_corridor import table_1
+from course_lib.commands.demo_finale import finale_text
 from course_lib.commands.demo_lost import lost_table
 from course_lib.commands.six_degrees_table import six_degrees_table
 from course_lib.experiments.lost_and_found import summarize
+from course_lib.experiments.rooms_summary import wilson_percent
 
 ROOT = Path(__file__).parents[1]
 README, RESULTS = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "RESULTS.md"))
@@ -99,6 +101,13 @@ def test_lost_and_found_is_what_the_command_prints_of_its_stored_trials(name):
     again = {"seeds": stored["seeds"], **summarize(stored["trials_in_full"])}
     assert again == {key: stored[key] for key in again}
     assert "\n".join(f"    {line}".rstrip() for line in lost_table(again).splitlines()) in RESULTS
+
+
+def test_the_finale_is_what_the_command_prints_of_its_stored_numbers():
+    stored = json.loads((ROOM_RESULTS / "finale_1-10.json").read_text())
+    assert "\n".join(f"    {line}" for line in finale_text(stored).splitlines()) in RESULTS
+    low, high = wilson_percent(stored["reached"], stored["places"])
+    assert f"of {stored['places']} places {stored['reached']} mean {low:.0f} to {high:.0f} % (Wilson)" in RESULTS
 
 
 def test_the_speed_is_what_the_benchmark_printed():
