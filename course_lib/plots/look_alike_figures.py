@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
 from course_lib.experiments.ambiguity import AmbiguityMap
@@ -18,6 +20,14 @@ LEAST_SHARE = 0.01  # of the belief, below which a confusion is not drawn
 def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str = "Ambiguity") -> Figure:
     """The room from above: dark squares where the right pose is not sure, dashed lines between objects confused."""
     figure, axes = new_figure(size=(6.4, 5.2))
+    squares = draw_ambiguity(axes, semantic_map, found, title)
+    figure.colorbar(squares, ax=axes, label="doubt about the right pose (0: sure)", shrink=0.85)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.12), ncols=4, fontsize=8)
+    return figure
+
+
+def draw_ambiguity(axes: Axes, semantic_map: SemanticMap, found: AmbiguityMap, title: str) -> PathCollection:
+    """`ambiguity_figure` on axes that are there; returns the squares, for a colour bar."""
     map_axes(axes, semantic_map, title)
     squares = axes.scatter(
         *found.places.T,
@@ -29,7 +39,6 @@ def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str 
         s=(found.step * 46) ** 2,
         zorder=0,
     )
-    figure.colorbar(squares, ax=axes, label="doubt about the right pose (0: sure)", shrink=0.85)
     for i, j, share in found.most_confused(CONFUSIONS_DRAWN):
         if share >= LEAST_SHARE:
             (x1, y1), (x2, y2) = semantic_map.positions[[i, j]]
@@ -44,8 +53,7 @@ def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str 
                 va="center",
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},  # readable on dark squares
             )
-    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.12), ncols=4, fontsize=8)
-    return figure
+    return squares
 
 
 def risk_coverage_figure(

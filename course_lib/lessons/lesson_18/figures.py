@@ -1,0 +1,187 @@
+"""Figures of lesson 18: by colour or by geometry, every pose of two matches, ellipses, fits, two rooms and their doubts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse
+
+from course_lib.experiments.ambiguity import AmbiguityMap
+from course_lib.lessons.kit.room_observations import MatchingScene
+from course_lib.plots import figures
+from course_lib.plots.look_alike_figures import draw_ambiguity
+from course_lib.plots.panorama_drawing import class_style
+from course_lib.plots.room_figures import draw_pose, map_axes
+from course_lib.spherical_stereo.pose.evidence import NOISE_FACTOR
+from course_lib.spherical_stereo.pose.hypotheses import MAP_SIGMA, Scene, seen_from
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+SIGMAS = 2.0
+"""Standard deviations at which every ellipse of this lesson is drawn, but for that of a pose (`POSE_SIGMAS`)."""
+POSE_SIGMAS = 3.0
+
+
+def ellipse_of(centre: np.ndarray, covariance: np.ndarray, sigmas: float = SIGMAS) -> dict:
+    """xy, width, height and angle (degrees) of the curve on which (p - centre)^T C^-1 (p - centre) = sigmas^2."""
+    variances, axes = np.linalg.eigh(covariance)
+    width, height = 2 * sigmas * np.sqrt(np.maximum(variances, 0))
+    return {
+        "xy": tuple(map(float, centre)),
+        "width": float(width),
+        "height": float(height),
+        "angle": float(np.degrees(np.arctan2(axes[1, 0], axes[0, 0]))),
+    }
+
+
+def laid_on_the_map(scene: Scene, pose: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Places `(n, 2)` of the observations as seen from a pose, and their covariances `(n, 2, 2)`, map frame."""
+    places, _, spread = seen_from(np.array(pose, dtype=np.float64)[None], scene.places[None], scene.covariances[None])
+    return places[0], NOISE_FACTOR**2 * spread[0] + MAP_SIGMA**2 * np.eye(2)
+
+
+def matches_axes(
+    axes: Axes,
+    title: str,
+    seen: tuple[MatchingScene, Scene],
+    pose: Sequence[float],
+    pairs: Sequence[tuple[int, int]],
+    bold: Sequence[int] = (),
+) -> None:
+    """The map, the observations as a pose lays them on it with their ellipses, and a line from each to its landmark.
+
+    Green: the right landmark; vermilion and dashed: a wrong one. bold: observations that the pose was made of.
+    """
+    scene, arrays = seen
+    map_axes(axes, arrays.semantic_map, title)
+    places, spread = laid_on_the_map(arrays, pose)
+    for i, j in pairs:
+        right = scene.true_landmarks[i] == j
+        ends = np.stack([places[i], arrays.semantic_map.positions[j]])
+        colour, style = (figures.GREEN, "-") if right else (figures.VERMILION, "--")
+        axes.plot(*ends.T, style, color=colour, linewidth=3.4 if i in bold else 1.8, zorder=4)
+    for i, (place, covariance) in enumerate(zip(places, spread, strict=True)):
+        colour = class_style(scene.observations[i].label)[0]
+        axes.add_patch(Ellipse(**ellipse_of(place, covariance), fill=False, edgecolor=colour, linewidth=1.1))
+        axes.plot(*place, "x", color=colour, markersize=7, markeredgewidth=1.7, zorder=5)
+    draw_pose(axes, *scene.pose, figures.BLACK)
+    draw_pose(axes, *pose, figures.PURPLE)
+
+
+def _name_lines(figure: Figure, axes: Axes, extra: Sequence[tuple] = ()) -> None:
+    """Legend below: what lines, crosses and dots mean. extra: (marker or line, colour, name)."""
+    entries = [
+        ("-", figures.GREEN, "taken for the right landmark"),
+        ("--", figures.VERMILION, "for a wrong one"),
+        ("x", "0.3", f"object as seen from the pose, {SIGMAS:.0f}-sigma ellipse"),
+        ("o", figures.BLACK, "true pose"),
+        ("o", figures.PURPLE, "pose tried"),
+        *extra,
+    ]
+    for style, colour, name in entries:
+        marker = style if style in ("x", "o") else ""
+        axes.plot([], [], marker=marker, linestyle="none" if marker else style, color=colour, label=name)
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+
+
+def two_ways_figure(
+    seen: tuple[MatchingScene, Scene],
+    by_colour: tuple[Sequence[float], Sequence[tuple[int, int]]],
+    by_two: tuple[Sequence[float], Sequence[tuple[int, int]], Sequence[int]],
+) -> Figure:
+    """Left: matched by class and colour, then fitted. Right: two matches make a pose, and the others follow."""
+    figure, (left, right) = figures.new_figure(1, 2, size=(10.0, 5.4))
+    matches_axes(left, "By class and colour first, then the pose", seen, *by_colour)
+    matches_axes(right, "Two matches (thick) make a pose; look at the others", seen, *by_two)
+    _name_lines(figure, right)
+    return figure
+
+
+def matches_figure(seen: tuple[MatchingScene, Scene], first: tuple, second: tuple, titles: Sequence[str]) -> Figure:
+    """Two poses of one scene side by side, each with its matches and every object's ellipse."""
+    figure, axes = figures.new_figure(1, 2, size=(10.0, 5.4))
+    for one, title, (pose, pairs) in zip(axes, titles, (first, second), strict=True):
+        matches_axes(one, title, seen, pose, pairs)
+    _name_lines(figure, axes[1])
+    return figure
+
+
+def hypotheses_figure(semantic_map: SemanticMap, poses: np.ndarray, true_pose: Sequence[float]) -> Figure:
+    """Every pose of two matches as an arrow on the map; most are nowhere, and some are together."""
+    figure, axes = figures.new_figure(size=(7.4, 5.6))
+    map_axes(axes, semantic_map, f"The poses of {len(poses)} pairs of matches")
+    axes.quiver(
+        *poses[:, :2].T, np.cos(poses[:, 2]), np.sin(poses[:, 2]),
+        angles="xy", scale_units="xy", scale=2.6, width=0.0035, color=figures.PURPLE, alpha=0.75, zorder=3,
+        label="pose of two matches",
+    )  # fmt: skip
+    draw_pose(axes, *true_pose, figures.BLACK, "true pose")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
+    return figure
+
+
+def risk_figure(curves: dict[str, dict[str, list[float]]], thresholds: dict[str, tuple[float, float]]) -> Figure:
+    """Share of the answers that are wrong over the share answered, one line a name, and where the threshold lies."""
+    figure, axes = figures.new_figure(size=(7.0, 3.8))
+    for index, (name, curve) in enumerate(curves.items()):
+        style = figures.line_style(index) | {"marker": ""}
+        axes.step(curve["coverage_percent"], curve["risk_percent"], where="post", label=name, **style)
+        point = figures.line_style(index) | {"linestyle": "none", "markersize": 9}
+        axes.plot(*thresholds[name], **point, label=f"{name}, at confidence 0.8")
+    axes.set(
+        title="Half of the robots stand in a room that is not on the map",
+        xlabel="poses answered [%]",
+        ylabel="of them wrong [%]",
+        xlim=(0, 101),
+        ylim=(-2, 60),
+    )
+    axes.legend(loc="upper left", fontsize=8)
+    return figure
+
+
+def ambiguities_figure(semantic_maps: Sequence[SemanticMap], found: Sequence[AmbiguityMap], titles: list[str]) -> Figure:
+    """Ambiguity maps side by side: dark where the right pose is not sure, dashed lines between objects confused."""
+    figure, axes = figures.new_figure(1, len(found), size=(10.4, 4.7))
+    for one, semantic_map, ambiguity, title in zip(axes, semantic_maps, found, titles, strict=True):
+        squares = draw_ambiguity(one, semantic_map, ambiguity, title)
+    figure.colorbar(squares, ax=axes, label="doubt about the right pose [-], 0: sure", shrink=0.8)
+    handles, labels = axes[-1].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=8, frameon=False)
+    return figure
+
+
+def two_places_figure(
+    semantic_maps: Sequence[SemanticMap],
+    beliefs: Sequence[Sequence[tuple[Pose2D, float]]],
+    true_poses: np.ndarray,
+    titles: Sequence[str],
+) -> Figure:
+    """What is believed after each view: every pose that has a share, written beside it, and the true one."""
+    figure, axes = figures.new_figure(1, len(beliefs), size=(10.4, 4.1))
+    for one, semantic_map, belief, truth, title in zip(axes, semantic_maps, beliefs, true_poses, titles, strict=True):
+        map_axes(one, semantic_map, title)
+        draw_pose(one, *truth, figures.BLACK, "true pose")
+        for pose, share in belief:
+            if share > 0.01:
+                draw_pose(one, *pose, figures.PURPLE)
+                one.plot(pose.x, pose.y, "o", mfc="none", mec=figures.PURPLE, markersize=13)
+                one.annotate(f"{share:.0%}", pose[:2], (9, -12), textcoords="offset points", color=figures.PURPLE)
+    axes[-1].plot([], [], "o", mfc="none", mec=figures.PURPLE, markersize=11, label="pose believed, its share")
+    handles, labels = axes[-1].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=8, frameon=False)
+    return figure
+
+
+def few_seen_figure(seen: tuple[MatchingScene, Scene], pose: Sequence[float], covariance: np.ndarray, pairs) -> Figure:
+    """Few objects, all matched rightly; the pose, and the ellipse in which its covariance expects the true one."""
+    figure, axes = figures.new_figure(size=(7.0, 5.6))
+    matches_axes(axes, "Four objects, four right matches", seen, pose, pairs)
+    axes.add_patch(
+        Ellipse(**ellipse_of(pose[:2], covariance[:2, :2], POSE_SIGMAS), fill=False, edgecolor=figures.PURPLE, lw=2.2)
+    )
+    _name_lines(figure, axes, [("-", figures.PURPLE, f"{POSE_SIGMAS:.0f}-sigma ellipse of the pose")])
+    return figure
