@@ -22,6 +22,7 @@ from course_lib.lessons.lesson_18.scenes import (
     half_seen,
     mirrored,
     thinned,
+    walk_past_the_plant,
 )
 from course_lib.lessons.lesson_18.stored_answers import shares_line, stored_answers
 from course_lib.lessons.lesson_18.trials import (
@@ -30,8 +31,11 @@ from course_lib.lessons.lesson_18.trials import (
     answers_of_few,
     answers_of_matchers,
     answers_of_two_views,
+    at_threshold,
+    belief_at,
     half_seen_scenes,
 )
+from course_lib.lessons.lesson_18.two_matches import both_right, matched_by_colour, matched_by_two
 
 __all__ = [
     "FEW_SEEN",
@@ -45,6 +49,9 @@ __all__ = [
     "answers_of_few",
     "answers_of_matchers",
     "answers_of_two_views",
+    "at_threshold",
+    "belief_at",
+    "both_right",
     "exact_view",
     "few_seen_figure",
     "fit_errors",
@@ -52,6 +59,8 @@ __all__ = [
     "half_seen_scenes",
     "hypotheses_figure",
     "hypotheses_panel",
+    "matched_by_colour",
+    "matched_by_two",
     "matches_figure",
     "mirrored",
     "risk_figure",
@@ -62,4 +71,5 @@ __all__ = [
     "thinned",
     "two_places_figure",
     "two_ways_figure",
+    "walk_past_the_plant",
 ]

@@ -1,4 +1,4 @@
-"""Exercises of lesson 18: what a colour costs, a pose of two matches, an assignment with unmatched, risk and coverage."""
+"""Exercises of lesson 18: what a colour costs, a pose of two matches, leaving things unmatched, risk and coverage."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from course_lib.lessons.kit.exercises import Exercise, Mistake
 
 
 def colour_cost(hue_seen, saturation_seen, hue_map, saturation_map):
-    """dh^2 / (2 s_h^2) + ds^2 / (2 15^2) (n,), at most 3; s_h = 600 / the lesser saturation, at least 12; grey: dh = 0."""
+    """dh^2 / (2 s_h^2) + ds^2 / (2 15^2) (n,), at most 3; s_h = 600 / lesser saturation, at least 12; grey: dh = 0."""
     return _colour(hue_seen, saturation_seen, hue_map, saturation_map)
 
 
@@ -74,7 +74,7 @@ def _mistaken_colour(**parts) -> Callable:
 
 
 def pose_of_two(seen, landmarks):
-    """(x, y, theta): the line between two observations (2, 2) laid on the line between two landmarks, middle on middle."""
+    """(x, y, theta): the line between two observations (2, 2) laid on that between two landmarks, middle on middle."""
     return _pose(seen, landmarks)
 
 
@@ -202,7 +202,7 @@ def _nat_costs(rng: np.random.Generator) -> tuple:
 
 
 def most_answered(confidence, right, most_wrong):
-    """Greatest share of all poses that one threshold answers with at most `most_wrong` of the answers wrong; 0: none."""
+    """Greatest share of all poses that one threshold answers, at most `most_wrong` of the answers wrong; 0: none."""
     return _answered(confidence, right, most_wrong)
 
 
@@ -255,7 +255,9 @@ def _answers(rng: np.random.Generator) -> tuple:
         right[confidence == confidence.max()] = False  # no threshold does at first, a lower one may
     if rng.random() < 0.3:  # four, then eight answers, one and two of them wrong: a quarter exactly
         confidence = np.array([0.9, 0.9, 0.8, 0.8, 0.6, 0.6, 0.5, 0.5, 0.3, 0.0])
-        right = rng.permutation([True, True, True, False]).tolist() + rng.permutation([True, True, True, False]).tolist()
+        right = (
+            rng.permutation([True, True, True, False]).tolist() + rng.permutation([True, True, True, False]).tolist()
+        )
         right = np.array([*right, False, True])
         return confidence, right, 0.25
     return confidence, right, float(rng.choice([0.0, 0.125, 0.25, 0.5]))
@@ -346,7 +348,7 @@ EXERCISES = [
         mistakes=(
             Mistake(
                 _mistaken_pose(turn=lambda seen, landmarks: -_difference_of_directions(seen, landmarks)),
-                "You turn the wrong way round: theta turns the observed line into the map's. (np.arctan2 takes y first, then x.)",
+                "You turn the wrong way: theta turns the observed line into the map's. (np.arctan2 takes y first.)",
             ),
             Mistake(
                 _mistaken_pose(rotate=lambda theta, point: _turned(-theta, point)),
@@ -387,7 +389,9 @@ EXERCISES = [
             Mistake(
                 _mistaken_pose(
                     turn=lambda s, m: np.arccos(
-                        np.clip((m[1] - m[0]) @ (s[1] - s[0]) / np.hypot(*(m[1] - m[0])) / np.hypot(*(s[1] - s[0])), -1, 1)
+                        np.clip(
+                            (m[1] - m[0]) @ (s[1] - s[0]) / np.hypot(*(m[1] - m[0])) / np.hypot(*(s[1] - s[0])), -1, 1
+                        )
                     ),
                 ),
                 "arccos loses the sign of the angle: a left turn and a right turn look alike to it.",
@@ -426,7 +430,9 @@ EXERCISES = [
                 _repeated_minimum,
                 "That is the repeated minimum of lesson 15. The least *total* may begin with a dearer pair.",
             ),
-            Mistake(_row_by_row, "Yours depends on the order of the rows: the first takes what a later one needs more."),
+            Mistake(
+                _row_by_row, "Yours depends on the order of the rows: the first takes what a later one needs more."
+            ),
             Mistake(_rows_with_gain, "You leave out rows without a gain, but force a column on all that are left."),
             Mistake(
                 lambda cost: _matched(np.maximum(cost, 0), lambda i, j: cost[i, j] < 0),
@@ -440,7 +446,9 @@ EXERCISES = [
                 lambda cost: _matched(np.abs(cost), lambda i, j: cost[i, j] < 0),
                 "Without its sign a great gain looks like a great cost.",
             ),
-            Mistake(_each_other_s_best, "You match those only that are each other's best. A second choice can pay, too."),
+            Mistake(
+                _each_other_s_best, "You match those only that are each other's best. A second choice can pay, too."
+            ),
         ),
     ),
     Exercise(

@@ -1,4 +1,4 @@
-"""Figures of lesson 18: by colour or by geometry, every pose of two matches, ellipses, fits, two rooms and their doubts."""
+"""Figures of lesson 18: by colour or by geometry, every pose of two matches, ellipses, risk, where there is doubt."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from course_lib.plots.look_alike_figures import draw_ambiguity
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.room_figures import draw_pose, map_axes
 from course_lib.spherical_stereo.pose.evidence import NOISE_FACTOR
-from course_lib.spherical_stereo.pose.hypotheses import MAP_SIGMA, Scene, seen_from
+from course_lib.spherical_stereo.pose.hypotheses import MAP_SIGMA, PoseHypothesis, Scene, seen_from
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -67,8 +67,15 @@ def matches_axes(
         colour = class_style(scene.observations[i].label)[0]
         axes.add_patch(Ellipse(**ellipse_of(place, covariance), fill=False, edgecolor=colour, linewidth=1.1))
         axes.plot(*place, "x", color=colour, markersize=7, markeredgewidth=1.7, zorder=5)
-    draw_pose(axes, *scene.pose, figures.BLACK)
-    draw_pose(axes, *pose, figures.PURPLE)
+    draw_true_pose(axes, scene.pose)
+    draw_pose(axes, *pose, figures.BLACK)
+
+
+def draw_true_pose(axes: Axes, pose: Sequence[float]) -> None:
+    """A ring, so that a pose that is right is seen inside it, and a thin line ahead."""
+    x, y, theta = pose
+    axes.plot(x, y, "o", mfc="none", mec=figures.BLACK, markersize=14, markeredgewidth=1.5, zorder=5)
+    axes.plot([x, x + 0.7 * np.cos(theta)], [y, y + 0.7 * np.sin(theta)], color="0.4", linewidth=1.0, zorder=4)
 
 
 def _name_lines(figure: Figure, axes: Axes, extra: Sequence[tuple] = ()) -> None:
@@ -77,13 +84,14 @@ def _name_lines(figure: Figure, axes: Axes, extra: Sequence[tuple] = ()) -> None
         ("-", figures.GREEN, "taken for the right landmark"),
         ("--", figures.VERMILION, "for a wrong one"),
         ("x", "0.3", f"object as seen from the pose, {SIGMAS:.0f}-sigma ellipse"),
-        ("o", figures.BLACK, "true pose"),
-        ("o", figures.PURPLE, "pose tried"),
+        ("ring", figures.BLACK, "true pose"),
+        ("o", figures.BLACK, "pose tried"),
         *extra,
     ]
     for style, colour, name in entries:
-        marker = style if style in ("x", "o") else ""
-        axes.plot([], [], marker=marker, linestyle="none" if marker else style, color=colour, label=name)
+        look = {"x": {"marker": "x"}, "o": {"marker": "o"}, "ring": {"marker": "o", "mfc": "none", "markersize": 11}}
+        look = {"linestyle": "none", **look[style]} if style in look else {"linestyle": style}
+        axes.plot([], [], color=colour, label=name, **look)
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
 
@@ -101,12 +109,12 @@ def two_ways_figure(
     return figure
 
 
-def matches_figure(seen: tuple[MatchingScene, Scene], first: tuple, second: tuple, titles: Sequence[str]) -> Figure:
-    """Two poses of one scene side by side, each with its matches and every object's ellipse."""
-    figure, axes = figures.new_figure(1, 2, size=(10.0, 5.4))
-    for one, title, (pose, pairs) in zip(axes, titles, (first, second), strict=True):
-        matches_axes(one, title, seen, pose, pairs)
-    _name_lines(figure, axes[1])
+def matches_figure(seen: tuple[MatchingScene, Scene], found: dict[str, PoseHypothesis]) -> Figure:
+    """Poses of one scene side by side, title -> pose, each with its matches and every object's ellipse."""
+    figure, axes = figures.new_figure(1, len(found), size=(10.0, 5.4))
+    for one, (title, hypothesis) in zip(axes, found.items(), strict=True):
+        matches_axes(one, title, seen, hypothesis.pose, hypothesis.pairs)
+    _name_lines(figure, axes[-1])
     return figure
 
 
@@ -116,10 +124,11 @@ def hypotheses_figure(semantic_map: SemanticMap, poses: np.ndarray, true_pose: S
     map_axes(axes, semantic_map, f"The poses of {len(poses)} pairs of matches")
     axes.quiver(
         *poses[:, :2].T, np.cos(poses[:, 2]), np.sin(poses[:, 2]),
-        angles="xy", scale_units="xy", scale=2.6, width=0.0035, color=figures.PURPLE, alpha=0.75, zorder=3,
+        angles="xy", scale_units="xy", scale=2.6, width=0.0035, color=figures.BLUE, alpha=0.7, zorder=3,
         label="pose of two matches",
     )  # fmt: skip
-    draw_pose(axes, *true_pose, figures.BLACK, "true pose")
+    draw_true_pose(axes, true_pose)
+    axes.plot([], [], "o", mfc="none", mec=figures.BLACK, markersize=11, label="true pose")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
     return figure
 
@@ -143,7 +152,9 @@ def risk_figure(curves: dict[str, dict[str, list[float]]], thresholds: dict[str,
     return figure
 
 
-def ambiguities_figure(semantic_maps: Sequence[SemanticMap], found: Sequence[AmbiguityMap], titles: list[str]) -> Figure:
+def ambiguities_figure(
+    semantic_maps: Sequence[SemanticMap], found: Sequence[AmbiguityMap], titles: list[str]
+) -> Figure:
     """Ambiguity maps side by side: dark where the right pose is not sure, dashed lines between objects confused."""
     figure, axes = figures.new_figure(1, len(found), size=(10.4, 4.7))
     for one, semantic_map, ambiguity, title in zip(axes, semantic_maps, found, titles, strict=True):
@@ -164,13 +175,13 @@ def two_places_figure(
     figure, axes = figures.new_figure(1, len(beliefs), size=(10.4, 4.1))
     for one, semantic_map, belief, truth, title in zip(axes, semantic_maps, beliefs, true_poses, titles, strict=True):
         map_axes(one, semantic_map, title)
-        draw_pose(one, *truth, figures.BLACK, "true pose")
+        draw_true_pose(one, truth)
         for pose, share in belief:
             if share > 0.01:
-                draw_pose(one, *pose, figures.PURPLE)
-                one.plot(pose.x, pose.y, "o", mfc="none", mec=figures.PURPLE, markersize=13)
-                one.annotate(f"{share:.0%}", pose[:2], (9, -12), textcoords="offset points", color=figures.PURPLE)
-    axes[-1].plot([], [], "o", mfc="none", mec=figures.PURPLE, markersize=11, label="pose believed, its share")
+                draw_pose(one, *pose, figures.BLACK)
+                one.annotate(f"{share:.0%}", pose[:2], (10, -13), textcoords="offset points", fontsize=10)
+    axes[-1].plot([], [], "o", color=figures.BLACK, label="pose believed, and its share")
+    axes[-1].plot([], [], "o", mfc="none", mec=figures.BLACK, markersize=11, label="true pose")
     handles, labels = axes[-1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=8, frameon=False)
     return figure
@@ -181,7 +192,7 @@ def few_seen_figure(seen: tuple[MatchingScene, Scene], pose: Sequence[float], co
     figure, axes = figures.new_figure(size=(7.0, 5.6))
     matches_axes(axes, "Four objects, four right matches", seen, pose, pairs)
     axes.add_patch(
-        Ellipse(**ellipse_of(pose[:2], covariance[:2, :2], POSE_SIGMAS), fill=False, edgecolor=figures.PURPLE, lw=2.2)
+        Ellipse(**ellipse_of(pose[:2], covariance[:2, :2], POSE_SIGMAS), fill=False, edgecolor=figures.BLACK, lw=2.0)
     )
-    _name_lines(figure, axes, [("-", figures.PURPLE, f"{POSE_SIGMAS:.0f}-sigma ellipse of the pose")])
+    _name_lines(figure, axes, [("-", figures.BLACK, f"{POSE_SIGMAS:.0f}-sigma ellipse of the pose")])
     return figure

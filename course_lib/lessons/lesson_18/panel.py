@@ -17,6 +17,7 @@ from course_lib.lessons.lesson_18.figures import SIGMAS, laid_on_the_map
 from course_lib.lessons.lesson_18.scenes import mirrored, thinned
 from course_lib.lessons.lesson_18.terms import TERMS, residual_sigmas, score_terms, share_of_nothing
 from course_lib.plots import figures
+from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.room_figures import map_axes
 from course_lib.spherical_stereo.pose.confidence import confidence_of
 from course_lib.spherical_stereo.pose.consistent import rank_poses
@@ -26,6 +27,9 @@ ROOM, MIRROR = "the room", "its mirror image"
 ALL = 99
 """More distinct poses than there ever are."""
 SHOWN_RANKS = 6
+MOST_HIDDEN = 8
+"""Of the eleven objects or more that each of the panel's pairs of photographs shows: two poses or more are left."""
+PAIRS = ("08_a", "07_b", "06_a", "10_a")
 _LEAST_NATS, _MOST_NATS = -45.0, 130.0  # of the bars; what is beyond is drawn at the edge
 _MOST_SIGMAS = 5.0
 _AROUND = np.linspace(0, 2 * np.pi, 33)
@@ -47,14 +51,16 @@ def ranked(photographs: str, map_name: str, hidden: int) -> Ranked:
     kept = np.sort(np.argsort(ranges, kind="stable")[: max(2, len(ranges) - hidden)])
     scene = thinned(scene, kept)
     semantic_map = room_map() if map_name == ROOM else mirrored(room_map())
-    return Ranked(scene, scene_of(scene.observations, semantic_map), rank_poses(scene.observations, semantic_map, n=ALL))
+    return Ranked(
+        scene, scene_of(scene.observations, semantic_map), rank_poses(scene.observations, semantic_map, n=ALL)
+    )
 
 
 def hypotheses_panel() -> Panel:
     """Sliders for the rank of the pose and for hidden objects; choices of photographs and of the map."""
-    figure, axes = figures.new_figure(2, 2, size=(11.0, 5.0))
+    figure, axes = figures.new_figure(2, 2, size=(11.6, 5.0))
     grid = axes[0, 0].get_gridspec()
-    grid.set_width_ratios([1.5, 1.0])
+    grid.set_width_ratios([2.0, 1.0])
     for one in axes[:, 0]:
         one.remove()
     plan, (terms, residuals) = figure.add_subplot(grid[:, 0]), axes[:, 1]
@@ -62,15 +68,22 @@ def hypotheses_panel() -> Panel:
     landmarks = {line.get_label(): line for line in plan.get_lines() if line.get_label() in room_map().labels}
     right_lines = LineCollection([], colors=figures.GREEN, linewidths=2.6)
     wrong_lines = LineCollection([], colors=figures.VERMILION, linewidths=2.0, linestyles="--")
-    ellipses = LineCollection([], colors="0.45", linewidths=0.9)
-    heading = LineCollection([], colors=figures.PURPLE, linewidths=2.4)
+    ellipses = LineCollection([], linewidths=1.1)
+    heading = LineCollection([], colors=figures.BLACK, linewidths=2.4)
     for one in (right_lines, wrong_lines, ellipses, heading):
         plan.add_collection(one)
     (places,) = plan.plot([], [], "x", color="0.2", markersize=7, markeredgewidth=1.6)
     (missed,) = plan.plot([], [], "s", mfc="none", mec=figures.VERMILION, markersize=17, markeredgewidth=1.4)
-    (truth,) = plan.plot([], [], "o", color=figures.BLACK, markersize=6)
-    (robot,) = plan.plot([], [], "o", color=figures.PURPLE, markersize=9)
+    (truth,) = plan.plot([], [], "o", mfc="none", mec=figures.BLACK, markersize=14, markeredgewidth=1.6)
+    (robot,) = plan.plot([], [], "o", color=figures.BLACK, markersize=8)
     plan.set(xlim=(-1.0, 6.2), ylim=(-1.1, 6.1))
+    for name, style in (
+        ("this pose", {"marker": "o", "color": figures.BLACK, "markersize": 8}),
+        ("true pose", {"marker": "o", "mfc": "none", "mec": figures.BLACK, "markersize": 11}),
+        ("should be seen, and is not", {"marker": "s", "mfc": "none", "mec": figures.VERMILION, "markersize": 11}),
+    ):
+        plan.plot([], [], linestyle="none", label=name, **style)
+    plan.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8, frameon=False)
     term_bars = _bars(terms, [*TERMS, "score"])
     terms.set(title="What its score adds up from", xlabel="score [nats]", ylabel="evidence [-]")
     (right_dots,) = residuals.plot([], [], "o", color=figures.GREEN, markersize=6, label="right")
@@ -97,6 +110,7 @@ def hypotheses_panel() -> Panel:
         # In the mirror no match is right: there the robot is nowhere.
         right = np.array([map_name == ROOM and found.scene.true_landmarks[i] == j for i, j in chosen.pairs])
         ends = [(seen[i], semantic_map.positions[j]) for i, j in chosen.pairs]
+        ellipses.set_color([class_style(one.label)[0] for one in found.scene.observations])
         right_lines.set_segments([line for line, good in zip(ends, right, strict=True) if good])
         wrong_lines.set_segments([line for line, good in zip(ends, right, strict=True) if not good])
         missed.set_data(*semantic_map.positions[list(chosen.missed)].reshape(-1, 2).T)
@@ -121,11 +135,10 @@ def hypotheses_panel() -> Panel:
     def go(by: int):
         return lambda values: values | {"rank": float(np.clip(values["rank"] + by, 1, SHOWN_RANKS))}
 
-    names = ("08_a", "01_a", "07_b", "10_a")
     controls = [
         Slider("rank", "pose, by rank", 1, SHOWN_RANKS, 1, 1),
-        Slider("hidden", "farthest objects hidden", 0, 9, 0, 1),
-        Choice("photographs", "pair of photographs", names, names[0]),
+        Slider("hidden", "farthest objects hidden", 0, MOST_HIDDEN, 0, 1),
+        Choice("photographs", "pair of photographs", PAIRS, PAIRS[0]),
         Choice("map_name", "map", (ROOM, MIRROR), ROOM),
     ]
     return Panel("18 poses by rank", controls, draw, actions={"Better": go(-1), "Worse": go(+1)})

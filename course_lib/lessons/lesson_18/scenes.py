@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from course_lib.experiments.ambiguity import stereo_covariance
+from course_lib.experiments.look_alikes import measured_motion
 from course_lib.lessons.kit.room_observations import MatchingScene, in_body_frame
+from course_lib.spherical_stereo.pose.tracker import Motion
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
@@ -60,3 +63,18 @@ def exact_view(semantic_map: SemanticMap, pose: np.ndarray, which: list[int]) ->
         Observation(one.label, float(x), float(y), one.hue, one.saturation, stereo_covariance(np.array([x, y])))
         for one, (x, y) in zip(landmarks, places, strict=True)
     ]
+
+
+def walk_past_the_plant(start: np.ndarray) -> tuple[np.ndarray, list[list[Observation]], list[Motion | None]]:
+    """Poses `(3, 3)`, what is seen from each in `ROOM_WITH_PLANT`, and the odometry before each (None: the first).
+
+    0.8 m ahead, then a quarter turn on the spot. The plant is hidden in the first two views.
+    """
+    x, y, theta = start
+    ahead = (x + 0.8 * np.cos(theta), y + 0.8 * np.sin(theta))
+    poses = np.array([start, [*ahead, theta], [*ahead, theta + np.pi / 2]])
+    everything = list(range(len(ROOM_WITH_PLANT)))
+    shown = [everything[:-1], everything[:-1], everything]
+    views = [exact_view(ROOM_WITH_PLANT, pose, which) for pose, which in zip(poses, shown, strict=True)]
+    rng = np.random.default_rng(18)
+    return poses, views, [None, *(measured_motion(a, b, rng) for a, b in pairwise(poses))]

@@ -11,7 +11,7 @@ from course_lib.paths import data_path
 
 @functools.cache
 def stored_answers() -> dict:
-    """ "one_view", "several_views", "thinned_views", "ablation" and more, as `look_alikes.answers_summary` made them."""
+    """What `look_alikes.answers_summary` made: "one_view", "several_views", "thinned_views", "ablation" and more."""
     return json.loads(data_path("room/results/rooms_1-20.json").read_text(encoding="utf-8"))["answers"]
 
 

@@ -18,7 +18,7 @@ TERMS = ("places", "colours", "seen", "missed", "free space")
 
 
 def score_terms(scene: Scene, found: PoseHypothesis) -> dict[str, float]:
-    """One of `TERMS` -> nats, signed so that they add up to `found.score`; of a refitted pose, which has no error of its own."""
+    """One of `TERMS` -> nats, signed so that they add up to `found.score`; the pose counts as exact, being refitted."""
     pose = np.array(found.pose)[None]
     i, j = np.array(found.pairs).T
     squared, log_size = place_distances(scene, pose)
