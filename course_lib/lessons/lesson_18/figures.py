@@ -23,6 +23,8 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 SIGMAS = 2.0
 """Standard deviations at which every ellipse of this lesson is drawn, but for that of a pose (`POSE_SIGMAS`)."""
 POSE_SIGMAS = 3.0
+_SHOWN = {"xlim": (-1.9, 6.4), "ylim": (-1.9, 6.5)}
+"""Of the shipped room: metres beyond its walls, for what a wrong pose lays there; an ellipse may be cut."""
 
 
 def ellipse_of(centre: np.ndarray, covariance: np.ndarray, sigmas: float = SIGMAS) -> dict:
@@ -69,6 +71,7 @@ def matches_axes(
         axes.plot(*place, "x", color=colour, markersize=7, markeredgewidth=1.7, zorder=5)
     draw_true_pose(axes, scene.pose)
     draw_pose(axes, *pose, figures.BLACK)
+    axes.set(**_SHOWN)
 
 
 def draw_true_pose(axes: Axes, pose: Sequence[float]) -> None:
@@ -78,7 +81,7 @@ def draw_true_pose(axes: Axes, pose: Sequence[float]) -> None:
     axes.plot([x, x + 0.7 * np.cos(theta)], [y, y + 0.7 * np.sin(theta)], color="0.4", linewidth=1.0, zorder=4)
 
 
-def _name_lines(figure: Figure, axes: Axes, extra: Sequence[tuple] = ()) -> None:
+def _name_lines(figure: Figure, axes: Axes, extra: Sequence[tuple] = (), columns: int = 4) -> None:
     """Legend below: what lines, crosses and dots mean. extra: (marker or line, colour, name)."""
     entries = [
         ("-", figures.GREEN, "taken for the right landmark"),
@@ -93,7 +96,7 @@ def _name_lines(figure: Figure, axes: Axes, extra: Sequence[tuple] = ()) -> None
         look = {"linestyle": "none", **look[style]} if style in look else {"linestyle": style}
         axes.plot([], [], color=colour, label=name, **look)
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=8, frameon=False)
 
 
 def two_ways_figure(
@@ -122,11 +125,10 @@ def hypotheses_figure(semantic_map: SemanticMap, poses: np.ndarray, true_pose: S
     """Every pose of two matches as an arrow on the map; most are nowhere, and some are together."""
     figure, axes = figures.new_figure(size=(7.4, 5.6))
     map_axes(axes, semantic_map, f"The poses of {len(poses)} pairs of matches")
-    axes.quiver(
-        *poses[:, :2].T, np.cos(poses[:, 2]), np.sin(poses[:, 2]),
-        angles="xy", scale_units="xy", scale=2.6, width=0.0035, color=figures.BLUE, alpha=0.7, zorder=3,
-        label="pose of two matches",
-    )  # fmt: skip
+    arrows = (*poses[:, :2].T, np.cos(poses[:, 2]), np.sin(poses[:, 2]))
+    axes.quiver(*arrows, angles="xy", scale_units="xy", scale=2.2, width=0.004, color=figures.BLUE, alpha=0.7, zorder=3)
+    axes.plot([], [], marker=">", linestyle="none", color=figures.BLUE, label="pose of two matches")
+    axes.set(xlim=(-3.2, 8.6), ylim=(-3.2, 8.2))
     draw_true_pose(axes, true_pose)
     axes.plot([], [], "o", mfc="none", mec=figures.BLACK, markersize=11, label="true pose")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
@@ -146,9 +148,9 @@ def risk_figure(curves: dict[str, dict[str, list[float]]], thresholds: dict[str,
         xlabel="poses answered [%]",
         ylabel="of them wrong [%]",
         xlim=(0, 101),
-        ylim=(-2, 60),
+        ylim=(-3, 103),
     )
-    axes.legend(loc="upper left", fontsize=8)
+    axes.legend(loc="upper center", fontsize=8)
     return figure
 
 
@@ -189,10 +191,10 @@ def two_places_figure(
 
 def few_seen_figure(seen: tuple[MatchingScene, Scene], pose: Sequence[float], covariance: np.ndarray, pairs) -> Figure:
     """Few objects, all matched rightly; the pose, and the ellipse in which its covariance expects the true one."""
-    figure, axes = figures.new_figure(size=(7.0, 5.6))
+    figure, axes = figures.new_figure(size=(7.4, 6.4))
     matches_axes(axes, "Four objects, four right matches", seen, pose, pairs)
     axes.add_patch(
         Ellipse(**ellipse_of(pose[:2], covariance[:2, :2], POSE_SIGMAS), fill=False, edgecolor=figures.BLACK, lw=2.0)
     )
-    _name_lines(figure, axes, [("-", figures.BLACK, f"{POSE_SIGMAS:.0f}-sigma ellipse of the pose")])
+    _name_lines(figure, axes, [("-", figures.BLACK, f"{POSE_SIGMAS:.0f}-sigma ellipse of the pose")], 3)
     return figure

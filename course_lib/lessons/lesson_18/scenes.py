@@ -10,6 +10,7 @@ import numpy as np
 from course_lib.experiments.ambiguity import stereo_covariance
 from course_lib.experiments.look_alikes import measured_motion
 from course_lib.lessons.kit.room_observations import MatchingScene, in_body_frame
+from course_lib.spherical_stereo.pose.hypotheses import MAP_SIGMA
 from course_lib.spherical_stereo.pose.tracker import Motion
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
@@ -53,6 +54,15 @@ def mirrored(semantic_map: SemanticMap) -> SemanticMap:
     low, high = semantic_map.walls[:, 0].min(), semantic_map.walls[:, 0].max()
     landmarks = [replace(one, x=low + high - one.x) for one in semantic_map.landmarks]
     return SemanticMap(landmarks, np.column_stack([low + high - semantic_map.walls[:, 0], semantic_map.walls[:, 1]]))
+
+
+def surveyed(semantic_map: SemanticMap, rng: np.random.Generator) -> SemanticMap:
+    """The map as a tape measure gives it, `MAP_SIGMA` off in x and y: no room is the same after half a turn exactly."""
+    moved = semantic_map.positions + rng.normal(0.0, MAP_SIGMA, (len(semantic_map), 2))
+    landmarks = [
+        replace(one, x=float(x), y=float(y)) for one, (x, y) in zip(semantic_map.landmarks, moved, strict=True)
+    ]
+    return SemanticMap(landmarks, semantic_map.walls)
 
 
 def exact_view(semantic_map: SemanticMap, pose: np.ndarray, which: list[int]) -> list[Observation]:

@@ -66,6 +66,15 @@ def answers_of_confidence(scenes: list[tuple[str, MatchingScene]], evidence: Evi
     return answers
 
 
+def answers_on_both_maps(
+    scenes: list[tuple[str, MatchingScene]], kinds: dict[str, Evidence]
+) -> dict[str, tuple[list[Answer], list[Answer]]]:
+    """Name -> what the matcher with that evidence answers on the room's map, and on its mirror image."""
+    runs = [(name, wrong_map) for name in kinds for wrong_map in (False, True)]
+    found = {run: answers_of_confidence(scenes, kinds[run[0]], run[1]) for run in progress(runs, "evidence and maps")}
+    return {name: (found[name, False], found[name, True]) for name in kinds}
+
+
 def answers_of_few(n_seen: int, draws: int, rng: np.random.Generator) -> list[Answer]:
     """What the consistent matcher answers when `n_seen` objects, drawn at random, are seen and no more."""
     scenes = [
