@@ -15,6 +15,7 @@ from course_lib.plots import figures
 from course_lib.plots.look_alike_figures import draw_ambiguity
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.room_figures import draw_pose, map_axes
+from course_lib.spherical_stereo.pose.confidence import LEAST_CONFIDENCE
 from course_lib.spherical_stereo.pose.evidence import NOISE_FACTOR
 from course_lib.spherical_stereo.pose.hypotheses import MAP_SIGMA, PoseHypothesis, Scene, seen_from
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
@@ -109,6 +110,7 @@ def two_ways_figure(
     matches_axes(left, "By class and colour first, then the pose", seen, *by_colour)
     matches_axes(right, "Two matches (thick) make a pose; look at the others", seen, *by_two)
     _name_lines(figure, right)
+    figure.get_layout_engine().set(h_pad=0.1)  # else the titles touch the edge
     return figure
 
 
@@ -118,6 +120,7 @@ def matches_figure(seen: tuple[MatchingScene, Scene], found: dict[str, PoseHypot
     for one, (title, hypothesis) in zip(axes, found.items(), strict=True):
         matches_axes(one, title, seen, hypothesis.pose, hypothesis.pairs)
     _name_lines(figure, axes[-1])
+    figure.get_layout_engine().set(h_pad=0.1)
     return figure
 
 
@@ -135,22 +138,25 @@ def hypotheses_figure(semantic_map: SemanticMap, poses: np.ndarray, true_pose: S
     return figure
 
 
-def risk_figure(curves: dict[str, dict[str, list[float]]], thresholds: dict[str, tuple[float, float]]) -> Figure:
-    """Share of the answers that are wrong over the share answered, one line a name, and where the threshold lies."""
-    figure, axes = figures.new_figure(size=(7.0, 3.8))
+def risk_figure(curves: dict[str, dict[str, list[float]]], dots: dict[str, tuple[float, float]]) -> Figure:
+    """Share of the answers that are wrong over the share answered, and over the threshold; a line a name.
+
+    curves: of `risk_coverage`. dots: coverage and risk of each at the library's threshold, percent.
+    """
+    figure, (over_coverage, over_threshold) = figures.new_figure(1, 2, size=(10.0, 3.9))
     for index, (name, curve) in enumerate(curves.items()):
-        style = figures.line_style(index) | {"marker": ""}
-        axes.step(curve["coverage_percent"], curve["risk_percent"], where="post", label=name, **style)
-        point = figures.line_style(index) | {"linestyle": "none", "markersize": 9}
-        axes.plot(*thresholds[name], **point, label=f"{name}, at confidence 0.8")
-    axes.set(
-        title="Half of the robots stand in a room that is not on the map",
-        xlabel="poses answered [%]",
-        ylabel="of them wrong [%]",
-        xlim=(0, 101),
-        ylim=(-3, 103),
-    )
-    axes.legend(loc="upper center", fontsize=8)
+        line = figures.line_style(index) | {"marker": ""}
+        dot = figures.line_style(index) | {"linestyle": "none", "markersize": 9}
+        risk = curve["risk_percent"]
+        over_coverage.step(curve["coverage_percent"], risk, where="post", label=name, **line)
+        over_coverage.plot(*dots[name], **dot, label=f"{name}, at {LEAST_CONFIDENCE:g}")
+        over_threshold.step(curve["threshold"], risk, where="pre", label=name, **line)
+        over_threshold.plot(LEAST_CONFIDENCE, dots[name][1], **dot)
+    for axes, title in ((over_coverage, "Risk over coverage"), (over_threshold, "Risk over the threshold")):
+        axes.set(title=title, ylabel="wrong, of the answers [%]", ylim=(-2, 60))
+    over_coverage.set(xlabel="poses answered [%]", xlim=(0, 101))
+    over_threshold.set(xlabel="threshold on the confidence [-]", xlim=(0, 1.01))
+    over_coverage.legend(loc="upper left", fontsize=8)
     return figure
 
 
