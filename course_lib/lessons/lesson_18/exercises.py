@@ -42,10 +42,11 @@ def _colour(
     grey: float = 0.0,
     power: int = 2,
     twice: float = 2.0,
+    spread: float = 15.0,
 ):
     """The cost, and with other parts its mistakes."""
     d_hue = apart(hue_seen, hue_map) / sigma(saturation_seen, saturation_map)
-    d_saturation = np.abs(saturation_seen - saturation_map) / 15
+    d_saturation = np.abs(saturation_seen - saturation_map) / spread
     hue = np.where(np.isnan(d_hue), grey, d_hue**power / twice)
     return join(hue, d_saturation**power / twice)
 
@@ -113,6 +114,19 @@ def _the_way_back(seen, landmarks):
     theta = _difference_of_directions(seen, landmarks)
     x, y = seen.mean(axis=0) - _turned(-theta, landmarks.mean(axis=0))
     return x, y, wrap_angle(-theta)
+
+
+def _added(seen, landmarks):
+    theta = _difference_of_directions(seen, landmarks)
+    x, y = landmarks.mean(axis=0) + _turned(theta, seen.mean(axis=0))
+    return x, y, wrap_angle(theta)
+
+
+def _stretched(seen, landmarks):
+    theta = _difference_of_directions(seen, landmarks)
+    scale = np.linalg.norm(landmarks[1] - landmarks[0]) / np.linalg.norm(seen[1] - seen[0])
+    x, y = landmarks.mean(axis=0) - scale * _turned(theta, seen.mean(axis=0))
+    return x, y, wrap_angle(theta)
 
 
 def _in_degrees(seen, landmarks):
@@ -241,25 +255,37 @@ def _ties_split(confidence, right, most_wrong):
     return float(good[-1] + 1) / len(confidence) if len(good) else 0.0
 
 
+def _above(confidence, right, most_wrong):
+    best = 0.0
+    for threshold in np.unique(confidence):
+        given = confidence > threshold
+        if given.any() and np.mean(~right[given]) <= most_wrong:
+            best = max(best, given.mean())
+    return float(best)
+
+
 def _given_wrong(confidence, right, most_wrong):
     return 1.0 - _answered(confidence, right, most_wrong)
 
 
 def _answers(rng: np.random.Generator) -> tuple:
-    """Confidences with ties and zeros; the surest answer is wrong now and then, and the limit is met exactly."""
+    """Confidences with ties, of five kinds: as they come; the surest answer wrong; zeros that are right and would be
+    allowed; the limit met exactly, and again by half of a tie; all right."""
+    kind = int(rng.integers(5))
+    if kind == 3:  # four, then eight answers, one and two of them wrong: a quarter exactly; ten are too many
+        quarters = [rng.permutation([True, True, True, False]) for _ in range(2)]
+        right = np.concatenate([*quarters, rng.permutation([False, True]), [True]])
+        return np.array([0.9, 0.9, 0.8, 0.8, 0.6, 0.6, 0.5, 0.5, 0.3, 0.3, 0.0]), right, 0.25
     n = int(rng.integers(10, 20))
     confidence = rng.choice(np.linspace(0.1, 0.9, 9), n)
     right = rng.random(n) < 0.35 + 0.6 * confidence
-    confidence[rng.random(n) < 0.2] = 0.0
-    if rng.random() < 0.3:
+    if kind == 1:
         right[confidence == confidence.max()] = False  # no threshold does at first, a lower one may
-    if rng.random() < 0.3:  # four, then eight answers, one and two of them wrong: a quarter exactly
-        confidence = np.array([0.9, 0.9, 0.8, 0.8, 0.6, 0.6, 0.5, 0.5, 0.3, 0.0])
-        right = (
-            rng.permutation([True, True, True, False]).tolist() + rng.permutation([True, True, True, False]).tolist()
-        )
-        right = np.array([*right, False, True])
-        return confidence, right, 0.25
+    if kind == 2:
+        confidence[: n // 4], right[: n // 2] = 0.0, True
+        return confidence, right, 0.5
+    if kind == 4:
+        right[:] = True
     return confidence, right, float(rng.choice([0.0, 0.125, 0.25, 0.5]))
 
 
@@ -272,6 +298,22 @@ EXERCISES = [
             Mistake(
                 _mistaken_colour(apart=lambda a, b: np.abs(a - b)),
                 "355 and 9 degrees are 14 apart, not 346: the hue goes the shorter way around the circle.",
+            ),
+            Mistake(
+                _mistaken_colour(apart=lambda a, b: (a - b) % 360),
+                "The remainder by 360 goes one way around only. The hue goes the shorter way around the circle.",
+            ),
+            Mistake(
+                _mistaken_colour(sigma=lambda a, b: np.maximum(600 / min(a.min(), b.min()), 12)),
+                "You take one saturation for all. The lesser of each two is meant, element by element: np.minimum.",
+            ),
+            Mistake(
+                _mistaken_colour(spread=1.0),
+                "A difference of saturation counts in units of 15 percent.",
+            ),
+            Mistake(
+                _mistaken_colour(spread=15.0**0.5),
+                "The 15 percent are squared, too, as the difference is.",
             ),
             Mistake(
                 _mistaken_colour(sigma=lambda a, b: np.maximum(600 / np.maximum(a, b), 12)),
@@ -340,6 +382,7 @@ EXERCISES = [
                 "The hue's term is missing.",
             ),
         ),
+        tolerance=1e-4,
     ),
     Exercise(
         number="18.2",
@@ -396,6 +439,15 @@ EXERCISES = [
                 ),
                 "arccos loses the sign of the angle: a left turn and a right turn look alike to it.",
             ),
+            Mistake(
+                lambda seen, landmarks: (*landmarks.mean(axis=0), pose_of_two(seen, landmarks)[2]),
+                "You return the middle of the landmarks. The robot stands where the turned middle, taken back, ends.",
+            ),
+            Mistake(_added, "You take the turned middle of what is seen off the landmarks' middle: yours adds it."),
+            Mistake(
+                _stretched,
+                "Your fit may stretch. A length measured on the spot is not scaled: turn, then shift, no more.",
+            ),
             Mistake(_the_way_back, "That is the map seen from the robot. Asked is the robot on the map."),
             Mistake(_in_degrees, "theta in radians, please."),
             Mistake(
@@ -424,6 +476,10 @@ EXERCISES = [
             Mistake(
                 lambda cost: _matched(cost, lambda i, j: cost[i, j] < 50),
                 "Only unlike classes stay unmatched in yours. So should every pair that costs more than 0.",
+            ),
+            Mistake(
+                lambda cost: np.maximum(match_or_leave(cost), 0),
+                "A row without a column gets -1, not 0: column 0 is a column.",
             ),
             Mistake(_best_of_each_row, "Two rows may take one column in yours: it must be one-to-one."),
             Mistake(
@@ -495,6 +551,14 @@ EXERCISES = [
             Mistake(
                 _mistaken_share(wrong_share=lambda right, given: np.sum(~right[given])),
                 "You compare a number of wrong answers with a share.",
+            ),
+            Mistake(
+                _above,
+                "At least the threshold: a pose whose confidence is the threshold itself is answered, too.",
+            ),
+            Mistake(
+                lambda confidence, right, most_wrong: float(np.mean((confidence > 0) & right)),
+                "You count the right ones. Asked is what one threshold answers, right or wrong.",
             ),
             Mistake(_given_wrong, "You return the share that is *not* answered."),
         ),
