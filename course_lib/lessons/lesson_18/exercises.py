@@ -441,7 +441,7 @@ EXERCISES = [
             ),
             Mistake(
                 lambda seen, landmarks: (*landmarks.mean(axis=0), pose_of_two(seen, landmarks)[2]),
-                "You return the middle of the landmarks. The robot stands where the turned middle, taken back, ends.",
+                "You give the middle of the landmarks. The robot stands where the turned middle, taken back, ends.",
             ),
             Mistake(_added, "You take the turned middle of what is seen off the landmarks' middle: yours adds it."),
             Mistake(
@@ -534,15 +534,15 @@ EXERCISES = [
             ),
             Mistake(
                 _mistaken_share(gives=lambda given, threshold: threshold),
-                "You return the threshold. Asked is the share of all poses that it answers.",
+                "You give the threshold. Asked is the share of all poses that it answers.",
             ),
             Mistake(
                 _mistaken_share(gives=lambda given, threshold: given.sum()),
-                "You return a number of poses. Asked is the share of all of them.",
+                "You give a number of poses. Asked is the share of all of them.",
             ),
             Mistake(
                 _mistaken_share(gives=lambda given, threshold: 100 * given.mean()),
-                "You return percent. Asked is a share from 0 to 1.",
+                "You give percent. Asked is a share from 0 to 1.",
             ),
             Mistake(
                 _mistaken_share(wrong_share=lambda right, given: np.mean(right[given])),
@@ -560,7 +560,7 @@ EXERCISES = [
                 lambda confidence, right, most_wrong: float(np.mean((confidence > 0) & right)),
                 "You count the right ones. Asked is what one threshold answers, right or wrong.",
             ),
-            Mistake(_given_wrong, "You return the share that is *not* answered."),
+            Mistake(_given_wrong, "You give the share that is *not* answered."),
         ),
     ),
 ]
