@@ -14,6 +14,7 @@ from course_lib.plots.room_figures import map_axes
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 CONFUSIONS_DRAWN = 6
+LABEL_AT = 0.38  # of the line's length: at the middle two labels would cover each other where lines cross
 LEAST_SHARE = 0.01  # of the belief, below which a confusion is not drawn
 
 
@@ -44,8 +45,8 @@ def draw_ambiguity(axes: Axes, semantic_map: SemanticMap, found: AmbiguityMap, t
             (x1, y1), (x2, y2) = semantic_map.positions[[i, j]]
             axes.plot([x1, x2], [y1, y2], "--", color=VERMILION, linewidth=0.8 + 5.0 * min(share, 0.6))
             axes.text(
-                (x1 + x2) / 2,
-                (y1 + y2) / 2,
+                x1 + LABEL_AT * (x2 - x1),
+                y1 + LABEL_AT * (y2 - y1),
                 f"{100 * share:.0f} %",
                 color=VERMILION,
                 fontsize=9,

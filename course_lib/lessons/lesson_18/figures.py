@@ -65,10 +65,12 @@ def matches_axes(
         right = scene.true_landmarks[i] == j
         ends = np.stack([places[i], arrays.semantic_map.positions[j]])
         colour, style = (figures.GREEN, "-") if right else (figures.VERMILION, "--")
-        axes.plot(*ends.T, style, color=colour, linewidth=3.4 if i in bold else 1.8, zorder=4)
+        axes.plot(*ends.T, style, color=colour, linewidth=1.8, zorder=4)
     for i, (place, covariance) in enumerate(zip(places, spread, strict=True)):
         colour = class_style(scene.observations[i].label)[0]
-        axes.add_patch(Ellipse(**ellipse_of(place, covariance), fill=False, edgecolor=colour, linewidth=1.1))
+        axes.add_patch(
+            Ellipse(**ellipse_of(place, covariance), fill=False, edgecolor=colour, linewidth=3.2 if i in bold else 1.1)
+        )
         axes.plot(*place, "x", color=colour, markersize=7, markeredgewidth=1.7, zorder=5)
     draw_true_pose(axes, scene.pose)
     draw_pose(axes, *pose, figures.BLACK)
@@ -108,7 +110,7 @@ def two_ways_figure(
     """Left: matched by class and colour, then fitted. Right: two matches make a pose, and the others follow."""
     figure, (left, right) = figures.new_figure(1, 2, size=(10.0, 5.4))
     matches_axes(left, "By class and colour first, then the pose", seen, *by_colour)
-    matches_axes(right, "Two matches (thick) make a pose; look at the others", seen, *by_two)
+    matches_axes(right, "Two matches (thick) make a pose: see the others", seen, *by_two)
     _name_lines(figure, right)
     figure.get_layout_engine().set(h_pad=0.1)  # else the titles touch the edge
     return figure
