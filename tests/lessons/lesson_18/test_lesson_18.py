@@ -8,6 +8,7 @@ import pytest
 from course_lib.experiments.look_alikes import CORRECT, UNANSWERED, WRONG, is_right, pose_errors
 from course_lib.lessons import lesson_18
 from course_lib.lessons.kit.display import require_labels
+from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.lesson_18.figures import ellipse_of
 from course_lib.lessons.lesson_18.panel import MIRROR, MOST_HIDDEN, PAIRS, ROOM, hypotheses_panel, ranked
 from course_lib.lessons.lesson_18.terms import residual_sigmas, score_terms, share_of_nothing
@@ -221,3 +222,16 @@ def test_the_panel_says_when_no_pose_is_given_out():
     panel.press("Better")
     panel.press("Better")
     assert panel.values()["rank"] == 1
+
+
+def test_the_examples_in_the_tasks_are_right():
+    def solve(number, *given):
+        return find_exercise(number).reference(*(np.array(one) for one in given))
+
+    assert solve("18.1", [350.0], [30.0], [10.0], [45.0]) == pytest.approx([1.0])
+    assert solve("18.2", [[1, 0], [3, 0]], [[2, 1], [2, 3]]) == pytest.approx((2, 0, np.pi / 2))
+    assert solve("18.3", [[-5, -4], [-4, 3]]).tolist() == [1, 0]
+    assert solve("18.3", [[-5, -1], [3, 2]]).tolist() == [0, -1]
+    confidence, right = [0.9, 0.8, 0.8, 0.4, 0.0], [True, False, True, True, True]
+    assert solve("18.4", confidence, right, 0.25) == pytest.approx(0.8)
+    assert solve("18.4", confidence, right, 0.2) == pytest.approx(0.2)
