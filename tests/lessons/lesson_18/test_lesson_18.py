@@ -11,6 +11,7 @@ from course_lib.lessons.kit.display import require_labels
 from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.lesson_18.figures import ellipse_of
 from course_lib.lessons.lesson_18.panel import MIRROR, MOST_HIDDEN, PAIRS, ROOM, hypotheses_panel, ranked
+from course_lib.lessons.lesson_18.scenes import mirrored
 from course_lib.lessons.lesson_18.terms import residual_sigmas, score_terms, share_of_nothing
 from course_lib.lessons.lesson_18.trials import answers_of_confidence
 from course_lib.spherical_stereo import Evidence, Pose2D, SemanticLocalizer, SemanticTracker, StereoRig, rank_poses
@@ -68,7 +69,7 @@ def test_the_terms_add_up_to_the_score_and_the_shares_to_one(hidden, map_name):
 
 
 def test_a_mirror_changes_no_distance_and_leaves_no_pose_right():
-    room, mirror = lesson_18.room_map(), lesson_18.mirrored(lesson_18.room_map())
+    room, mirror = lesson_18.room_map(), mirrored(lesson_18.room_map())
     apart = [np.linalg.norm(one.positions[:, None] - one.positions[None], axis=-1) for one in (room, mirror)]
     assert np.allclose(*apart)
     assert np.ptp(mirror.walls, axis=0) == pytest.approx(np.ptp(room.walls, axis=0))
