@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
 from course_lib.experiments.ambiguity import AmbiguityMap
@@ -12,12 +14,21 @@ from course_lib.plots.room_figures import map_axes
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 CONFUSIONS_DRAWN = 6
+LABEL_AT = 0.38  # of the line's length: at the middle two labels would cover each other where lines cross
 LEAST_SHARE = 0.01  # of the belief, below which a confusion is not drawn
 
 
 def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str = "Ambiguity") -> Figure:
     """The room from above: dark squares where the right pose is not sure, dashed lines between objects confused."""
     figure, axes = new_figure(size=(6.4, 5.2))
+    squares = draw_ambiguity(axes, semantic_map, found, title)
+    figure.colorbar(squares, ax=axes, label="doubt about the right pose (0: sure)", shrink=0.85)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.12), ncols=4, fontsize=8)
+    return figure
+
+
+def draw_ambiguity(axes: Axes, semantic_map: SemanticMap, found: AmbiguityMap, title: str) -> PathCollection:
+    """`ambiguity_figure` on axes that are there; returns the squares, for a colour bar."""
     map_axes(axes, semantic_map, title)
     squares = axes.scatter(
         *found.places.T,
@@ -29,14 +40,13 @@ def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str 
         s=(found.step * 46) ** 2,
         zorder=0,
     )
-    figure.colorbar(squares, ax=axes, label="doubt about the right pose (0: sure)", shrink=0.85)
     for i, j, share in found.most_confused(CONFUSIONS_DRAWN):
         if share >= LEAST_SHARE:
             (x1, y1), (x2, y2) = semantic_map.positions[[i, j]]
             axes.plot([x1, x2], [y1, y2], "--", color=VERMILION, linewidth=0.8 + 5.0 * min(share, 0.6))
             axes.text(
-                (x1 + x2) / 2,
-                (y1 + y2) / 2,
+                x1 + LABEL_AT * (x2 - x1),
+                y1 + LABEL_AT * (y2 - y1),
                 f"{100 * share:.0f} %",
                 color=VERMILION,
                 fontsize=9,
@@ -44,8 +54,7 @@ def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str 
                 va="center",
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},  # readable on dark squares
             )
-    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.12), ncols=4, fontsize=8)
-    return figure
+    return squares
 
 
 def risk_coverage_figure(
