@@ -24,7 +24,7 @@ def _particles(rng: np.random.Generator) -> tuple:
 
 # 09.2: the mean of rotations in their tangent space
 
-_ROUNDS = 40
+_ROUNDS = 20
 
 
 def mean_rotation(rotations: np.ndarray, w: np.ndarray) -> np.ndarray:
@@ -165,6 +165,10 @@ EXERCISES = [
         reference=particles_for,
         inputs=_particles,
         mistakes=(
+            Mistake(
+                lambda n, d, d_new: float(n) ** ((1 / d) ** d_new),
+                "a ** b ** c is a ** (b ** c) in Python: set brackets around the d-th root.",
+            ),
             Mistake(
                 lambda n, d, d_new: n * d_new / d,
                 "You multiply by the number of dimensions. Spacing is an edge of a cube: its d-th power is a volume.",
