@@ -11,7 +11,7 @@ from course_lib.lessons.lesson_09.clouds import Density
 from course_lib.lessons.lesson_09.hand import Track
 from course_lib.plots import figures
 
-COMPONENTS = ("x", "y", "z", "about forward", "about left", "about up")
+COMPONENTS = ("place: x", "place: y", "place: z", "turn about forward", "turn about left", "turn about up")
 
 
 def cloud_figure(densities: list[Density], n: int) -> Figure:
