@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def about(value: float, usual: float, within: float) -> str:
-    """`usual` with its tolerance, such as "0.40 +- 0.05", where `value` lies within it; else `value` and what it is not.
+    """`usual` with its tolerance, such as "0.40 +- 0.05", where `value` lies within it; else the value, which differs.
 
     A processor that rounds other last digits, after many steps, comes to slightly other numbers. The stored text then
     stays the same, and beyond the tolerance it does not: the comparison of stored outputs fails.

@@ -49,7 +49,7 @@ def slide(pillar: bool = False, odometer: bool = False, seed: int = 10_001) -> S
         localizer = AnnealedLocalizer(renderer, seed=seed)
         localizer.initialize(_START)
         for frame in range(_FRAMES):
-            true = _START + [STEP * frame, 0, 0, 0, 0, 0]
+            true = _START + np.eye(6)[0] * STEP * frame
             depth = renderer.render(true)[0] + NOISE * rng.standard_normal(camera.shape)
             depth = np.where(np.isfinite(depth), depth, np.nan).astype(np.float32)
             found = localizer.step(depth, told if odometer and frame else None)

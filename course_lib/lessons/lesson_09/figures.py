@@ -72,7 +72,7 @@ def basin_figure(basins: list[Basin]) -> Figure:
         jitter = one.offset * rng.uniform(0.95, 1.05, one.end_position.shape)
         ends.plot(jitter.ravel(), one.end_position.ravel(), ".", color=figures.BLUE, markersize=4)
     offsets = np.array([one.offset for one in basins])
-    ends.plot(offsets, offsets, color=figures.BLACK, linestyle=(0, (6, 3)), linewidth=0.9, label="no better than before")
+    ends.plot(offsets, offsets, color=figures.BLACK, linestyle=(0, (6, 3)), linewidth=0.9, label="no better")
     ends.set(title="Gauss-Newton from one start", xlabel="error at the start [m]", ylabel="error at the end [m]")
     ends.set(xscale="log", yscale="log")
     ends.set_xticks(offsets, [f"{o:g}" for o in offsets], minor=False)
@@ -107,7 +107,8 @@ def deviations_figure(track: Track) -> Figure:
     for k, axes in enumerate(grid.flat):
         scale, unit = (1000, "mm") if k < 3 else (np.rad2deg(1), "degrees")
         images = np.arange(len(sigmas))
-        axes.fill_between(images, -3 * scale * sigmas[:, k], 3 * scale * sigmas[:, k], color=figures.SKY_BLUE, alpha=0.4)
+        band = 3 * scale * sigmas[:, k]
+        axes.fill_between(images, -band, band, color=figures.SKY_BLUE, alpha=0.4)
         axes.plot(scale * track.deviations[:, k], **(figures.line_style(3) | {"markersize": 4}))
         axes.set(title=COMPONENTS[k], xlabel="image [-]", ylabel=f"error [{unit}]")
     return figure

@@ -38,7 +38,7 @@ class Descent(NamedTuple):
 
 @functools.lru_cache(maxsize=32)
 def descend(forward: float, left: float, turned_deg: float, scale: float) -> Descent:
-    """All steps from the true pose moved along and turned about the camera's own axes (optical: right, down, forward)."""
+    """All steps from the true pose moved along and turned about the camera's own axes (right, down, forward)."""
     level, true = levels()[1], hand_run().camera_to_world[FRAME]
     level.measure(hand_run().depth(FRAME))
     camera = level.renderer.camera

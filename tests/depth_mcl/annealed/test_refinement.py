@@ -123,3 +123,14 @@ def test_rounding_along_what_is_not_seen_moves_nothing():
     vectors = np.array([[0.0, 1e-7, 0.0, 0.0, 0.0, 1e-7]]) * 500
     motion = solve(NormalEquations(matrices, vectors, np.ones(1), np.full(1, 500.0)))
     assert np.abs(motion).max() < 0.01
+
+
+def test_what_the_map_does_not_hold_has_no_normal_and_raises_no_warning():
+    image = np.full((1, *SMALL.shape), 2.0, dtype=np.float32)
+    image[0, : SMALL.height // 2] = np.inf
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        points, normals = refinement.surface_normals(image, SMALL)
+    assert np.isnan(points[0, : SMALL.height // 2]).all()
+    assert np.isnan(normals[0, : SMALL.height // 2 + 1]).all()
+    assert np.isfinite(normals[0, SMALL.height // 2 + 1 : -1, 1:-1]).all()

@@ -56,7 +56,7 @@ def walls(points, normals, offsets, scale, weight, steps=40, turn=1, freeze=Fals
             w = weight(r / scale)
         root = np.sqrt(w)[:, None]
         step = np.linalg.lstsq(root * np.column_stack([normals, lever]), -root[:, 0] * r, rcond=None)[0]
-        x, y, a = (x, y, a) + step
+        x, y, a = np.add((x, y, a), step)
     return [x, y, a]
 
 
