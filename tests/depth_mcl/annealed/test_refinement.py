@@ -1,5 +1,7 @@
 """Gauss-Newton on the rendered depth: the equation, its compiled form, and where it leads."""
 
+import warnings
+
 import numpy as np
 import pytest
 
