@@ -103,7 +103,7 @@ def ablation_figure(shares: dict[str, tuple[float, list[float]]]) -> Figure:
 def deviations_figure(track: Track) -> Figure:
     """Every component's error over the images, with three sigma of what the filter expects."""
     figure, grid = figures.new_figure(2, 3, size=(9.4, 4.2))
-    sigmas = np.sqrt([np.diag(one.error_covariance) for one in track.estimates])
+    sigmas = track.error_sigmas
     for k, axes in enumerate(grid.flat):
         scale, unit = (1000, "mm") if k < 3 else (np.rad2deg(1), "degrees")
         images = np.arange(len(sigmas))

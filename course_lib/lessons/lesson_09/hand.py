@@ -39,6 +39,16 @@ class Track(NamedTuple):
     """`(T, 6)` the true states from the estimates: metres along the world's axes, radians about the body's."""
 
     @property
+    def error_sigmas(self) -> np.ndarray:
+        """`(T, 6)` how far off the filter expects to be in each component, one sigma."""
+        return np.sqrt([np.diag(estimate.error_covariance) for estimate in self.estimates])
+
+    @property
+    def beyond_three_sigma(self) -> int:
+        """How many of the `6 T` errors are greater than the filter's three sigma."""
+        return int(np.sum(np.abs(self.deviations) > 3 * self.error_sigmas))
+
+    @property
     def statuses(self) -> list[str]:
         """What the filter says of itself, frame by frame."""
         return [estimate.status for estimate in self.estimates]

@@ -38,6 +38,12 @@ def test_a_track_holds_the_errors_of_its_estimates():
         assert np.rad2deg(np.linalg.norm(track.deviations[k, 3:])) == pytest.approx(track.rotation[k])
     assert track.statuses == ["tracked", "tracked"]
     assert track.position.max() < 0.05
+    assert track.beyond_three_sigma == 0
+    sigma = track.error_sigmas[1, 4]
+    assert sigma**2 == pytest.approx(track.estimates[1].error_covariance[4, 4])
+    far = track.deviations.copy()
+    far[1, 4] = -3.1 * sigma
+    assert track._replace(deviations=far).beyond_three_sigma == 1
 
 
 @pytest.fixture(scope="module")
