@@ -56,6 +56,13 @@ def _mean_of_angles(rotations: np.ndarray, w: np.ndarray) -> np.ndarray:
     return Rotation.from_euler("ZYX", w @ Rotation.from_matrix(rotations).as_euler("ZYX")).as_matrix()
 
 
+def _in_the_worlds_axes(rotations: np.ndarray, w: np.ndarray) -> np.ndarray:
+    mean = rotations[0]
+    for _ in range(_ROUNDS):
+        mean = mean @ rotation_exp(w @ rotation_log(rotations @ mean.T))
+    return mean
+
+
 def _turned_on_the_other_side(rotations: np.ndarray, w: np.ndarray) -> np.ndarray:
     mean = rotations[0]
     for _ in range(_ROUNDS):
@@ -124,6 +131,7 @@ def _fitted(
     weigh_right_side: bool = True,
     fresh_weights: bool = True,
     turns: bool = True,
+    lever_before: bool = False,
 ) -> np.ndarray:
     motion, w = np.zeros(3), None
     sign = -1.0 if backwards else 1.0
@@ -131,7 +139,8 @@ def _fitted(
         c, s = np.cos(motion[2]), sign * np.sin(motion[2])
         moved = points @ np.array([[c, s], [-s, c]]) + motion[:2]
         r = (normals * moved).sum(axis=1) - offsets
-        turning = sign * (normals * (points @ np.array([[-s, c], [-c, -s]]))).sum(axis=1)
+        turned = points if lever_before else points @ np.array([[c, s], [-s, c]])
+        turning = sign * (normals * (turned @ np.array([[0, 1], [-1, 0]]))).sum(axis=1)
         jacobian = np.column_stack([normals, turning if turns else 0 * turning])
         if w is None or fresh_weights:
             w = (1 + (r / scale) ** 2) ** -power
@@ -245,6 +254,10 @@ EXERCISES = [
                 "Log(R' R_i) is meant in R's own axes, so the step belongs on the right: R Exp(step).",
             ),
             Mistake(
+                _in_the_worlds_axes,
+                "Log(R_i R') is a turn in the world's axes. In R's own axes it is Log(R' R_i).",
+            ),
+            Mistake(
                 lambda rotations, w: rotation_log(_iterated(rotations, w, _ROUNDS)),
                 "You give back a rotation vector; the task asks for the matrix.",
             ),
@@ -338,6 +351,10 @@ EXERCISES = [
             Mistake(
                 lambda p, n, c, s: _fitted(p, n, c, s, turns=False),
                 "Your points are shifted, never turned: the third column of J is n . (dR/dtheta p).",
+            ),
+            Mistake(
+                lambda p, n, c, s: _fitted(p, n, c, s, lever_before=True),
+                "Your dR/dtheta is that of theta = 0. Take it at the theta reached so far, anew in every step.",
             ),
             Mistake(
                 lambda p, n, c, s: fit_motion(p, n, c, s) * [1, 1, 180 / np.pi],

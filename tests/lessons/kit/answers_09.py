@@ -75,7 +75,28 @@ def by_scipy(points, normals, offsets, scale):
     return least_squares(r, np.zeros(3), loss=loss, f_scale=scale, xtol=1e-14, ftol=1e-14, gtol=1e-14).x
 
 
+def in_world(rotations, w):
+    mean = rotations[0]
+    for _ in range(20):
+        mean = mean @ rotation_exp(w @ rotation_log(np.stack([r @ mean.T for r in rotations])))
+    return mean
+
+
+def lever_of_the_start(points, normals, offsets, scale):
+    motion = np.zeros(3)
+    lever = normals[:, 1] * points[:, 0] - normals[:, 0] * points[:, 1]
+    jacobian = np.column_stack([normals, lever])
+    for _ in range(40):
+        turn = Rotation.from_euler("z", motion[2]).as_matrix()[:2, :2]
+        r = np.sum(normals * (points @ turn.T + motion[:2]), axis=1) - offsets
+        w = geman(r / scale)
+        motion = motion - np.linalg.solve((jacobian.T * w) @ jacobian, (jacobian.T * w) @ r)
+    return motion
+
+
 WRONG = [
+    ("09.2", in_world, "in the world's axes"),
+    ("09.4", lever_of_the_start, "that of theta = 0"),
     ("09.1", lambda n, d, k: n ** (k // d), "without remainder"),
     ("09.1", lambda n, d, k: round(n ** (k / d)), "nearest whole"),
     ("09.1", lambda n, d, k: n * (k / d), "multiply by the number of dimensions"),
