@@ -46,6 +46,8 @@ def test_a_seeds_recording_by_hand_and_its_less_kind_sister(tmp_path, capsys):
             assert row["median_position_m"] < 0.05
     less, kind = (rows[f"annealed and refined{part}"]["median_rotation_deg"] for part in (", less kind", ""))
     assert less > kind, "a mount that is off by 0.3 degrees an axis"
+    stored = json.loads((tmp_path / "hand.json").read_text())
+    assert stored["recordings"] == {name: [row] for name, row in stored["rows"].items()}, "one seed, one recording"
 
 
 @pytest.mark.parametrize(

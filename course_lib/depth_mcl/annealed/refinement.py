@@ -53,7 +53,7 @@ def surface_normals(images: np.ndarray, camera: DepthCamera) -> tuple[np.ndarray
     n ~ (q_right - q_left) x (q_below - q_above); NaN on the image's border, at a miss, and beside an edge, where the
     neighbours belong to another surface.
     """
-    points = np.where(np.isfinite(images)[..., None], camera.rays() * images[..., None], np.nan)
+    points = camera.rays() * np.where(np.isfinite(images), images, np.nan)[..., None]
     normals = np.full(points.shape, np.nan)
     right, left = points[:, 1:-1, 2:], points[:, 1:-1, :-2]
     below, above = points[:, 2:, 1:-1], points[:, :-2, 1:-1]

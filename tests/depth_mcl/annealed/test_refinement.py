@@ -1,5 +1,7 @@
 """Gauss-Newton on the rendered depth: the equation, its compiled form, and where it leads."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from course_lib.depth_mcl.annealed.refinement import (
     solve,
 )
 from course_lib.depth_mcl.annealed.twists import lengths, motion_between, moved
+from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.geometry import optical_pose
 from tests.depth_mcl.shapes import OFF_CENTRE, SMALL, furnished_room, random_triangles, wall
@@ -123,3 +126,15 @@ def test_rounding_along_what_is_not_seen_moves_nothing():
     vectors = np.array([[0.0, 1e-7, 0.0, 0.0, 0.0, 1e-7]]) * 500
     motion = solve(NormalEquations(matrices, vectors, np.ones(1), np.full(1, 500.0)))
     assert np.abs(motion).max() < 0.01
+
+
+def test_what_the_map_does_not_hold_has_no_normal_and_raises_no_warning():
+    camera = DepthCamera(9, 7, 8.0, 8.0, 4.0, 3.0, 0.1, 10.0)  # the ray of its middle has zeros in it
+    image = np.full((1, 7, 9), 2.0, dtype=np.float32)
+    image[0, :4] = np.inf
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        points, normals = refinement.surface_normals(image, camera)
+    assert np.isnan(points[0, :4]).all()
+    assert np.isnan(normals[0, :5]).all()
+    assert np.isfinite(normals[0, 5:-1, 1:-1]).all()
