@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from tests.lessons.kit import answers_01_to_07, answers_09, answers_11_to_17, answers_18from
+from tests.lessons.kit import answers_01_to_07, answers_09, answers_11_to_17, answers_18
 
 # Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
 SEEDS = range(4)
