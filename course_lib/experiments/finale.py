@@ -16,10 +16,11 @@ import numpy as np
 from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import pose_errors
+from course_lib.depth_mcl.localizer import MAP_MARGIN
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
-from course_lib.geometry import optical_pose
+from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.simulation.room.depth_world import (
     CAMERA,
     MAP,
@@ -43,6 +44,7 @@ LEVEL_SIGMA = 0.005, np.deg2rad(0.3)  # metres, radians: how level the robot sta
 FRAMES = 3  # depth images at each place, the robot rolling on by a few centimetres
 STEP, TURN = 0.03, 0.02  # metres, radians a frame
 MOST_ALTERNATIVES = 3
+ON_THE_FLOOR = (0, 1, 5)  # of a state: x, y, yaw, what a semantic pose tells
 REACHED = 0.03, 1.0  # metres, degrees
 
 
@@ -81,7 +83,7 @@ def one_place(
     """What the semantic pose is worth at one place, and what the depth filter makes of it. true_pose: x, y, heading."""
     states = robot_states(true_pose, rng)
     depths = [sensor.capture(caster, state, rng).depth for state in states]
-    starts = [one.pose for one in found.alternatives[:MOST_ALTERNATIVES]] if found.pose is None else [found.pose]
+    starts = starts_of(found, renderer.scene_map)
     result = {"semantic_status": found.status, "starts": len(starts)}
     if found.pose is not None:
         result["semantic_m"] = float(np.hypot(found.pose.x - true_pose[0], found.pose.y - true_pose[1]))
@@ -98,6 +100,14 @@ def one_place(
     }
 
 
+def starts_of(found: Localization, scene_map: SceneMap) -> list[Pose2D]:
+    """Where the depth filter starts: the semantic pose; without one, the best of those weighed that stand on the map."""
+    if found.pose is not None:
+        return [found.pose]
+    poses = [one.pose for one in found.alternatives[:MOST_ALTERNATIVES]]
+    return [pose for pose in poses if scene_map.contains(start_state(pose)[:3], MAP_MARGIN)]
+
+
 def best_start(renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence[np.ndarray], seed: int) -> AnnealedEstimate:
     """The last estimate of the start, `Pose2D`, that explains the depth images best: by its mean raw score."""
     best, best_score = None, -np.inf
@@ -111,6 +121,37 @@ def best_start(renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequen
 def start_state(pose: Pose2D) -> np.ndarray:
     """State `(6,)` of the depth camera on a robot at a semantic pose: height, roll and pitch are those of standing."""
     return np.array([pose.x, pose.y, CAMERA_HEIGHT, 0.0, 0.0, pose.theta])
+
+
+def start_covariance(covariance: np.ndarray) -> np.ndarray:
+    """Covariance `(6, 6)` of `start_state`: a semantic pose's own `(3, 3)`, and how level and high a robot stands.
+
+    Metres and radians, squared, in the order of the state.
+    """
+    height, level = LEVEL_SIGMA
+    known = np.diag([0.0, 0.0, height**2, level**2, level**2, 0.0])
+    known[np.ix_(ON_THE_FLOOR, ON_THE_FLOOR)] = covariance
+    return known
+
+
+def joined(
+    start: np.ndarray, covariance: np.ndarray, state: np.ndarray, state_covariance: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Two answers to one question, each weighed by its covariance: state `(6,)`, covariance `(6, 6)`, squared distance.
+
+        K = P_0 (P_0 + P_1)^-1    x = x_0 + K (x_1 - x_0)    P = (1 - K) P_0    d^2 = (x_1 - x_0)' (P_0 + P_1)^-1 (...)
+
+    start, covariance: what was known before the image; state, state_covariance: what the depth filter makes of the
+    first image (its `error_covariance`). Differences of angles are taken on the circle; the robot stands nearly level,
+    so they are rotations about its axes. d^2 is chi-squared with 6 degrees of freedom where both are right.
+    """
+    difference = state - start
+    difference[3:] = wrap_angle(difference[3:])
+    gain = covariance @ np.linalg.inv(covariance + state_covariance)
+    found = start + gain @ difference
+    found[3:] = wrap_angle(found[3:])
+    distance = difference @ np.linalg.solve(covariance + state_covariance, difference)
+    return found, (np.eye(6) - gain) @ covariance, float(distance)
 
 
 def follow(

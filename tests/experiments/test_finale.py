@@ -58,6 +58,14 @@ def test_of_several_poses_the_depth_camera_takes_the_right_one(renderer):
     assert np.hypot(*(alone.state[:2] - TRUE[:2])) > 0.5
 
 
+def test_a_pose_outside_the_map_is_no_start(renderer):
+    outside, right = Pose2D(40.0, 0.0, 0.0), Pose2D(TRUE[0] + 0.05, TRUE[1], TRUE[2])
+    alternatives = tuple(SimpleNamespace(pose=pose) for pose in (outside, right))
+    result = place(renderer, SimpleNamespace(status="unable", pose=None, alternatives=alternatives))
+    assert result["starts"] == 1
+    assert result["reached"]
+
+
 def test_without_any_pose_nothing_is_reached(renderer):
     result = place(renderer, SimpleNamespace(status="unable", pose=None, alternatives=()))
     assert result == {"semantic_status": "unable", "starts": 0, "reached": False}
