@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs the rooms that are missing, then tells what all places gave."""
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments import sweep
-    from course_lib.experiments.finale import REACHED, finale_room, summarize
+    from course_lib.experiments.finale import finale_room, summarize
     from course_lib.experiments.results import write_results
     from course_lib.paths import data_path
     from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -49,11 +49,23 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(result))
         return 0
-    print(
-        f"{result['reached']} of {result['places']} places reached within {REACHED[0]:g} m and {REACHED[1]:g} degree\n"
-        f"panoramas: {result['semantic_ok']} answered, median {result['median_semantic_m']:.3f} m; "
-        f"{result['started_from_several']} left several poses to the depth camera\n"
-        f"then the depth camera: median {result['median_position_m']:.4f} m, "
-        f"{result['median_rotation_deg']:.2f} degrees; {result['wrong_called_tracked']} farther off and called tracked"
-    )
+    print(finale_text(result))
     return 0
+
+
+def finale_text(result: dict) -> str:
+    """The numbers of `experiments.finale.summarize` in words."""
+    from course_lib.experiments.finale import REACHED
+
+    def told(value: float | None, digits: int) -> str:
+        return "-" if value is None else f"{value:.{digits}f}"
+
+    return (
+        f"{result['reached']} of {result['places']} places reached within {REACHED[0]:g} m and {REACHED[1]:g} degree\n"
+        f"panoramas: {result['semantic_ok']} answered, median {told(result['median_semantic_m'], 3)} m; "
+        f"{result['started_from_several']} left several poses to the depth camera\n"
+        f"then the depth camera: median {told(result['median_position_m'], 4)} m, "
+        f"{told(result['median_rotation_deg'], 2)} degrees; at {result['looked_again']} places only after the robot "
+        "had turned and looked again\n"
+        f"not reached: {result['wrong_called_tracked']} called tracked, {result['left_open']} left open"
+    )

@@ -132,12 +132,12 @@ def is_notebook(path: str) -> bool:
 
 
 def nbval_options() -> list[str]:
-    """Strict comparison of stored outputs, with this environment's kernel; one file says what may differ."""
+    """Strict comparison of stored outputs, with this environment's kernel; one file says what may differ everywhere, a
+    plugin compares numbers with the tolerance that their cell declares."""
+    options = ["--nbval", "--nbval-current-env", "-p", "course_lib.commands.nbval_tolerance"]
+    options += [f"--nbval-cell-timeout={HANGS_S}", f"--nbval-kernel-startup-timeout={HANGS_S}"]
     sanitize = ROOT / "tests" / "nbval_sanitize.cfg"
-    limits = [f"--nbval-cell-timeout={HANGS_S}", f"--nbval-kernel-startup-timeout={HANGS_S}"]
-    return ["--nbval", "--nbval-current-env", *limits] + (
-        ["--nbval-sanitize-with", str(sanitize)] if sanitize.exists() else []
-    )
+    return options + (["--nbval-sanitize-with", str(sanitize)] if sanitize.exists() else [])
 
 
 def write_offline_startup(home: Path) -> None:

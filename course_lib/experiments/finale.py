@@ -2,11 +2,14 @@
 
 A robot stands somewhere in a furnished room that it has a semantic map and a mesh map of. Its two panoramas give x, y
 and heading to centimetres and a degree (paper 2); from there the depth filter, annealed and refined, takes it to
-millimetres (paper 1). Where the panoramas leave several poses, the depth camera judges the best of them.
+millimetres (paper 1). Where the panoramas leave several poses, the depth camera judges the best of them. A depth camera
+sees a narrow part of the room; where that is a bare wall, and the filter's own covariance says that the pose is still
+open, the robot turns on the spot and looks again.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,7 +19,7 @@ import numpy as np
 from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.depth_mcl.localizer import MAP_MARGIN
+from course_lib.depth_mcl.localizer import MAP_MARGIN, NoMeasurementWarning
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
@@ -41,11 +44,12 @@ from course_lib.spherical_stereo.recording import read_stereo_recording
 
 CAMERA_HEIGHT = 1.0  # metres, of the depth camera on the robot (chosen)
 LEVEL_SIGMA = 0.005, np.deg2rad(0.3)  # metres, radians: how level the robot stands (chosen)
-FRAMES = 3  # depth images at each place, the robot rolling on by a few centimetres
+FRAMES = 3  # depth images of one view, the robot rolling on by a few centimetres
 STEP, TURN = 0.03, 0.02  # metres, radians a frame
 MOST_ALTERNATIVES = 3
-ON_THE_FLOOR = (0, 1, 5)  # of a state: x, y, yaw, what a semantic pose tells
 REACHED = 0.03, 1.0  # metres, degrees
+VIEWS, VIEW_TURN = 12, np.deg2rad(30.0)  # at most so many views, the robot turning so far to the next: once around
+ODOMETRY_SIGMA = 0.05, np.deg2rad(1.0)  # share of a motion; least of a turn (chosen)
 
 
 def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[dict]:
@@ -56,7 +60,9 @@ def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[
     models = RecordingModels()
     room, semantic_map = surveyed_room(seed, models)
     scene_map = SceneMap(*surveyed_mesh(room, DepthSurveyModel(), np.random.default_rng([STREAM, seed, MAP])))
-    sensor = TimeOfFlightCamera(DepthCamera.sr4000(), TimeOfFlightModel(), np.random.default_rng([STREAM, seed, CAMERA]))
+    sensor = TimeOfFlightCamera(
+        DepthCamera.sr4000(), TimeOfFlightModel(), np.random.default_rng([STREAM, seed, CAMERA])
+    )
     network, caster = YoloDetector.load(detector), depth_caster(room)
     results = []
     with TemporaryDirectory() as temporary:
@@ -81,23 +87,88 @@ def one_place(
     rng: np.random.Generator,
 ) -> dict:
     """What the semantic pose is worth at one place, and what the depth filter makes of it. true_pose: x, y, heading."""
-    states = robot_states(true_pose, rng)
-    depths = [sensor.capture(caster, state, rng).depth for state in states]
     starts = starts_of(found, renderer.scene_map)
     result = {"semantic_status": found.status, "starts": len(starts)}
     if found.pose is not None:
         result["semantic_m"] = float(np.hypot(found.pose.x - true_pose[0], found.pose.y - true_pose[1]))
     if not starts:
         return result | {"reached": False}
-    estimate = best_start(renderer, starts, depths, seed=int(rng.integers(2**31)))
-    position, rotation = pose_errors(optical_pose(estimate.state), optical_pose(states[-1]))
+    estimate, state, views = look_around(renderer, starts, true_pose, sensor, caster, rng)
+    position, rotation = pose_errors(optical_pose(estimate.state), optical_pose(state))
     degrees = float(np.rad2deg(rotation))
     return result | {
+        "views": views,
         "position_m": float(position),
         "rotation_deg": degrees,
-        "status": estimate.status,
+        "status": estimate.status if is_known(estimate) else "open",
         "reached": bool(position <= REACHED[0] and degrees <= REACHED[1]),
     }
+
+
+def look_around(
+    renderer: DepthRenderer,
+    starts: Sequence[Pose2D],
+    true_pose: np.ndarray,
+    sensor: TimeOfFlightCamera,
+    caster: WorldCaster,
+    rng: np.random.Generator,
+) -> tuple[AnnealedEstimate, np.ndarray, int]:
+    """The first estimate that knows its pose, the true state `(6,)` there, and how many views that took.
+
+    A view that leaves the pose open may have moved the filter along a wall: the next one starts from the panoramas
+    again, carried on by the odometer. After the last view, its estimate as it is.
+    """
+    x, y, heading = true_pose
+    views = 0
+    for _ in range(VIEWS):
+        views += 1
+        states = robot_states(np.array([x, y, heading]), rng)
+        depths = [sensor.capture(caster, state, rng).depth for state in states]
+        estimate = best_start(renderer, starts, depths, seed=int(rng.integers(2**31)))
+        if is_known(estimate):
+            break
+        x, y, heading = states[-1, [0, 1, 5]] + [0.0, 0.0, VIEW_TURN]
+        ahead, turn = (FRAMES - 1) * STEP, (FRAMES - 1) * TURN + VIEW_TURN
+        told = odometry(ahead, turn, rng)
+        starts = [carried_on(start, *told) for start in starts]
+    return estimate, states[-1], views
+
+
+def is_known(estimate: AnnealedEstimate) -> bool:
+    """Whether an estimate is tracked and its error covariance says that it is within `REACHED`, one standard deviation.
+
+    sqrt(trace) of the covariance of the position, and of the rotation.
+    """
+    position, rotation = (np.sqrt(np.trace(estimate.error_covariance[part, part])) for part in (slice(3), slice(3, 6)))
+    return estimate.status == "tracked" and position <= REACHED[0] and np.rad2deg(rotation) <= REACHED[1]
+
+
+def odometry(ahead: float, turn: float, rng: np.random.Generator) -> tuple[float, float]:
+    """What wheels tell of a motion: metres ahead and radians counterclockwise, each with noise of `ODOMETRY_SIGMA`."""
+    share, least = ODOMETRY_SIGMA
+    return ahead * (1.0 + share * rng.standard_normal()), turn + np.hypot(share * turn, least) * rng.standard_normal()
+
+
+def carried_on(start: Pose2D, ahead: float, turn: float) -> Pose2D:
+    """A pose after so many metres ahead, then so many radians on the spot."""
+    x, y = start.apply(np.array([ahead, 0.0]))
+    return Pose2D(float(x), float(y), float(wrap_angle(start.theta + turn)))
+
+
+def best_start(
+    renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence[np.ndarray], seed: int
+) -> AnnealedEstimate:
+    """The last estimate of the start that explains the depth images best: by its mean raw score.
+
+    Where nothing was measured, nearer to a wall than the camera sees, it is the first start's prediction.
+    """
+    best, best_score = None, -np.inf
+    for start in starts:
+        estimates = follow(renderer, start_state(start), depths, seed)
+        score = mean_score(estimates)
+        if best is None or score > best_score:
+            best, best_score = estimates[-1], -np.inf if np.isnan(score) else score
+    return best
 
 
 def starts_of(found: Localization, scene_map: SceneMap) -> list[Pose2D]:
@@ -108,50 +179,9 @@ def starts_of(found: Localization, scene_map: SceneMap) -> list[Pose2D]:
     return [pose for pose in poses if scene_map.contains(start_state(pose)[:3], MAP_MARGIN)]
 
 
-def best_start(renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence[np.ndarray], seed: int) -> AnnealedEstimate:
-    """The last estimate of the start, `Pose2D`, that explains the depth images best: by its mean raw score."""
-    best, best_score = None, -np.inf
-    for start in starts:
-        estimates = follow(renderer, start_state(start), depths, seed)
-        if (score := mean_score(estimates)) > best_score:
-            best, best_score = estimates[-1], score
-    return best
-
-
 def start_state(pose: Pose2D) -> np.ndarray:
     """State `(6,)` of the depth camera on a robot at a semantic pose: height, roll and pitch are those of standing."""
     return np.array([pose.x, pose.y, CAMERA_HEIGHT, 0.0, 0.0, pose.theta])
-
-
-def start_covariance(covariance: np.ndarray) -> np.ndarray:
-    """Covariance `(6, 6)` of `start_state`: a semantic pose's own `(3, 3)`, and how level and high a robot stands.
-
-    Metres and radians, squared, in the order of the state.
-    """
-    height, level = LEVEL_SIGMA
-    known = np.diag([0.0, 0.0, height**2, level**2, level**2, 0.0])
-    known[np.ix_(ON_THE_FLOOR, ON_THE_FLOOR)] = covariance
-    return known
-
-
-def joined(
-    start: np.ndarray, covariance: np.ndarray, state: np.ndarray, state_covariance: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Two answers to one question, each weighed by its covariance: state `(6,)`, covariance `(6, 6)`, squared distance.
-
-        K = P_0 (P_0 + P_1)^-1    x = x_0 + K (x_1 - x_0)    P = (1 - K) P_0    d^2 = (x_1 - x_0)' (P_0 + P_1)^-1 (...)
-
-    start, covariance: what was known before the image; state, state_covariance: what the depth filter makes of the
-    first image (its `error_covariance`). Differences of angles are taken on the circle; the robot stands nearly level,
-    so they are rotations about its axes. d^2 is chi-squared with 6 degrees of freedom where both are right.
-    """
-    difference = state - start
-    difference[3:] = wrap_angle(difference[3:])
-    gain = covariance @ np.linalg.inv(covariance + state_covariance)
-    found = start + gain @ difference
-    found[3:] = wrap_angle(found[3:])
-    distance = difference @ np.linalg.solve(covariance + state_covariance, difference)
-    return found, (np.eye(6) - gain) @ covariance, float(distance)
 
 
 def follow(
@@ -160,11 +190,12 @@ def follow(
     """What the depth filter makes of the images from one start, a state `(6,)`."""
     localizer = AnnealedLocalizer(renderer, seed=seed)
     localizer.initialize(start)
-    return [localizer.step(depth) for depth in depths]
+    with warnings.catch_warnings(action="ignore", category=NoMeasurementWarning):  # the estimate's status says so
+        return [localizer.step(depth) for depth in depths]
 
 
 def mean_score(estimates: Sequence[AnnealedEstimate]) -> float:
-    """Mean raw score of a run: what starts are compared by."""
+    """Mean raw score of a run: what starts are compared by. NaN where a frame held no measurement."""
     return float(np.mean([estimate.score for estimate in estimates]))
 
 
@@ -179,16 +210,20 @@ def robot_states(pose: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return np.column_stack([x + ahead * np.cos(headings), y + ahead * np.sin(headings), z, tilt, headings])
 
 
-def summarize(places: Sequence[dict]) -> dict[str, float]:
-    """The numbers of the table."""
-    known = [place for place in places if "position_m" in place]
+def summarize(places: Sequence[dict]) -> dict[str, float | None]:
+    """The numbers of the table; a median of nothing is None."""
     return {
         "places": len(places),
         "reached": sum(place["reached"] for place in places),
         "semantic_ok": sum(place["semantic_status"] == "ok" for place in places),
         "started_from_several": sum(place["starts"] > 1 for place in places),
-        "median_semantic_m": float(np.median([p["semantic_m"] for p in places if "semantic_m" in p] or [np.nan])),
-        "median_position_m": float(np.median([place["position_m"] for place in known] or [np.nan])),
-        "median_rotation_deg": float(np.median([place["rotation_deg"] for place in known] or [np.nan])),
+        "looked_again": sum(place.get("views", 1) > 1 for place in places),
+        "left_open": sum(place.get("status") == "open" for place in places),
         "wrong_called_tracked": sum(not p["reached"] and p.get("status") == "tracked" for p in places),
+        **{
+            f"median_{name}": float(np.median([place[name] for place in places if name in place]))
+            if any(name in place for place in places)
+            else None
+            for name in ("semantic_m", "position_m", "rotation_deg")
+        },
     }

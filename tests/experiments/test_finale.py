@@ -6,7 +6,18 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.experiments.finale import CAMERA_HEIGHT, best_start, one_place, robot_states, summarize
+from course_lib.experiments.finale import (
+    CAMERA_HEIGHT,
+    FRAMES,
+    VIEWS,
+    best_start,
+    carried_on,
+    is_known,
+    odometry,
+    one_place,
+    robot_states,
+    summarize,
+)
 from course_lib.simulation.room.depth_world import depth_caster, room_triangles
 from course_lib.simulation.room.look_alike_room import make_look_alike_room
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
@@ -37,8 +48,7 @@ def place(renderer, found):
 
 
 def test_a_pose_that_is_decimetres_off_becomes_exact(renderer):
-    found = SimpleNamespace(status="ok", pose=Pose2D(TRUE[0] + 0.1, TRUE[1] - 0.08, TRUE[2] + 0.03), alternatives=())
-    result = place(renderer, found)
+    result = place(renderer, OK)
     assert result["semantic_m"] == pytest.approx(np.hypot(0.1, 0.08))
     assert result["reached"]
     assert result["position_m"] < 0.005
@@ -56,6 +66,58 @@ def test_of_several_poses_the_depth_camera_takes_the_right_one(renderer):
     states = robot_states(TRUE, np.random.default_rng(1))
     alone = best_start(renderer, [wrong[0]], renderer.render(states), seed=1)
     assert np.hypot(*(alone.state[:2] - TRUE[:2])) > 0.5
+
+
+class Blind(Sensor):
+    """A camera that measures nothing for so many images: it stands too near to a wall."""
+
+    def __init__(self, renderer, images):
+        super().__init__(renderer)
+        self.images, self.captured = images, 0
+
+    def capture(self, caster, state, rng):
+        self.captured += 1
+        depth = self.renderer.render(state)[0]
+        return SimpleNamespace(depth=depth if self.captured > self.images else np.full_like(depth, np.nan))
+
+
+OK = SimpleNamespace(status="ok", pose=Pose2D(TRUE[0] + 0.1, TRUE[1] - 0.08, TRUE[2] + 0.03), alternatives=())
+
+
+def test_a_robot_that_sees_nothing_turns_and_looks_again(renderer):
+    result = one_place(OK, TRUE, renderer, Blind(renderer, 2 * FRAMES), None, np.random.default_rng(1))
+    assert result["views"] == 3
+    assert result["reached"], "the odometer carries the start on"
+
+
+def test_a_robot_that_never_sees_anything_leaves_its_pose_open(renderer):
+    result = one_place(OK, TRUE, renderer, Blind(renderer, np.inf), None, np.random.default_rng(1))
+    assert (result["views"], result["status"], result["reached"]) == (VIEWS, "open", False)
+    assert summarize([result])["left_open"] == 1
+
+
+def test_a_view_of_a_bare_wall_leaves_the_pose_open(renderer):
+    def estimate(sigma_m, sigma_deg, status="tracked"):
+        axis = np.array([sigma_m, 0.0, 0.0, 0.0, 0.0, np.deg2rad(sigma_deg)])
+        return SimpleNamespace(status=status, error_covariance=np.diag(axis**2))
+
+    assert is_known(estimate(0.02, 0.5))
+    assert not is_known(estimate(0.20, 0.5)), "free to slide along the wall"
+    assert not is_known(estimate(0.02, 5.0)), "free to turn"
+    assert not is_known(estimate(0.02, 0.5, "doubtful"))
+
+
+def test_the_odometer_is_a_few_percent_off_and_without_bias(rng):
+    told = np.array([odometry(2.0, 0.5, rng) for _ in range(2000)])
+    assert told.mean(axis=0) == pytest.approx([2.0, 0.5], abs=0.01)
+    assert told.std(axis=0) == pytest.approx([0.1, np.hypot(0.025, np.deg2rad(1.0))], rel=0.1)
+
+
+def test_a_start_is_carried_on_along_its_heading():
+    x, y, theta = carried_on(Pose2D(1.0, 2.0, np.pi / 2), 0.5, np.pi)
+    assert (x, y) == pytest.approx((1.0, 2.5))
+    assert np.cos(theta) == pytest.approx(0.0, abs=1e-12)
+    assert np.sin(theta) == pytest.approx(-1.0)
 
 
 def test_a_pose_outside_the_map_is_no_start(renderer):

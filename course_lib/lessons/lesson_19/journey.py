@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -17,6 +16,7 @@ from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 
 FILTER_SEED = 1
+MOST_KEPT = 64
 STAGES = ("photographing two panoramas", "finding objects, places and the pose", "taking depth images", "the filter")
 
 
@@ -57,6 +57,9 @@ class Journey(NamedTuple):
         return self.depth_error is not None and is_reached(self.depth_error)
 
 
+_kept: dict[tuple, Journey] = {}
+
+
 def plane_error(found: Pose2D, true_pose: np.ndarray) -> tuple[float, float]:
     """How far a pose on the floor is off: metres, degrees."""
     turned = abs(float(wrap_angle(found.theta - true_pose[2])))
@@ -74,7 +77,6 @@ def is_reached(error: tuple[float, float]) -> bool:
     return error[0] <= REACHED[0] and error[1] <= REACHED[1]
 
 
-@functools.lru_cache(maxsize=64)
 def journey(
     x: float,
     y: float,
@@ -83,12 +85,22 @@ def journey(
     lens_cap: bool = False,
     say: Callable[[str], None] | None = None,
 ) -> Journey:
-    """Everything that happens at a place; metres, degrees. The last 64 are kept: a second look costs nothing.
+    """Everything that happens at a place; metres, degrees. The last ones are kept: a second look costs nothing.
 
     hidden_share: of the panoramas' columns that show nothing. lens_cap: on the depth camera, which then measures
     nothing. say: told of each stage before it begins.
     """
-    say = say or (lambda text: None)
+    key = (float(x), float(y), float(heading_deg), float(hidden_share), lens_cap)
+    if key not in _kept:
+        if len(_kept) == MOST_KEPT:
+            del _kept[next(iter(_kept))]
+        _kept[key] = _travelled(*key, say or (lambda text: None))
+    return _kept[key]
+
+
+def _travelled(
+    x: float, y: float, heading_deg: float, hidden_share: float, lens_cap: bool, say: Callable[[str], None]
+) -> Journey:
     here, pose = world(), np.array([x, y, np.deg2rad(heading_deg)])
     say(f"1 of 4: {STAGES[0]}")
     images = here.photographs(pose)

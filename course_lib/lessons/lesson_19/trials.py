@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.finale import follow, joined, start_covariance, start_state
+from course_lib.experiments.finale import follow, is_known, start_state
+from course_lib.experiments.joined_answer import joined, start_covariance
 from course_lib.lessons.lesson_19.journey import FILTER_SEED, Journey, is_reached, journey, state_error
 from course_lib.lessons.lesson_19.world import world
 from course_lib.paths import data_path
@@ -64,6 +65,10 @@ def stored_result(path: Path | None = None) -> dict:
     return json.loads((data_path(STORED) if path is None else path).read_text(encoding="utf-8"))
 
 
-def try_places(n: int) -> list[Journey]:
-    """Both methods at the first n random places."""
-    return [journey(*place) for place in random_places(n)]
+def turn_and_look(one: Journey) -> tuple[tuple[float, float], int, bool]:
+    """The robot turns and looks again until its pose is known: metres and degrees it is off, views, whether it knows.
+
+    The last view of a place that was not known after `VIEWS` is what it is.
+    """
+    estimate, state, views = world().look_around(one.starts, one.pose)
+    return state_error(estimate.state, state), views, is_known(estimate)

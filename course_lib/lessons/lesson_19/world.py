@@ -7,14 +7,16 @@ Opened once a kernel: the windows that draw live as long.
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 
 import numpy as np
 
+from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
-from course_lib.experiments.finale import robot_states
+from course_lib.experiments.finale import look_around, robot_states
 from course_lib.paths import data_path
 from course_lib.simulation.room.depth_world import CAMERA, PLACE, STREAM, depth_caster
 from course_lib.simulation.room.finale_data import SEED
@@ -29,11 +31,12 @@ from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, Tim
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 CLEARANCE = 0.3  # metres that the robot needs to every footprint, as where the experiment puts it
 WALL = 0.5  # and to every wall
-PANORAMAS, DEPTH = 0, 1  # generators of a place
+PANORAMAS, DEPTH, AROUND = range(3)  # generators of a place
 _COAT = (60, 70, 85)  # BGR, of what hides a part of a panorama: somebody's back
 
 
@@ -71,6 +74,11 @@ class FinaleWorld:
         rng = _generator(pose, DEPTH)
         states = robot_states(pose, rng)
         return states, [self._sensor.capture(self._caster, state, rng).depth for state in states]
+
+    def look_around(self, starts: Sequence[Pose2D], pose: np.ndarray) -> tuple[AnnealedEstimate, np.ndarray, int]:
+        """The experiment's `look_around` here: estimate, true state `(6,)` of the camera then, number of views."""
+        rng = _generator(pose, AROUND)
+        return look_around(self.renderer, starts, pose, self._sensor, self._caster, rng)
 
     def where(self, x: float, y: float) -> str:
         """What stands where the robot is put, in words: "free", or why nobody can stand there."""

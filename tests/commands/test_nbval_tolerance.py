@@ -1,0 +1,71 @@
+"""The comparison with a declared tolerance: numbers within it are taken, everything else is compared exactly."""
+
+import pytest
+
+from course_lib.commands.nbval_tolerance import Tolerance, adopted, declared_tolerance, within_tolerance
+
+TEN_PERCENT = Tolerance(0.1, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("source", "tolerance"),
+    [
+        ("print(1)", None),
+        ("print(x)  # numbers within 5 %", (0.05, 0.0)),
+        ("print(x)  # numbers within 0.002", (0.0, 0.002)),
+        ("x = 1\nprint(x)  # numbers within 5 % or 0.002\nx", (0.05, 0.002)),
+        ("print(x)  # numbers within 0.5%", (0.005, 0.0)),
+    ],
+)
+def test_what_a_cell_declares(source, tolerance):
+    assert declared_tolerance(source) == tolerance
+
+
+@pytest.mark.parametrize(
+    "source",
+    ["print(x)  # numbers within", "x  # numbers within reason", "x  # numbers within 5 %\ny  # numbers within 3 %"],
+)
+def test_what_nobody_can_read_is_an_error(source):
+    with pytest.raises(ValueError, match="declares one tolerance"):
+        declared_tolerance(source)
+
+
+@pytest.mark.parametrize(
+    ("new", "stored", "taken"),
+    [
+        ("error 1.05 m", "error 1.00 m", True),
+        ("error 1.12 m", "error 1.00 m", False),
+        ("error -1.05 m", "error 1.05 m", False),
+        ("error 1.05 cm", "error 1.00 m", False),
+        ("error   9.9 m", "error  10.1 m", True),
+        ("1.0, 2.0 and 3.5", "1.0, 2.0 and 3.0", False),
+        ("1.0, 2.0", "1.0, 2.0, 3.0", False),
+        ("x3 = 1.0", "x4 = 1.0", False),
+        ("nan m", "1.0 m", False),
+        ("1.05e-07", "1.00e-07", True),
+        ("1.05e-06", "1.00e-07", False),
+        ("lost", "tracked", False),
+    ],
+)
+def test_numbers_within_the_tolerance_are_taken_and_nothing_else(new, stored, taken):
+    assert within_tolerance(new, stored, TEN_PERCENT) == (stored if taken else new)
+
+
+def test_the_larger_of_the_two_tolerances_holds():
+    assert Tolerance(0.1, 0.5).holds(1.0, 1.4)
+    assert Tolerance(0.1, 0.5).holds(100.0, 109.0)
+    assert not Tolerance(0.1, 0.5).holds(1.0, 1.6)
+
+
+def test_outputs_are_compared_one_by_one_in_every_form():
+    stored = [
+        {"output_type": "stream", "text": "a 1.0\n"},
+        {"output_type": "display_data", "data": {"text/html": "b 2"}},
+    ]
+    new = [
+        {"output_type": "stream", "text": "a 1.05\n"},
+        {"output_type": "display_data", "data": {"text/html": "b 2.1"}},
+    ]
+    assert adopted(new, stored, TEN_PERCENT, str) == stored
+    assert new[0]["text"] == "a 1.05\n", "what was run is left as it is"
+    assert adopted(new, stored[:1], TEN_PERCENT, str)[1:] == new[1:], "an output too many is still one"
