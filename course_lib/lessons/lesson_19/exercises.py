@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.stats import beta
 
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
@@ -57,6 +58,12 @@ def _known(covariance, height, tilt, order=(0, 1, 5), rest=(2, 3, 4)) -> np.ndar
     return result
 
 
+def _one_sided(covariance, sigma_z, sigma_tilt_deg):
+    result = start_knowledge(covariance, sigma_z, sigma_tilt_deg)
+    result[5, :2] = 0.0
+    return result
+
+
 def _semantic_covariance(rng: np.random.Generator) -> np.ndarray:
     """Of a pose on the floor: place and heading lean on each other."""
     mixing = rng.standard_normal((3, 3)) * np.array([[0.05], [0.05], [0.02]])
@@ -91,6 +98,11 @@ def _wilson_high(hits: int, n: int) -> float:
 def _normal_low(hits: int, n: int) -> float:
     p = hits / n
     return p - Z * math.sqrt(p * (1 - p) / n)
+
+
+def _exact_low(hits: int, n: int) -> float:
+    """Lower end of Clopper and Pearson's interval."""
+    return float(beta.ppf(0.025, hits, n - hits + 1))
 
 
 def _least(enough, misses: int) -> int:
@@ -141,6 +153,11 @@ def _on_top(covariance, theta, forward, left):
     return result
 
 
+def _untouched_lever(covariance, theta, forward, left):
+    lever = np.array([[1.0, 0.0, forward], [0.0, 1.0, left], [0.0, 0.0, 1.0]])
+    return lever @ covariance @ lever.T
+
+
 def _rotated(covariance, theta, forward, left):
     c, s = math.cos(theta), math.sin(theta)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -181,6 +198,13 @@ EXERCISES = [
             Mistake(
                 lambda x, y, theta, forward, left, turned: _camera(x, y, theta, forward, left, theta - turned),
                 "The place is right; the camera's own turn is counter-clockwise as theta is: add it.",
+            ),
+            Mistake(
+                lambda x, y, theta, forward, left, turned: (
+                    *camera_on_map(x, y, theta, forward, left, turned)[:2],
+                    (theta + turned) % (2 * math.pi),
+                ),
+                "The place is right; your heading runs from 0 to 2 pi, and the task asks for -pi to pi.",
             ),
             Mistake(_unwrapped, "The place is right; bring the heading back to -pi to pi (`wrap_angle`)."),
             Mistake(
@@ -244,14 +268,25 @@ EXERCISES = [
                 ),
                 "x and y are joined with yaw as well: four numbers in the last row and column are missing.",
             ),
+            Mistake(
+                _one_sided,
+                "A covariance is the same on both sides of its diagonal: what stands right of it stands below it, too.",
+            ),
+            Mistake(
+                lambda p, z, tilt: _known(p, z, math.radians(tilt) ** 2),
+                "sigma_z is a standard deviation; the covariance's diagonal holds squares.",
+            ),
         ),
-        tolerance=1e-9,
     ),
     Exercise(
         number="19.3",
         reference=places_needed,
         inputs=_wanted,
         mistakes=(
+            Mistake(
+                lambda share, misses: _least(lambda n: _exact_low(n - misses, n) >= share, misses),
+                "That is the exact (Clopper-Pearson) interval, which is wider. The task asks for Wilson's.",
+            ),
             Mistake(
                 lambda share, misses: _least(lambda n: (n - misses) / n >= share - 1e-12, misses),
                 "You ask the share itself. It is the *lower end* of the interval that must reach the wanted share.",
@@ -304,6 +339,10 @@ EXERCISES = [
             Mistake(_on_top, "Place and heading lean on each other: J P J' has cross terms that you left out."),
             Mistake(_rotated, "You turn the covariance. It is on the map's axes already; what acts is the lever arm."),
             Mistake(
+                _untouched_lever,
+                "Your lever is (forward, left) itself, the robot's way *to* the camera. What counts is how it moves.",
+            ),
+            Mistake(
                 lambda p, theta, forward, left: carried(p, 0.0, forward, left),
                 "Forward and left are the robot's: the derivative contains cos theta and sin theta.",
             ),
@@ -326,6 +365,5 @@ EXERCISES = [
                 "A covariance is carried from both sides: J P is only half of it.",
             ),
         ),
-        tolerance=1e-9,
     ),
 ]

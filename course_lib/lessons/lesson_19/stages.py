@@ -102,6 +102,9 @@ def _travelled(
     x: float, y: float, heading_deg: float, hidden_share: float, lens_cap: bool, say: Callable[[str], None]
 ) -> Journey:
     here, pose = world(), np.array([x, y, np.deg2rad(heading_deg)])
+    if lens_cap:  # the panoramas know nothing of it
+        seen = journey(x, y, heading_deg, hidden_share, False, say)
+        return seen._replace(depths=[np.full_like(depth, np.nan) for depth in seen.depths], runs=[])
     say(f"1 of 4: {STAGES[0]}")
     images = here.photographs(pose)
     if hidden_share:
@@ -110,9 +113,7 @@ def _travelled(
     found = here.localizer.localize(*images)
     say(f"3 of 4: {STAGES[2]}")
     states, depths = here.depth_images(pose)
-    if lens_cap:
-        depths = [np.full_like(depth, np.nan) for depth in depths]
     say(f"4 of 4: {STAGES[3]}")
     starts = starts_of(found, here.scene_map)
-    runs = [] if lens_cap else [follow(here.renderer, start_state(start), depths, FILTER_SEED) for start in starts]
+    runs = [follow(here.renderer, start_state(start), depths, FILTER_SEED) for start in starts]
     return Journey(pose, images, found, states, depths, starts, runs)
