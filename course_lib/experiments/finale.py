@@ -172,7 +172,7 @@ def best_start(
 
 
 def starts_of(found: Localization, scene_map: SceneMap) -> list[Pose2D]:
-    """Where the depth filter starts: the semantic pose; without one, the best of those weighed that stand on the map."""
+    """Where the depth filter starts: the semantic pose; without one, the best of those weighed that lie on the map."""
     if found.pose is not None:
         return [found.pose]
     poses = [one.pose for one in found.alternatives[:MOST_ALTERNATIVES]]

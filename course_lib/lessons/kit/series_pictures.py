@@ -34,6 +34,7 @@ CHOSEN = {
     "15": "15-panel",
     "16": "16-idea-picture",
     "17": "17-places",
+    "19": "19-stages",
     "20": "20-check-picture",
 }
 """Lesson -> the cell whose picture stands for it; a lesson that is not here gives its first picture."""

@@ -1,8 +1,8 @@
 """Lesson 19, both papers in one world: a robot put anywhere in a room, its two sensors, and who helps whom."""
 
 from course_lib.lessons.lesson_19.figures import basin_figure, sensors_figure, stages_figure, starts_figure, wall_figure
-from course_lib.lessons.lesson_19.stages import journey, plane_error, state_error
 from course_lib.lessons.lesson_19.panel import PANELS, anywhere_panel
+from course_lib.lessons.lesson_19.stages import journey, plane_error, state_error
 from course_lib.lessons.lesson_19.trials import joined_error, misplaced, random_places, stored_result, turn_and_look
 from course_lib.lessons.lesson_19.world import world
 
@@ -16,8 +16,8 @@ __all__ = [
     "plane_error",
     "random_places",
     "sensors_figure",
-    "starts_figure",
     "stages_figure",
+    "starts_figure",
     "state_error",
     "stored_result",
     "turn_and_look",

@@ -178,12 +178,10 @@ EXERCISES = [
         mistakes=(
             Mistake(
                 lambda x, y, theta, forward, left, turned: (x + forward, y + left, float(wrap_angle(theta + turned))),
-                "Forward and left are the robot's directions. Turn them by theta before you add them to the map's x, y.",
+                "Forward and left are the robot's directions. Turn them by theta before you add them to x and y.",
             ),
             Mistake(
-                lambda x, y, theta, forward, left, turned: _camera(
-                    x, y, theta + turned, forward, left, theta + turned
-                ),
+                lambda x, y, theta, forward, left, turned: _camera(x, y, theta + turned, forward, left, theta + turned),
                 "The camera sits forward of the *robot*: its place turns with theta alone, not with its own turn.",
             ),
             Mistake(_clockwise, "You turn the offset the wrong way round: check with theta = 90 degrees, forward 1 m."),
@@ -215,9 +213,7 @@ EXERCISES = [
                 "The heading comes out in degrees: the course keeps radians.",
             ),
             Mistake(
-                lambda x, y, theta, forward, left, turned: _camera(
-                    x, y, theta, -forward, -left, theta + turned
-                ),
+                lambda x, y, theta, forward, left, turned: _camera(x, y, theta, -forward, -left, theta + turned),
                 "You subtract the offset: that leads from the camera to the robot. Here it goes the other way.",
             ),
         ),
@@ -309,7 +305,7 @@ EXERCISES = [
             ),
             Mistake(
                 lambda share, misses: places_needed(share, misses) - misses,
-                "You return the places that went well; asked is how many there are in all, misses included.",
+                "Yours are the places that went well; asked is how many there are in all, misses included.",
             ),
             Mistake(
                 lambda share, misses: _least(lambda n: wilson_low(n - misses, n, 1.0) >= share, misses),

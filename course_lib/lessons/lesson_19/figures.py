@@ -1,4 +1,4 @@
-"""Figures of lesson 19: what the two sensors see, the error after each stage, how far off a start may be, where it fails."""
+"""Figures of lesson 19: what the two sensors see, the error after each stage, how far off a start may be."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from course_lib.experiments.finale import mean_score
+from course_lib.experiments.rooms_summary import wilson_percent
 from course_lib.lessons.lesson_19.stages import Journey, state_error
 from course_lib.lessons.lesson_19.world import world
 from course_lib.plots import figures
@@ -40,7 +41,7 @@ def ellipse(covariance: np.ndarray, centre: Sequence[float]) -> np.ndarray:
 
 
 def sensors_figure(one: Journey) -> Figure:
-    """What both sensors see from one place: the upper panorama with its objects, the depth image, the room from above."""
+    """What both sensors see from one place: the upper panorama with its objects, the depth image, the plan."""
     figure = figures.new_figure(size=(9.0, 6.4))[0]
     figure.clear()
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.15])
@@ -95,7 +96,9 @@ def basin_figure(
     names = ("start wrong by [m]", "start turned by [degrees]")
     for k, (a, runs, name) in enumerate(zip(axes, (distances, headings), names, strict=True)):
         shares = [np.mean(reached) for reached in runs.values()]
-        a.plot(list(runs), shares, **figures.line_style(0), label="depth filters that arrive")
+        ends = [wilson_percent(int(np.sum(reached)), len(reached)) for reached in runs.values()]
+        away = np.abs(np.array(ends).T / 100 - shares)
+        a.errorbar(list(runs), shares, away, **figures.line_style(0), capsize=3, label="arrive, with 95 % intervals")
         errors = [one[k] for one in semantic]
         a.plot(errors, np.full(len(errors), 0.08), "|", color=figures.VERMILION, markersize=16, label="semantic poses")
         a.set(title="How far off may the start be?", xlabel=name, ylabel="share that arrives [-]", ylim=(-0.05, 1.05))
@@ -116,9 +119,13 @@ def starts_figure(one: Journey) -> Figure:
         plan.plot(*end[:2], marker, color=colour, markersize=5, label=f"start {k + 1}")
         bars.bar(k + 1, mean_score(run), color=colour, hatch=("", "//", "..")[k], edgecolor="white")
         metres = state_error(end, one.states[-1])[0]
-        bars.text(k + 1, mean_score(run) + 0.01, f"{mean_score(run):.3f}\noff by {metres:.2f} m", ha="center", fontsize=8)
-    plan.legend(fontsize=7, loc="upper right")
-    bars.set(title="How well it explains the depth images", xlabel="start [-]", ylabel="mean raw score [-]", ylim=(0, 1.15))
+        bars.text(
+            k + 1, mean_score(run) + 0.01, f"{mean_score(run):.3f}\noff by {metres:.2f} m", ha="center", fontsize=8
+        )
+    plan.legend(fontsize=7, loc="upper right", bbox_to_anchor=(1.0, 0.86))
+    bars.set(
+        title="How well it explains the depth images", xlabel="start [-]", ylabel="mean raw score [-]", ylim=(0, 1.15)
+    )
     bars.set_xticks(range(1, len(one.runs) + 1))
     return figure
 

@@ -12,7 +12,6 @@ from course_lib.lessons.lesson_19.figures import draw_room, ellipse
 from course_lib.lessons.lesson_19.stages import Journey, journey, state_error
 from course_lib.lessons.lesson_19.world import world
 from course_lib.plots import figures
-from course_lib.plots.panorama_drawing import class_style
 from course_lib.simulation.room.footprints import free_places
 
 STORY = {"x": 3.35, "y": 3.3, "heading": 65.0, "hidden": 0.0, "cap": False}
@@ -143,7 +142,9 @@ def _told(one: Journey | None, place: str) -> list[str]:
     else:
         lines.append(f"panoramas: unable ({one.found.reason}); {len(one.starts)} poses are left to the depth camera")
     if one.best is None:
-        why = "a lens cap: nothing measured, the semantic pose stays" if one.starts else "not started: nobody knows where"
+        why = (
+            "a lens cap: nothing measured, the semantic pose stays" if one.starts else "not started: nobody knows where"
+        )
         return [*lines, f"depth filter: {why}"]
     for k, run in enumerate(one.runs, start=1):
         metres, degrees = state_error(run[-1].state, one.states[-1])

@@ -11,7 +11,7 @@ import numpy as np
 
 from course_lib.experiments.finale import follow, is_known, start_state
 from course_lib.experiments.joined_answer import joined, start_covariance
-from course_lib.lessons.lesson_19.stages import FILTER_SEED, Journey, is_reached, journey, state_error
+from course_lib.lessons.lesson_19.stages import FILTER_SEED, Journey, is_reached, state_error
 from course_lib.lessons.lesson_19.world import world
 from course_lib.paths import data_path
 from course_lib.simulation.room.finale_data import SEED

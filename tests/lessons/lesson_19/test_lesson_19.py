@@ -9,8 +9,8 @@ import pytest
 
 from course_lib.experiments.finale import is_known, mean_score
 from course_lib.lessons.kit.display import require_labels
-from course_lib.lessons.lesson_19 import stages
 from course_lib.lessons.lesson_19 import panel as panels
+from course_lib.lessons.lesson_19 import stages
 from course_lib.lessons.lesson_19.figures import (
     DEVIATIONS,
     basin_figure,
@@ -78,7 +78,7 @@ def test_who_comes_back_to_a_place_finds_the_same_recording(here, place):
     states, depths = here.depth_images(place.pose)
     assert (states == place.states).all()
     assert np.array_equal(depths[2], place.depths[2], equal_nan=True)
-    elsewhere = here.depth_images(place.pose + [0.01, 0, 0])[0]
+    elsewhere = here.depth_images(place.pose + np.array([0.01, 0, 0]))[0]
     assert not np.allclose(elsewhere[:, 2], states[:, 2], atol=1e-6)
 
 
@@ -145,7 +145,7 @@ def test_random_places_are_the_experiments_and_free(here):
 def test_stored_results_are_read_and_a_missing_file_is_named(tmp_path):
     (tmp_path / "some.json").write_text(json.dumps({"reached": 3, "places": 4}))
     assert stored_result(tmp_path / "some.json")["reached"] == 3
-    with pytest.raises(FileNotFoundError, match="missing.json"):
+    with pytest.raises(FileNotFoundError, match=r"missing\.json"):
         stored_result(tmp_path / "missing.json")
 
 
