@@ -102,7 +102,7 @@ def basin_figure(
         errors = [one[k] for one in semantic]
         a.plot(errors, np.full(len(errors), 0.08), "|", color=figures.VERMILION, markersize=16, label="semantic poses")
         a.set(title="How far off may the start be?", xlabel=name, ylabel="share that arrives [-]", ylim=(-0.05, 1.05))
-    axes[0].legend(fontsize=8, loc="center right")
+    axes[0].legend(fontsize=8, loc="upper right")
     return figure
 
 
