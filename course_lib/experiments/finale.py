@@ -19,7 +19,7 @@ import numpy as np
 from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.depth_mcl.localizer import NoMeasurementWarning
+from course_lib.depth_mcl.localizer import MAP_MARGIN, NoMeasurementWarning
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
@@ -87,7 +87,7 @@ def one_place(
     rng: np.random.Generator,
 ) -> dict:
     """What the semantic pose is worth at one place, and what the depth filter makes of it. true_pose: x, y, heading."""
-    starts = [one.pose for one in found.alternatives[:MOST_ALTERNATIVES]] if found.pose is None else [found.pose]
+    starts = starts_of(found, renderer.scene_map)
     result = {"semantic_status": found.status, "starts": len(starts)}
     if found.pose is not None:
         result["semantic_m"] = float(np.hypot(found.pose.x - true_pose[0], found.pose.y - true_pose[1]))
@@ -169,6 +169,14 @@ def best_start(
         if best is None or score > best_score:
             best, best_score = estimates[-1], -np.inf if np.isnan(score) else score
     return best
+
+
+def starts_of(found: Localization, scene_map: SceneMap) -> list[Pose2D]:
+    """Where the depth filter starts: the semantic pose; without one, the best of those weighed that lie on the map."""
+    if found.pose is not None:
+        return [found.pose]
+    poses = [one.pose for one in found.alternatives[:MOST_ALTERNATIVES]]
+    return [pose for pose in poses if scene_map.contains(start_state(pose)[:3], MAP_MARGIN)]
 
 
 def start_state(pose: Pose2D) -> np.ndarray:

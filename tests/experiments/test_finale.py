@@ -120,6 +120,14 @@ def test_a_start_is_carried_on_along_its_heading():
     assert np.sin(theta) == pytest.approx(-1.0)
 
 
+def test_a_pose_outside_the_map_is_no_start(renderer):
+    outside, right = Pose2D(40.0, 0.0, 0.0), Pose2D(TRUE[0] + 0.05, TRUE[1], TRUE[2])
+    alternatives = tuple(SimpleNamespace(pose=pose) for pose in (outside, right))
+    result = place(renderer, SimpleNamespace(status="unable", pose=None, alternatives=alternatives))
+    assert result["starts"] == 1
+    assert result["reached"]
+
+
 def test_without_any_pose_nothing_is_reached(renderer):
     result = place(renderer, SimpleNamespace(status="unable", pose=None, alternatives=()))
     assert result == {"semantic_status": "unable", "starts": 0, "reached": False}

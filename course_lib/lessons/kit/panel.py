@@ -164,6 +164,10 @@ class Panel:
         self._picture.value = Picture(drawing.png, drawing.alt).html()
         self._summary.value = f"<pre>{html.escape(drawing.summary)}</pre>"
 
+    def say(self, text: str) -> None:
+        """A line under the picture while an action works; the picture stays until `redraw`."""
+        self._summary.value = f'<p role="status">{html.escape(text)}</p>'
+
     def show(self) -> None:
         """Display the panel: live where a kernel runs, its picture at the defaults where none does."""
         display(self)

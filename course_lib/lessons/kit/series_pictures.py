@@ -36,6 +36,7 @@ CHOSEN = {
     "16": "16-idea-picture",
     "17": "17-places",
     "18": "18-idea-picture",
+    "19": "19-stages",
     "20": "20-check-picture",
 }
 """Lesson -> the cell whose picture stands for it; a lesson that is not here gives its first picture."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from tests.lessons.kit import answers_01_to_07, answers_09, answers_11_to_17, answers_18
+from tests.lessons.kit import answers_01_to_07, answers_09, answers_11_to_17, answers_18, answers_19
 
 # Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
 SEEDS = range(4)
@@ -170,8 +170,9 @@ RIGHT = [
 ]
 
 
-WRONG_ANSWERS = [*WRONG, *answers_01_to_07.WRONG, *answers_11_to_17.WRONG, *answers_18.WRONG, *answers_09.WRONG]
-RIGHT_ANSWERS = [*RIGHT, *answers_01_to_07.RIGHT, *answers_11_to_17.RIGHT, *answers_18.RIGHT, *answers_09.RIGHT]
+OTHERS = (answers_01_to_07, answers_09, answers_11_to_17, answers_18, answers_19)
+WRONG_ANSWERS = [*WRONG, *(answer for module in OTHERS for answer in module.WRONG)]
+RIGHT_ANSWERS = [*RIGHT, *(answer for module in OTHERS for answer in module.RIGHT)]
 
 
 def number_of(given):

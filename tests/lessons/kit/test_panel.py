@@ -102,6 +102,21 @@ def test_an_error_is_raised_shown_and_the_old_picture_stays():
     assert "failed" not in summary.value
 
 
+def test_a_panel_says_what_it_is_doing_and_keeps_its_picture_till_it_is_done():
+    panel = make()
+    picture, said = panel._picture.value, []
+
+    def work(values: dict) -> dict:
+        panel.say("1 of 2: <looking>")
+        said.append((panel._summary.value, panel._picture.value))
+        return {"x": 2.0}
+
+    panel.actions["Work"] = work
+    panel.press("Work")
+    assert said == [('<p role="status">1 of 2: &lt;looking&gt;</p>', picture)]
+    assert "x = 2 &lt;m&gt;" in panel._summary.value
+
+
 def test_the_bundle_carries_the_defaults_as_a_still_whatever_the_controls_say():
     panel = make()
     panel.set(x=3)

@@ -1,0 +1,150 @@
+"""Figures of lesson 19: what the two sensors see, the error after each stage, how far off a start may be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from course_lib.experiments.finale import mean_score
+from course_lib.experiments.rooms_summary import wilson_percent
+from course_lib.lessons.lesson_19.stages import Journey, state_error
+from course_lib.lessons.lesson_19.world import world
+from course_lib.plots import figures
+from course_lib.plots.panorama_drawing import class_style, draw_box, panorama
+from course_lib.plots.room_figures import draw_pose
+
+DEVIATIONS = 2  # standard deviations of an ellipse
+
+
+def draw_room(axes: Axes, title: str) -> None:
+    """The true room from above: walls, and every piece's footprint in its class's colour, named by a letter or two."""
+    here = world()
+    corners = np.vstack([here.room.walls, here.room.walls[:1]])
+    axes.plot(*corners.T, color=figures.BLACK, linewidth=2.0)
+    for corners, item in zip(here.footprints, here.room.objects, strict=True):
+        colour, _ = class_style(item.label)
+        axes.add_patch(Polygon(corners, facecolor=colour, alpha=0.35, edgecolor=colour))
+        axes.text(*corners.mean(axis=0), item.label, fontsize=6, ha="center", va="center", clip_on=True)
+    axes.set(title=title, xlabel="x [m]", ylabel="y [m]", aspect="equal")
+
+
+def ellipse(covariance: np.ndarray, centre: Sequence[float]) -> np.ndarray:
+    """The outline `(2, n)` of `DEVIATIONS` standard deviations about a centre in the plane; covariance `(2, 2)`."""
+    values, vectors = np.linalg.eigh(covariance)
+    circle = np.linspace(0, 2 * np.pi, 73)
+    ring = np.sqrt(np.maximum(values, 0))[:, None] * np.stack([np.cos(circle), np.sin(circle)])
+    return np.asarray(centre)[:, None] + DEVIATIONS * vectors @ ring
+
+
+def sensors_figure(one: Journey) -> Figure:
+    """What both sensors see from one place: the upper panorama with its objects, the depth image, the plan."""
+    figure = figures.new_figure(size=(9.0, 6.4))[0]
+    figure.clear()
+    grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.15])
+    above, image, plan = (figure.add_subplot(part) for part in (grid[0, :], grid[1, 0], grid[1, 1]))
+    small = one.images[0][::2, ::2]
+    panorama(above, small, f"Upper panorama: {len(one.found.upper_detections)} objects found")
+    for detection in one.found.upper_detections:
+        draw_box(above, np.array(detection.box) / 2, small.shape[1], detection.label, detection.label)
+    drawn = figures.depth_image(image, one.depths[0], "Depth image, 43 degrees wide", _limits(one.depths[0]))
+    figures.colour_bar(figure, drawn, image)
+    draw_room(plan, "The room from above, and the robot")
+    draw_pose(plan, *one.pose, figures.BLACK)
+    x, y, heading = one.pose
+    for side in (-1, 1):
+        angle = heading + side * np.deg2rad(21.8)
+        plan.plot([x, x + 2.5 * np.cos(angle)], [y, y + 2.5 * np.sin(angle)], color=figures.BLUE, linewidth=1.2)
+    return figure
+
+
+def _limits(depth: np.ndarray) -> tuple[float, float]:
+    """Between which the depths of an image are coloured: nearly all of them, to the decimetre."""
+    low, high = np.nanpercentile(depth, [1, 99])
+    return float(np.floor(10 * low) / 10), float(np.ceil(10 * high) / 10)
+
+
+def stages_figure(one: Journey) -> Figure:
+    """The same place three times, each time closer: the room, what the panoramas say, what the depth camera says."""
+    figure, axes = figures.new_figure(1, 3, size=(10.0, 3.6))
+    draw_room(axes[0], "Before: anywhere in here")
+    axes[0].plot(*one.pose[:2], "x", color=figures.BLACK, markersize=9, markeredgewidth=2)
+    found, first = one.found.pose, one.best[0]
+    for a, half, title in ((axes[1], 20.0, "After the panoramas"), (axes[2], 5.0, "After the depth image")):
+        place = 100 * (np.array([found.x, found.y]) - one.pose[:2])
+        a.plot(0, 0, "x", color=figures.BLACK, markersize=9, markeredgewidth=2, label="true place")
+        a.plot(*place, "s", color=figures.ORANGE, label="semantic pose")
+        a.plot(*ellipse(1e4 * one.found.covariance[:2, :2], place), color=figures.ORANGE, linestyle="--")
+        a.set(title=title, xlim=(-half, half), ylim=(-half, half), aspect="equal")
+        a.set(xlabel="x from the true place [cm]", ylabel="y from the true place [cm]")
+    place = 100 * (first.state[:2] - one.states[0, :2])
+    axes[2].plot(*place, "o", color=figures.BLUE, label="depth filter")
+    axes[2].plot(*ellipse(1e4 * first.error_covariance[:2, :2], place), color=figures.BLUE)
+    axes[1].legend(fontsize=8, loc="lower left")
+    axes[2].legend(fontsize=8, loc="lower left")
+    return figure
+
+
+def basin_figure(
+    distances: dict[float, Sequence[bool]], headings: dict[float, Sequence[bool]], semantic: Sequence[tuple]
+) -> Figure:
+    """The share of filters that arrive over how far off they started, and how far off the semantic poses were."""
+    figure, axes = figures.new_figure(1, 2, size=(9.0, 3.4))
+    names = ("start wrong by [m]", "start turned by [degrees]")
+    for k, (a, runs, name) in enumerate(zip(axes, (distances, headings), names, strict=True)):
+        shares = [np.mean(reached) for reached in runs.values()]
+        ends = [wilson_percent(int(np.sum(reached)), len(reached)) for reached in runs.values()]
+        away = np.abs(np.array(ends).T / 100 - shares)
+        a.errorbar(list(runs), shares, away, **figures.line_style(0), capsize=3, label="arrive, with 95 % intervals")
+        errors = [one[k] for one in semantic]
+        a.plot(errors, np.full(len(errors), 0.08), "|", color=figures.VERMILION, markersize=16, label="semantic poses")
+        a.set(title="How far off may the start be?", xlabel=name, ylabel="share that arrives [-]", ylim=(-0.05, 1.05))
+    axes[0].legend(fontsize=8, loc="upper right")
+    return figure
+
+
+def starts_figure(one: Journey) -> Figure:
+    """Several starts of one depth filter: where each begins and ends, and how well it explains the images."""
+    figure, (plan, bars) = figures.new_figure(1, 2, size=(9.4, 4.2))
+    draw_room(plan, "Where each start begins (open) and ends (full)")
+    draw_pose(plan, *one.pose, figures.BLACK, "true place")
+    colours = (figures.BLUE, figures.ORANGE, figures.VERMILION)
+    for k, (start, run) in enumerate(zip(one.starts, one.runs, strict=True)):
+        colour, marker, end = colours[k], ("o", "s", "D")[k], run[-1].state
+        plan.plot(start.x, start.y, marker, markerfacecolor="none", color=colour, markersize=9)
+        plan.plot([start.x, end[0]], [start.y, end[1]], ":", color=colour)
+        plan.plot(*end[:2], marker, color=colour, markersize=5, label=f"start {k + 1}")
+        bars.bar(k + 1, mean_score(run), color=colour, hatch=("", "//", "..")[k], edgecolor="white")
+        metres = state_error(end, one.states[-1])[0]
+        bars.text(
+            k + 1, mean_score(run) + 0.01, f"{mean_score(run):.3f}\noff by {metres:.2f} m", ha="center", fontsize=8
+        )
+    plan.legend(fontsize=7, loc="upper right", bbox_to_anchor=(1.0, 0.86))
+    bars.set(
+        title="How well it explains the depth images", xlabel="start [-]", ylabel="mean raw score [-]", ylim=(0, 1.15)
+    )
+    bars.set_xticks(range(1, len(one.runs) + 1))
+    return figure
+
+
+def wall_figure(one: Journey) -> Figure:
+    """A bare wall: the depth image, and both answers with what each knows of itself, from the side."""
+    figure, (image, side) = figures.new_figure(1, 2, size=(9.0, 3.6))
+    drawn = figures.depth_image(image, one.depths[0], "What the depth camera sees", _limits(one.depths[0]))
+    figures.colour_bar(figure, drawn, image)
+    heading, true = one.pose[2], one.states[-1]
+    along = np.array([-np.sin(heading), np.cos(heading), 0.0])  # to the robot's left
+    last = one.best[-1]
+    axes_of = np.stack([along, [0.0, 0.0, 1.0]])
+    place = 100 * axes_of @ (last.state[:3] - true[:3])
+    side.plot(0, 0, "x", color=figures.BLACK, markersize=9, markeredgewidth=2, label="true place")
+    side.plot(*place, "o", color=figures.BLUE, label="depth filter")
+    covariance = axes_of @ last.error_covariance[:3, :3] @ axes_of.T
+    side.plot(*ellipse(1e4 * covariance, place), color=figures.BLUE, label="what it says of itself (2 sigma)")
+    side.set(title="How far off, seen from behind the robot", xlabel="to the left [cm]", ylabel="up [cm]")
+    side.set(xlim=(-40, 40), ylim=(-20, 60), aspect="equal")
+    side.legend(fontsize=7, loc="lower right")
+    return figure

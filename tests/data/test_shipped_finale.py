@@ -1,0 +1,68 @@
+"""The finale's shipped room: complete, unchanged, small, and two maps of the room that its seed makes."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course_lib.commands.make_finale import SEED as COMMAND_SEED
+from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.simulation.data_folder import checksums
+from course_lib.simulation.room.depth_world import depth_caster
+from course_lib.simulation.room.finale_data import PRODUCTS, SEED, FinaleModels, finale_parameters
+from course_lib.simulation.room.look_alike_room import make_look_alike_room
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+FOLDER = Path(__file__).resolve().parents[2] / "data" / "finale"
+
+
+@pytest.fixture(scope="module")
+def room():
+    return make_look_alike_room(SEED)
+
+
+def test_every_file_is_as_its_checksum_says():
+    assert (FOLDER / "SHA256SUMS").read_text() == checksums(FOLDER, PRODUCTS)
+
+
+def test_nothing_is_missing_and_nothing_lies_about():
+    assert {path.name for path in FOLDER.iterdir()} == {*PRODUCTS, "README.md"}
+
+
+def test_it_stays_small():
+    assert sum(path.stat().st_size for path in FOLDER.iterdir()) < 2e6
+
+
+def test_the_parameters_are_those_of_the_code():
+    assert (FOLDER / "PARAMETERS.md").read_text() == finale_parameters(FinaleModels())
+
+
+def test_the_command_and_the_lesson_mean_the_same_tuning_seed():
+    assert COMMAND_SEED == SEED >= 10_000
+    assert str(SEED) in (FOLDER / "README.md").read_text()
+
+
+def test_the_semantic_map_is_of_the_seeds_room(room):
+    semantic_map = SemanticMap.load(FOLDER / "semantic_map.json")
+    assert [item.label for item in room.objects] == list(semantic_map.labels)
+    away = semantic_map.positions - [(item.x, item.y) for item in room.objects]
+    assert 0.003 < np.sqrt(np.mean(away**2)) < 0.02, "surveyed with an error of a centimetre"
+
+
+def test_the_mesh_map_is_a_survey_of_the_same_room(room):
+    scene_map = SceneMap.load(FOLDER / "map.ply")
+    assert len(scene_map) == 60_000
+    eye = np.append(room.walls.mean(axis=0), 1.5)
+    directions = np.random.default_rng(0).standard_normal((400, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    ends = eye + depth_caster(room).cast(eye, directions).distance[:, None] * directions
+    nearest = [np.linalg.norm(scene_map.vertices - end, axis=1).min() for end in ends]
+    assert np.median(nearest) < 0.05
+    assert np.median(nearest) > 0.001, "noise of a survey: the map is not the room"
+
+
+def test_the_readme_counts_what_there_is(room):
+    text = (FOLDER / "README.md").read_text()
+    assert f"{len(json.loads((FOLDER / 'semantic_map.json').read_text())['landmarks'])} objects" in text
+    assert "60,000 triangles" in text
