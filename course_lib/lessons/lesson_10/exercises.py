@@ -246,9 +246,7 @@ def _against_all(states, scores, metres, radians):
     """A state stays if no better one at all is near, kept or not."""
     order = np.argsort(-scores)
     kept = [
-        int(i)
-        for k, i in enumerate(order)
-        if not any(_near(states[i], states[j], metres, radians) for j in order[:k])
+        int(i) for k, i in enumerate(order) if not any(_near(states[i], states[j], metres, radians) for j in order[:k])
     ]
     return np.array(kept)
 
@@ -412,9 +410,7 @@ EXERCISES = [
                 "You count one bin too many.",
             ),
             Mistake(
-                _sampling(
-                    lambda n, seen, least, bins: n >= kld_count(max(seen) - min(seen) + 1, least, _ENOUGH)
-                ),
+                _sampling(lambda n, seen, least, bins: n >= kld_count(max(seen) - min(seen) + 1, least, _ENOUGH)),
                 "You take the range of the numbers for how many bins there are. Most numbers in it were never hit.",
             ),
         ),

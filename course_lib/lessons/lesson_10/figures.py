@@ -16,7 +16,7 @@ from course_lib.lessons.lesson_10.narrowing import Round, leaving_101, shares
 from course_lib.lessons.lesson_10.trials import Trace, alarm_counts, evidence_near
 from course_lib.plots import figures
 
-_NAMES = {"101": (1.2, 2.75), "102": (5.2, 2.75), "103": (8.6, 2.75), "corridor": (5.35, 1.2)}
+_NAMES = {"101": (1.2, 2.75), "102": (5.2, 2.75), "103": (10.7, 2.1), "corridor": (5.35, 1.2)}
 
 
 def draw_hotel(axes: Axes, title: str) -> None:
@@ -84,7 +84,7 @@ def free_space_figure(tried: np.ndarray, free: np.ndarray) -> Figure:
 
 def first_scores_figure(states: np.ndarray, scores: np.ndarray, true: np.ndarray) -> Figure:
     """Particles `(N, 6)` from above, coloured by score; the best thirty as arrows."""
-    figure, axes = figures.new_figure(size=(8.4, 4.3))
+    figure, axes = figures.new_figure(size=(8.4, 4.8))
     draw_hotel(axes, "One frame, particles anywhere: who sees what the camera sees?")
     order = np.argsort(scores)
     dots = axes.scatter(*states[order, :2].T, c=scores[order], s=7, cmap="cividis", linewidths=0)
@@ -125,7 +125,9 @@ def chance_figure(runs: Sequence[list[Round]]) -> Figure:
     figure, axes = figures.new_figure(size=(7.6, 2.9))
     for k, rounds in enumerate(runs):
         axes.plot(shares(rounds)[0], **(figures.line_style(k) | {"markersize": 3.5}), label=f"run {k + 1}")
-    axes.set(title="Weight of the particles in the right room", xlabel="frame [-]", ylabel="weight [-]", xlim=(-0.3, 9.3))
+    axes.set(
+        title="Weight of the particles in the right room", xlabel="frame [-]", ylabel="weight [-]", xlim=(-0.3, 9.3)
+    )
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
     return figure
 
@@ -158,7 +160,9 @@ def trade_off_figure(ratios: np.ndarray) -> tuple[Figure, list[tuple[float, floa
         right.plot(ratios, [noticed(delays) for _, delays in counts], **style, label=name)
         rows.append(counts)
     left.set(title="Frames in peace with an alarm", xlabel="ratio c [-]", ylabel="false alarms [%]")
-    right.set(title="Kidnappings noticed within 3 frames", xlabel="ratio c [-]", ylabel="of three [-]", ylim=(-0.1, 3.2))
+    right.set(
+        title="Kidnappings noticed within 3 frames", xlabel="ratio c [-]", ylabel="of three [-]", ylim=(-0.1, 3.2)
+    )
     left.legend(fontsize=8)
     pairs = zip(ratios, *rows, strict=True)
     return figure, [(float(c), alone[0], both[0], noticed(both[1])) for c, alone, both in pairs]

@@ -127,14 +127,14 @@ def record(states: np.ndarray, seed: int) -> Recording:
     return Recording(states, depths, down)
 
 
-def walk(corners: Sequence[Sequence[float]], frames: int) -> np.ndarray:
-    """States `(frames, 6)` along corners [x, y, yaw in degrees], carried by hand: it sways and nods a little."""
+def walk(corners: Sequence[Sequence[float]], frames: int, sway: float = 1.0) -> np.ndarray:
+    """States `(frames, 6)` along corners [x, y, yaw in degrees], carried by hand: it sways and nods; sway 0: on a wagon."""
     columns = np.asarray(corners, dtype=np.float64)
     at = np.linspace(0, len(columns) - 1, frames)
     x, y, yaw_deg = (np.interp(at, np.arange(len(columns)), column) for column in columns.T)
     step = np.arange(frames)
-    roll, pitch = np.deg2rad(1.5) * np.sin(1.3 * step), np.deg2rad(8 + 2 * np.sin(0.9 * step))
-    return np.column_stack([x, y, EYE + 0.02 * np.sin(1.7 * step), roll, pitch, np.deg2rad(yaw_deg)])
+    roll, pitch = np.deg2rad(1.5 * sway) * np.sin(1.3 * step), np.deg2rad(8 + 2 * sway * np.sin(0.9 * step))
+    return np.column_stack([x, y, EYE + 0.02 * sway * np.sin(1.7 * step), roll, pitch, np.deg2rad(yaw_deg)])
 
 
 def behind_a_person(depth: np.ndarray, left: int) -> np.ndarray:

@@ -14,6 +14,7 @@ from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.depth_mcl.lost_and_found.global_search import CLEAR_GAP, GlobalSearch, Places
 from course_lib.depth_mcl.lost_and_found.recovery import RecoveringLocalizer, RecoveryEstimate
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.lesson_10.hotel import (
     ALIKE,
     CAMERA,
@@ -38,10 +39,10 @@ TO_THE_LIFT = ((6.0, 0.9, 10), (8.0, 0.7, 0))
 ALONG = ((1.0, 0.9, 5), (4.0, 0.8, -5), (7.5, 0.8, 5), (9.3, 0.8, 0))
 
 
-def carried_away(frames_before: int = 10, frames_after: int = 20, seed: int = 10_001) -> Recording:
-    """Along the corridor, and all at once in 103."""
-    states = np.concatenate([walk(IN_THE_CORRIDOR, frames_before), walk(IN_103, frames_after)])
-    return record(states, seed)
+def carried_away() -> Recording:
+    """On a wagon along the corridor for ten frames, then in 103."""
+    corridor, goal = walk(((1.2, 0.9, 5), (2.8, 0.8, -5)), 10, sway=0), walk(IN_103, 20, sway=0)
+    return record(np.concatenate([corridor, goal]), 10_001)
 
 
 # Kidnappings
@@ -115,7 +116,8 @@ def search_run(seed: int = 10_002) -> list[Places]:
     recording = leaving_101()
     with DepthRenderer(hotel_map(), CAMERA) as renderer:
         search = GlobalSearch(renderer, seed=seed, least=LEAST, most=MOST)
-        return [search.step(recording.depths[k], recording.gravity[k]) for k in range(SEARCHED)]
+        frames = progress(range(SEARCHED), "searching")
+        return [search.step(recording.depths[k], recording.gravity[k]) for k in frames]
 
 
 def evidence_near(run: list[Places], offset: np.ndarray) -> np.ndarray:
@@ -148,7 +150,8 @@ PERSON = range(14, 20)
 @functools.cache
 def traces() -> tuple[Trace, ...]:
     """Three recordings along the corridor; each time it is carried somewhere else."""
-    return tuple(_trace(seed, goal) for seed, goal in ((10_011, IN_103), (10_012, IN_101), (10_013, TO_THE_LIFT)))
+    carried = ((10_011, IN_103), (10_012, IN_101), (10_013, TO_THE_LIFT))
+    return tuple(_trace(seed, goal) for seed, goal in progress(carried, "recording scores"))
 
 
 def _trace(seed: int, goal: tuple) -> Trace:
