@@ -93,12 +93,12 @@ def _shares(
     scores,
     short,
     long,
-    share=lambda s, l: max(0.0, 1 - s / l),
+    share=lambda s, u: max(0.0, 1 - s / u),
     start=None,
     dark: str = "keep",
     before=False,
 ):
-    found, s, l = [], start, start
+    found, s, usual = [], start, start
     for score in scores:
         value = score
         if np.isnan(value):
@@ -108,16 +108,16 @@ def _shares(
                 found.append(0.0)
                 continue
             elif dark == "forget":
-                s = l = start
+                s = usual = start
                 found.append(0.0)
                 continue
         if before:
-            found.append(0.0 if s is None else share(s, l))
+            found.append(0.0 if s is None else share(s, usual))
         if dark == "nan" or not np.isnan(value):
             s = value if s is None else s + short * (value - s)
-            l = value if l is None else l + long * (value - l)
+            usual = value if usual is None else usual + long * (value - usual)
         if not before:
-            found.append(share(s, l))
+            found.append(share(s, usual))
     return np.array(found)
 
 
@@ -223,9 +223,8 @@ def _greedy(states, scores, metres, radians, near=_near, order=None):
 def _hypotheses(rng: np.random.Generator) -> tuple:
     """Clouds about places of which two share a position, two share a heading, and one looks along the seam."""
     corner = rng.uniform(0, 10, 2)
-    places = np.array(
-        [[*corner, 0.3], [*corner, 2.0], [*(corner + [4, 0]), 0.3], [*(corner + [0, 5]), np.pi], [*(corner + 9), -1.0]]
-    )
+    offsets = np.array([[0, 0, 0.3], [0, 0, 2.0], [4, 0, 0.3], [0, 5, np.pi], [9, 9, -1.0]])
+    places = offsets + np.append(corner, 0)
     n = int(rng.integers(25, 36))
     states = np.repeat(places, -(-n // len(places)), axis=0)
     states = states + rng.uniform(-1, 1, states.shape) * [0.5, 0.5, 0.25]
@@ -319,7 +318,7 @@ EXERCISES = [
         inputs=_scores,
         mistakes=(
             Mistake(
-                lambda scores, short, long: _shares(scores, short, long, lambda s, l: 1 - s / l),
+                lambda scores, short, long: _shares(scores, short, long, lambda s, u: 1 - s / u),
                 "A share cannot be negative: where the short mean is the greater one, it is 0.",
             ),
             Mistake(
@@ -327,11 +326,11 @@ EXERCISES = [
                 "Upside down: the short mean, which follows quickly, goes above the fraction line, the long one below.",
             ),
             Mistake(
-                lambda scores, short, long: _shares(scores, short, long, lambda s, l: min(1.0, s / l)),
+                lambda scores, short, long: _shares(scores, short, long, lambda s, u: min(1.0, s / u)),
                 "That is how much of the score is left. The share of new particles is what is missing from 1.",
             ),
             Mistake(
-                lambda scores, short, long: _shares(scores, short, long, lambda s, l: max(0.0, l - s)),
+                lambda scores, short, long: _shares(scores, short, long, lambda s, u: max(0.0, u - s)),
                 "You take the difference of the means. It is their ratio that counts.",
             ),
             Mistake(

@@ -12,8 +12,8 @@ from matplotlib.patches import Rectangle
 from course_lib.depth_mcl.lost_and_found.adaptive_count import kld_count
 from course_lib.depth_mcl.lost_and_found.global_search import Places
 from course_lib.lessons.lesson_10.hotel import ALIKE, Recording, boxes_on_the_plan
-from course_lib.lessons.lesson_10.narrowing import Round, leaving_101, shares
-from course_lib.lessons.lesson_10.trials import Trace, alarm_counts, evidence_near
+from course_lib.lessons.lesson_10.narrowing import Round, shares
+from course_lib.lessons.lesson_10.trials import GOALS, Trace, alarm_counts, evidence_near
 from course_lib.plots import figures
 
 _NAMES = {"101": (1.2, 2.75), "102": (5.2, 2.75), "103": (10.7, 2.1), "corridor": (5.35, 1.2)}
@@ -147,30 +147,22 @@ def evidence_figure(run: Sequence[Places]) -> Figure:
     return figure
 
 
-def trade_off_figure(ratios: np.ndarray) -> tuple[Figure, list[tuple[float, float, int]]]:
-    """False alarms against the kidnappings seen within three frames, for ratios of the alarm; and the rows drawn:
-    ratio, false alarms [%] by the score alone and with the second condition, kidnappings noticed within 3 frames."""
+def trade_off_figure(ratios: np.ndarray) -> tuple[Figure, list[tuple[float, float, float, list[int | None]]]]:
+    """False alarms, and how late kidnappings are noticed, for ratios of the alarm; and the rows drawn: ratio, false
+    alarms [%] by the score alone and with the second condition, delays [frames] of the three kidnappings."""
     figure, (left, right) = figures.new_figure(1, 2, size=(9.4, 3.0))
-    rows = []
-    for k, asked in enumerate((False, True)):
-        counts = [alarm_counts(float(ratio), cannot_be_right=asked) for ratio in ratios]
-        style = figures.line_style(k) | {"markersize": 4}
-        name = "and the pose cannot be right" if asked else "the score alone"
-        left.plot(ratios, [false for false, _ in counts], **style, label=name)
-        right.plot(ratios, [noticed(delays) for _, delays in counts], **style, label=name)
-        rows.append(counts)
+    alone, both = ([alarm_counts(float(c), cannot_be_right=asked) for c in ratios] for asked in (False, True))
+    for k, (name, counts) in enumerate((("the score alone", alone), ("and the pose cannot be right", both))):
+        left.plot(ratios, [false for false, _ in counts], **(figures.line_style(k) | {"markersize": 4}), label=name)
+    for k, goal in enumerate(GOALS):
+        late = [np.nan if delays[k] is None else delays[k] for _, delays in both]
+        right.plot(ratios, late, **(figures.line_style(k + 2) | {"markersize": 4}), label=f"kidnapped {goal}")
     left.set(title="Frames in peace with an alarm", xlabel="ratio c [-]", ylabel="false alarms [%]")
-    right.set(
-        title="Kidnappings noticed within 3 frames", xlabel="ratio c [-]", ylabel="of three [-]", ylim=(-0.1, 3.2)
-    )
+    right.set(title="How late the alarm comes (no dot: never)", xlabel="ratio c [-]", ylabel="delay [frames]")
+    right.set(xlim=left.get_xlim(), ylim=(-0.3, 4.2))
     left.legend(fontsize=8)
-    pairs = zip(ratios, *rows, strict=True)
-    return figure, [(float(c), alone[0], both[0], noticed(both[1])) for c, alone, both in pairs]
-
-
-def noticed(delays: Sequence[int | None]) -> int:
-    """How many of the delays are of three frames at most."""
-    return sum(delay is not None and delay <= 3 for delay in delays)
+    right.legend(fontsize=8)
+    return figure, [(float(c), one[0], two[0], two[1]) for c, one, two in zip(ratios, alone, both, strict=True)]
 
 
 def trace_axes(axes: Axes, trace: Trace) -> None:
@@ -192,8 +184,3 @@ def told_figure(errors: np.ndarray, statuses: Sequence[str], title: str, happene
     axes.set(title=title, xlabel="frame [-]", ylabel="distance from the truth [m]", ylim=(-0.3, None))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
     return figure
-
-
-def true_of_the_walk(frame: int) -> np.ndarray:
-    """The camera's state `(6,)` in that frame of the walk out of 101."""
-    return leaving_101().states[frame]

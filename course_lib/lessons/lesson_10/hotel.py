@@ -128,7 +128,7 @@ def record(states: np.ndarray, seed: int) -> Recording:
 
 
 def walk(corners: Sequence[Sequence[float]], frames: int, sway: float = 1.0) -> np.ndarray:
-    """States `(frames, 6)` along corners [x, y, yaw in degrees], carried by hand: it sways and nods; sway 0: on a wagon."""
+    """States `(frames, 6)` along corners [x, y, yaw in degrees], by hand: it sways and nods; sway 0: on a wagon."""
     columns = np.asarray(corners, dtype=np.float64)
     at = np.linspace(0, len(columns) - 1, frames)
     x, y, yaw_deg = (np.interp(at, np.arange(len(columns)), column) for column in columns.T)

@@ -96,8 +96,8 @@ def start_anywhere(n: int, gravity: np.ndarray, rng: np.random.Generator) -> np.
 
 def one_round(particles: np.ndarray, depth: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, int, np.ndarray]:
     """Weights of particles, how many bins they fall into once resampled, and the particles of the next frame."""
-    l = likelihood(coarse(depth), coarse_renderer().render(particles), ALPHA)
-    w = weights(normalize_likelihood(l), BETA)
+    likelihoods = likelihood(coarse(depth), coarse_renderer().render(particles), ALPHA)
+    w = weights(normalize_likelihood(likelihoods), BETA)
     bins = occupied_bins(optical_pose(particles[resample(w, rng)]), BIN, BIN)
     n = kld_count(bins, LEAST, MOST)
     return w, bins, propagate(particles[resample(w, rng, n=n)], SIGMA, rng)

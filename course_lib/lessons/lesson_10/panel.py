@@ -9,10 +9,8 @@ from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.lesson_10.figures import draw_camera, draw_hotel, trace_axes
 from course_lib.lessons.lesson_10.narrowing import FRAMES, MOST, RUNS, leaving_101, narrow, shares
-from course_lib.lessons.lesson_10.trials import alarms, running_mean, traces
+from course_lib.lessons.lesson_10.trials import GOALS, alarms, running_mean, traces
 from course_lib.plots import figures
-
-_GOALS = {"to 103": 0, "to 101": 1, "to the lift": 2}
 
 
 def alarm_panel() -> Panel:
@@ -29,7 +27,7 @@ def alarm_panel() -> Panel:
     live = LiveFigure(figure, [dots, short_line, long_line, raised])
 
     def draw(short: float, long: float, ratio: float, cannot_be_right: bool, goal: str) -> Drawing:
-        trace = traces()[_GOALS[goal]]
+        trace = traces()[list(GOALS).index(goal)]
         dots.set_data(frames, trace.scores)
         short_line.set_data(frames, running_mean(trace.scores, short))
         long_line.set_data(frames, ratio * running_mean(trace.scores, long))
@@ -46,7 +44,7 @@ def alarm_panel() -> Panel:
         Slider("short", "share of a frame, short [-]", 0.05, 1.0, 0.4, 0.05),
         Slider("long", "share of a frame, long [-]", 0.0, 0.4, 0.03, 0.01),
         Switch("cannot_be_right", "and the pose cannot be right"),
-        Choice("goal", "kidnapped", tuple(_GOALS), "to 103"),
+        Choice("goal", "kidnapped", tuple(GOALS), "to 103"),
     ]
     return Panel("10 alarm", controls, draw)
 

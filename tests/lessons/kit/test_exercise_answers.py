@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from tests.lessons.kit import answers_01_to_07, answers_11_to_17
+from tests.lessons.kit import answers_01_to_07, answers_10, answers_11_to_17
 
 # Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
 SEEDS = range(4)
@@ -170,8 +170,8 @@ RIGHT = [
 ]
 
 
-WRONG_ANSWERS = [*WRONG, *answers_01_to_07.WRONG, *answers_11_to_17.WRONG]
-RIGHT_ANSWERS = [*RIGHT, *answers_01_to_07.RIGHT, *answers_11_to_17.RIGHT]
+WRONG_ANSWERS = [*WRONG, *answers_01_to_07.WRONG, *answers_10.WRONG, *answers_11_to_17.WRONG]
+RIGHT_ANSWERS = [*RIGHT, *answers_01_to_07.RIGHT, *answers_10.RIGHT, *answers_11_to_17.RIGHT]
 
 
 def number_of(given):
