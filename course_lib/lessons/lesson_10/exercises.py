@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -75,6 +76,12 @@ def _last_cell_never(free, cell, u):
     return cell * np.column_stack([columns[chosen] + u[:, 1], rows[chosen] + u[:, 2]])
 
 
+def _column_by_column(free, cell, u):
+    columns, rows = np.nonzero(free.T)
+    chosen = (u[:, 0] * len(rows)).astype(int)
+    return cell * np.column_stack([columns[chosen] + u[:, 1], rows[chosen] + u[:, 2]])
+
+
 def _occupied(free, cell, u):
     if free.all():
         return np.zeros((len(u), 2))
@@ -138,20 +145,22 @@ def draws_needed(bins: np.ndarray, least: int) -> int:
     seen: set[int] = set()
     for n, one in enumerate(bins, start=1):
         seen.add(int(one))
-        if n >= kld_count(len(seen), least, _ENOUGH):
+        if n >= _bound(len(seen), least):
             return n
     return len(bins)
 
 
-_ENOUGH = 10**6
+@functools.cache
+def _bound(bins: int, least: int) -> int:
+    """`kld_count` without an upper bound, each value once: a check asks for thousands."""
+    return kld_count(bins, least, 10**6)
 
 
 def _landings(rng: np.random.Generator) -> tuple:
     """Bins of draws from few or many places; bin numbers are no indices; some run out of draws."""
-    places = rng.choice(10_000, int(rng.choice([1, 3, 8, 25])), replace=False) - 500
+    places = rng.choice(10_000, int(rng.choice([1, 3, 8, 40])), replace=False) - 500
     weights = rng.dirichlet(np.full(len(places), 0.7))
-    n = 200 if rng.random() < 0.3 else 900
-    return rng.choice(places, n, p=weights), int(rng.choice([20, 150]))
+    return rng.choice(places, 400, p=weights), int(rng.choice([20, 150]))
 
 
 def _sampling(enough: Callable, after: int = 0) -> Callable:
@@ -169,23 +178,23 @@ def _sampling(enough: Callable, after: int = 0) -> Callable:
 
 
 def _all_bins_at_once(bins, least):
-    return min(kld_count(len(np.unique(bins)), least, _ENOUGH), len(bins))
+    return min(_bound(len(np.unique(bins)), least), len(bins))
 
 
 def _never_runs_out(bins, least):
     seen: set[int] = set()
     for n, one in enumerate(bins, start=1):
         seen.add(int(one))
-        if n >= kld_count(len(seen), least, _ENOUGH):
+        if n >= _bound(len(seen), least):
             return n
-    return kld_count(len(seen), least, _ENOUGH)
+    return _bound(len(seen), least)
 
 
 def _needed_in_the_end(bins, least):
     seen: set[int] = set()
     for n, one in enumerate(bins, start=1):
         seen.add(int(one))
-        if n >= kld_count(len(seen), least, _ENOUGH):
+        if n >= _bound(len(seen), least):
             return len(seen)
     return len(seen)
 
@@ -195,7 +204,7 @@ def _new_bins_only(bins, least):
     seen: set[int] = set()
     for n, one in enumerate(bins, start=1):
         seen.add(int(one))
-        if n >= kld_count(len(seen), 1, _ENOUGH):
+        if n >= _bound(len(seen), 1):
             return n
     return len(bins)
 
@@ -305,6 +314,18 @@ EXERCISES = [
                 _rounded_index,
                 "Rounding gives the first and the last free cell half their share. Cut the decimals off instead.",
             ),
+            Mistake(
+                _places(lambda rows, columns, chosen, u: [rows[chosen], columns[chosen]]),
+                "Two things: x runs along the columns, y along the rows; and u[:, 1], u[:, 2] say where in the cell.",
+            ),
+            Mistake(
+                lambda free, cell, u: free_places(free, 1 / cell, u),
+                "You divide by the side of a cell. Four cells of 0.5 m are 2 m.",
+            ),
+            Mistake(
+                _column_by_column,
+                "You count the free cells column by column. The task counts them row by row, as np.nonzero does.",
+            ),
             Mistake(_last_cell_never, "The last free cell is never chosen: u < 1, so multiply by the number of cells."),
             Mistake(
                 _by_rows_first,
@@ -340,6 +361,12 @@ EXERCISES = [
             Mistake(
                 lambda scores, short, long: _shares(scores, short, long, dark="nan"),
                 "One NaN score makes every later mean NaN. In the dark the means stay as they are.",
+            ),
+            Mistake(
+                lambda scores, short, long: _shares(
+                    scores, short, long, lambda s, u: np.maximum(0, 1 - s / u), dark="nan"
+                ),
+                "The NaN of a dark frame stays in your means for good. np.isnan tells which scores to leave out.",
             ),
             Mistake(
                 lambda scores, short, long: _shares(scores, short, long, dark="zero"),
@@ -383,15 +410,15 @@ EXERCISES = [
                 "You look at all bins before you draw. What counts is the bins that were hit so far.",
             ),
             Mistake(
-                _sampling(lambda n, seen, least, bins: n >= kld_count(n, least, _ENOUGH)),
+                _sampling(lambda n, seen, least, bins: n >= _bound(n, least)),
                 "You never stop. Do you count draws for bins? Two draws in one bin occupy one bin.",
             ),
             Mistake(
-                _sampling(lambda n, seen, least, bins: n > kld_count(len(seen), least, _ENOUGH)),
+                _sampling(lambda n, seen, least, bins: n > _bound(len(seen), least)),
                 "One too many: after each draw, it is enough as soon as n *reaches* the bound.",
             ),
             Mistake(
-                _sampling(lambda n, seen, least, bins: n >= kld_count(len(seen), least, _ENOUGH), after=-1),
+                _sampling(lambda n, seen, least, bins: n >= _bound(len(seen), least), after=-1),
                 "One too few: you count draws from 0.",
             ),
             Mistake(_new_bins_only, "You never use `least`: fewer draws than that are never enough."),
@@ -403,14 +430,22 @@ EXERCISES = [
                 _never_runs_out,
                 "Where the draws run out before the bound is reached, the answer is how many there were.",
             ),
+            Mistake(
+                lambda bins, least: _bound(len(np.unique(bins)), least),
+                "You look at all bins before you draw, and never at how many draws there are. Go from draw to draw.",
+            ),
+            Mistake(
+                _sampling(lambda n, seen, least, bins: n >= _bound(len(seen) - 1, least)),
+                "You count one bin too few: the first one counts, too.",
+            ),
             Mistake(_needed_in_the_end, "You return the number of bins. Asked is the number of draws."),
             Mistake(
-                _sampling(lambda n, seen, least, bins: n >= kld_count(len(seen) + 1, least, _ENOUGH)),
+                _sampling(lambda n, seen, least, bins: n >= _bound(len(seen) + 1, least)),
                 "You count one bin too many.",
             ),
             Mistake(
-                _sampling(lambda n, seen, least, bins: n >= kld_count(max(seen) - min(seen) + 1, least, _ENOUGH)),
-                "You take the range of the numbers for how many bins there are. Most numbers in it were never hit.",
+                _sampling(lambda n, seen, least, bins: n >= _bound(max(seen) - min(seen) + 1, least)),
+                "You count too many bins: each counts once, however often it is hit, and their numbers have gaps.",
             ),
         ),
     ),
@@ -459,6 +494,18 @@ EXERCISES = [
             Mistake(
                 _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) < m and wrap_angle(a[2] - b[2]) < r),
                 "A turn to the right is negative, and so always below the limit: take its absolute value.",
+            ),
+            Mistake(
+                _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) < m and (a[2] - b[2]) % (2 * np.pi) < r),
+                "The remainder goes one way around only: a small turn to the right becomes nearly a full one.",
+            ),
+            Mistake(
+                lambda s, v, m, r: np.array(len(distinct_places(s, v, m, r))),
+                "You return how many places there are. Asked are their indices.",
+            ),
+            Mistake(
+                lambda s, v, m, r: np.isin(np.arange(len(v)), distinct_places(s, v, m, r)),
+                "You return True or False for every state. Asked are the indices of the places, best first.",
             ),
             Mistake(
                 lambda s, v, m, r: np.sort(distinct_places(s, v, m, r)),

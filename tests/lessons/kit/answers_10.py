@@ -101,6 +101,10 @@ def changes(part):
     return 1 + int((np.diff(part) != 0).sum())
 
 
+def by_changes(bins, least):
+    return draws(bins, lambda n, part: n >= kld_count(changes(part), least, ENOUGH))
+
+
 def near(a, b, metres, radians):
     turn = abs(a[2] - b[2]) % (2 * np.pi)
     return np.hypot(a[0] - b[0], a[1] - b[1]) < metres and min(turn, 2 * np.pi - turn) < radians
@@ -142,22 +146,21 @@ WRONG = [
     ("10.1", rejected, "must have shape"),
     ("10.1", column_by_column, "column by column"),
     ("10.1", lambda free, cell, u: by_argwhere(free, 1 / cell, u), "divide by the side"),
-    ("10.1", lambda free, cell, u: cell * np.argwhere(free)[(u[:, 0] * free.sum()).astype(int)], "corner"),
+    ("10.1", lambda free, cell, u: cell * np.argwhere(free)[(u[:, 0] * free.sum()).astype(int)], "Two things"),
     ("10.1", lambda free, cell, u: by_argwhere(free, cell, u)[0], "must have shape"),
-    ("10.2", plain_nan, "every later mean NaN"),
+    ("10.2", plain_nan, "stays in your means"),
     ("10.2", python_max_of_nan, "every later mean NaN"),
     ("10.2", with_clip_at_one, "what is missing from 1"),
     ("10.2", lambda scores, short, long: by_ratio(np.nan_to_num(scores), short, long), "score 0"),
     ("10.2", lambda scores, short, long: by_ratio(scores, short, long)[-1], "must have shape"),
-    ("10.2", lambda scores, short, long: by_ratio(scores, short, long) < 0.2, "the share itself"),
     ("10.2", lambda scores, short, long: 1 - means(scores, short) / means(scores, long), "cannot be negative"),
-    ("10.3", lambda bins, least: draws(bins, lambda n, part: n >= kld_count(changes(part), least, ENOUGH)), "returns"),
-    ("10.3", lambda bins, least: kld_count(len(set(bins.tolist())), least, ENOUGH), "before you draw"),
+    ("10.3", by_changes, "counts once"),
+    ("10.3", lambda bins, least: kld_count(len(set(bins.tolist())), least, ENOUGH), "Go from draw to draw"),
     ("10.3", lambda bins, least: draws(bins, lambda n, part: n >= kld_count(len(part), least, ENOUGH)), "never stop"),
     ("10.3", lambda bins, least: draws(bins, lambda n, part: n >= kld_count(len(np.unique(part)) - 1, least, ENOUGH)),
      "one bin too few"),
     ("10.3", lambda bins, least: by_unique(bins, 1), "`least`"),
-    ("10.4", kept_by(lambda a, b, m, r: flat(a, b) < m and abs(a[2] - b[2]) % np.pi < r), "half a turn"),
+    ("10.4", kept_by(lambda a, b, m, r: flat(a, b) < m and abs(a[2] - b[2]) % np.pi < r), "wrap"),
     ("10.4", kept_by(lambda a, b, m, r: flat(a, b) < m and (a[2] - b[2]) % (2 * np.pi) < r), "one way around"),
     ("10.4", kept_by(lambda a, b, m, r: flat(a, b) < m and abs(a[2] - b[2]) < r), "wrap"),
     ("10.4", kept_by(near, order=np.argsort), "upwards"),
