@@ -157,10 +157,12 @@ def _bound(bins: int, least: int) -> int:
 
 
 def _landings(rng: np.random.Generator) -> tuple:
-    """Bins of draws from few or many places; bin numbers are no indices; some run out of draws."""
-    places = rng.choice(10_000, int(rng.choice([1, 3, 8, 40])), replace=False) - 500
-    weights = rng.dirichlet(np.full(len(places), 0.7))
-    return rng.choice(places, 400, p=weights), int(rng.choice([20, 150]))
+    """Bins of 400 draws from few or many places, the last draws from elsewhere; bin numbers are no indices. From forty
+    places the draws run out."""
+    numbers = rng.choice(10_000, 50, replace=False) - 500
+    k = int(rng.choice([1, 3, 8, 40]))
+    early = rng.choice(numbers[:k], 350, p=rng.dirichlet(np.full(k, 0.7)))
+    return np.append(early, rng.choice(numbers[40:], 50)), int(rng.choice([20, 150]))
 
 
 def _sampling(enough: Callable, after: int = 0) -> Callable:
