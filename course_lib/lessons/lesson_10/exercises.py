@@ -440,7 +440,7 @@ EXERCISES = [
                 _sampling(lambda n, seen, least, bins: n >= _bound(len(seen) - 1, least)),
                 "You count one bin too few: the first one counts, too.",
             ),
-            Mistake(_needed_in_the_end, "You return the number of bins. Asked is the number of draws."),
+            Mistake(_needed_in_the_end, "Yours gives the number of bins. Asked is the number of draws."),
             Mistake(
                 _sampling(lambda n, seen, least, bins: n >= _bound(len(seen) + 1, least)),
                 "You count one bin too many.",
@@ -503,11 +503,11 @@ EXERCISES = [
             ),
             Mistake(
                 lambda s, v, m, r: np.array(len(distinct_places(s, v, m, r))),
-                "You return how many places there are. Asked are their indices.",
+                "Yours gives how many places there are. Asked are their indices.",
             ),
             Mistake(
                 lambda s, v, m, r: np.isin(np.arange(len(v)), distinct_places(s, v, m, r)),
-                "You return True or False for every state. Asked are the indices of the places, best first.",
+                "Yours gives True or False for every state. Asked are the indices of the places, best first.",
             ),
             Mistake(
                 lambda s, v, m, r: np.sort(distinct_places(s, v, m, r)),
@@ -515,7 +515,7 @@ EXERCISES = [
             ),
             Mistake(
                 lambda s, v, m, r: s[distinct_places(s, v, m, r)],
-                "You return the states themselves. Asked are their indices.",
+                "Yours gives the states themselves. Asked are their indices.",
             ),
             Mistake(
                 lambda s, v, m, r: distinct_places(s, v, m, np.deg2rad(r)),
