@@ -35,11 +35,16 @@ class FreeSpace:
 
     def contains(self, positions: np.ndarray) -> np.ndarray:
         """Which of positions `(N, 3)` are free: clear of surfaces, and enclosed by them unless the map is small."""
-        origins = np.repeat(positions - self._map.origin, _DIRECTIONS, axis=0)
-        distances = self._caster.cast(origins, np.tile(self._directions, (len(positions), 1)))[0]
-        distances = distances.reshape(len(positions), _DIRECTIONS)
+        distances = self.distances(positions)
         free = distances.min(axis=1) > CLEARANCE
         return free if self.small else free & (np.isfinite(distances).mean(axis=1) >= ENCLOSED)
+
+    def distances(self, positions: np.ndarray) -> np.ndarray:
+        """How far it is from positions `(N, 3)` to the map in each of 32 directions: `(N, 32)` metres, `inf` where
+        nothing is hit."""
+        origins = np.repeat(positions - self._map.origin, _DIRECTIONS, axis=0)
+        distances = self._caster.cast(origins, np.tile(self._directions, (len(positions), 1)))[0]
+        return distances.reshape(len(positions), _DIRECTIONS)
 
     def draw(self, n: int, rng: np.random.Generator) -> np.ndarray:
         """Positions `(n, 3)` drawn evenly from the free space. Raises `FreeSpaceError` where there is hardly any."""

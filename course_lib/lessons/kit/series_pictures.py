@@ -28,6 +28,7 @@ CHOSEN = {
     "07": "07-idea-comb",
     "08": "08-figure-5",
     "09": "09-same-budget-picture",
+    "10": "10-narrowing-scores-picture",
     "11": "11-idea-picture",
     "12": "12-idea-picture",
     "13": "13-idea-picture",
