@@ -20,7 +20,6 @@ from course_lib.paths import REPOSITORY, notebook_paths
 
 FOLDER = REPOSITORY / "notebooks"
 README = (FOLDER / "README.md").read_text(encoding="utf-8")
-BEYOND_THE_PAPERS = {"09", "10", "18", "19"}
 
 
 def minutes_of(number: str) -> int:
@@ -36,8 +35,6 @@ def row_of(path) -> str:
 @pytest.mark.parametrize("path", notebook_paths(), ids=lambda path: path.name[:2])
 def test_every_lesson_has_a_row_with_its_time_and_its_picture(path):
     number, row = path.name[:2], row_of(path)
-    if number in BEYOND_THE_PAPERS and not row:
-        pytest.skip("a lesson beyond the papers, whose row comes with it")
     assert row.startswith(f"| [{number} · ")
     assert f"({minutes_of(number)} min)" in row
     alt, source = re.search(r"!\[([^\]]+)\]\(([^)]+)\)", row).groups()
