@@ -22,6 +22,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
     "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
     "demo rooms": ("demo_rooms", "run paper 2's experiment in generated rooms that nobody shaped, with intervals"),
+    "demo walk": ("demo_walk", "carry a depth camera through generated rooms: errors in six degrees of freedom"),
     "demo lost": ("demo_lost", "kidnap the camera, start it anywhere, and count how often it finds itself"),
     "demo finale": (
         "demo_finale",

@@ -48,6 +48,17 @@ def parse_seeds(text: str) -> list[int]:
     return list(dict.fromkeys(seeds))
 
 
+def parse_numbers(option: str, text: str) -> list[int]:
+    """Whole numbers, at least 1, with commas. Raises `ValueError` for anything else."""
+    try:
+        numbers = [int(part) for part in text.split(",")]
+    except ValueError:
+        numbers = [0]
+    if min(numbers) < 1:
+        raise ValueError(f"{option} must be whole numbers, at least 1, with commas, such as 1,2,4,8; got {text!r}")
+    return numbers
+
+
 def require_output_folder(folder: Path) -> None:
     """Raises `ValueError` unless `folder` is a folder that can be written, or one can be made there."""
     if folder.exists() and not folder.is_dir():

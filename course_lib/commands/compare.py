@@ -12,7 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from course_lib.commands.arguments import parse_seeds, require_output_folder
+from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,15 +56,12 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments import sweep
     from course_lib.experiments.results import write_results
-    from course_lib.experiments.six_degrees import ABLATIONS, METHODS, pooled, thinned_points, thinned_run
+    from course_lib.experiments.six_degrees import pooled, require_methods, thinned_points, thinned_run
     from course_lib.plots.covariance_figure import covariance_figure
 
     seeds = parse_seeds(arguments.seeds)
-    everies = _numbers("--every", arguments.every)
-    methods = [*METHODS, *ABLATIONS] if arguments.methods == "all" else arguments.methods.split(",")
-    if not set(methods) <= {*METHODS, *ABLATIONS}:
-        known = ", ".join([*METHODS, *ABLATIONS])
-        raise ValueError(f"--methods must name {known}, with commas, or be all; got {arguments.methods!r}")
+    everies = parse_numbers("--every", arguments.every)
+    methods = require_methods(arguments.methods)
     require_output_folder(arguments.out)
     SceneMap.load(arguments.map)
     recording = read_sequence(arguments.sequence)
@@ -114,14 +111,3 @@ def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, di
             told = name if everies == [1] else f"{name}, every {every}"
             runs[told] = run | {"status": ["tracked"] * n, "renders": [0] * n, "score": [float("nan")] * n}
     return runs
-
-
-def _numbers(option: str, text: str) -> list[int]:
-    """Whole numbers, at least 1, with commas. Raises `ValueError` for anything else."""
-    try:
-        numbers = [int(part) for part in text.split(",")]
-    except ValueError:
-        numbers = [0]
-    if min(numbers) < 1:
-        raise ValueError(f"{option} must be whole numbers, at least 1, with commas, such as 1,2,4,8; got {text!r}")
-    return numbers

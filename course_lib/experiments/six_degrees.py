@@ -51,6 +51,15 @@ WRONG_POSITION, WRONG_ROTATION_DEG = 0.20, 20.0  # beyond either a pose is wrong
 HAND_HARDSHIPS = tuple(h for h in HARDSHIPS if h != "pushed by hand")
 
 
+def require_methods(text: str) -> list[str]:
+    """The methods that "annealed,paper" names; "all": every one. Raises `ValueError` for one that does not exist."""
+    known = [*METHODS, *ABLATIONS]
+    methods = known if text == "all" else text.split(",")
+    if not set(methods) <= set(known):
+        raise ValueError(f"--methods must name {', '.join(known)}, with commas, or be all; got {text!r}")
+    return methods
+
+
 def run_frames(
     method: str, scene_map: SceneMap, sequence: DepthSequence, seed: int, progress: Callable = iter
 ) -> dict[str, list]:

@@ -11,13 +11,10 @@ from course_lib.lessons.lesson_10.figures import (
     told_figure,
     trade_off_figure,
 )
-from course_lib.lessons.lesson_10.hotel import ALIKE, CAMERA, hotel_map
+from course_lib.lessons.lesson_10.hotel import CAMERA, hotel_map
 from course_lib.lessons.lesson_10.narrowing import (
     ALPHA,
     BETA,
-    BIN,
-    LEAST,
-    MOST,
     RUNS,
     SIGMA,
     coarse,
@@ -28,7 +25,6 @@ from course_lib.lessons.lesson_10.narrowing import (
     inside_furniture,
     leaving_101,
     narrow,
-    one_round,
     shares,
     start_anywhere,
 )
@@ -38,24 +34,17 @@ from course_lib.lessons.lesson_10.trials import (
     KIDNAPPINGS,
     carried_away,
     carried_next_door,
-    equals,
     follow,
     into_102,
     kidnap,
-    running_mean,
     search_run,
-    traces,
 )
 
 __all__ = [
-    "ALIKE",
     "ALPHA",
     "BETA",
-    "BIN",
     "CAMERA",
     "KIDNAPPINGS",
-    "LEAST",
-    "MOST",
     "PANELS",
     "RUNS",
     "SIGMA",
@@ -69,7 +58,6 @@ __all__ = [
     "coarse_renderer",
     "distance_to_either",
     "distances_in_32_directions",
-    "equals",
     "evidence_figure",
     "first_scores_figure",
     "follow",
@@ -83,13 +71,10 @@ __all__ = [
     "kld_figure",
     "leaving_101",
     "narrow",
-    "one_round",
-    "running_mean",
     "search_run",
     "shares",
     "start_anywhere",
     "stored_table",
     "told_figure",
-    "traces",
     "trade_off_figure",
 ]

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from course_lib.geometry import pose_matrix, rotation_angle
+from course_lib.simulation.smooth_signal import smooth_signal
 
 FRAME_RATE = 10.0  # frames per second; chosen, within the SR4000's rates
 
@@ -98,12 +99,12 @@ def wagon_run(
     # Arc length along the path, so that steps are steps along the floor.
     x = np.linspace(model.start, model.start + length, 8000)
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(path(x))))])
-    speed = 1 + np.clip(_smooth(model.frames, 25, rng), -2, 2) * model.step_spread
+    speed = 1 + np.clip(smooth_signal(model.frames, 25, rng), -2, 2) * model.step_spread
     speed = speed if pushing is None else speed * pushing.speed
     travelled = np.cumsum(model.mean_step * speed) - model.mean_step * speed[0]
     at = np.interp(travelled, arc, x)
     along = np.arctan(path(at, 1))
-    heading = along + np.deg2rad(model.heading_wobble_deg) * _smooth(model.frames, 6, rng)
+    heading = along + np.deg2rad(model.heading_wobble_deg) * smooth_signal(model.frames, 6, rng)
     place = np.column_stack([at, path(at)])
     if pushing is not None:
         heading += pushing.sway
@@ -118,7 +119,7 @@ def wagon_run(
 def draw_pushing(model: PushModel, frames: int, rng: np.random.Generator) -> Pushing:
     """How the wagon is pushed over so many frames: speed that varies and stops, sway and wobble while it moves."""
     times = np.arange(frames) / FRAME_RATE
-    slow = 1 + model.speed_spread * _smooth(frames, model.speed_seconds * FRAME_RATE, rng)
+    slow = 1 + model.speed_spread * smooth_signal(frames, model.speed_seconds * FRAME_RATE, rng)
     slow = np.clip(slow / slow.mean(), *model.least_and_most)
     step = 2 * np.pi * (model.steps_per_second * times + rng.random())
     moving = np.ones(frames)
@@ -162,7 +163,7 @@ def _draw_hand_run(
     times = np.arange(model.frames) / FRAME_RATE
     length = model.mean_step * model.frames + 2.0
     path = _clear_path(model.start, length, model.wander, 2.3, 0.40, clutter_boxes, rng)
-    x = model.start + model.mean_step * np.arange(model.frames) + 0.05 * _smooth(model.frames, 12, rng)
+    x = model.start + model.mean_step * np.arange(model.frames) + 0.05 * smooth_signal(model.frames, 12, rng)
     knots = np.arange(0, times[-1] + 2 * model.knot_seconds, model.knot_seconds)
 
     def wave(low: float, high: float) -> np.ndarray:
@@ -220,11 +221,3 @@ def _clear_path(
     clamped = np.clip(y, low + 0.02, high - 0.02)
     padded = np.concatenate([np.full(20, clamped[0]), clamped, np.full(20, clamped[-1])])
     return CubicSpline(x, np.convolve(padded, window, mode="valid"))
-
-
-def _smooth(n: int, width: float, rng: np.random.Generator) -> np.ndarray:
-    """Smooth random signal `(n,)` with zero mean and standard deviation one; `width` in frames."""
-    margin = int(4 * width)
-    kernel = np.exp(-0.5 * (np.arange(-margin, margin + 1) / width) ** 2)
-    signal = np.convolve(rng.normal(size=n + 2 * margin), kernel, mode="valid")
-    return signal / np.sqrt(np.sum(kernel**2))

@@ -1,0 +1,115 @@
+"""A depth camera carried by hand through a furnished room, and the room's laser-scanned mesh map.
+
+A person walks from place to place where the floor is free and looks about: all six degrees of freedom move. The room is
+small and its walls are bare, so that a camera that sees 44 degrees of it often sees nothing but a wall: harder than the
+corridor, and nobody shaped it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.sequence import write_sequence
+from course_lib.geometry import optical_pose, wrap_angle
+from course_lib.simulation.corridor.mesh_files import write_ply
+from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, depth_caster, surveyed_mesh
+from course_lib.simulation.room.footprints import clear_of, footprint, free_places
+from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
+from course_lib.simulation.room.scene import Room
+from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
+from course_lib.simulation.smooth_signal import smooth_signal, smoothed
+
+WALK, WALK_CAMERA = 4, 5  # streams of a seed, beside those of depth_world
+
+
+@dataclass(frozen=True)
+class WalkModel:
+    """How the camera is carried through a room."""
+
+    frames: int = 120  # number of frames; chosen
+    frames_per_second: float = 10.0  # frames per second; chosen, within the SR4000's rates
+    step: float = 0.08  # m between frames on a straight stretch; chosen: a slow walk
+    clearance: float = 0.25  # m from the way to furniture; chosen
+    shortest_stretch: float = 0.7  # m from one place to the next; chosen
+    rounding: float = 3.0  # frames over which corners of the way are rounded; chosen
+    turning: float = 6.0  # frames over which the way's direction is followed; chosen
+    height: float = 1.35  # m, camera above the floor; chosen: held before the chest
+    height_sway: float = 0.06  # m, one sigma; chosen
+    pitch_deg: float = 8.0  # degrees, mean pitch: it looks down a little; chosen
+    tilt_sway_deg: float = 6.0  # degrees, one sigma, of roll and pitch; chosen
+    look_deg: float = 20.0  # degrees, one sigma, of the view's turn from the way forward; chosen
+    sway_frames: float = 8.0  # frames over which the hand sways and the view turns; chosen
+
+
+@dataclass(frozen=True)
+class WalkModels:
+    """All parameters of a recorded walk."""
+
+    recording: RecordingModels = field(default_factory=RecordingModels)
+    mesh: DepthSurveyModel = field(default_factory=DepthSurveyModel)
+    camera: TimeOfFlightModel = field(default_factory=TimeOfFlightModel)
+    walk: WalkModel = field(default_factory=WalkModel)
+
+
+def record_walk(folder: Path, seed: int, models: WalkModels | None = None) -> None:
+    """Writes a seed's recording and its mesh map, map.ply, to a new `folder`. Same seed, same bytes.
+
+    Raises `ValueError` for a folder that holds a recording, `NoFreePlace` for a room in which nobody can walk.
+    """
+    models = models or WalkModels()
+    room, _ = surveyed_room(seed, models.recording)
+    vertices, faces = surveyed_mesh(room, models.mesh, np.random.default_rng([STREAM, seed, MAP]))
+    states = walk_states(room, models.walk, np.random.default_rng([STREAM, seed, WALK]))
+    pattern_rng, noise_rng = np.random.default_rng([STREAM, seed, WALK_CAMERA]).spawn(2)
+    sensor = TimeOfFlightCamera(DepthCamera.sr4000(), models.camera, pattern_rng)
+    caster = depth_caster(room)
+    depths = [sensor.capture(caster, state, noise_rng).depth for state in states]
+    times = np.arange(len(states)) / models.walk.frames_per_second
+    write_sequence(
+        folder, sensor.camera.matrix, list(range(len(states))), depths, optical_pose(states), times=times, up="z"
+    )
+    write_ply(folder / "map.ply", vertices, faces, "generated room, simulated laser survey; CC BY 4.0")
+
+
+def walk_states(room: Room, model: WalkModel, rng: np.random.Generator) -> np.ndarray:
+    """True states `(frames, 6)` of the camera. Raises `NoFreePlace` for a room in which nobody can walk."""
+    way = smoothed(_way(room, model, rng), model.rounding)
+    ahead = np.gradient(way, axis=0)
+    # The direction as a vector: at a turn on the spot an angle would jump.
+    ahead = smoothed(ahead / np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9), model.turning)
+    n = model.frames
+    heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
+    heading = smoothed(heading, model.turning) + np.deg2rad(model.look_deg) * smooth_signal(n, model.sway_frames, rng)
+    roll, pitch = (np.deg2rad(model.tilt_sway_deg) * smooth_signal(n, model.sway_frames, rng) for _ in range(2))
+    z = model.height + model.height_sway * smooth_signal(n, model.sway_frames, rng)
+    return np.column_stack([way, z, roll, np.deg2rad(model.pitch_deg) + pitch, wrap_angle(heading)])
+
+
+def _way(room: Room, model: WalkModel, rng: np.random.Generator) -> np.ndarray:
+    """Places `(frames, 2)` on straight stretches between free places, each clear of the furniture."""
+    footprints = [footprint(item) for item in room.objects]
+    here = free_places(room, 1, rng)[0]
+    stretches, count = [here[None]], 1
+    while count < model.frames:
+        there = next(
+            (p for p in free_places(room, 200, rng) if _can_go(here, p, footprints, model)),
+            None,
+        )
+        if there is None:  # a dead end: anywhere else will do, a walk begins anew there
+            here = free_places(room, 1, rng)[0]
+            stretches, count = [here[None]], 1
+            continue
+        steps = int(np.ceil(np.linalg.norm(there - here) / model.step))
+        stretches.append(here + (there - here) * (np.arange(1, steps + 1) / steps)[:, None])
+        here, count = there, count + steps
+    return np.concatenate(stretches)[: model.frames]
+
+
+def _can_go(here: np.ndarray, there: np.ndarray, footprints: list[np.ndarray], model: WalkModel) -> bool:
+    between = here + (there - here) * np.linspace(0, 1, 50)[:, None]
+    far = np.linalg.norm(there - here) >= model.shortest_stretch
+    return bool(far and clear_of(footprints, between, model.clearance).all())
