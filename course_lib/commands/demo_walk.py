@@ -1,7 +1,7 @@
 """A depth camera carried by hand through generated rooms: errors in six degrees of freedom, and being lost said.
 
-Each seed makes a room, its laser-scanned map and a walk. Every `--every`-th frame, from every offset, is as if the camera
-had been moved so much faster. A seed takes a minute or two; what is finished is kept under --out.
+Each seed makes a room, its laser-scanned map and a walk. Every `--every`-th frame, from every offset, is as if the
+camera had been moved so much faster. A seed takes a minute or two; what is finished is kept under --out.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A camera carried by hand through generated rooms, in six degrees of freedom: each seed a room and a walk of its own."""
+"""A camera carried by hand through generated rooms, in six degrees of freedom: each seed has a room and a walk."""
 
 from __future__ import annotations
 

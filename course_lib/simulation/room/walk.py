@@ -17,12 +17,13 @@ from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.simulation.corridor.mesh_files import write_ply
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, depth_caster, surveyed_mesh
-from course_lib.simulation.room.footprints import clear_of, footprint, free_places
+from course_lib.simulation.room.footprints import NoFreePlace, clear_of, footprint, free_places
 from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
 from course_lib.simulation.room.scene import Room
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 from course_lib.simulation.smooth_signal import smooth_signal, smoothed
 
+MOST_BEGINNINGS = 100
 WALK, WALK_CAMERA = 4, 5  # streams of a seed, beside those of depth_world
 
 
@@ -92,21 +93,22 @@ def walk_states(room: Room, model: WalkModel, rng: np.random.Generator) -> np.nd
 def _way(room: Room, model: WalkModel, rng: np.random.Generator) -> np.ndarray:
     """Places `(frames, 2)` on straight stretches between free places, each clear of the furniture."""
     footprints = [footprint(item) for item in room.objects]
-    here = free_places(room, 1, rng)[0]
-    stretches, count = [here[None]], 1
-    while count < model.frames:
-        there = next(
-            (p for p in free_places(room, 200, rng) if _can_go(here, p, footprints, model)),
-            None,
-        )
-        if there is None:  # a dead end: anywhere else will do, a walk begins anew there
-            here = free_places(room, 1, rng)[0]
-            stretches, count = [here[None]], 1
-            continue
-        steps = int(np.ceil(np.linalg.norm(there - here) / model.step))
-        stretches.append(here + (there - here) * (np.arange(1, steps + 1) / steps)[:, None])
-        here, count = there, count + steps
-    return np.concatenate(stretches)[: model.frames]
+    for _ in range(MOST_BEGINNINGS):
+        here = free_places(room, 1, rng)[0]
+        stretches, count = [here[None]], 1
+        while count < model.frames:
+            there = next((p for p in free_places(room, 200, rng) if _can_go(here, p, footprints, model)), None)
+            if there is None:
+                break  # a dead end: the walk begins anew elsewhere
+            steps = int(np.ceil(np.linalg.norm(there - here) / model.step))
+            stretches.append(here + (there - here) * (np.arange(1, steps + 1) / steps)[:, None])
+            here, count = there, count + steps
+        else:
+            return np.concatenate(stretches)[: model.frames]
+    raise NoFreePlace(
+        f"from none of {MOST_BEGINNINGS} places a walk of {model.frames} frames leads on, {model.clearance} m clear of the "
+        "furniture; ask for less clearance or shorter stretches"
+    )
 
 
 def _can_go(here: np.ndarray, there: np.ndarray, footprints: list[np.ndarray], model: WalkModel) -> bool:
