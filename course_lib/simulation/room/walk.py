@@ -18,7 +18,7 @@ from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.simulation.corridor.mesh_files import write_ply
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, depth_caster, surveyed_mesh
 from course_lib.simulation.room.footprints import NoFreePlace, clear_of, footprint, free_places
-from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
+from course_lib.simulation.room.look_alike_room import LookAlikeLimits, make_look_alike_room
 from course_lib.simulation.room.scene import Room
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 from course_lib.simulation.smooth_signal import smooth_signal, smoothed
@@ -50,7 +50,7 @@ class WalkModel:
 class WalkModels:
     """All parameters of a recorded walk."""
 
-    recording: RecordingModels = field(default_factory=RecordingModels)
+    limits: LookAlikeLimits = field(default_factory=LookAlikeLimits)
     mesh: DepthSurveyModel = field(default_factory=DepthSurveyModel)
     camera: TimeOfFlightModel = field(default_factory=TimeOfFlightModel)
     walk: WalkModel = field(default_factory=WalkModel)
@@ -62,7 +62,7 @@ def record_walk(folder: Path, seed: int, models: WalkModels | None = None) -> No
     Raises `ValueError` for a folder that holds a recording, `NoFreePlace` for a room in which nobody can walk.
     """
     models = models or WalkModels()
-    room, _ = surveyed_room(seed, models.recording)
+    room = make_look_alike_room(seed, limits=models.limits)
     vertices, faces = surveyed_mesh(room, models.mesh, np.random.default_rng([STREAM, seed, MAP]))
     states = walk_states(room, models.walk, np.random.default_rng([STREAM, seed, WALK]))
     pattern_rng, noise_rng = np.random.default_rng([STREAM, seed, WALK_CAMERA]).spawn(2)
@@ -106,8 +106,8 @@ def _way(room: Room, model: WalkModel, rng: np.random.Generator) -> np.ndarray:
         else:
             return np.concatenate(stretches)[: model.frames]
     raise NoFreePlace(
-        f"from none of {MOST_BEGINNINGS} places a walk of {model.frames} frames leads on, {model.clearance} m clear of the "
-        "furniture; ask for less clearance or shorter stretches"
+        f"from none of {MOST_BEGINNINGS} places a walk of {model.frames} frames leads on, {model.clearance} m clear of "
+        "the furniture; ask for less clearance or shorter stretches"
     )
 
 

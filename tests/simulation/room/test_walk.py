@@ -60,7 +60,9 @@ def test_the_same_seed_walks_the_same_way_and_another_does_not():
 
 
 def test_a_recording_is_what_a_user_would_have_and_its_seed_decides_every_byte(tmp_path):
-    coarse = DepthSurveyModel(scanner=ScannerModel(step_deg=1.5), fusion=FusionModel(triangles=4000))
+    coarse = DepthSurveyModel(
+        scanner=ScannerModel(step_deg=1.5), fusion=FusionModel(voxel=0.08, truncation=0.24, triangles=4000)
+    )
     models = WalkModels(mesh=coarse, walk=WalkModel(frames=3))
     for name in ("one", "two"):
         record_walk(tmp_path / name, SEEDS[0], models)
