@@ -21,7 +21,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 
 # The gates are those that served best on the kitchen and on recordings with larger motions.
-GATES = {"gates 0.15, 0.05 m": (0.15, 0.05), "gates 0.5, 0.15, 0.05 m": (0.5, 0.15, 0.05)}
+GATES = {"0.15, 0.05 m": (0.15, 0.05), "0.5, 0.15, 0.05 m": (0.5, 0.15, 0.05)}
 MAP_POINTS = 300_000
 ITERATIONS = 30
 VOXEL = 0.03  # metres: one of the frame's points a voxel; all of them take three times as long (chosen)
@@ -74,7 +74,7 @@ def main() -> None:
         for name, gates in GATES.items():
             for velocity in (False, True):
                 runs = [follow(target, whole.thinned(every, offset), gates, velocity) for offset in range(every)]
-                told = f"ICP, {name}{', going on' if velocity else ''}"
+                told = f"ICP {name}{', going on' if velocity else ''}"
                 rows.setdefault(told, {})[every] = {
                     "position_m": np.concatenate([p for p, _ in runs]).tolist(),
                     "rotation_deg": np.concatenate([r for _, r in runs]).tolist(),

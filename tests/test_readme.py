@@ -88,7 +88,9 @@ def test_the_table_with_intervals_is_what_the_sweep_prints_of_its_stored_rows(tm
     assert (tmp_path / "corridor.jsonl").read_text() == stored, "nothing was run"
 
 
-@pytest.mark.parametrize("name", ["kitchen_six_degrees.json", "kitchen_ablation.json", "hand_1-5.json"])
+@pytest.mark.parametrize(
+    "name", ["kitchen_six_degrees.json", "kitchen_icp.json", "kitchen_ablation.json", "hand_1-5.json"]
+)
 def test_the_tables_in_six_degrees_are_what_the_commands_print_of_their_stored_numbers(name):
     stored = json.loads((CORRIDOR_RESULTS / name).read_text())
     printed = six_degrees_table(stored["rows"])
