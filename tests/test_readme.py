@@ -88,11 +88,16 @@ def test_the_table_with_intervals_is_what_the_sweep_prints_of_its_stored_rows(tm
     assert (tmp_path / "corridor.jsonl").read_text() == stored, "nothing was run"
 
 
-@pytest.mark.parametrize(
-    "name", ["kitchen_six_degrees.json", "kitchen_icp.json", "kitchen_ablation.json", "hand_1-5.json"]
-)
-def test_the_tables_in_six_degrees_are_what_the_commands_print_of_their_stored_numbers(name):
-    stored = json.loads((CORRIDOR_RESULTS / name).read_text())
+SIX_DEGREES = [
+    *(CORRIDOR_RESULTS / f"kitchen_{name}.json" for name in ("six_degrees", "icp", "ablation")),
+    CORRIDOR_RESULTS / "hand_1-5.json",
+    ROOM_RESULTS / "walk_10061-10066.json",
+]
+
+
+@pytest.mark.parametrize("path", SIX_DEGREES, ids=lambda path: path.stem)
+def test_the_tables_in_six_degrees_are_what_the_commands_print_of_their_stored_numbers(path):
+    stored = json.loads(path.read_text())
     printed = six_degrees_table(stored["rows"])
     assert "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in RESULTS
 
