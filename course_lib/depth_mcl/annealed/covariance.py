@@ -5,6 +5,10 @@ independent, their inverse would be the covariance: tenths of a millimetre. They
 camera's, and things that moved shift thousands of pixels at once. So the whole image counts as a number of independent
 pixels, which is calibrated where nothing is reported from. Directions that the image does not show (along a smooth
 wall) keep what the prediction knew, and grow from frame to frame.
+
+Not solved: before a bare wall the pose slides along it from frame to frame and this covariance does not grow as fast
+(RESULTS 1.3). Likely, not proven: the map's noise seems to show something along the wall, and is counted anew in every
+frame; and the prediction takes the slide for a motion.
 """
 
 from __future__ import annotations
