@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from course_lib.depth_mcl.annealed.localizer import LAYERS, STEPS
-from course_lib.depth_mcl.annealed.prediction import MotionPrediction
+from course_lib.depth_mcl.annealed.prediction import MotionPrediction, Rival
 from course_lib.depth_mcl.annealed.pyramid import pyramid
 from course_lib.depth_mcl.annealed.refinement import refine
 from course_lib.depth_mcl.evaluation import pose_errors
@@ -31,9 +31,9 @@ METHODS = ("annealed", "paper", "floor")
 class StandingStill(MotionPrediction):
     """A prediction that knows no motion: the cloud lies about the last pose, as wide as for a start."""
 
-    def found(self, pose: np.ndarray) -> None:
+    def found(self, pose: np.ndarray, seen: bool = True, rivals: Sequence[Rival] = ()) -> None:
         """The camera is at `pose`; how it came there is forgotten."""
-        super().found(pose)
+        super().found(pose, seen, rivals)
         self.motion, self._lengths = np.zeros(6), []
 
 

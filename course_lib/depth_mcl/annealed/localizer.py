@@ -11,6 +11,7 @@ A frame goes through the paper's steps several times, each time closer:
     anneal     weigh them on coarse images, as sharply as leaves enough of them (tempering.py); resample; less noise
     refine     the best that differ, by Gauss-Newton on finer and finer images (refinement.py), dropping the worst
     doubt      where the best agrees less with the map than frames did before: once more, with a wider cloud
+    fuse       along what the image does not show, believe the prediction (covariance.py); say whether it is known
 
 Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention: noise, means and deviations are taken in
 their tangent space, which knows no gimbal lock. Estimates are states, as `MonteCarloLocalizer` gives them.
@@ -24,8 +25,15 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.annealed.covariance import fused, in_world_and_body, pose_information
-from course_lib.depth_mcl.annealed.prediction import MotionPrediction, widened
+from course_lib.depth_mcl.annealed.certainty import Certainty, Status
+from course_lib.depth_mcl.annealed.covariance import (
+    fused,
+    in_world_and_body,
+    pose_information,
+    predicted_covariance,
+    with_rivals,
+)
+from course_lib.depth_mcl.annealed.prediction import GREATEST_SPREAD, MotionPrediction, Rival, widened
 from course_lib.depth_mcl.annealed.pyramid import Level, pyramid
 from course_lib.depth_mcl.annealed.refinement import gauss_newton_step
 from course_lib.depth_mcl.annealed.tempering import Tempered, temper
@@ -35,7 +43,7 @@ from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.particle_filter import resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.tracking import Agreement, agreement, judge_refined
+from course_lib.depth_mcl.tracking import Agreement, TrackStatus, agreement, judge_refined
 from course_lib.geometry import optical_pose, state_from_optical_pose
 
 
@@ -65,18 +73,15 @@ class Step(NamedTuple):
 LAYERS = (Layer(1.0, 1.0, 0.1), Layer(0.4, 0.35, 0.1))
 SECOND_LOOK = (Layer(0.45, 1.0, 0.1),)
 STEPS = (
-    Step(0, 0.25, 30), Step(0, 0.20, 20), Step(0, 0.15, 10), Step(0, 0.10, 6),
-    Step(1, 0.10, 5), Step(1, 0.07, 4), Step(1, 0.05, 3),
-    Step(2, 0.05, 3), Step(2, 0.03, 2), Step(2, 0.03, 1),
+    Step(0, 0.25, 30), Step(0, 0.20, 20), Step(0, 0.15, 9), Step(0, 0.10, 5),
+    Step(1, 0.10, 4), Step(1, 0.07, 3), Step(1, 0.05, 3),
+    Step(2, 0.05, 3), Step(2, 0.03, 3), Step(2, 0.03, 3),
 )  # fmt: skip
 APART = 0.2  # of the prediction's spread: particles nearer to each other are one hypothesis
 DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same between two refined poses
-PRIOR_SHARE = 0.002  # what one unit of the prediction's log density is worth in score: it decides between equals
-FALLEN = 0.85  # of the usual support: a frame that agrees less is doubted
-MEMORY = 0.1  # share of a new frame in the usual support
-
-
-Status = Literal["tracked", "doubtful", "lost", "no measurement"]
+RIVALS = 1  # places kept beside the best
+RIVAL_WITHIN = 0.06  # of raw score: what fits less is no rival
+RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
 
 
 class AnnealedEstimate(NamedTuple):
@@ -96,8 +101,8 @@ class AnnealedEstimate(NamedTuple):
     weights: np.ndarray
     """`(N,)` of these particles."""
     status: Status
-    """"lost" where the state cannot be right (`judge_refined`); "doubtful" where it agrees with the map clearly less
-    than frames did before, after a second look too."""
+    """"lost" where the state cannot be right, or is not known to 0.2 m and 20 degrees; "doubtful" where it agrees with
+    the map clearly less than frames did before, after a second look too (certainty.py)."""
     error_covariance: np.ndarray
     """`(6, 6)`, the same units and axes: of the error to expect where it is tracked."""
     agreement: Agreement
@@ -112,12 +117,11 @@ class _Found(NamedTuple):
     """What one look at a frame gave."""
 
     pose: np.ndarray
-    image: np.ndarray
-    """Of the map from there, on the finest level."""
     score: float
     agreement: Agreement
     particles: np.ndarray
     layers: tuple[Tempered, ...]
+    rivals: tuple[Rival, ...] = ()
 
 
 class AnnealedLocalizer:
@@ -156,7 +160,7 @@ class AnnealedLocalizer:
         self.motion = TANGENT_SPACE
         self._new_prediction = prediction
         self._prediction: MotionPrediction | None = None
-        self._usual_support: float | None = None
+        self._certainty = Certainty()
         self._covariance = np.zeros((6, 6))
         self._renders = 0
 
@@ -166,7 +170,7 @@ class AnnealedLocalizer:
         Raises `ValueError` for a state that is not finite or lies outside the map (by more than a metre).
         """
         self._prediction = self._new_prediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
-        self._usual_support = None
+        self._certainty = Certainty()
         self._covariance = np.zeros((6, 6))
 
     def step(self, depth: np.ndarray, increment: np.ndarray | None = None) -> AnnealedEstimate:
@@ -186,18 +190,42 @@ class AnnealedLocalizer:
         fine = self.levels[-1]
         if not valid_pixels(fine.measured).any():
             return self._not_measured(spread, increment)
-        found = self._look(self.layers, spread, increment)
-        if self.second_look and self._doubts(found):
-            again = self._look(self.second_look, widened(spread), increment)
-            found = max(found, again, key=lambda one: one.score)
-        status = self._judge(found)
-        if status != "tracked":
-            prediction.not_found(found.pose, spread)
-        else:
-            prediction.found(found.pose)
-        self._remember(found)
-        information = pose_information(fine.measured, found.image, fine.renderer.camera)
-        return self._estimate(found, status, information, spread)
+        found, spread = self._look_twice(spread, increment)
+        image_says = self._certainty.judge_image(found.agreement)
+        found = self._fuse(found, image_says, spread, increment)
+        status = self._certainty.judge(image_says, found.agreement, self._covariance, bool(found.rivals))
+        return self._estimate(found, status)
+
+    def _look_twice(self, spread: np.ndarray, increment: np.ndarray | None) -> tuple[_Found, np.ndarray]:
+        """What is found in a cloud as wide as the motion may have been long, and the last pose wrong; where that agrees
+        less than is usual, in a wider cloud. With the spread of the motion that was believed."""
+        not_known = np.sqrt(np.diag(self._covariance))
+        cloud = np.minimum(np.hypot(spread, not_known), np.repeat(GREATEST_SPREAD, 3))
+        found = self._look(self.layers, cloud, increment)
+        if self.second_look and self._certainty.doubts(found.agreement):
+            again = self._look(self.second_look, widened(cloud), increment)
+            if again.score > found.score:
+                return again, widened(cloud)
+        return found, spread
+
+    def _fuse(self, found: _Found, image_says: TrackStatus, spread: np.ndarray, increment: np.ndarray | None) -> _Found:
+        """The pose moved back to the prediction along what the image does not show; the covariance; what is learned of
+        the motion."""
+        prediction, coarse = self._prediction, self.levels[0]
+        before, predicted = prediction.origin(found.pose, spread, increment)
+        covariance = predicted_covariance(self._covariance, motion_between(before, predicted), spread)
+        information = pose_information(coarse.measured, self._draw(coarse, found.pose[None])[0], coarse.renderer.camera)
+        fused_covariance, gain = fused(covariance, information)
+        if image_says == "tracked":
+            pose = moved(predicted, gain @ motion_between(predicted, found.pose))
+            sees_all = np.linalg.matrix_rank(information, hermitian=True) == 6
+            prediction.found(pose, bool(sees_all), found.rivals)
+            self._covariance = with_rivals(fused_covariance, pose, found.rivals)
+            return found._replace(pose=pose)
+        prediction.not_found(found.pose, spread, found.rivals)
+        believed = judge_refined(found.agreement) == "tracked"
+        self._covariance = fused_covariance if believed else covariance
+        return found
 
     def _take(self, depth: np.ndarray) -> None:
         depth = np.asarray(depth)
@@ -213,7 +241,7 @@ class AnnealedLocalizer:
         """Particles through the layers, the best of them through the steps of refinement, the best of those."""
 
         def merit(scores: np.ndarray, poses: np.ndarray) -> np.ndarray:
-            return scores + PRIOR_SHARE * self._prediction.log_prior(poses, spread, increment)
+            return scores + self._prediction.preference(poses, spread, increment)
 
         drawn, scores, tempered = self._anneal(layers, spread, increment)
         all_poses, all_scores = np.concatenate(drawn), np.concatenate(scores)
@@ -227,9 +255,16 @@ class AnnealedLocalizer:
         fine = self.levels[-1]
         images = self._draw(fine, poses)
         scores = fine.score(images)
-        best = int(np.argmax(merit(scores, poses)))
+        merits = merit(scores, poses)
+        best, *others = distinct(poses, merits, 1 + RIVALS, RIVAL_APART)
+        rivals = (Rival(poses[other], float(merits[other] - merits[best])) for other in others)
         return _Found(
-            poses[best], images[best], float(scores[best]), agreement(fine.measured, images[best]), drawn[-1], tempered
+            poses[best],
+            float(scores[best]),
+            agreement(fine.measured, images[best]),
+            drawn[-1],
+            tempered,
+            tuple(rival for rival in rivals if rival.evidence >= -RIVAL_WITHIN),
         )
 
     def _anneal(
@@ -258,17 +293,6 @@ class AnnealedLocalizer:
         self._renders += len(poses)
         return level.renderer.render_poses(poses)
 
-    def _doubts(self, found: _Found) -> bool:
-        return self._usual_support is not None and found.agreement.support < FALLEN * self._usual_support
-
-    def _judge(self, found: _Found) -> Status:
-        status = judge_refined(found.agreement)
-        return "doubtful" if status == "tracked" and self._doubts(found) else status
-
-    def _remember(self, found: _Found) -> None:
-        support, usual = found.agreement.support, self._usual_support
-        self._usual_support = support if usual is None else (1 - MEMORY) * usual + MEMORY * support
-
     def _not_measured(self, spread: np.ndarray, increment: np.ndarray | None) -> AnnealedEstimate:
         """The prediction alone, when nothing was seen."""
         warnings.warn(
@@ -277,17 +301,18 @@ class AnnealedLocalizer:
             stacklevel=3,
         )
         poses = self._prediction.draw(self.n_particles, spread, self.rng, increment)
-        pose = moved(self._prediction.pose, np.zeros(6) if increment is None else increment)
+        before = self._prediction.pose
+        pose = moved(before, np.zeros(6) if increment is None else increment)
         self._prediction.not_found(pose, spread)
         nothing = Agreement(0, np.nan, np.nan, np.nan)
-        found = _Found(pose, np.empty(0), np.nan, nothing, poses, (temper(np.zeros(len(poses)), len(poses)),))
-        return self._estimate(found, "no measurement", np.zeros((6, 6)), spread)
+        self._covariance = predicted_covariance(self._covariance, motion_between(before, pose), spread)
+        found = _Found(pose, np.nan, nothing, poses, (temper(np.zeros(len(poses)), len(poses)),))
+        return self._estimate(found, "no measurement")
 
-    def _estimate(self, found: _Found, status: Status, information: np.ndarray, spread: np.ndarray) -> AnnealedEstimate:
+    def _estimate(self, found: _Found, status: Status) -> AnnealedEstimate:
         state, particles = state_from_optical_pose(found.pose), state_from_optical_pose(found.particles)
         w = found.layers[-1].weights
         deviations = self.motion.deviations(particles, state)
-        self._covariance = fused(self._covariance + np.diag(spread**2), information)
         return AnnealedEstimate(
             state,
             (w[:, None] * deviations).T @ deviations,

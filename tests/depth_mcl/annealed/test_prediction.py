@@ -4,14 +4,17 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.annealed.prediction import (
+    CARRIED,
     GREATEST_SPREAD,
     GROWTH,
     LEAST_SPREAD,
+    PRIOR_SHARE,
     SPREAD_OF_INCREMENT,
     SPREAD_OF_MOTION,
     START_SPREAD,
     WIDER,
     MotionPrediction,
+    Rival,
     widened,
 )
 from course_lib.depth_mcl.annealed.twists import motion_between, moved
@@ -85,19 +88,42 @@ def test_where_it_was_not_found_half_the_cloud_starts_from_either_place_and_grow
     along = motion_between(pose, prediction.draw(1000, np.full(6, 1e-3), rng))[:, 0]
     assert (along > 1.0).mean() == pytest.approx(0.5, abs=0.01)
     prediction.found(doubted)
-    assert prediction.doubted is None
+    assert not prediction.rivals
+
+
+def test_the_cloud_starts_from_the_rivals_too_and_a_motion_is_taken_from_the_nearest_place(rng):
+    prediction, pose = walked(3)
+    there, rival = moved(pose, STEP), moved(pose, np.array([3.0, 0, 0, 0, 0, 0]))
+    prediction.found(there, rivals=[Rival(rival, -0.01)])
+    along = motion_between(pose, prediction.draw(1000, np.full(6, 1e-3), rng))[:, 0]
+    assert (along > 1.5).mean() == pytest.approx(0.5, abs=0.01)
+    assert prediction.spread(10 * STEP)[0] == pytest.approx(10 * SPREAD_OF_INCREMENT * np.hypot(0.03, 0.1))
+    assert prediction.preference(np.array([rival]), np.full(6, 0.1)) == pytest.approx([-0.01 * CARRIED], abs=1e-9)
+    arrived = moved(rival, STEP)
+    before, predicted = prediction.origin(arrived, np.full(6, 0.1))
+    assert before == pytest.approx(rival)
+    assert predicted == pytest.approx(arrived, abs=1e-9)
+    prediction.found(arrived)
+    assert prediction.motion == pytest.approx(STEP, abs=1e-9)
+
+
+def test_how_far_it_moved_is_not_learned_where_an_image_leaves_a_direction_open():
+    prediction, pose = walked(3)
+    before = prediction.spread()
+    prediction.found(moved(pose, 4 * STEP), seen=False)
+    assert prediction.spread() == pytest.approx(before)
 
 
 def test_between_equals_the_prediction_decides(rng):
     prediction, pose = walked(3)
     spread = np.full(6, 0.1)
     on_the_way = moved(pose, STEP * np.array([[0.0], [0.5], [1.0]]))
-    assert prediction.log_prior(on_the_way, spread) == pytest.approx(np.zeros(3), abs=1e-9)
+    assert prediction.preference(on_the_way, spread) == pytest.approx(np.zeros(3), abs=1e-9)
     beyond = moved(moved(pose, STEP), np.array([0.0, 0.2, 0.0, 0.0, 0.0, 0.0]))
-    assert prediction.log_prior(beyond[None], spread) == pytest.approx([-2.0], rel=0.02)
-    assert prediction.log_prior(pose[None], spread, STEP)[0] < -0.5, "an odometer says how far it went"
+    assert prediction.preference(beyond[None], spread) == pytest.approx([-2.0 * PRIOR_SHARE], rel=0.02)
+    assert prediction.preference(pose[None], spread, STEP)[0] < -0.5 * PRIOR_SHARE, "an odometer says how far it went"
     prediction.not_found(beyond, spread)
-    assert prediction.log_prior(np.array([pose, beyond]), spread) == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert prediction.preference(np.array([pose, beyond]), spread) == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
 def test_a_second_look_is_wider_and_never_narrower_than_for_a_start():
