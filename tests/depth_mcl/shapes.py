@@ -17,6 +17,28 @@ def wall(distance=2.0, half=50.0, offset=(0.0, 0.0, 0.0)):
     return SceneMap(corners + offset, np.array([[0, 1, 2], [0, 2, 3]]))
 
 
+def rough_wall(rng, distance=0.9, half=3.0, edge=0.08, sigma=0.012):
+    """`wall` as a survey has it: vertices every `edge` metres, each off by `sigma` along x."""
+    ticks = np.arange(-half, half + edge, edge)
+    y, z = (axis.ravel() for axis in np.meshgrid(ticks, ticks))
+    n = len(ticks)
+    corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    faces = corner[:, None, None] + np.array([[0, 1, n + 1], [0, n + 1, n]])
+    return SceneMap(np.column_stack([distance + sigma * rng.standard_normal(n * n), y, z]), faces.reshape(-1, 3))
+
+
+def fence(distance=0.9, pitch=0.4):
+    """A wall with posts that look alike, one every `pitch` metres along y, and a sill."""
+    posts = [
+        trimesh.creation.box((0.1, 0.12, 6.0), trimesh.transformations.translation_matrix((distance, y, 0.0)))
+        for y in pitch * np.arange(-25, 26)
+    ]
+    sill = trimesh.creation.box((0.3, 40.0, 0.2), trimesh.transformations.translation_matrix((distance, 0.0, -0.3)))
+    behind = wall(distance + 0.05)
+    joined = trimesh.util.concatenate([trimesh.Trimesh(behind.vertices, behind.faces), *posts, sill])
+    return SceneMap(joined.vertices, joined.faces)
+
+
 def room(size=6.0, offset=(0.0, 0.0, 0.0)):
     """A closed cube of edge `size` around `offset`."""
     box = trimesh.creation.box((size, size, size))

@@ -17,43 +17,57 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from course_lib.depth_mcl.annealed.compiled_refinement import normal_equations
 from course_lib.depth_mcl.annealed.prediction import Rival
+from course_lib.depth_mcl.annealed.refinement import surface_normals
 from course_lib.depth_mcl.annealed.twists import motion_between
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.geometry import BODY_FROM_OPTICAL, rotation_exp
 
 # Chosen on development recordings: the kitchen, the shipped corridor, and walks through rooms (seeds from 10,041 on).
-INDEPENDENT_PIXELS = 20.0
+INDEPENDENT_PIXELS = 30.0
 SCALE = 0.05  # metres: the robust scale at which residuals are counted (the refinement's own at its end)
 LEAST_SIGMA = 0.005  # metres: no map and no camera are better in everything at once
-OPEN = 0.3  # metres and radians: a direction in which an image is less sure than this is one that it does not show
+SIGNIFICANT = 2.0  # what is shown along a direction, in units of what roughness may show there by chance
+PREDICTED = 0.4  # standard deviation of a prediction's error, as a share of the spread with which the cloud is drawn
 RIVAL_SCALE = 0.02  # of raw score: a rival that fits worse by as much is e times less likely
 
 
 def pose_information(measured: np.ndarray, image: np.ndarray, camera: DepthCamera) -> np.ndarray:
     """Inverse covariance `(6, 6)` of a pose, along and about the camera's axes, from its image alone.
 
-    I = n (sum w J J') / (sum w s^2),    s^2 = sum w r^2 / sum w
+    I = n (sum w J K' + K J') / (2 sum w s^2),    s^2 = sum w r^2 / sum w
 
-    measured, image: `(H, W)` depth, of the camera and of the map from the pose; small images serve best, for the
-    normals of neighbouring pixels in a fine one are mostly the map's noise. n is `INDEPENDENT_PIXELS`. Zero along what
-    the image does not show to `OPEN`, and where no pixel of both has a surface.
+    J = (n, p x n) with the normals n of the map, K = (m, p x m) with those of the measured surface: what only one of
+    them shows, its roughness, is noise, and on the average adds nothing; J J' would take a rough map of a bare wall for
+    a view full of corners. Zero along a direction u in which it is less than `SIGNIFICANT` times what independent
+    normals would give by chance, sqrt(sum (w J.u K.u)^2).
+
+    measured, image: `(H, W)` depth, of the camera and of the map from the pose; small images serve best, since their
+    normals are less rough. n is `INDEPENDENT_PIXELS`. Zero where no pixel of both has a surface.
     """
-    system = normal_equations(measured, image[None], camera, SCALE)
-    if system.weights[0] == 0:
+    p = camera.points(measured)
+    (q,), (n,) = surface_normals(image[None].astype(np.float64), camera)
+    _, (m,) = surface_normals(np.asarray(measured, dtype=np.float64)[None], camera)
+    r = np.sum(n * (p - q), axis=-1)
+    used = np.isfinite(r) & np.isfinite(m).all(axis=-1)
+    if not used.any():
         return np.zeros((6, 6))
-    variance = max(system.squares[0] / system.weights[0], LEAST_SIGMA**2)
-    information = INDEPENDENT_PIXELS * system.matrices[0] / (system.weights[0] * variance)
-    known, directions = np.linalg.eigh(information)
-    return (directions * np.where(known < OPEN**-2, 0.0, known)) @ directions.T
+    p, n, m, r = p[used], n[used], m[used], r[used]
+    w = 1.0 / (1.0 + (r / SCALE) ** 2) ** 2
+    of_map, of_image = (np.concatenate([normal, np.cross(p, normal)], axis=1) for normal in (n, m))
+    shared = (of_map * w[:, None]).T @ of_image
+    shown, directions = np.linalg.eigh((shared + shared.T) / 2)
+    by_chance = np.sqrt(np.sum((w[:, None] * (of_map @ directions) * (of_image @ directions)) ** 2, axis=0))
+    shown = np.where(shown < SIGNIFICANT * by_chance, 0.0, shown)
+    variance = max(np.sum(w * r**2) / np.sum(w), LEAST_SIGMA**2)
+    return INDEPENDENT_PIXELS / (np.sum(w) * variance) * (directions * shown) @ directions.T
 
 
 def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, spread: np.ndarray) -> np.ndarray:
     """Covariance `(6, 6)` of the predicted pose, along and about its own axes.
 
     covariance: P `(6, 6)` of the pose before, about its axes. motion: `(6,)` predicted, in that pose's frame. spread:
-    `(6,)` standard deviations of the prediction, Q their squares.
+    `(6,)` of the cloud about the prediction, whose own errors, covariance Q, are `PREDICTED` as large.
 
     Carried along: T Exp(x) M = T M Exp(A x), with A x = (R' (v + w x t), R' w), so that a direction that was not seen
     stays where it is in the world while the camera turns. Then P + Q at their worst, since a wrong velocity is wrong
@@ -67,8 +81,9 @@ def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, spread: np.
     carry = np.zeros((6, 6))
     carry[:3, :3] = carry[3:, 3:] = turned_back
     carry[:3, 3:] = turned_back @ np.cross(np.eye(3), motion[:3]).T
-    before, noise = carry @ covariance @ carry.T, np.diag(spread**2)
-    ratio = np.sqrt(np.mean(np.diag(before) / spread**2))
+    variances = (PREDICTED * spread) ** 2
+    before, noise = carry @ covariance @ carry.T, np.diag(variances)
+    ratio = np.sqrt(np.mean(np.diag(before) / variances))
     return noise if ratio == 0 else (1 + 1 / ratio) * before + (1 + ratio) * noise
 
 

@@ -79,7 +79,6 @@ STEPS = (
 )  # fmt: skip
 APART = 0.2  # of the prediction's spread: particles nearer to each other are one hypothesis
 DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same between two refined poses
-RIVALS = 1  # places kept beside the best
 RIVAL_WITHIN = 0.06  # of raw score: what fits less is no rival
 RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
 
@@ -129,7 +128,8 @@ class AnnealedLocalizer:
 
     renderer: draws the map for the camera. n_particles: of a layer whose share is 1. seed: of the one generator that
     all draws come from. layers: of the first look at a frame; second_look: of the look after a doubted one (empty:
-    none); steps: of the refinement (empty: the best particle is the estimate). prediction: where the camera may be
+    none); steps: of the refinement (empty: the best particle is the estimate). rivals: how many other places are kept
+    beside the best. fuse: joins the prediction and what an image says of a pose. prediction: where the camera may be
     next, made from its first pose. alpha: of eq. (8), metres.
     Raises `ValueError` for a number of particles, a seed or an alpha that is none, or no layer.
     """
@@ -143,6 +143,8 @@ class AnnealedLocalizer:
         layers: tuple[Layer, ...] = LAYERS,
         second_look: tuple[Layer, ...] = SECOND_LOOK,
         steps: tuple[Step, ...] = STEPS,
+        rivals: int = 1,
+        fuse: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] = fused,
         prediction: Callable[[np.ndarray], MotionPrediction] = MotionPrediction,
         alpha: float = ALPHA,
     ) -> None:
@@ -156,6 +158,7 @@ class AnnealedLocalizer:
         self.n_particles = int(n_particles)
         self.levels = pyramid(renderer, alpha)
         self.layers, self.second_look, self.steps = tuple(layers), tuple(second_look), tuple(steps)
+        self.rivals, self.fuse = rivals, fuse
         self.rng = np.random.default_rng(int(seed))
         self.motion = TANGENT_SPACE
         self._new_prediction = prediction
@@ -215,16 +218,16 @@ class AnnealedLocalizer:
         before, predicted = prediction.origin(found.pose, spread, increment)
         covariance = predicted_covariance(self._covariance, motion_between(before, predicted), spread)
         information = pose_information(coarse.measured, self._draw(coarse, found.pose[None])[0], coarse.renderer.camera)
-        fused_covariance, gain = fused(covariance, information)
+        narrowed, gain = self.fuse(covariance, information)
         if image_says == "tracked":
             pose = moved(predicted, gain @ motion_between(predicted, found.pose))
             sees_all = np.linalg.matrix_rank(information, hermitian=True) == 6
             prediction.found(pose, bool(sees_all), found.rivals)
-            self._covariance = with_rivals(fused_covariance, pose, found.rivals)
+            self._covariance = with_rivals(narrowed, pose, found.rivals)
             return found._replace(pose=pose)
         prediction.not_found(found.pose, spread, found.rivals)
         believed = judge_refined(found.agreement) == "tracked"
-        self._covariance = fused_covariance if believed else covariance
+        self._covariance = narrowed if believed else covariance
         return found
 
     def _take(self, depth: np.ndarray) -> None:
@@ -256,7 +259,7 @@ class AnnealedLocalizer:
         images = self._draw(fine, poses)
         scores = fine.score(images)
         merits = merit(scores, poses)
-        best, *others = distinct(poses, merits, 1 + RIVALS, RIVAL_APART)
+        best, *others = distinct(poses, merits, 1 + self.rivals, RIVAL_APART)
         rivals = (Rival(poses[other], float(merits[other] - merits[best])) for other in others)
         return _Found(
             poses[best],

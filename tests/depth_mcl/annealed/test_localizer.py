@@ -11,7 +11,7 @@ from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix, state_from_optical_pose
-from tests.depth_mcl.shapes import SMALL, furnished_room, wall
+from tests.depth_mcl.shapes import SMALL, fence, furnished_room, rough_wall, wall
 
 START = np.array([-1.0, 0.3, -0.3, 0.05, 0.1, -0.4])
 
@@ -161,6 +161,32 @@ def test_along_a_bare_wall_the_covariance_grows_and_stays_small_across():
     sigma = np.sqrt([np.diag(e.error_covariance) for e in estimates])
     assert (sigma[:, 0] < 0.02).all(), "the wall's distance is seen"
     assert (np.diff(sigma[:, 1]) > 0).all(), "along it nothing is"
+
+
+def test_before_a_bare_wall_that_the_map_has_rough_it_soon_says_that_it_does_not_know_where(rng):
+    """Whatever the filter does there: a pose that has slid along the wall must not be called tracked."""
+    still = np.zeros((12, 6))
+    with DepthRenderer(wall(0.9, 5.0), SMALL) as renderer:
+        depth = images(renderer, still, rng)
+    with DepthRenderer(rough_wall(rng), SMALL) as renderer:
+        estimates = run(AnnealedLocalizer(renderer, seed=1), depth, np.zeros(6))
+    errors = off(estimates, still)
+    tracked = np.array([e.status == "tracked" for e in estimates])
+    assert (errors[tracked, 0] < 0.2).all()
+    assert {e.status for e in estimates[-4:]} == {"lost"}
+
+
+def test_where_two_places_fit_alike_it_is_not_sure_of_either():
+    """Before a fence, a step of half its pitch: on to the next post, or back?"""
+    true = np.zeros((8, 6))
+    true[:, 1] = 0.02 * np.arange(8)
+    with DepthRenderer(fence(), SMALL) as renderer:
+        depth = images(renderer, true)
+        sure, unsure = (run(AnnealedLocalizer(renderer, seed=1, rivals=n), depth, true[0]) for n in (0, 1))
+    along = [[np.sqrt(e.error_covariance[1, 1]) for e in estimates] for estimates in (sure, unsure)]
+    assert max(along[0]) < 0.05, "without rivals it takes the nearest post for the only one"
+    assert min(along[1]) > 0.2
+    assert {e.status for e in unsure} == {"lost"}
 
 
 def test_the_same_seed_gives_the_same_bytes(renderer):
