@@ -24,7 +24,7 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.geometry import BODY_FROM_OPTICAL, rotation_exp
 
 # Chosen on development recordings: the kitchen, the shipped corridor, and walks through rooms (seeds from 10,041 on).
-INDEPENDENT_PIXELS = 30.0
+INDEPENDENT_PIXELS = 20.0
 SCALE = 0.05  # metres: the robust scale at which residuals are counted (the refinement's own at its end)
 LEAST_SIGMA = 0.005  # metres: no map and no camera are better in everything at once
 SIGNIFICANT = 2.0  # what is shown along a direction, in units of what roughness may show there by chance
