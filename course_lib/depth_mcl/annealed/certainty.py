@@ -20,7 +20,8 @@ Status = Literal["tracked", "doubtful", "lost", "no measurement"]
 # Chosen on development recordings: the kitchen, the shipped corridor, and walks through rooms (seeds from 10,041 on).
 FALLEN = 0.85  # of the usual support: a frame that agrees less is doubted
 MEMORY = 0.1  # share of a new frame in the usual support
-KNOWN = np.array([0.2, np.deg2rad(20.0)])  # metres, radians: greatest standard deviations of a pose that is known
+# Metres, radians: greatest standard deviations of a pose that is known; a start set by hand is, to rounding.
+KNOWN = np.array([0.2, np.deg2rad(20.0)]) + 1e-9
 CONFIRMED = 3  # good frames that make up for any number of lost ones
 
 

@@ -84,7 +84,7 @@ def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, spread: np.
     variances = (PREDICTED * spread) ** 2
     before, noise = carry @ covariance @ carry.T, np.diag(variances)
     ratio = np.sqrt(np.mean(np.diag(before) / variances))
-    return noise if ratio == 0 else (1 + 1 / ratio) * before + (1 + ratio) * noise
+    return (1 + 1 / ratio) * before + (1 + ratio) * noise
 
 
 def fused(prior: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -164,7 +164,7 @@ class AnnealedLocalizer:
         self._new_prediction = prediction
         self._prediction: MotionPrediction | None = None
         self._certainty = Certainty()
-        self._covariance = np.zeros((6, 6))
+        self._covariance: np.ndarray | None = None
         self._renders = 0
 
     def initialize(self, state0: np.ndarray) -> None:
@@ -174,7 +174,7 @@ class AnnealedLocalizer:
         """
         self._prediction = self._new_prediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
         self._certainty = Certainty()
-        self._covariance = np.zeros((6, 6))
+        self._covariance = None
 
     def step(self, depth: np.ndarray, increment: np.ndarray | None = None) -> AnnealedEstimate:
         """Where the camera is, from a depth image `(H, W)` in metres, NaN = no measurement.
@@ -202,7 +202,7 @@ class AnnealedLocalizer:
     def _look_twice(self, spread: np.ndarray, increment: np.ndarray | None) -> tuple[_Found, np.ndarray]:
         """What is found in a cloud as wide as the motion may have been long, and the last pose wrong; where that agrees
         less than is usual, in a wider cloud. With the spread of the motion that was believed."""
-        not_known = np.sqrt(np.diag(self._covariance))
+        not_known = 0.0 if self._covariance is None else np.sqrt(np.diag(self._covariance))
         cloud = np.minimum(np.hypot(spread, not_known), np.repeat(GREATEST_SPREAD, 3))
         found = self._look(self.layers, cloud, increment)
         if self.second_look and self._certainty.doubts(found.agreement):
@@ -216,7 +216,7 @@ class AnnealedLocalizer:
         the motion."""
         prediction, coarse = self._prediction, self.levels[0]
         before, predicted = prediction.origin(found.pose, spread, increment)
-        covariance = predicted_covariance(self._covariance, motion_between(before, predicted), spread)
+        covariance = self._predicted_covariance(motion_between(before, predicted), spread)
         information = pose_information(coarse.measured, self._draw(coarse, found.pose[None])[0], coarse.renderer.camera)
         narrowed, gain = self.fuse(covariance, information)
         if image_says == "tracked":
@@ -239,6 +239,12 @@ class AnnealedLocalizer:
             )
         for level in self.levels:
             level.measure(depth)
+
+    def _predicted_covariance(self, motion: np.ndarray, spread: np.ndarray) -> np.ndarray:
+        """Of the pose after a motion `(6,)`; of the first image it is the start's, as wide as the cloud."""
+        if self._covariance is None:
+            return np.diag(spread**2)
+        return predicted_covariance(self._covariance, motion, spread)
 
     def _look(self, layers: tuple[Layer, ...], spread: np.ndarray, increment: np.ndarray | None) -> _Found:
         """Particles through the layers, the best of them through the steps of refinement, the best of those."""
@@ -308,7 +314,7 @@ class AnnealedLocalizer:
         pose = moved(before, np.zeros(6) if increment is None else increment)
         self._prediction.not_found(pose, spread)
         nothing = Agreement(0, np.nan, np.nan, np.nan)
-        self._covariance = predicted_covariance(self._covariance, motion_between(before, pose), spread)
+        self._covariance = self._predicted_covariance(motion_between(before, pose), spread)
         found = _Found(pose, np.nan, nothing, poses, (temper(np.zeros(len(poses)), len(poses)),))
         return self._estimate(found, "no measurement")
 

@@ -3,14 +3,13 @@
 from course_lib.lessons.lesson_19.figures import basin_figure, sensors_figure, stages_figure, starts_figure, wall_figure
 from course_lib.lessons.lesson_19.panel import PANELS, anywhere_panel
 from course_lib.lessons.lesson_19.stages import journey, plane_error, state_error
-from course_lib.lessons.lesson_19.trials import joined_error, misplaced, random_places, stored_result, turn_and_look
+from course_lib.lessons.lesson_19.trials import misplaced, random_places, stored_result, turn_and_look
 from course_lib.lessons.lesson_19.world import world
 
 __all__ = [
     "PANELS",
     "anywhere_panel",
     "basin_figure",
-    "joined_error",
     "journey",
     "misplaced",
     "plane_error",

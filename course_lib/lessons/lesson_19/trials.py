@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.finale import follow, is_known, start_state
-from course_lib.experiments.joined_answer import joined, start_covariance
+from course_lib.experiments.finale import follow, is_known
 from course_lib.lessons.lesson_19.stages import FILTER_SEED, Journey, is_reached, state_error
 from course_lib.lessons.lesson_19.world import world
 from course_lib.paths import data_path
@@ -48,13 +47,6 @@ def misplaced(
             last = follow(world().renderer, start, one.depths, FILTER_SEED)[-1]
             runs.append(Misplaced(metres, degrees, is_reached(state_error(last.state, one.states[-1])), last.status))
     return runs
-
-
-def joined_error(one: Journey) -> tuple[float, float]:
-    """Metres and degrees of both answers joined, at the first image of a place that has a semantic pose."""
-    start, first = start_state(one.found.pose), one.best[0]
-    found = joined(start, start_covariance(one.found.covariance), first.state, first.error_covariance)
-    return state_error(found[0], one.states[0])
 
 
 def stored_result(path: Path | None = None) -> dict:

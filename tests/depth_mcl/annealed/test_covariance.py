@@ -75,8 +75,8 @@ def test_an_error_is_carried_along_as_poses_carry_it(rng):
 
 def test_a_wrong_velocity_is_wrong_the_same_way_frame_after_frame():
     """Deviations add: after ten frames ten times the spread, not the root of ten times."""
-    spread, covariance = np.full(6, 0.01 / PREDICTED), np.zeros((6, 6))
-    for _ in range(10):
+    spread, covariance = np.full(6, 0.01 / PREDICTED), 0.01**2 * np.eye(6)
+    for _ in range(9):
         covariance = predicted_covariance(covariance, np.zeros(6), spread)
     assert np.sqrt(np.diag(covariance)) == pytest.approx(np.full(6, 0.1), rel=1e-6)
 

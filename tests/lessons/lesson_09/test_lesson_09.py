@@ -77,10 +77,10 @@ def bare() -> Slide:
 
 def test_in_a_bare_corridor_the_error_grows_by_every_step_and_sigma_is_wide_along_only(bare):
     assert np.diff(bare.along)[1:] == pytest.approx(-STEP, abs=0.03)
-    assert (bare.sigma_along > 30 * bare.sigma_across).all()
+    assert (bare.sigma_along > 5 * bare.sigma_across).all()
     assert bare.across.max() < 0.005
-    assert abs(bare.along[-1]) > 3 * bare.sigma_along[-1]
-    assert set(bare.statuses) == {"tracked"}
+    assert (np.abs(bare.along) < 3 * bare.sigma_along).all()
+    assert set(bare.statuses[-4:]) == {"lost"}
 
 
 def test_a_pillar_or_an_odometer_mends_it():

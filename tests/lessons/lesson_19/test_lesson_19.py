@@ -7,7 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from course_lib.experiments.finale import is_known, mean_score
+from course_lib.depth_mcl.tracking import judge_refined
+from course_lib.experiments.finale import is_known, mean_score, start_state
+from course_lib.experiments.joined_answer import joined, start_covariance
 from course_lib.lessons.kit.display import require_labels
 from course_lib.lessons.lesson_19 import panel as panels
 from course_lib.lessons.lesson_19 import stages
@@ -21,7 +23,7 @@ from course_lib.lessons.lesson_19.figures import (
     wall_figure,
 )
 from course_lib.lessons.lesson_19.stages import STAGES, is_reached, journey, plane_error, state_error
-from course_lib.lessons.lesson_19.trials import joined_error, misplaced, random_places, stored_result, turn_and_look
+from course_lib.lessons.lesson_19.trials import misplaced, random_places, stored_result, turn_and_look
 from course_lib.lessons.lesson_19.world import hidden, world
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 
@@ -82,15 +84,23 @@ def test_who_comes_back_to_a_place_finds_the_same_recording(here, place):
     assert not np.allclose(elsewhere[:, 2], states[:, 2], atol=1e-6)
 
 
+def joined_at_first(one):
+    """Start and filter joined, at the first image: state and covariance."""
+    first = one.best[0]
+    return joined(
+        start_state(one.found.pose), start_covariance(one.found.covariance), first.state, first.error_covariance
+    )
+
+
 def test_from_metres_to_centimetres_to_millimetres(place):
     assert place.found.status == "ok"
     assert place.semantic_error[0] < 0.15
     assert place.reached
     assert place.depth_error[0] < place.semantic_error[0] / 3
-    assert joined_error(place)[0] < 0.03
+    assert state_error(joined_at_first(place)[0], place.states[0])[0] < 0.03
 
 
-def test_in_a_crowd_the_depth_camera_chooses_and_no_status_says_which_is_wrong(crowded):
+def test_in_a_crowd_the_depth_camera_chooses_and_no_image_says_which_is_wrong(crowded):
     assert crowded.found.pose is None
     assert crowded.semantic_error is None
     ends = [state_error(run[-1].state, crowded.states[-1])[0] for run in crowded.runs]
@@ -98,7 +108,8 @@ def test_in_a_crowd_the_depth_camera_chooses_and_no_status_says_which_is_wrong(c
     assert crowded.reached
     assert crowded.best is max(crowded.runs, key=mean_score)
     wrong = [run for run, end in zip(crowded.runs, ends, strict=True) if end > 1]
-    assert any(run[-1].status == "tracked" for run in wrong)
+    assert all(run[-1].status == "lost" for run in wrong), "by their covariance"
+    assert any(judge_refined(run[-1].agreement) == "tracked" for run in wrong)
 
 
 def test_with_one_sensor_covered_the_other_is_what_there_is():
@@ -109,11 +120,14 @@ def test_with_one_sensor_covered_the_other_is_what_there_is():
     assert (dark.found.pose, dark.starts, dark.best) == (None, [], None)
 
 
-def test_at_a_front_without_features_the_filter_slides_up_and_the_robot_knows_better():
+def test_at_a_front_without_features_the_filter_does_not_know_its_height_and_the_robot_does():
     one = journey(1.70, 4.40, 60)
-    assert one.depth_error[0] > 0.1
-    assert not is_known(one.best[-1])
-    assert joined_error(one)[0] < 0.03
+    first, last = one.best[0], one.best[-1]
+    assert last.status == "lost"
+    assert not is_known(last)
+    state, covariance = joined_at_first(one)
+    assert np.sqrt([first.error_covariance[2, 2], covariance[2, 2]]) == pytest.approx([0.15, 0.005], rel=0.5)
+    assert state_error(state, one.states[0])[0] < 0.03
     error, views, knows = turn_and_look(one)
     assert knows
     assert views > 1
