@@ -10,6 +10,7 @@ from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.experiments.six_degrees import image_alone
 from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix, state_from_optical_pose
 from tests.depth_mcl.shapes import SMALL, fence, furnished_room, rough_wall, wall
 
@@ -174,6 +175,21 @@ def test_before_a_bare_wall_that_the_map_has_rough_it_soon_says_that_it_does_not
     tracked = np.array([e.status == "tracked" for e in estimates])
     assert (errors[tracked, 0] < 0.2).all()
     assert {e.status for e in estimates[-4:]} == {"lost"}
+
+
+def test_before_a_bare_wall_it_stays_where_it_was_going(rng):
+    """One that takes the image's word in every direction is carried off by the map's roughness at once."""
+    still = np.zeros((6, 6))
+    with DepthRenderer(wall(0.9, 5.0), SMALL) as renderer:
+        depth = images(renderer, still, rng)
+    slid = {"fused": [], "alone": []}
+    for seed in range(4):
+        with DepthRenderer(rough_wall(np.random.default_rng(seed)), SMALL) as renderer:
+            for name, how in (("fused", {}), ("alone", {"fuse": image_alone})):
+                slid[name].append(
+                    off(run(AnnealedLocalizer(renderer, seed=1, **how), depth, np.zeros(6)), still)[-1, 0]
+                )
+    assert np.median(slid["fused"]) < 0.5 * np.median(slid["alone"])
 
 
 def test_where_two_places_fit_alike_it_is_not_sure_of_either():
