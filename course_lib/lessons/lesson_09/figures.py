@@ -144,5 +144,5 @@ def slide_figure(slides: dict) -> Figure:
         images = np.arange(len(one.along))
         axes.fill_between(images, -3 * one.sigma_along, 3 * one.sigma_along, color=figures.SKY_BLUE, alpha=0.4)
         axes.plot(images, one.along, **figures.line_style(3))
-        axes.set(title=name, xlabel="image [-]", ylabel="error along the axis [m]", ylim=(-1.2, 1.2))
+        axes.set(title=name, xlabel="image [-]", ylabel="error along the axis [m]", ylim=(-2.0, 2.0))
     return figure

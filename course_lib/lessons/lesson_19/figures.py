@@ -145,6 +145,6 @@ def wall_figure(one: Journey) -> Figure:
     covariance = axes_of @ last.error_covariance[:3, :3] @ axes_of.T
     side.plot(*ellipse(1e4 * covariance, place), color=figures.BLUE, label="what it says of itself (2 sigma)")
     side.set(title="How far off, seen from behind the robot", xlabel="to the left [cm]", ylabel="up [cm]")
-    side.set(xlim=(-70, 70), ylim=(-70, 70), aspect="equal")
+    side.set(xlim=(-100, 100), ylim=(-100, 100), aspect="equal")
     side.legend(fontsize=7, loc="lower right")
     return figure
