@@ -7,6 +7,7 @@ import pytest
 from scipy.stats import chi2
 
 from course_lib.depth_mcl import AnnealedLocalizer, DepthRenderer
+from course_lib.experiments.six_degrees import ABLATIONS
 from course_lib.geometry import optical_pose
 from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.lessons.lesson_09.bare_corridor import STEP, Slide, slide
@@ -141,7 +142,7 @@ def test_every_pooled_row_lies_between_its_recordings():
 def test_the_ablation_has_everything_on_first_and_intervals_about_every_share():
     shares = ablation()
     assert next(iter(shares)) == "nothing"
-    assert len(shares) == 6
+    assert list(shares)[1:] == [name.removeprefix("without ") for name in ABLATIONS]
     assert all(low < share < high for share, (low, high) in shares.values())
     assert shares["refinement"][0] < 10 < shares["hypotheses"][0] < shares["nothing"][0]
 
