@@ -131,7 +131,7 @@ class AnnealedLocalizer:
     none); steps: of the refinement (empty: the best particle is the estimate). rivals: how many other places are kept
     beside the best. fuse: joins the prediction and what an image says of a pose. prediction: where the camera may be
     next, made from its first pose. alpha: of eq. (8), metres.
-    Raises `ValueError` for a number of particles, a seed or an alpha that is none, or no layer.
+    Raises `ValueError` for a number of particles or rivals, a seed or an alpha that is none, or no layer.
     """
 
     def __init__(
@@ -152,6 +152,8 @@ class AnnealedLocalizer:
             raise ValueError(f"n_particles must be a whole number, at least 1; got {n_particles!r}")
         if int(seed) != seed or seed < 0:
             raise ValueError(f"seed must be a whole number, 0 or more; got {seed!r}")
+        if int(rivals) != rivals or rivals < 0:
+            raise ValueError(f"rivals must be a whole number, 0 or more; got {rivals!r}")
         if not layers:
             raise ValueError("at least one layer is needed: it draws the particles")
         self.renderer = renderer

@@ -231,6 +231,8 @@ def test_bad_use_is_named(renderer):
         AnnealedLocalizer(renderer, seed=-1)
     with pytest.raises(ValueError, match="n_particles"):
         AnnealedLocalizer(renderer, 0)
+    with pytest.raises(ValueError, match="rivals"):
+        AnnealedLocalizer(renderer, rivals=-1)
     with pytest.raises(ValueError, match="at least one layer"):
         AnnealedLocalizer(renderer, layers=())
     localizer = AnnealedLocalizer(renderer)
