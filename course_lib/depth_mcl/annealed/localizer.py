@@ -92,7 +92,8 @@ class AnnealedEstimate(NamedTuple):
     """`(6, 6)` of the last layer's weighted particles about the state, metres along the world's axes and radians about
     the body's: how wide the search was. `error_covariance` says how far off the state may be."""
     score: float
-    """Raw score of the state, eq. (8) as a mean over pixels of the finest image; NaN without a measurement."""
+    """Raw score of the refined pose, eq. (8) as a mean over pixels of the finest image; NaN without a measurement. What
+    the image does not show is then left to the prediction, which the score would not notice."""
     ess: float
     """Effective sample size of the last layer's weights."""
     particles: np.ndarray
