@@ -103,8 +103,8 @@ def test_a_sweep_that_is_killed_goes_on_with_no_row_lost_or_doubled(tmp_path):
     )
     process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT)
     begun = time.monotonic()
-    # Point 3 waits for "go" in the worker; the rows before it are written by the main thread, perhaps later.
-    while not ((tmp_path / "calls_3").exists() and results.exists() and results.read_text().count("\n") == 3):
+    # Point 3 waits for "go" in the worker; head and rows before it are written by the main thread, perhaps later.
+    while not ((tmp_path / "calls_3").exists() and results.exists() and results.read_text().count("\n") == 1 + 3):
         assert process.poll() is None
         assert time.monotonic() - begun < HANGS_S
         time.sleep(0.02)
