@@ -86,7 +86,7 @@ OK = SimpleNamespace(status="ok", pose=Pose2D(TRUE[0] + 0.1, TRUE[1] - 0.08, TRU
 
 def test_a_robot_that_sees_nothing_turns_and_looks_again(renderer):
     result = one_place(OK, TRUE, renderer, Blind(renderer, 2 * FRAMES), None, np.random.default_rng(1))
-    assert result["views"] == 3
+    assert 3 <= result["views"] <= VIEWS, "two are blind; how many more it wants is the filter's caution"
     assert result["reached"], "the odometer carries the start on"
 
 
