@@ -69,7 +69,8 @@ class Step(NamedTuple):
     """How many are taken along, the best that differ."""
 
 
-# All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th.
+# All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th; what
+# concerns rivals on walks through rooms, seeds 10,041 to 10,066.
 LAYERS = (Layer(1.0, 1.0, 0.1), Layer(0.4, 0.35, 0.1))
 SECOND_LOOK = (Layer(0.45, 1.0, 0.1),)
 STEPS = (
