@@ -27,7 +27,7 @@ def prepare(seed: int) -> Task:
 
 
 def measure(task: Task, answer: object) -> Result:
-    """Median over the frames of the horizontal distance between estimate and truth of the same frame, metres."""
+    """Median over the frames of the horizontal distance between estimate and truth of the same frame, millimetres."""
     states, renderer = task.truth
     try:
         found = np.asarray(answer, dtype=np.float64)
@@ -40,15 +40,15 @@ def measure(task: Task, answer: object) -> Result:
     errors = np.linalg.norm(found[:, :2] - states[:, :2], axis=1)
     heading = np.rad2deg(np.abs(wrap_angle(found[:, 5] - states[:, 5])))
     remark = f"worst frame {errors.max():.2f} m; heading {np.median(heading):.1f} deg; "
-    return Result(float(np.median(errors)), remark + f"{renderer.renders / len(states):.0f} renders a frame")
+    return Result(1000 * float(np.median(errors)), remark + f"{renderer.renders / len(states):.0f} renders a frame")
 
 
 PROJECT = Project(
     name="P1",
     title=f"median horizontal error of the estimates with at most {RENDERS_A_FRAME} renders a frame",
-    unit="m",
+    unit="mm",
     better="lower",
-    digits=3,
+    digits=1,
     function="localize",
     seeds=(5101, 5102, 5103, 5104, 5105, 5106, 5107, 5108),
     prepare=prepare,
