@@ -59,6 +59,18 @@ def _one_noise_for_all(particles: np.ndarray, sigma: np.ndarray, noise: np.ndarr
     return propagate(particles, sigma, np.tile(noise[0], (len(particles), 1)))
 
 
+def _right_for_left(particles: np.ndarray, sigma: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    return propagate(particles, sigma, noise * [1, -1, 1, 1, 1, 1])
+
+
+def _cosine_and_sine_exchanged(particles: np.ndarray, sigma: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    moved, step = particles + sigma * noise, sigma * noise
+    cosine, sine = np.cos(particles[:, 5]), np.sin(particles[:, 5])
+    moved[:, 0] = particles[:, 0] + sine * step[:, 0] - cosine * step[:, 1]
+    moved[:, 1] = particles[:, 1] + cosine * step[:, 0] + sine * step[:, 1]
+    return moved
+
+
 def _only_moved(particles: np.ndarray, sigma: np.ndarray, noise: np.ndarray) -> np.ndarray:
     moved = propagate(particles, sigma, noise)
     moved[:, 5] = particles[:, 5]
@@ -76,7 +88,7 @@ def likelihood(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> np.
 
 
 def _images(rng: np.random.Generator) -> tuple:
-    """Images with holes on both sides; now and then one without a single measurement, or a particle that sees none."""
+    """Images with holes on both sides."""
     n, height, width = (int(k) for k in rng.integers(2, 6, 3))
     measured = rng.uniform(1, 9, (height, width))
     simulated = measured + rng.normal(0, 0.2, (n, height, width))
@@ -84,11 +96,18 @@ def _images(rng: np.random.Generator) -> tuple:
     measured[rng.random(measured.shape) < 0.2] = np.nan
     measured.flat[0], measured.flat[1] = np.nan, 3.0
     simulated[0].flat[1] = np.inf
-    if rng.random() < 0.1:
-        measured[:] = np.nan
-    if rng.random() < 0.1:
-        simulated[1] = np.inf
-    return measured, simulated, float(rng.choice([0.1, rng.uniform(0.05, 0.5)]))
+    return measured, simulated, float(rng.uniform(0.05, 0.5))
+
+
+def _nothing_measured(rng: np.random.Generator) -> tuple:
+    measured, simulated, _ = _images(rng)
+    return np.full_like(measured, np.nan), simulated, 0.1
+
+
+def _nothing_hit(rng: np.random.Generator) -> tuple:
+    measured, simulated, _ = _images(rng)
+    simulated[1] = np.inf
+    return measured, simulated, 0.1
 
 
 def _misses_left_out(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> np.ndarray:
@@ -100,6 +119,18 @@ def _misses_left_out(measured: np.ndarray, simulated: np.ndarray, alpha: float) 
 
 def _mean(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> np.ndarray:
     return likelihood(measured, simulated, alpha) / max(1, np.isfinite(measured).sum())
+
+
+def _misses_worth_one(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> np.ndarray:
+    misses = np.isinf(simulated[:, np.isfinite(measured)]).sum(axis=1)
+    return likelihood(measured, simulated, alpha) + misses
+
+
+def _infinity_by_infinity(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> np.ndarray:
+    valid = np.isfinite(measured)
+    difference = np.abs(measured[valid] - simulated[:, valid])
+    with np.errstate(invalid="ignore"):
+        return np.sum(1 - difference / (alpha + difference), axis=1)
 
 
 def _worth_one(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> np.ndarray:
@@ -137,14 +168,20 @@ def particle_weights(l: np.ndarray, beta: float) -> np.ndarray:  # noqa: E741 - 
 
 
 def _likelihoods(rng: np.random.Generator) -> tuple:
-    """Likelihoods as they come from images; now and then all alike, or of one particle alone."""
-    n = int(rng.integers(3, 9))
-    values = rng.uniform(100, 900) + rng.uniform(0, 50, n)
-    if rng.random() < 0.15:
-        values[:] = values[0]
-    if rng.random() < 0.1:
-        values = values[:1]
-    return values, float(rng.choice([0.01, rng.uniform(0.1, 0.8)]))
+    """Likelihoods as they come from images."""
+    return rng.uniform(100, 900) + rng.uniform(0, 50, int(rng.integers(3, 9))), float(rng.uniform(0.1, 0.8))
+
+
+def _the_papers_beta(rng: np.random.Generator) -> tuple:
+    return _likelihoods(rng)[0], 0.01
+
+
+def _all_alike(rng: np.random.Generator) -> tuple:
+    return np.full(int(rng.integers(2, 6)), rng.uniform(100, 900)), 0.01
+
+
+def _one_alone(rng: np.random.Generator) -> tuple:
+    return rng.uniform(100, 900, 1), 0.01
 
 
 def _quotient(values: np.ndarray) -> np.ndarray:
@@ -177,6 +214,13 @@ def _weighted_cloud(rng: np.random.Generator) -> tuple:
     return particles, w / w.sum()
 
 
+def _on_both_sides_of_the_seam(rng: np.random.Generator) -> tuple:
+    particles, w = _weighted_cloud(rng)
+    particles[:, 5] = np.pi - rng.uniform(0.01, 0.1, len(w))
+    particles[::2, 5] *= -1
+    return particles, w
+
+
 def _swapped(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
     angles = particles[:, 3:]
     return np.concatenate([w @ particles[:, :3], np.arctan2(w @ np.cos(angles), w @ np.sin(angles))])
@@ -203,16 +247,24 @@ def resample(w: np.ndarray, u: float) -> np.ndarray:
 
 
 def _weights_and_offset(rng: np.random.Generator) -> tuple:
-    """Uneven weights, some of them zero (the last often), now and then all on one; an offset."""
+    """Uneven weights, some of them zero; an offset."""
     n = int(rng.integers(4, 11))
     w = rng.uniform(0.02, 1, n) ** 3
-    w[rng.random(n) < 0.2] = 0.0
-    if rng.random() < 0.3:
-        w[-1] = 0.0
-    if rng.random() < 0.15 or w.sum() == 0:
-        w[:] = 0.0
-        w[rng.integers(n)] = 1.0
+    w[1:][rng.random(n - 1) < 0.2] = 0.0
     return w / w.sum(), float(rng.uniform(0.05, 0.95))
+
+
+def _last_without_weight(rng: np.random.Generator) -> tuple:
+    return np.array([0.25, 0.25, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0]), float(rng.uniform(0.05, 0.95))
+
+
+def _all_on_one(rng: np.random.Generator) -> tuple:
+    n = int(rng.integers(4, 11))
+    return np.eye(n)[rng.integers(n)], float(rng.uniform(0.05, 0.95))
+
+
+def _equal_weights(rng: np.random.Generator) -> tuple:
+    return np.full(8, 0.125), float(rng.uniform(0.05, 0.95))
 
 
 def _from_middle(w: np.ndarray, u: float) -> np.ndarray:
@@ -274,6 +326,11 @@ def _a_frame(rng: np.random.Generator) -> tuple:
     return particles, measured, wall_ahead, sigma, beta, rng.standard_normal((n, 6)), float(rng.uniform(0.05, 0.95))
 
 
+def _all_at_one_place(rng: np.random.Generator) -> tuple:
+    particles, measured, render, _, beta, noise, u = _a_frame(rng)
+    return np.tile(particles[0], (len(particles), 1)), measured, render, np.zeros(6), beta, noise, u
+
+
 def _weighed(states: np.ndarray, measured: np.ndarray, render, beta: float) -> np.ndarray:
     return particle_weights(likelihood(measured, render(states), 0.1), beta)
 
@@ -308,6 +365,17 @@ def _weighed_again_after_resampling(particles, measured, render, sigma, beta, no
     return estimate(kept, _weighed(kept, measured, render, beta)), kept
 
 
+def _moved_twice(particles, measured, render, sigma, beta, noise, u):
+    found, kept = one_round(particles, measured, render, sigma, beta, noise, u)
+    return found, propagate(kept, sigma, noise)
+
+
+def _raw_likelihoods(particles, measured, render, sigma, beta, noise, u):
+    moved = propagate(particles, sigma, noise)
+    w = _shares(likelihood(measured, render(moved), 0.1))
+    return estimate(moved, w), moved[resample(w, u)]
+
+
 def _other_way_round(particles, measured, render, sigma, beta, noise, u):
     return one_round(particles, measured, render, sigma, beta, noise, u)[::-1]
 
@@ -315,6 +383,7 @@ def _other_way_round(particles, measured, render, sigma, beta, noise, u):
 EXERCISES = [
     Exercise(
         number="P1.1",
+        level="warm-up",
         reference=initial_particles,
         inputs=_start,
         mistakes=(
@@ -349,6 +418,8 @@ EXERCISES = [
             Mistake(_along_the_world, "That moves along the world's axes. The noise is meant forward and to the left."),
             Mistake(_turned_the_other_way, "Turned the wrong way: at yaw 90 degrees, forward is the world's +y."),
             Mistake(_by_the_new_yaw, "You turn first and then move. The noise goes along the yaw *before* this frame."),
+            Mistake(_right_for_left, "Left and right are exchanged: at yaw 0, left is the world's +y."),
+            Mistake(_cosine_and_sine_exchanged, "Cosine and sine are exchanged: at yaw 0, forward is the world's +x."),
             Mistake(_one_noise_for_all, "All your particles get the same noise: row i of `noise` is particle i's."),
             Mistake(_only_moved, "Yours moves, but does not turn: the last component of the noise is the yaw's."),
             Mistake(
@@ -375,6 +446,7 @@ EXERCISES = [
         number="P1.3",
         reference=likelihood,
         inputs=_images,
+        cases=(_nothing_measured, _nothing_hit),
         mistakes=(
             Mistake(
                 lambda measured, simulated, alpha: np.sum(alpha / (alpha + np.abs(measured - simulated)), axis=(1, 2)),
@@ -385,6 +457,15 @@ EXERCISES = [
                 "You leave simulated misses out, so looking into holes costs nothing. A miss counts, with term 0.",
             ),
             Mistake(_mean, "That is a mean over the pixels. Eq. (8) is a sum."),
+            Mistake(
+                lambda measured, simulated, alpha: likelihood(measured, simulated, alpha) / measured.size,
+                "You divide by the number of all pixels. Eq. (8) is a sum.",
+            ),
+            Mistake(_misses_worth_one, "A simulated miss counts as perfect in yours. It differs by infinity: term 0."),
+            Mistake(
+                _infinity_by_infinity,
+                "inf / inf is NaN: that is your simulated misses. Write the term as one fraction.",
+            ),
             Mistake(_worth_one, "Pixels without measurement get the full 1 in yours. They are left out."),
             Mistake(_cost, "Yours grows with the disagreement: the 1 - is missing, and the best would be the worst."),
             Mistake(_bell, "That is a bell curve. The term of (8) is 1 - d / (alpha + d), d the absolute difference."),
@@ -404,6 +485,7 @@ EXERCISES = [
         number="P1.4",
         reference=particle_weights,
         inputs=_likelihoods,
+        cases=(_the_papers_beta, _all_alike, _one_alone),
         mistakes=(
             Mistake(
                 lambda values, beta: _shares(np.exp(-((_quotient(values) - 1) ** 2) / beta)),
@@ -412,6 +494,10 @@ EXERCISES = [
             Mistake(
                 lambda values, beta: np.exp(-((_quotient(values) - 1) ** 2) / beta**2),
                 "Weights must sum to one: (11) is still missing.",
+            ),
+            Mistake(
+                lambda values, beta: particle_weights(values, beta) * len(values),
+                "Your weights sum to N. By (11) they sum to one.",
             ),
             Mistake(
                 lambda values, beta: _shares(np.exp(-(_quotient(values) ** 2) / beta**2)),
@@ -452,6 +538,7 @@ EXERCISES = [
         number="P1.5",
         reference=estimate,
         inputs=_weighted_cloud,
+        cases=(_on_both_sides_of_the_seam,),
         mistakes=(
             Mistake(
                 lambda particles, w: w @ particles, "(12) as printed: its angles fail at +-180 degrees (lesson 07)."
@@ -484,6 +571,7 @@ EXERCISES = [
         number="P1.6",
         reference=resample,
         inputs=_weights_and_offset,
+        cases=(_last_without_weight, _all_on_one, _equal_weights),
         mistakes=(
             Mistake(_offset_not_divided, "The offset is u of one step: the first point lies at u / N, not at u."),
             Mistake(_from_middle, "Your points do not start at u / N: where is u?"),
@@ -491,6 +579,7 @@ EXERCISES = [
                 lambda w, u: resample(w, 0.0),
                 "Your points start at 0. The random offset makes the draw fair: use u.",
             ),
+            Mistake(lambda w, u: np.arange(len(w)), "You keep every particle once, whatever it weighs."),
             Mistake(_one_too_far, "Yours is one particle too far: index 0 is the first one."),
             Mistake(_rounded_copies, "You round N w. That is not unbiased: step through the summed weights instead."),
             Mistake(_positions, "These are the points. Return which particle's share of the sum each falls into."),
@@ -513,8 +602,10 @@ EXERCISES = [
     ),
     Exercise(
         number="P1.7",
+        level="challenge",
         reference=one_round,
         inputs=_a_frame,
+        cases=(_all_at_one_place,),
         mistakes=(
             Mistake(
                 _estimate_after_resampling,
@@ -533,6 +624,14 @@ EXERCISES = [
             Mistake(
                 _weighed_again_after_resampling,
                 "You weigh the copies once more for the estimate: so the image counts twice.",
+            ),
+            Mistake(_moved_twice, "You move twice: before weighing, and once more what lives on."),
+            Mistake(_raw_likelihoods, "You weigh by the raw likelihoods: (9) and (10) are left out."),
+            Mistake(
+                lambda particles, measured, render, sigma, beta, noise, u: one_round(
+                    particles, measured, render, sigma, 0.01, noise, u
+                ),
+                "Your beta is always 0.01: use the one that is given.",
             ),
             Mistake(_other_way_round, "Return the estimate first, then the particles."),
             Mistake(
