@@ -1,7 +1,7 @@
 """A model solution of project P4, in NumPy alone: one of many ways, and not the best.
 
-Try the project first. `calibrated_depth` calls the stages in their order; it averages the frames of a place, and refuses
-flying pixels. It does not average neighbours, which would gain most of what is left.
+Try the project first. `calibrated_depth` calls the stages in their order; it averages the frames of a place, and
+refuses flying pixels. It does not average neighbours, which would gain most of what is left.
 
     python3 course.py score P4 notebooks/projects/solutions/P4_model_solution.py
 """
