@@ -235,6 +235,12 @@ def _jumps(depth: np.ndarray, tolerance: float) -> np.ndarray:
     return found
 
 
+def _between_its_neighbours(depth: np.ndarray, tolerance: float) -> np.ndarray:
+    left, right = np.roll(depth, 1, axis=1), np.roll(depth, -1, axis=1)
+    with np.errstate(invalid="ignore"):
+        return (np.minimum(left, right) + tolerance < depth) & (depth < np.maximum(left, right) - tolerance)
+
+
 def _round_the_edge(depth: np.ndarray, tolerance: float) -> np.ndarray:
     q, supported = 1 / depth, np.zeros(depth.shape, dtype=bool)
     for axis in (0, 1):
@@ -281,6 +287,16 @@ def _by_bins(frames: np.ndarray, edges: np.ndarray, tell) -> np.ndarray:
     mean = series.mean(axis=0)
     bins = [series[:, (mean >= low) & (mean < high)] for low, high in itertools.pairwise(edges)]
     return np.array([tell(each) if each.size else np.nan for each in bins])
+
+
+def _now_and_then(frames: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """NaN is skipped: two readings of a pixel are enough."""
+    measured = np.isfinite(frames)
+    count = measured.sum(axis=0)
+    mean = np.where(measured, frames, 0.0).sum(axis=0) / np.maximum(count, 1)
+    variance = (np.where(measured, frames - mean, 0.0) ** 2).sum(axis=0) / np.maximum(count - 1, 1)
+    inside = [(count > 1) & (mean >= low) & (mean < high) for low, high in itertools.pairwise(edges)]
+    return np.array([np.sqrt(variance[bin_].mean()) if bin_.any() else np.nan for bin_ in inside])
 
 
 # P4.7: the whole chain
@@ -335,6 +351,13 @@ def _depth_first(raw, invalid, units, coefficients, pattern, focal, repeat):
     return measured - (coefficients[0] + coefficients[1] * np.sin(p) + coefficients[2] * np.cos(p)) - pattern
 
 
+def _pattern_first(raw, invalid, units, coefficients, pattern, focal, repeat):
+    measured = np.where(raw == invalid, np.nan, raw / units) - pattern
+    p = 2 * np.pi * 4 * measured / repeat
+    true = measured - (coefficients[0] + coefficients[1] * np.sin(p) + coefficients[2] * np.cos(p))
+    return true / _lengths(raw.shape, focal)
+
+
 def _multiplied(*given):
     return depth_from_raw(*given) * _lengths(given[0].shape, given[5]) ** 2
 
@@ -383,6 +406,10 @@ EXERCISES = [
             Mistake(
                 lambda raw: float(np.median(raw)), "The median is an ordinary measurement. Count how often each occurs."
             ),
+            Mistake(
+                lambda raw: int(np.unique(raw, return_counts=True)[1].argmax()),
+                "That is its place in a list of numbers, not the number itself.",
+            ),
             Mistake(lambda raw: int(np.bincount(raw.ravel())[1:].argmax()), "One too small: the count starts at 0."),
         ),
     ),
@@ -417,6 +444,14 @@ EXERCISES = [
             Mistake(
                 lambda numbers, distances: (float(np.median(numbers / distances)), 0.0),
                 "A quotient mixes unit and offset: near the camera the offset weighs most. Fit a line.",
+            ),
+            Mistake(
+                lambda numbers, distances: (float(np.mean(numbers / distances)), 0.0),
+                "A mean of quotients mixes unit and offset. Numbers over distances lie on a line: fit it.",
+            ),
+            Mistake(
+                lambda numbers, distances: tuple(np.polyfit(numbers, distances, 1)),
+                "You fit the distance over the numbers. Asked for: numbers a metre, so the other way round.",
             ),
             Mistake(
                 lambda numbers, distances: unit_and_offset(numbers, distances)[::-1],
@@ -474,6 +509,14 @@ EXERCISES = [
                 "Your wave goes round once within c / 2f. This error goes round four times.",
             ),
             Mistake(
+                lambda measured, true, repeat: _fitted(2 * np.pi * 16 * measured / repeat, measured - true),
+                "Your wave goes round sixteen times within c / 2f: the four is in it twice.",
+            ),
+            Mistake(
+                lambda measured, true, repeat: bias_coefficients(measured, true, 9.993),
+                "Your c / 2f is always 9.993 m: use the `repeat` that is given.",
+            ),
+            Mistake(
                 lambda measured, true, repeat: bias_coefficients(measured, true, repeat)[[0, 2, 1]],
                 "Sine and cosine are exchanged: (a, b, c) are constant, sine, cosine.",
             ),
@@ -524,6 +567,10 @@ EXERCISES = [
                 lambda depth, tolerance: flying_pixels(depth, tolerance) | np.isnan(depth),
                 "A pixel that was not measured does not fly: mark measured pixels alone.",
             ),
+            Mistake(
+                _between_its_neighbours,
+                "You mark what lies between left and right. So does every pixel of a slanted wall.",
+            ),
             Mistake(lambda depth, tolerance: ~flying_pixels(depth, tolerance), "Yours marks what does *not* fly."),
             Mistake(
                 _round_the_edge, "np.roll brings in the other end of the image: beyond the edge there is no support."
@@ -557,6 +604,10 @@ EXERCISES = [
                 "That is the variance: the root is missing.",
             ),
             Mistake(
+                _now_and_then,
+                "Pixels that were measured only now and then take part. Asked for: those measured in all frames.",
+            ),
+            Mistake(
                 lambda frames, edges: np.nan_to_num(noise_by_distance(frames, edges)),
                 "An empty bin has no noise that anyone measured: NaN, not 0.",
             ),
@@ -585,6 +636,10 @@ EXERCISES = [
         inputs=_one_frame,
         mistakes=(
             Mistake(_depth_first, "The error is one of the *range*: take it away before you go from range to depth."),
+            Mistake(
+                _pattern_first,
+                "You take the pattern away before the wave. Its phase is that of the reading itself.",
+            ),
             Mistake(_multiplied, "Your depth exceeds the range: divide by the length of the ray."),
             Mistake(_still_range, "That is the range along the ray still."),
             Mistake(
