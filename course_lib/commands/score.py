@@ -1,4 +1,4 @@
-"""Score a file that a student handed in for a project, on the hidden seeds, without the notebook."""
+"""Score what a student handed in for a project, a Python file or the notebook, on the hidden seeds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ PASSES_ARGUMENTS_ON = True
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("project", metavar="P1", help="which project")
-    parser.add_argument("file", metavar="FILE", help="a Python file that defines the project's function")
+    parser.add_argument(
+        "file", metavar="FILE", help="a Python file, or a notebook, that defines the project's function"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

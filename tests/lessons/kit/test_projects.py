@@ -126,6 +126,16 @@ def test_an_endless_loop_is_stopped_and_no_other_seed_waits_for_it(toy, capsys):
     assert lines[2:7] == [f"hidden seed {i}: not run: the seed before took too long" for i in range(2, 7)]
 
 
+def test_what_it_prints_on_the_first_seed_is_shown(toy, capsys):
+    def talks(x):
+        print("frame", x)
+        return off_by(0.1)(x)
+
+    lines = printed(capsys, talks, seeds=[10_001, 10_002], rivals=False)
+    assert lines[0] == "(your function prints) frame 10001.0"
+    assert not any("10002.0" in line for line in lines)
+
+
 def test_a_value_that_is_no_number_fails(toy):
     assert one_outcome(TOY, lambda x: float("nan"), 901).failed
     assert not one_outcome(TOY, off_by(0.0), 901).failed
