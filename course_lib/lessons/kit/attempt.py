@@ -52,7 +52,7 @@ def attempt(function: Callable, arguments: tuple, seconds: float = SECONDS) -> A
     """Call `function(*arguments)`; an interrupt by the user (Ctrl-C, the stop button) passes through."""
     printed = _Bounded()
     try:
-        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed), _limited(seconds):
+        with contextlib.redirect_stdout(printed), _limited(seconds):
             return Attempt(function(*arguments), None, printed.getvalue())
     except _OutOfTime:
         failure = f"does not end within {seconds:g} seconds: does every loop come closer to its end?"
