@@ -9,7 +9,7 @@ import re
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises
-from course_lib.lessons.kit.projects import find_project, one_outcome, project_names, stored_rivals
+from course_lib.lessons.kit.projects import find_project, is_better, one_outcome, project_names, stored_rivals
 from course_lib.paths import REPOSITORY, project_paths
 from tests.notebooks.test_exercise_cells import functions_of, only, stub_of
 
@@ -94,10 +94,11 @@ def test_no_hidden_seed_is_printed_in_the_notebook(project):
 
 
 @pytest.mark.slow
-def test_the_model_solution_scores_on_a_hidden_seed_better_than_the_paper(project):
+def test_the_model_solution_is_better_than_the_paper_on_a_hidden_seed(project):
     found = find_project(project.number)
     outcome = one_outcome(found, getattr(model_solution(project), found.function), found.seeds[0])
     assert not outcome.failed, outcome.remark
+    assert is_better(found, outcome.value, stored_rivals(found)["paper"][1][0])
 
 
 @pytest.mark.slow
