@@ -9,6 +9,7 @@ from scipy.optimize import linear_sum_assignment
 
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
+from course_lib.spherical_stereo.pose.rigid_fit import RigidFitError, fit_rigid_2d
 
 # P2.1: azimuth and elevation of a box's centre
 
@@ -48,6 +49,11 @@ def _mistaken_angles(**parts) -> Callable:
     return lambda box, width: _angles(box, width, **parts)
 
 
+def _edge_moved_back(box: np.ndarray, width: int):
+    right = box[2] - width if box[2] > width else box[2]
+    return _angles(np.array([box[0], box[1], right, box[3]]), width)
+
+
 def _box(rng: np.random.Generator) -> tuple:
     width = int(rng.choice([640, 1280, 2048]))
     u, v = rng.uniform(0, width), rng.uniform(0.45, 0.75) * width / 2
@@ -75,14 +81,14 @@ def _circle_gap(a, b):
     return np.abs(wrap_angle(a - b))
 
 
-def _gaps(upper_labels, upper, lower_labels, lower, largest, gap=_circle_gap, classes=True, higher=True, limit=True):
+def _gaps(upper_labels, upper, lower_labels, lower, largest, gap=_circle_gap, classes=True, higher=1, limit=True):
     """Azimuth gaps (n, m), inf where two boxes cannot show one object."""
     gaps = gap(upper[:, None, 0], lower[None, :, 0])
     allowed = np.ones(gaps.shape, dtype=bool)
     if classes:
         allowed &= upper_labels[:, None] == lower_labels[None]
     if higher:
-        allowed &= lower[None, :, 1] > upper[:, None, 1]
+        allowed &= higher * (lower[None, :, 1] - upper[:, None, 1]) > 0
     if limit:
         allowed &= gaps <= largest
     return np.where(allowed, gaps, np.inf)
@@ -114,6 +120,13 @@ def _in_their_order(gaps: np.ndarray) -> np.ndarray:
         if np.isfinite(gaps[i]).any():
             partner[i] = gaps[i].argmin()
             gaps[:, partner[i]] = np.inf
+    return partner
+
+
+def _least_total(gaps: np.ndarray) -> np.ndarray:
+    partner = np.full(len(gaps), -1)
+    for i, j in zip(*linear_sum_assignment(np.minimum(gaps, 10.0)), strict=True):
+        partner[i] = j if np.isfinite(gaps[i, j]) else -1
     return partner
 
 
@@ -157,6 +170,11 @@ def places_of(upper_angles, lower_angles, baseline) -> np.ndarray:
 
 def _range(e_u, e_l, baseline):
     return baseline / (np.tan(e_l) - np.tan(e_u))
+
+
+def _only_forward(e_u, e_l, baseline):
+    rho = _range(e_u, e_l, baseline)
+    return np.where(rho > 0, rho, np.nan)
 
 
 def _places(upper, lower, baseline, distance: Callable = _range, azimuth: int = 0, guard: bool = True, mirror=1.0):
@@ -377,6 +395,13 @@ def _svd_without_sign(places, landmarks):
     return (*(landmarks.mean(axis=0) - r @ places.mean(axis=0)), np.arctan2(r[1, 0], r[0, 0]))
 
 
+def _refusing_mirrors(places, landmarks):
+    try:
+        return tuple(fit_rigid_2d(places, landmarks))
+    except RigidFitError:
+        return np.nan, np.nan, np.nan
+
+
 def _in_degrees(places, landmarks):
     x, y, theta = fit_pose(places, landmarks)
     return x, y, np.degrees(theta)
@@ -463,6 +488,10 @@ EXERCISES = [
                 "That is half the box's size. The centre is the *mean* of opposite edges.",
             ),
             Mistake(
+                _edge_moved_back,
+                "You move the right edge back before the mean, and the centre lands across the image. Mean first.",
+            ),
+            Mistake(
                 _mistaken_angles(corner=0.5),
                 "You add half a pixel. Boxes are in edge coordinates: only OpenCV's keypoints need that.",
             ),
@@ -488,8 +517,16 @@ EXERCISES = [
             ),
             Mistake(_mistaken_pairs(classes=False), "You pair boxes of unlike classes."),
             Mistake(
-                _mistaken_pairs(higher=False),
+                _mistaken_pairs(higher=0),
                 "The lower camera sees every object *higher* than the upper one does: e_l > e_u. You do not ask for it.",
+            ),
+            Mistake(
+                _mistaken_pairs(higher=-1),
+                "You ask for e_l < e_u. From below, an object is seen higher: draw the rig from the side.",
+            ),
+            Mistake(
+                _mistaken_pairs(pair=_least_total),
+                "That makes the *total* gap least. Asked is the least gap first, and no way back.",
             ),
             Mistake(_mistaken_pairs(limit=False), "You pair boxes however far apart: largest_gap is not used."),
             Mistake(
@@ -520,6 +557,14 @@ EXERCISES = [
                 _mistaken_places(guard=False),
                 "Right where there is a place. Where the rays diverge or run parallel (e_l - e_u <= 0.001) there is "
                 "none: NaN.",
+            ),
+            Mistake(
+                lambda *given: np.nan_to_num(_places(*given)),
+                "You put what has no place at the origin, inside the rig. No place is NaN, not 0.",
+            ),
+            Mistake(
+                _mistaken_places(distance=_only_forward, guard=False),
+                "Rays that are parallel to a thousandth tell no place either: e_l - e_u <= 0.001 is NaN, too.",
             ),
             Mistake(
                 _mistaken_places(distance=lambda u, v, b: b / (np.tan(u) - np.tan(v)), guard=True),
@@ -666,6 +711,14 @@ EXERCISES = [
             Mistake(
                 _svd_without_sign,
                 "U V^T may be a mirror, which no rig can turn into: mind the sign of the determinant.",
+            ),
+            Mistake(
+                _refusing_mirrors,
+                "Pairs that look mirrored have a best turn, too. No pose: too few pairs, or coincident ones, only.",
+            ),
+            Mistake(
+                lambda places, landmarks: fit_pose(places[:2], landmarks[:2]),
+                "You use the first two pairs. Sum over all of them.",
             ),
             Mistake(
                 lambda places, landmarks: fit_pose(landmarks, places),

@@ -569,6 +569,10 @@ EXERCISES = [
                 "You weigh with the covariances. What is unsure must count less: their inverses.",
             ),
             Mistake(
+                lambda *given: (*_least(*given)[:2], _least(*given)[2] % (2 * np.pi)),
+                "Your theta runs from 0 to 2 pi; asked is -pi to pi.",
+            ),
+            Mistake(
                 lambda *given: tuple(float(one) for one in given[0]),
                 "That is the start, unchanged.",
             ),

@@ -16,6 +16,7 @@ from tests.lessons.kit import (
     answers_18,
     answers_19,
     answers_projects_a,
+    answers_projects_b,
 )
 
 # Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
@@ -178,7 +179,16 @@ RIGHT = [
 ]
 
 
-OTHERS = (answers_01_to_07, answers_09, answers_10, answers_11_to_17, answers_18, answers_19, answers_projects_a)
+OTHERS = (
+    answers_01_to_07,
+    answers_09,
+    answers_10,
+    answers_11_to_17,
+    answers_18,
+    answers_19,
+    answers_projects_a,
+    answers_projects_b,
+)
 WRONG_ANSWERS = [*WRONG, *(answer for module in OTHERS for answer in module.WRONG)]
 RIGHT_ANSWERS = [*RIGHT, *(answer for module in OTHERS for answer in module.RIGHT)]
 
