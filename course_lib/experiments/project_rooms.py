@@ -46,7 +46,7 @@ class ProjectView(NamedTuple):
     """Detections of the upper image."""
     lower: tuple[Detection, ...]
     observations: tuple[Observation, ...]
-    """Objects with a place, body frame: matched by the features of the photographs (section 2.3), triangulated (2.4)."""
+    """Objects with a place, body frame: matched by the photographs' features (section 2.3), triangulated (2.4)."""
     shows: tuple[int, ...]
     """For every observation the landmark that it really shows; -1: none of the map."""
     pose: tuple[float, float, float]

@@ -409,9 +409,7 @@ def _in_degrees(places, landmarks):
 
 def _uncentred(places, landmarks):
     return float(
-        np.arctan2(
-            np.sum(places[:, 0] * landmarks[:, 1] - places[:, 1] * landmarks[:, 0]), np.sum(places * landmarks)
-        )
+        np.arctan2(np.sum(places[:, 0] * landmarks[:, 1] - places[:, 1] * landmarks[:, 0]), np.sum(places * landmarks))
     )
 
 
@@ -518,7 +516,7 @@ EXERCISES = [
             Mistake(_mistaken_pairs(classes=False), "You pair boxes of unlike classes."),
             Mistake(
                 _mistaken_pairs(higher=0),
-                "The lower camera sees every object *higher* than the upper one does: e_l > e_u. You do not ask for it.",
+                "The lower camera sees every object *higher* than the upper one does, e_l > e_u. You do not ask it.",
             ),
             Mistake(
                 _mistaken_pairs(higher=-1),
@@ -695,7 +693,7 @@ EXERCISES = [
                 _mistaken_fit(turn=lambda places, landmarks: -_turn(places, landmarks)),
                 "Your rotation goes the wrong way: the cross product is a_x b_y - a_y b_x.",
             ),
-            Mistake(_mistaken_fit(turn=_uncentred), "Subtract each side's centroid before you turn one onto the other."),
+            Mistake(_mistaken_fit(turn=_uncentred), "Subtract each side's centroid before you turn one on the other."),
             Mistake(
                 _mistaken_fit(shift=lambda p, m, theta: m.mean(axis=0) - p.mean(axis=0)),
                 "The heading is right. Turn the places' centroid before you take it off the landmarks'.",

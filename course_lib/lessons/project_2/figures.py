@@ -21,4 +21,5 @@ def boxes_figure(room: ProjectRoom, view: ProjectView) -> Figure:
             draw_box(axes, one.box, width, one.label)
     map_axes(plan, room.semantic_map, "The map, and the pose that is wanted")
     draw_pose(plan, *view.pose, "black")
+    plan.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
     return figure

@@ -109,7 +109,9 @@ def _hypotheses(
     seen_lengths, true_lengths = (
         np.linalg.norm(points[:, None] - points[None], axis=2) for points in (places, landmarks)
     )
-    matches = [(i, j) for i in range(len(places)) for j in range(len(landmarks)) if not like or labels[i] == map_labels[j]]
+    matches = [
+        (i, j) for i in range(len(places)) for j in range(len(landmarks)) if not like or labels[i] == map_labels[j]
+    ]
     found = []
     for (i, j), (k, m) in itertools.combinations(matches, 2):
         if i == k or j == m or (m < j and not both_ways):
@@ -142,7 +144,7 @@ def _verify_hypotheses(arguments: tuple, answer) -> str | None:
         return f"Return an array (h, 3): x, y, theta of every pose; yours has shape {poses.shape}."
     if len(poses) != len(wanted):
         much = "many" if len(poses) > len(wanted) else "few"
-        return f"Yours are too {much} poses. Each pair of observations on each pair of landmarks, both ways round, once."
+        return f"Yours are too {much} poses. Each pair of places on each pair of landmarks, both ways round, once."
     off = np.abs(poses[:, None] - wanted[None])
     off[..., 2] = np.minimum(off[..., 2], np.abs(poses[:, None, 2] - wanted[None, :, 2]))
     same = (off < 1e-5).all(axis=2)
@@ -314,7 +316,7 @@ def _matched_places(rng: np.random.Generator) -> tuple:
 
 
 def _heading_at_the_wrap(rng: np.random.Generator) -> tuple:
-    _, places, covariances, landmarks = _scene(rng, 6, 6)
+    landmarks = rng.uniform(0, 6, (6, 2))
     back = np.array([3.0, 3.0, np.pi - 0.01])
     places = (landmarks - back[:2]) @ rotation(back[2]) + rng.normal(0, 0.05, (6, 2))
     return np.array([3.0, 3.0, -np.pi + 0.02]), places, _covariances(rng, places), landmarks
@@ -447,7 +449,9 @@ EXERCISES = [
                 "You multiply by S. What is unsure must count less: its inverse.",
             ),
             Mistake(
-                _mistaken_squared(weight=lambda s: np.array([np.diag(1 / np.diag(one)) for one in s]).reshape(-1, 2, 2)),
+                _mistaken_squared(
+                    weight=lambda s: np.array([np.diag(1 / np.diag(one)) for one in s]).reshape(-1, 2, 2)
+                ),
                 "You use the diagonal of S alone. An error along the ray is in x and in y at once.",
             ),
             Mistake(_mistaken_squared(finish=np.sqrt), "Squared, please: without the root."),
@@ -598,8 +602,12 @@ EXERCISES = [
                 ),
                 "The same place the other way round is another answer: look at the heading, too.",
             ),
-            Mistake(_mistaken_confidence(another=_without_wrap), "Headings of 3.12 and -3.13 differ by 0.03: wrap them."),
-            Mistake(_mistaken_confidence(temper=1.0), "The scores count half: e to the power of half their difference."),
+            Mistake(
+                _mistaken_confidence(another=_without_wrap), "Headings of 3.12 and -3.13 differ by 0.03: wrap them."
+            ),
+            Mistake(
+                _mistaken_confidence(temper=1.0), "The scores count half: e to the power of half their difference."
+            ),
             Mistake(
                 _mistaken_confidence(absolute=False),
                 "`nothing` is a rival, too: a pose ahead of all others may still explain too little.",

@@ -28,4 +28,5 @@ def view_figure(observations: Sequence[Observation], semantic_map: SemanticMap) 
     body.plot(0, 0, marker=(3, 0, -90), color="black", markersize=11)
     body.set(title="Seen: body frame, 2-sigma ellipses", xlabel="forward x [m]", ylabel="left y [m]", aspect="equal")
     map_axes(plan, semantic_map, "The map")
+    plan.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
     return figure

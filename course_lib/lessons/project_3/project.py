@@ -51,7 +51,8 @@ def checked_pairs(answer: object, n_observations: int, n_landmarks: int) -> list
         if len(set(named)) < len(named):
             raise AnswerError(f"names one {('observation', 'landmark')[side]} twice: pairs are one-to-one")
         if not all(0 <= index < size for index in named):
-            raise AnswerError(f"names {('an observation', 'a landmark')[side]} that there is not: {max(named)} of {size}")
+            what = ("an observation", "a landmark")[side]
+            raise AnswerError(f"names {what} that there is not: {max(named)}, of {size} counted from 0")
     return pairs if len(pairs) >= 2 else None
 
 

@@ -1,4 +1,4 @@
-"""Model solution of project P3: every two matches make a pose, every pose is judged by all that is seen, and doubt counts.
+"""Model solution of project P3: every two matches make a pose, every pose is judged by all that is seen; doubt counts.
 
 `match` uses the five stages as they stand and no colour at all: where objects look alike, colours say the same of all
 of them. It withholds an answer whose confidence is below `LEAST`. What it leaves: what should be seen and is not, the

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import itertools
 import math
 
 import numpy as np
@@ -80,7 +81,7 @@ def pairs_without_the_circle(upper_labels, upper, lower_labels, lower, largest):
 
 
 def pairs_of_equal_height_too(upper_labels, upper, lower_labels, lower, largest):
-    raised = lower + [0.0, 10.0]
+    raised = np.add(lower, [0.0, 10.0])
     return pairs_from_a_sorted_list(upper_labels, upper, lower_labels, raised, largest)
 
 
@@ -179,13 +180,11 @@ def penalties_by_phases(labels, places, hues, saturations, map_labels, map_place
     turn = np.nan_to_num(np.abs(np.degrees(np.angle(a[:, None] * b.conj()))))
     c, m = (np.hypot(*(p - p.mean(axis=0)).T) for p in (places, map_places))
     table = turn / 360 + np.abs(saturations[:, None] - map_saturations) / 100
-    return (
-        table + np.abs(c[:, None] - m) / np.clip(m, 0.1, None) + np.where(labels[:, None] == map_labels, 0, 100)
-    )
+    return table + np.abs(c[:, None] - m) / np.clip(m, 0.1, None) + np.where(labels[:, None] == map_labels, 0, 100)
 
 
 def penalties_the_long_way_round(*given):
-    labels, places, hues, saturations, map_labels, map_places, map_hues, map_saturations = given
+    hues, map_hues = given[2], given[6]
     right = np.array(penalties_by_loops(*given))
     turn = np.nan_to_num(np.abs((hues[:, None] - map_hues + 180) % 360 - 180))
     return right - turn / 360 + np.nan_to_num(np.abs(hues[:, None] - map_hues)) / 360
@@ -402,17 +401,14 @@ def poses_from_the_fit(places, labels, landmarks, map_labels, tolerance):
     return np.array(found, dtype=np.float32).reshape(-1, 3).astype(float) if not found else np.array(found)
 
 
-def poses_one_way_round(*given):
-    places, labels, landmarks, map_labels, tolerance = given
-    n = len(landmarks)
+def poses_one_way_round(places, labels, landmarks, map_labels, tolerance):
     found = []
-    for i in range(len(places)):
-        for k in range(i + 1, len(places)):
-            for j in range(n):
-                for m in range(j + 1, n):
-                    chosen = places[[i, k]], labels[[i, k]], landmarks[[j, m]], map_labels[[j, m]], tolerance
-                    one = [p for p in poses_by_loops(*chosen) if labels[i] == map_labels[j] and labels[k] == map_labels[m]]
-                    found += one[:1] if labels[i] != labels[k] or len(one) < 2 else one[1:]
+    for i, k in itertools.combinations(range(len(places)), 2):
+        for j, m in itertools.combinations(range(len(landmarks)), 2):
+            lengths = math.dist(places[i], places[k]), math.dist(landmarks[j], landmarks[m])
+            like = labels[i] == map_labels[j] and labels[k] == map_labels[m]
+            if like and abs(lengths[0] - lengths[1]) <= tolerance and min(lengths) >= 0.5:
+                found.append(fit_rigid_2d(places[[i, k]], landmarks[[j, m]]))
     return np.array(found).reshape(-1, 3)
 
 
