@@ -13,6 +13,7 @@ from course_lib.lessons.kit.exercises import Exercise, Mistake
 
 MAP_SIGMA = 0.02  # m
 LEAST_LENGTH = 0.5  # m
+REFIT_EXCESS = 0.02  # of a sum that the noise alone makes 2 n - 3
 SAME_PLACE, SAME_HEADING = 0.5, np.deg2rad(10.0)
 
 
@@ -303,6 +304,28 @@ def _mistaken_steps(**parts) -> Callable:
     return lambda *given: _in_steps(*given, **parts)
 
 
+def _weighted_sum(pose, places, covariances, targets) -> float:
+    off = places - (targets - pose[:2]) @ rotation(pose[2])
+    return float(np.einsum("ni,nij,nj->", off, np.linalg.inv(covariances), off))
+
+
+def _verify_refit(arguments: tuple, answer) -> str | None:
+    """What is wrong with a pose; None where its weighted sum of squares is the least, as far as noise could tell."""
+    try:
+        pose = np.asarray(answer, dtype=np.float64).reshape(3)
+    except (TypeError, ValueError):
+        return "Return three numbers: x, y, theta."
+    if not np.isfinite(pose).all():
+        return "There is a NaN or an infinity in your pose."
+    if abs(pose[2]) > np.pi + 1e-9:
+        return "theta from -pi to pi, please."
+    start, places, covariances, targets = arguments
+    least = _weighted_sum(refit(start, places, covariances, targets), places, covariances, targets)
+    if _weighted_sum(pose, places, covariances, targets) <= least + REFIT_EXCESS:
+        return None
+    return "Another pose has a smaller weighted sum of squares than yours: is every step a step down, to the end?"
+
+
 def _by_traces(covariance):
     return np.array([np.eye(2) / np.trace(one) for one in covariance])
 
@@ -549,12 +572,16 @@ EXERCISES = [
         reference=refit,
         inputs=_matched_places,
         cases=(_heading_at_the_wrap,),
-        others=(_in_steps,),
+        verify=_verify_refit,
         tolerance=1e-4,
         mistakes=(
             Mistake(
                 lambda start, places, covariances, targets: _alike(start, places, targets),
                 "All pairs count alike in yours: that is the paper's fit. The covariances are not used.",
+            ),
+            Mistake(
+                _in_steps,
+                "You hold the weights fixed in each step. They turn with the pose: the weighted sum can be less.",
             ),
             Mistake(
                 _mistaken_steps(weigh=_by_traces),

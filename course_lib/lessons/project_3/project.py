@@ -50,9 +50,10 @@ def checked_pairs(answer: object, n_observations: int, n_landmarks: int) -> list
         named = [pair[side] for pair in pairs]
         if len(set(named)) < len(named):
             raise AnswerError(f"names one {('observation', 'landmark')[side]} twice: pairs are one-to-one")
-        if not all(0 <= index < size for index in named):
-            what = ("an observation", "a landmark")[side]
-            raise AnswerError(f"names {what} that there is not: {max(named)}, of {size} counted from 0")
+        for index in named:
+            if not 0 <= index < size:
+                what = ("an observation", "a landmark")[side]
+                raise AnswerError(f"names {what} that there is not: {index}, of {size} counted from 0")
     return pairs if len(pairs) >= 2 else None
 
 
