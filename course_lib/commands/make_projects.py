@@ -18,9 +18,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "data" / "projects"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds this command's options to its parser."""
-    parser.add_argument(
-        "--out", type=Path, default=FOLDER, metavar="FOLDER", help="where the data go (default: data/projects)"
-    )
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="where the data go (default: data/projects)")
     parser.add_argument(
         "--work",
         type=Path,
@@ -34,21 +32,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Makes the data; returns the exit code."""
-    for option in ("out", "work"):
-        require_output_folder(getattr(arguments, option))
+    out = arguments.out or FOLDER
+    for folder in (out, arguments.work):
+        require_output_folder(folder)
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.project_rooms import make_project_rooms
     from course_lib.simulation.data_folder import checksums
 
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    out.mkdir(parents=True, exist_ok=True)
     counts = make_project_rooms(
-        arguments.out,
+        out,
         partial(chosen_detector, arguments),
         arguments.work,
         arguments.processes or processors(),
         progress_bar("rooms", "room"),
     )
     files = [f"rooms_{name}.json" for name in counts]
-    (arguments.out / "SHA256SUMS").write_text(checksums(arguments.out, files))
-    print(f"wrote {' and '.join(f'{n} views ({name})' for name, n in counts.items())} to {arguments.out}")
+    (out / "SHA256SUMS").write_text(checksums(out, files))
+    print(f"wrote {' and '.join(f'{n} views ({name})' for name, n in counts.items())} to {out}")
     return 0

@@ -31,7 +31,8 @@ def test_the_files_get_their_checksums(made, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("option", ["--out", "--work"])
-def test_a_file_in_place_of_a_folder_is_refused(made, option, tmp_path, capsys):
+def test_a_file_in_place_of_a_folder_is_refused(made, option, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("course_lib.commands.make_projects.FOLDER", tmp_path / "projects")
     (tmp_path / "file").write_text("")
     assert main(["make-data", "projects", option, str(tmp_path / "file")]) == 2
     assert f"{tmp_path / 'file'} is a file" in capsys.readouterr().err
