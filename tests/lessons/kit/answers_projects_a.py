@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import collections
+import itertools
 import math
 
 import numpy as np
@@ -120,7 +122,140 @@ def raw_likelihoods_as_weights(particles, measured, render, sigma, beta, noise, 
     return p1.estimate(moved, w), moved[p1.resample(w, u)]
 
 
+def by_counter(raw):
+    return collections.Counter(np.ravel(raw).tolist()).most_common(1)[0][0]
+
+
+def the_extreme_that_is_alone(raw):
+    numbers = np.unique(raw).astype(int)
+    gaps = np.diff(numbers)
+    return int(numbers[0] if gaps[0] > gaps[-1] else numbers[-1])
+
+
+def by_moments(numbers, distances):
+    d = distances - distances.mean()
+    slope = (d * numbers).sum() / (d**2).sum()
+    return np.array([slope, numbers.mean() / slope - distances.mean()])
+
+
+def by_its_ends(numbers, distances):
+    slope = (numbers[-1] - numbers[0]) / (distances[-1] - distances[0])
+    return [slope, numbers[0] / slope - distances[0]]
+
+
+def by_a_line(ranges, distance):
+    v, u = np.indices(ranges.shape)
+    s = (u - (ranges.shape[1] - 1) / 2) ** 2 + (v - (ranges.shape[0] - 1) / 2) ** 2
+    y = (ranges / distance) ** 2 - 1
+    used = np.isfinite(y)
+    return math.sqrt(np.sum(s[used] ** 2) / np.sum(s[used] * y[used]))
+
+
+def by_the_corner(ranges, distance):
+    """One corner that was measured is enough where there is no noise."""
+    height, width = ranges.shape
+    square = ((width - 1) ** 2 + (height - 1) ** 2) / 4
+    return np.array([math.sqrt(square / ((ranges[0, 0] / distance) ** 2 - 1))])
+
+
+def half_a_pixel_by_width(ranges, distance):
+    v, u = np.indices(ranges.shape)
+    s = (u - ranges.shape[1] / 2) ** 2 + (v - ranges.shape[0] / 2) ** 2
+    used = np.isfinite(ranges) & (s > 0)
+    with np.errstate(divide="ignore"):
+        return np.sqrt(np.median(s[used] / ((ranges[used] / distance) ** 2 - 1)))
+
+
+def by_normal_equations(measured, true, repeat):
+    p = 8 * np.pi * measured / repeat
+    a = np.column_stack([p**0, np.sin(p), np.cos(p)])
+    return np.linalg.solve(a.T @ a, a.T @ (measured - true)).tolist()
+
+
+def by_loops_over_pixels(depth, tolerance):
+    height, width = depth.shape
+    found = np.zeros(depth.shape, dtype=bool)
+    for v in range(height):
+        for u in range(width):
+            if math.isnan(depth[v, u]):
+                continue
+            found[v, u] = True
+            for dv, du in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+                if 0 <= v + 2 * dv < height and 0 <= u + 2 * du < width:
+                    one, two = depth[v + dv, u + du], depth[v + 2 * dv, u + 2 * du]
+                    if abs(2 / one - 1 / two - 1 / depth[v, u]) * depth[v, u] ** 2 <= tolerance:
+                        found[v, u] = False
+    return found
+
+
+def between_its_neighbours(depth, tolerance):
+    left, right = np.roll(depth, 1, axis=1), np.roll(depth, -1, axis=1)
+    with np.errstate(invalid="ignore"):
+        return (np.minimum(left, right) + tolerance < depth) & (depth < np.maximum(left, right) - tolerance)
+
+
+def noise_by_loops(frames, edges):
+    found = [[] for _ in edges[:-1]]
+    for series in frames.reshape(len(frames), -1).T:
+        mean = series.mean()
+        for i in range(len(edges) - 1):
+            if edges[i] <= mean < edges[i + 1]:
+                found[i].append(((series - mean) ** 2).sum() / (len(series) - 1))
+    return [math.sqrt(sum(f) / len(f)) if f else math.nan for f in found]
+
+
+def nan_ignored(frames, edges):
+    """Pixels that were measured now and then take part."""
+    count = np.isfinite(frames).sum(axis=0)
+    mean = np.nansum(frames, axis=0) / np.maximum(count, 1)
+    variance = np.nansum((frames - mean) ** 2, axis=0) / np.maximum(count - 1, 1)
+    inside = [(count > 1) & (mean >= a) & (mean < b) for a, b in itertools.pairwise(edges)]
+    return [np.sqrt(variance[i].mean()) if i.any() else np.nan for i in inside]
+
+
+def chain_by_loops(raw, invalid, units, coefficients, pattern, focal, repeat):
+    height, width = raw.shape
+    found = np.full(raw.shape, np.nan)
+    for v in range(height):
+        for u in range(width):
+            if raw[v, u] != invalid:
+                m = float(raw[v, u]) / units
+                p = 8 * math.pi * m / repeat
+                r = m - coefficients @ [1, math.sin(p), math.cos(p)] - pattern[v, u]
+                found[v, u] = r / math.hypot(1, (u - (width - 1) / 2) / focal, (v - (height - 1) / 2) / focal)
+    return found
+
+
+def pattern_before_the_wave(raw, invalid, units, coefficients, pattern, focal, repeat):
+    m = np.where(raw == invalid, np.nan, raw / units) - pattern
+    p = 8 * np.pi * m / repeat
+    v, u = np.indices(raw.shape)
+    length = np.sqrt(1 + ((u - (raw.shape[1] - 1) / 2) ** 2 + (v - (raw.shape[0] - 1) / 2) ** 2) / focal**2)
+    return (m - coefficients[0] - coefficients[1] * np.sin(p) - coefficients[2] * np.cos(p)) / length
+
+
 WRONG = [
+    ("P4.1", the_extreme_that_is_alone, "Right on"),
+    ("P4.1", lambda raw: 0 if (raw == 0).any() else 65_535, "Right on"),
+    ("P4.1", lambda raw: np.unique(raw, return_counts=True)[1].argmax(), "place in a list"),
+    ("P4.2", lambda n, d: tuple(np.polyfit(n, d, 1)), "numbers a metre"),
+    ("P4.2", lambda n, d: (np.mean(n / d), 0.0), "mean of quotients"),
+    ("P4.2", lambda n, d: by_moments(n, d)[0], "Return 2 values"),
+    ("P4.3", half_a_pixel_by_width, "Half a pixel"),
+    ("P4.3", lambda r, d: by_a_line(r, d) ** 2, "square of the focal length"),
+    ("P4.3", lambda r, d: by_a_line(r, d) * d, "pixels times metres"),
+    ("P4.4", lambda m, t, repeat: by_normal_equations(m, t, repeat / 4), "sixteen"),
+    ("P4.4", lambda m, t, repeat: by_normal_equations(m, 2 * m - t, repeat), "other sign"),
+    ("P4.4", lambda m, t, repeat: by_normal_equations(m, t, 9.993), "given"),
+    ("P4.5", between_its_neighbours, "between"),
+    ("P4.5", lambda z, t: by_loops_over_pixels(z, t) | np.isnan(z), "does not fly"),
+    ("P4.5", lambda z, t: by_loops_over_pixels(z, t / 2), "Right on"),
+    ("P4.6", nan_ignored, "now and then"),
+    ("P4.6", lambda f, e: np.array(noise_by_loops(f, e)) ** 2, "root"),
+    ("P4.6", lambda f, e: np.array(noise_by_loops(f, e)) * 1000, "millimetres"),
+    ("P4.7", pattern_before_the_wave, "phase"),
+    ("P4.7", lambda raw, i, k, c, p, f, r: chain_by_loops(raw, i, k, c, -p, f, r), "add the pattern"),
+    ("P4.7", lambda raw, i, k, c, p, f, r: chain_by_loops(raw, 0, k, c, p, f, r), "0 for the code"),
     ("P1.1", lambda state0, n: np.array([state0] * n).T, "column a particle"),
     ("P1.1", lambda state0, n: np.zeros((n, 6)), "differ on every input"),
     ("P1.1", lambda state0, n: [state0] * (n + 1), "one particle too many"),
@@ -145,6 +280,20 @@ WRONG = [
     ("P1.7", lambda p, m, render, s, b, n, u: p1.one_round(p, m, render, s, 0.01, n, u), "beta"),
 ]
 RIGHT = [
+    ("P4.1", by_counter),
+    ("P4.1", lambda raw: np.bincount(raw.ravel()).argmax()),
+    ("P4.2", by_moments),
+    ("P4.2", by_its_ends),
+    ("P4.3", by_a_line),
+    ("P4.3", by_the_corner),
+    ("P4.4", by_normal_equations),
+    ("P4.4", lambda m, t, repeat: np.array(by_normal_equations(m, t, repeat), np.float32)),
+    ("P4.5", by_loops_over_pixels),
+    ("P4.5", lambda z, t: by_loops_over_pixels(z, t).astype(int).tolist()),
+    ("P4.6", noise_by_loops),
+    ("P4.6", lambda f, e: np.array(noise_by_loops(f, e), np.float32)),
+    ("P4.7", chain_by_loops),
+    ("P4.7", lambda *given: chain_by_loops(*given).astype(np.float32)),
     ("P1.1", lambda state0, n: [list(state0) for _ in range(n)]),
     ("P1.1", lambda state0, n: np.repeat(state0[None], n, axis=0)),
     ("P1.1", lambda state0, n: np.ones((n, 1)) * state0),
