@@ -44,10 +44,8 @@ def _boxes_at(rng: np.random.Generator, turn: float, wide: float = 0.05) -> tupl
     width = int(rng.choice([640, 1280]))
     baseline, rho, z = rng.uniform(0.2, 0.6), rng.uniform(1.0, 4.0), rng.uniform(-1.4, -0.3)
     boxes = []
-    for height, u in (
-        (z, turn * width),
-        (z + baseline, (turn + rng.choice([-1, 1]) * rng.uniform(0.002, 0.01)) * width),
-    ):
+    aside = rng.choice([-1, 1]) * rng.uniform(0.002, 0.01)
+    for height, u in ((z, turn * width), (z + baseline, (turn + aside) * width)):
         v = (0.5 - np.arctan2(height, rho) / np.pi) * width / 2
         half_width, half_height = rng.uniform(0.2, 1.0, 2) * wide * width
         boxes.append(np.array([u - half_width, v - half_height, u + half_width, v + half_height]))
@@ -175,7 +173,7 @@ def _sigma_in_degrees(rho, e_u, e_l, baseline, sigma, sigma_baseline):
 
 
 def range_of(e_u: np.ndarray, e_l: np.ndarray, baseline: float) -> float:
-    """baseline / median(tan e_l - tan e_u), metres, of matched features `(n,)`; NaN where that slope is not positive."""
+    """baseline / median(tan e_l - tan e_u), metres, of matches `(n,)`; NaN where that slope is not positive."""
     slope = float(np.median(np.tan(e_l) - np.tan(e_u)))
     return float(baseline / slope) if slope > 0 else float("nan")
 
@@ -209,7 +207,7 @@ def _images_swapped(rng: np.random.Generator) -> tuple:
 def refuses_range(arguments: tuple, answer: object) -> str | None:
     """What is wrong with one range of matched features, or None: it must lie among those of the majority."""
     e_u, e_l, baseline = arguments
-    if np.size(answer) != 1:
+    if np.size(answer) != 1 or np.asarray(answer).dtype.kind not in "iuf":
         return "One range is asked for, a single number for all matches together."
     value = float(np.reshape(answer, ()))
     slopes = np.tan(e_l) - np.tan(e_u)
@@ -279,7 +277,7 @@ EXERCISES = [
         reference=place_of,
         inputs=_two_boxes,
         level="warm-up",
-        cases=(_across_the_seam, lambda rng: _boxes_at(rng, 0.5), lambda rng: _boxes_at(rng, 0.0, wide=0.01)),
+        cases=(_across_the_seam, lambda rng: _boxes_at(rng, 0.5), lambda rng: _boxes_at(rng, 0.04, wide=0.03)),
         mistakes=(
             Mistake(_place_with_the_range, "You go the horizontal range along a slanted direction: multiply by d."),
             Mistake(_place_from_below, "d is measured from the upper camera, so it goes with the upper direction."),
@@ -293,7 +291,7 @@ EXERCISES = [
             ),
             Mistake(
                 _place_with_right_edge(lambda right, width: right % width),
-                "A box across the seam ends beyond the width. Its u_max belongs there: no remainder, or its middle jumps.",
+                "Across the seam u_max lies beyond the width and must stay there: with a remainder the middle jumps.",
             ),
             Mistake(
                 _place_with_right_edge(min),
@@ -368,7 +366,7 @@ EXERCISES = [
                 lambda rho, e_u, e_l, baseline, sigma, sigma_baseline: (
                     _by_angles(rho, e_u, e_l, baseline, sigma) + rho / baseline * sigma_baseline
                 ),
-                "The baseline's error is independent of the angles' as well: it joins them under the root, as a square.",
+                "The baseline's error is independent of the angles': it joins them under the root, as a square.",
             ),
             Mistake(
                 lambda rho, e_u, e_l, baseline, sigma, sigma_baseline: np.hypot(
@@ -475,7 +473,7 @@ EXERCISES = [
             Mistake(_mean_range, "A mean of ranges follows whichever slope is nearest 0. Median, and of the slopes."),
             Mistake(
                 lambda e_u, e_l, baseline: float(baseline / np.median(np.tan(e_l) - np.tan(e_u))),
-                "Yours is right while there is a range. But where the matches diverge it is negative: return NaN there.",
+                "Right while there is a range. But where the matches diverge yours is negative: return NaN there.",
             ),
             Mistake(
                 lambda e_u, e_l, baseline: abs(float(baseline / np.median(np.tan(e_u) - np.tan(e_l)))),
