@@ -151,15 +151,15 @@ def _points_with_an_odd_pair(rng: np.random.Generator) -> tuple:
         return source, target
 
 
-def _where_it_matters(other: Callable) -> Callable:
-    """A case: blurred points, drawn until `other(source, target)` would name another pair than the sum of squares."""
+def _where_they_differ(one: Callable, other: Callable) -> Callable:
+    """A case: blurred points, drawn until `one(source, target)` and `other(source, target)` name different pairs."""
 
     def make(rng: np.random.Generator) -> tuple:
         while True:
             source, target = _points_with_an_odd_pair(rng)
             target = target + rng.normal(0, 0.7, target.shape)
             try:
-                if other(source, target) != odd_pair(source, target):
+                if one(source, target) != other(source, target):
                     return source, target
             except RigidFitError:
                 continue
@@ -195,16 +195,19 @@ def _without(judged: Callable, choose: Callable) -> Callable:
 
 def _best_by(measure: Callable) -> Callable:
     """A mistake: the pair without which `measure` of the residuals' lengths is least."""
-    return _without(
-        lambda fit, source, target, k: measure(
-            np.linalg.norm(np.delete(fit.apply(source) - target, k, axis=0), axis=1)
-        ),
-        lambda values: int(np.argmin(values)),
-    )
+
+    def left(fit, source, target, k):
+        return measure(np.linalg.norm(np.delete(fit.apply(source) - target, k, axis=0), axis=1))
+
+    return _without(left, lambda values: int(np.argmin(values)))
 
 
 def _squares_of_all(fit, source, target, k):
     return np.sum((fit.apply(source) - target) ** 2)
+
+
+def _by_all_squares(source, target):
+    return _without(_squares_of_all, lambda values: int(np.argmin(values)))(source, target)
 
 
 def _squares_of_rest(fit, source, target, k):
@@ -351,8 +354,13 @@ def _needles(rng: np.random.Generator) -> tuple:
 
 def _round_errors(rng: np.random.Generator) -> tuple:
     """The lesson's own case: the same round error everywhere."""
-    source, theta, covariances = _needles(rng)
-    return source + [4.0, 0.0], theta, np.tile(0.01 * np.eye(2), (len(source), 1, 1))
+    source, theta, _ = _needles(rng)
+    return source + np.array([4.0, 0.0]), theta, np.tile(0.01 * np.eye(2), (len(source), 1, 1))
+
+
+def _two_points(rng: np.random.Generator) -> tuple:
+    source = rng.uniform(-2, 2, (1, 2)) + np.array([[3.0, 0.0], [0.0, 2.0]])
+    return source, 0.0, np.tile(0.04 * np.eye(2), (2, 1, 1))
 
 
 def _averaged(covariances: np.ndarray) -> np.ndarray:
@@ -413,7 +421,7 @@ EXERCISES = [
             ),
             Mistake(
                 _placed(lambda s, t, theta: np.median(t, axis=0) - _rotation(theta) @ np.median(s, axis=0)),
-                "Least squares asks for the centroids, which are means. Medians of x and y alone do not even turn along.",
+                "Least squares asks for the centroids, which are means, not medians.",
             ),
         ),
     ),
@@ -425,7 +433,7 @@ EXERCISES = [
         mistakes=(
             Mistake(
                 _singular_values,
-                "A sum of singular values lets a mirror fit. Where the determinant is negative the last one counts minus.",
+                "A sum of singular values lets a mirror fit. With a negative determinant the last one counts minus.",
             ),
             Mistake(
                 lambda source, target: 1 / fitted_scale(source, target),
@@ -492,12 +500,13 @@ EXERCISES = [
         number="16.3",
         reference=odd_pair,
         inputs=_points_with_an_odd_pair,
-        cases=tuple(_where_it_matters(_best_by(measure)) for measure in (np.sum, np.max, np.median)),
+        cases=(
+            *(_where_they_differ(odd_pair, _best_by(measure)) for measure in (np.sum, np.max, np.median)),
+            _where_they_differ(_worst_left_out, _by_all_squares),
+        ),
         mistakes=(
             Mistake(_best_by(np.sum), "You add the lengths of the residuals. Asked is the sum of their squares."),
-            Mistake(
-                _best_by(np.max), "You take the largest residual that is left. Asked is the sum of all the squares."
-            ),
+            Mistake(_best_by(np.max), "You take the largest residual left. Asked is the sum of all the squares."),
             Mistake(_best_by(np.median), "You take the median of what is left. Asked is the sum of all the squares."),
             Mistake(
                 _worst_of_one_fit,
@@ -520,7 +529,7 @@ EXERCISES = [
                 "That is the pair farthest out, which may be right. Only source and target together tell.",
             ),
             Mistake(
-                _without(_squares_of_all, lambda values: int(np.argmin(values))),
+                _by_all_squares,
                 "You fit the rest, but sum over all pairs: the residual of the one left out does not belong in it.",
             ),
             Mistake(
@@ -624,12 +633,12 @@ EXERCISES = [
         level="challenge",
         cases=(
             _round_errors,
-            lambda rng: (_needles(rng)[0][:2] + [[3, 0], [0, 2]], 0.0, np.tile(np.eye(2), (2, 1, 1))),
+            _two_points,
         ),
         mistakes=(
             Mistake(
                 lambda source, theta, covariances: pose_sigmas(source, theta, _averaged(covariances)),
-                "You take all errors for round and alike. A needle across the line to the centroid turns the fit, along it not.",
+                "You take all errors for round and alike. Only the part across the line to the centroid turns the fit.",
             ),
             Mistake(
                 lambda source, theta, covariances: _sigmas(source, theta, covariances, lever=0.0),
