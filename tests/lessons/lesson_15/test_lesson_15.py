@@ -78,8 +78,8 @@ def test_the_least_sum_makes_the_same_mistakes_as_the_greedy_search():
 def test_hidden_objects_make_sofas_wrong():
     rng = np.random.default_rng(3)
     all_seen, two_hidden = hidden_score(0, 1, rng), hidden_score(2, 5, rng)
-    assert all_seen.share_right == 0.95
-    assert 0.5 < two_hidden.share_right < 0.8
+    assert all_seen.percent_right == pytest.approx(95)
+    assert 50 < two_hidden.percent_right < 80
     assert two_hidden.wrong_sofas > 0.9 * two_hidden.wrong
 
 
