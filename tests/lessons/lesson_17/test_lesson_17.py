@@ -11,7 +11,7 @@ import pytest
 from course_lib.experiments.room_evaluation import CORRECT, INCORRECT, UNABLE, wrong_pairs
 from course_lib.lessons.kit.room_observations import in_body_frame
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
-from course_lib.lessons.lesson_17.experiments import exact_results, failing_places, live_places, nearest_5, table_1
+from course_lib.lessons.lesson_17.experiments import exact_results, failing_places, live_places, table_1
 from course_lib.lessons.lesson_17.figures import outcomes_figure
 from course_lib.lessons.lesson_17.room_causes import (
     CURES,
@@ -204,7 +204,3 @@ def test_cures_are_counted_over_failing_poses(results, localizer, room):
     assert tuple(counts) == CURES
     assert 0 < counts["true centroid"] <= len(failing)
     assert cured_by([], room) == dict.fromkeys(CURES, 0)
-
-
-def test_percentages_are_printed_to_the_nearest_five():
-    assert [nearest_5(value) for value in (0, 2.4, 2.6, 97.4, 100)] == ["0 %", "0 %", "5 %", "95 %", "100 %"]
