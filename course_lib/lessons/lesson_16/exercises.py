@@ -246,8 +246,10 @@ def _fitted(**parts: Callable) -> Callable:
 
 
 def _weighted_points(rng: np.random.Generator) -> tuple:
-    """Points of unequal noise, with weights that fit it."""
+    """Three points or more of unequal noise, with weights that fit it."""
     source, target = _points(rng)
+    while len(source) < 3:
+        source, target = _points(rng)
     sigma = rng.uniform(0.05, 0.8, len(source))
     return source, target + sigma[:, None] * rng.standard_normal(target.shape), 1 / sigma**2
 
@@ -260,6 +262,17 @@ def _stranger_without_weight(rng: np.random.Generator) -> tuple:
         np.vstack([target, rng.uniform(8, 12, (1, 2))]),
         np.append(weights, 0.0),
     )
+
+
+def _wall_that_looks_mirrored(rng: np.random.Generator) -> tuple:
+    """Objects along a wall, whose noise happens to make a mirror image fit better than any rotation."""
+    while True:
+        source, theta = np.column_stack([np.linspace(-3, 3, 6), rng.normal(0, 0.05, 6)]), rng.uniform(-np.pi, np.pi)
+        target = source @ _rotation(theta).T + rng.uniform(1, 5, 2) + rng.normal(0, 0.05, (6, 2))
+        weights = rng.uniform(0.5, 2, 6)
+        a, b = (points - weights @ points / weights.sum() for points in (source, target))
+        if np.linalg.det((weights[:, None] * b).T @ a) < -0.1:
+            return source, target, weights
 
 
 def _equal_weights(rng: np.random.Generator) -> tuple:
@@ -551,6 +564,7 @@ EXERCISES = [
             _stranger_without_weight,
             _backwards,
             _equal_weights,
+            _wall_that_looks_mirrored,
         ),
         mistakes=(
             Mistake(
