@@ -30,6 +30,7 @@ from course_lib.lessons.lesson_17.room_runs import (
     stored_rooms,
     table_3_or_4,
     table_5,
+    two_heights,
     used_pairs,
 )
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -204,3 +205,14 @@ def test_cures_are_counted_over_failing_poses(results, localizer, room):
     assert tuple(counts) == CURES
     assert 0 < counts["true centroid"] <= len(failing)
     assert cured_by([], room) == dict.fromkeys(CURES, 0)
+
+
+def test_the_higher_rig_loses_poses_from_exact_boxes_in_every_seed():
+    runs = stored_rooms()
+    counted = two_heights(runs, "exact_boxes")
+    assert (counted.poses, counted.lower, counted.higher) == (100, 95, 83)
+    assert (counted.lost, counted.gained) == (15, 3)
+    for run in runs:
+        alone = two_heights([run], "exact_boxes")
+        assert alone.higher < alone.lower
+        assert alone.lower - alone.lost + alone.gained == alone.higher
