@@ -212,7 +212,7 @@ def refuses_range(arguments: tuple, answer: object) -> str | None:
     value = float(np.reshape(answer, ()))
     slopes = np.tan(e_l) - np.tan(e_u)
     if (slopes <= 0).all():
-        return None if np.isnan(value) else "Where the matches diverge there is no range: return NaN, and no number."
+        return None if np.isnan(value) else "Where the matches diverge there is no range: the answer is NaN, no number."
     own = slopes[np.abs(slopes - np.median(slopes)) <= 0.05]
     nearest, farthest = baseline / own.max(), baseline / own[own > 0].min()
     if nearest * (1 - 1e-5) <= value <= farthest * (1 + 1e-5):
@@ -473,7 +473,7 @@ EXERCISES = [
             Mistake(_mean_range, "A mean of ranges follows whichever slope is nearest 0. Median, and of the slopes."),
             Mistake(
                 lambda e_u, e_l, baseline: float(baseline / np.median(np.tan(e_l) - np.tan(e_u))),
-                "Right while there is a range. But where the matches diverge yours is negative: return NaN there.",
+                "Right while there is a range. But where the matches diverge yours is negative: NaN belongs there.",
             ),
             Mistake(
                 lambda e_u, e_l, baseline: abs(float(baseline / np.median(np.tan(e_u) - np.tan(e_l)))),

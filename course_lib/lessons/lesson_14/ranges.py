@@ -25,6 +25,8 @@ from course_lib.spherical_stereo.ranging.triangulation import (
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject
 
+NO_DISTANCE = 100.0
+"""Metres that a missing distance counts as where errors are ranked."""
 PLACES = ("02_a", "06_b", "08_a", "09_a")  # of experiment_2, where features are matched: all over the room
 
 
@@ -195,7 +197,7 @@ def places_in_space(recording: StereoRecording, name: str, sigma: float) -> Plac
 def error_texts(errors: np.ndarray, true: np.ndarray, bins: Sequence[tuple[float, float]]) -> str:
     """Median error [m] with its bootstrap interval, of the objects whose true range lies in each bin [m].
 
-    No distance (NaN) counts as an error without end.
+    No distance (NaN) counts as an error of `NO_DISTANCE`: greater than any other, or the worst boxes would not count.
     """
-    errors = np.where(np.isnan(errors), np.inf, errors)
+    errors = np.where(np.isnan(errors), NO_DISTANCE, errors)
     return ", ".join(median_text(errors[(true >= low) & (true < high)], 2) for low, high in bins)

@@ -392,7 +392,7 @@ WRONG = [
     ("14.2", lambda r, u, e, b, s, c: np.hypot(sigma(r, u, e, b**2, s, 0), r / b * c), "counts once"),
     ("14.3", lambda u, e, b: b / np.median(np.abs(slope(u, e))), "negative slope"),
     ("14.3", lambda u, e, b: abs(b / np.median(-slope(u, e))), "NaN"),
-    ("14.3", lambda u, e, b: b / np.median(slope(u, e)), "return NaN there"),
+    ("14.3", lambda u, e, b: b / np.median(slope(u, e)), "NaN belongs there"),
     ("14.3", lambda u, e, b: b / np.median(np.tan(e - u)), "difference of the two tangents"),
     ("14.3", lambda u, e, b: range_or_nan(lambda s: np.median(s) * b)(u, e, b), "baseline is missing"),
     ("14.3", lambda u, e, b: b / np.mean(slope(u, e)), "spoils a mean"),

@@ -181,10 +181,10 @@ def test_exact_boxes_of_one_object_lie_in_nearly_one_column(recording):
     assert gaps.max() <= 0.5
 
 
-def test_no_distance_is_an_error_without_end():
+def test_no_distance_is_an_error_greater_than_any_other():
     true = np.array([1.0, 1.1, 1.2, 3.0, 3.1, 3.2])
     errors = np.array([0.1, 0.1, 0.1, np.nan, np.nan, 0.2])
-    assert error_texts(errors, true, ((0, 2), (2, 4))).startswith("0.10 m (0.10 to 0.10), inf m (0.20 to inf)")
+    assert error_texts(errors, true, ((0, 2), (2, 4))) == "0.10 m (0.10 to 0.10), 100.00 m (0.20 to 100.00)"
 
 
 @pytest.mark.parametrize("rho", [2.0, 4.0])
