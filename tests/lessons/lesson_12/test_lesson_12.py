@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.exercises import find_exercise, judge
 from course_lib.lessons.kit.room_photographs import the_image
 from course_lib.lessons.lesson_12.figures import crop_of, hues_and_saturations, outline, part_of
 from course_lib.lessons.lesson_12.panel import seam_panel, where_they_count
@@ -134,27 +133,3 @@ def test_the_panel_draws_a_counted_box_where_its_centre_counts(percent):
     assert (drawn - boxes)[:, 0] % WIDTH == pytest.approx(0)
     assert drawn[:, 2] - drawn[:, 0] == pytest.approx(boxes[:, 2] - boxes[:, 0])
     assert not centres_in_range(boxes, WIDTH).all(), "some box of this image needs the turn"
-
-
-def by_one_turn(a, b, width):
-    """Move the box that lies left by a turn where the two are far apart."""
-    if b[0] - a[0] > width / 2:
-        a = a + np.array([width, 0, width, 0])
-    elif a[0] - b[0] > width / 2:
-        b = b + np.array([width, 0, width, 0])
-    return box_iou(a[None], b[None], 100 * width)[0, 0]
-
-
-@pytest.mark.parametrize(
-    ("number", "answer"),
-    [
-        ("12.1", by_one_turn),
-        ("12.1", lambda a, b, w: box_iou(a[None], b[None], w).item()),
-        ("12.2", lambda boxes, w: np.floor((boxes[:, [0, 2]].mean(axis=1) - w / 8) / w) == 0),
-        ("12.3", lambda h, s: np.degrees(np.angle((s * np.exp(1j * np.radians(h))).sum())) % 360),
-        ("12.3", lambda h, s: np.degrees(np.arctan2(-s @ np.sin(h / 180 * np.pi), -s @ np.cos(h / 180 * np.pi))) + 180),
-    ],
-    ids=lambda given: given if isinstance(given, str) else "",
-)
-def test_another_way_to_the_right_values_passes(number, answer):
-    assert {judge(find_exercise(number), answer, seed).status for seed in range(8)} == {"right"}
