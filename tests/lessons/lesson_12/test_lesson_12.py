@@ -22,7 +22,6 @@ from course_lib.lessons.lesson_12.seam_cuts import (
     pieces_of_sofa,
     true_object,
 )
-from course_lib.spherical_stereo.detection.boxes import box_iou
 from course_lib.spherical_stereo.detection.colour import central_half, mean_hue_saturation
 from course_lib.spherical_stereo.detection.seam import centres_in_range
 
