@@ -1,8 +1,13 @@
-"""Lines and surfaces of the scene of lesson 13: what the plane through both cameras and a point cuts out of a sphere."""
+"""Lines and surfaces of the scene of lesson 13: what the plane of both cameras and a point cuts out of a sphere."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
+
+if TYPE_CHECKING:
+    import pyvista
 
 
 def half_circle(towards: np.ndarray, n: int = 61) -> np.ndarray:
@@ -16,7 +21,7 @@ def half_circle(towards: np.ndarray, n: int = 61) -> np.ndarray:
     return np.cos(elevation) * flat + np.sin(elevation) * np.array([0.0, 0.0, 1.0])
 
 
-def upright_plane(towards: np.ndarray, low: float, high: float, behind: float = 1.4):
+def upright_plane(towards: np.ndarray, low: float, high: float, behind: float = 1.4) -> pyvista.PolyData:
     """The vertical half-planes through the z axis on the side of `towards` and behind it, as one `pyvista.PolyData`.
 
     low, high: metres, where it ends below and above; it reaches a little past `towards`, and `behind` metres backward.
