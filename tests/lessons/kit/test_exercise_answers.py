@@ -142,9 +142,8 @@ RIGHT = [
 ]
 
 
-OTHERS = [
-    importlib.import_module(f"{__package__}.{path.stem}") for path in sorted(Path(__file__).parent.glob("answers_*.py"))
-]
+FILES = sorted(Path(__file__).parent.glob("answers_*.py"))
+OTHERS = [importlib.import_module(f"{__package__}.{path.stem}") for path in FILES]
 WRONG_ANSWERS = [*WRONG, *(answer for module in OTHERS for answer in module.WRONG)]
 RIGHT_ANSWERS = [*RIGHT, *(answer for module in OTHERS for answer in module.RIGHT)]
 
