@@ -62,10 +62,10 @@ def as_in_the_paper_figure(run: StoredRun, path: np.ndarray) -> Figure:
     """
     figure, (place, error) = figures.new_figure(2, 1, size=(8.0, 4.6))
     place.get_gridspec().set_height_ratios([1.0, 1.5])
-    place.plot(path[:, 0], path[:, 1], color="black", linewidth=1.1, label="ground truth")
+    place.plot(path[:, 0], path[:, 1], color="black", linewidth=1.1, zorder=4, label="ground truth")
     dots = figures.line_style(0) | {"linestyle": "none", "markersize": 2.5}
     place.plot(*run.positions("proposed").T, **dots, label="estimated position")
-    place.set(title="As figure 5: ground truth and estimates", xlabel="x [m]", ylabel="y [m]", ylim=(-2.2, 2.6))
+    place.set(title="As figure 5: ground truth and estimates", xlabel="x [m]", ylabel="y [m]", ylim=(-0.6, 0.9))
     place.legend(loc="upper center", ncols=2, fontsize=8, framealpha=0.95)
     error.plot(run.columns["frame"], run.columns["proposed_nearest_m"], color=figures.BLUE, linewidth=1.0)
     error.set(title="As figure 6: distance to the nearest point of the path", xlabel="frame [-]", ylabel="error [m]")

@@ -25,8 +25,8 @@ from course_lib.lessons.lesson_20.readings import (
     Checker,
     MissingMapError,
     Recording,
-    at_most,
     misread_run,
+    readings_table,
     recording,
 )
 from course_lib.paths import REPOSITORY
@@ -105,11 +105,12 @@ def test_a_wrong_unit_gives_poses_and_a_low_score(stand_in):
     assert wrong.scores.max() < 0.5 * right.scores.min()
 
 
-def test_numbers_are_printed_against_round_bounds():
-    assert at_most(0.0131) == "at most 0.02 m"
-    assert at_most(0.02) == "at most 0.02 m"
-    assert at_most(77.0, "pixels") == "above 10 pixels"
-    assert at_most(np.nan) == "no number"
+def test_the_table_of_readings_tells_numbers_with_their_spread(checker):
+    lines = readings_table(checker, [0, 8]).splitlines()
+    assert len(lines) == 1 + len(READINGS)
+    both = sorted(checker(frame).median for frame in (0, 8))
+    assert f"{np.median(both):.3f} m ({both[0]:.3f} to {both[1]:.3f})" in lines[1]
+    assert "no number" in next(line for line in lines if line.startswith("poses: world to camera"))
 
 
 def test_a_readers_pair_is_read_and_what_is_missing_is_named(pair, tmp_path):
