@@ -118,7 +118,7 @@ def _even_number_of_marks(rng: np.random.Generator) -> tuple:
 def _signs_that_differ(rng: np.random.Generator) -> tuple:
     """Two of five marks were misread so far that they give a negative baseline."""
     v_upper, v_lower, height, distance = _marks(rng)
-    return v_upper[2:], v_lower[2:] + [200.0, 200.0, 0.0, 0.0, 0.0], height, distance[2:]
+    return v_upper[2:], v_lower[2:] + np.array([200.0, 200.0, 0.0, 0.0, 0.0]), height, distance[2:]
 
 
 def _one_mark(rng: np.random.Generator) -> tuple:
