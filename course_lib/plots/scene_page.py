@@ -137,6 +137,7 @@ def _scene_of(plotter: pyvista.Plotter) -> dict:
     context = serializers.SynchronizationContext()
     context.set_ignore_last_dependencies(True)
     scene = serializers.serialize(None, window, 1, context, 1)
+    scene["mtime"] = 1  # VTK counts the changes of all that it ever drew
     scene["extra"] = {
         "vtkRefId": serializers.reference_id(window),
         "centerOfRotation": camera.GetFocalPoint(),

@@ -9,7 +9,7 @@ Every function returns a `pyvista.PolyData` in the world frame (metres, z up), t
 
 `scene_page.write_page` makes one HTML file of a plotter, a lesson's `show_scene` shows it. What the page's viewer
 (vtk.js) does not draw is not used here: labels on the screen, scalar bars and lines with a width that follows the zoom.
-PyVista is imported when a scene is made: it takes a second, and most commands draw none.
+PyVista and VTK are imported when a scene is made: that takes a second, and most commands draw none.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.depth_mcl.simplification import simplified
 from course_lib.geometry import as_states, optical_pose, pose_matrix
 
 if TYPE_CHECKING:
     import pyvista
+
+    from course_lib.depth_mcl.camera import DepthCamera
+    from course_lib.depth_mcl.scene_map import SceneMap
 
 AXIS_COLOURS = np.array([[213, 40, 0], [0, 158, 60], [0, 80, 200]], dtype=np.uint8)
 """Red x, green y, blue z, as robotics draws them; each axis also carries its letter."""
@@ -74,6 +74,8 @@ def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = 
     """
     if faces < 100:
         raise SceneError(f"faces must be at least 100, or no map is left; got {faces}")
+    from course_lib.depth_mcl.simplification import simplified
+
     fewer = simplified(scene_map)
     mesh = _polydata(fewer.vertices, fewer.faces)
     if below is not None:
