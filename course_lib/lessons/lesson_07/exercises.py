@@ -151,7 +151,7 @@ EXERCISES = [
         reference=mean_angle,
         inputs=_angles,
         level="warm-up",
-        cases=(_given(170, 175, -175, -165), _given(-20, 5, 10), _given(0, 90, 180, -90), _given(30, 30, 30)),
+        cases=(_given(170, 175, -175, -165), _given(-20, 5, 10), _given(0, 90, 170, -90), _given(30, 30, 30)),
         mistakes=(
             Mistake(
                 lambda angles, w: (float(np.sum(w * angles)), _length(angles, w)),

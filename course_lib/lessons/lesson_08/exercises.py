@@ -146,7 +146,7 @@ def _shorter_than_patience(rng: np.random.Generator) -> tuple:
 
 
 def _low_from_the_start(rng: np.random.Generator) -> tuple:
-    return np.full(6, 0.1), 0.5, 1
+    return np.full(6, 0.1), 0.5, 3
 
 
 def _never_low(rng: np.random.Generator) -> tuple:
@@ -218,6 +218,12 @@ def _over_the_end(scores: np.ndarray, limit: float, patience: int) -> int:
 def _averaged(scores: np.ndarray, limit: float, patience: int) -> int:
     means = [scores[i : i + patience].mean() for i in range(len(scores) - patience + 1)]
     return next((i + patience - 1 for i, mean in enumerate(means) if mean < limit), -1)
+
+
+def _convolved(scores: np.ndarray, limit: float, patience: int) -> int:
+    """The mean by np.convolve, which exchanges its two arrays where the first is the shorter one."""
+    below = np.flatnonzero(np.convolve(scores, np.ones(patience) / patience, mode="valid") < limit)
+    return int(below[0]) + patience - 1 if len(below) else -1
 
 
 def _gives_up(scores: np.ndarray, limit: float, patience: int) -> int:
@@ -426,6 +432,10 @@ EXERCISES = [
             Mistake(
                 _averaged,
                 "You take the mean of a row: one very low score then hides a good one. Each of them must be low.",
+            ),
+            Mistake(
+                _convolved,
+                "np.convolve gives the mean of a row: one very low score hides a good one. Each of them must be low.",
             ),
             Mistake(
                 lambda scores, limit, patience: -1,

@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from tests.lessons.kit import answers_01_to_07, answers_09, answers_10, answers_11_to_17, answers_18, answers_19
+from tests.lessons.kit import (
+    answers_01_to_07,
+    answers_07_08_20,
+    answers_09,
+    answers_10,
+    answers_11_to_17,
+    answers_18,
+    answers_19,
+)
 
 # Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
 SEEDS = range(4)
@@ -170,7 +178,7 @@ RIGHT = [
 ]
 
 
-OTHERS = (answers_01_to_07, answers_09, answers_10, answers_11_to_17, answers_18, answers_19)
+OTHERS = (answers_01_to_07, answers_07_08_20, answers_09, answers_10, answers_11_to_17, answers_18, answers_19)
 WRONG_ANSWERS = [*WRONG, *(answer for module in OTHERS for answer in module.WRONG)]
 RIGHT_ANSWERS = [*RIGHT, *(answer for module in OTHERS for answer in module.RIGHT)]
 

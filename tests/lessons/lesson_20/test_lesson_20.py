@@ -12,6 +12,7 @@ import pytest
 
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
+from course_lib.lessons.lesson_20.exercises import baseline_needed
 from course_lib.lessons.lesson_20.own_panoramas import (
     MissingBaselineError,
     MissingPanoramaError,
@@ -146,6 +147,19 @@ def test_a_wrong_baseline_shows_in_the_residuals_and_nowhere_else(pair):
     assert residuals[0.2] > 3 * residuals[0.3]
     assert "position wrong by" in fit_text(found[0.2], pair.true_pose)
     assert "pose (" in fit_text(found[0.3], None)
+
+
+@pytest.mark.parametrize(("distance", "row_error", "height", "limit"), [(4.0, 0.5, 960, 0.1), (2.0, 1.5, 512, 0.03)])
+def test_the_chosen_baseline_has_just_the_error_that_a_simulation_finds(distance, row_error, height, limit):
+    baseline = baseline_needed(distance, row_error, height, limit)
+    e = np.arctan(baseline / (2 * distance))
+    rows = np.random.default_rng(1).normal(0, row_error, (2, 20_000))
+    found = baseline / (np.tan(e + np.pi * rows[0] / height) - np.tan(-e + np.pi * rows[1] / height))
+    assert found.std() == pytest.approx(limit, rel=0.03)
+
+
+def test_no_baseline_is_chosen_where_none_is_good_enough():
+    assert np.isnan(baseline_needed(8.0, 2.0, 512, 0.05))
 
 
 def test_no_boxes_give_no_distances_but_a_sentence(pair):
