@@ -48,7 +48,7 @@ _PAGE = """<!doctype html>
     </style>
   </head>
   <body>
-    <p id="help">{title}. Drag to turn, wheel to zoom, Shift and drag to move.</p>
+    <p id="help">{caption} Drag to turn, wheel to zoom, Shift and drag to move.</p>
     <noscript>{alt}</noscript>
     <div class="content" role="img" aria-label="{alt}"></div>
     <script>
@@ -75,23 +75,24 @@ class ScenePageError(RuntimeError):
     """No page can be made of a scene: what PyVista needs for it is missing, or it writes another kind of page."""
 
 
-def write_page(plotter: pyvista.Plotter, path: str | Path, title: str, alt: str) -> Path:
+def write_page(plotter: pyvista.Plotter, path: str | Path, title: str, alt: str, legend: str = "") -> Path:
     """Write the scene as one HTML page and return its path; parameters and errors as of `page_html`."""
     path = Path(path)
-    text = page_html(plotter, title, alt)
+    text = page_html(plotter, title, alt, legend)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")
     return path
 
 
-def page_html(plotter: pyvista.Plotter, title: str, alt: str) -> str:
+def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") -> str:
     """The scene of a plotter as the text of one HTML page; the same text for the same scene.
 
-    title: of the page. alt: what the scene shows, in a sentence, for those who cannot see it.
+    title: of the page. alt: what the scene shows, in a sentence, for those who cannot see it. legend: what is
+    what, written below the scene beside the title.
     Raises `SceneError` for a scene without objects, without title or alternative text, `ScenePageError` where PyVista
     lacks what writes pages (the message says what to install).
     """
-    title, alt = " ".join(title.split()), " ".join(alt.split())
+    title, alt, legend = (" ".join(text.split()) for text in (title, alt, legend))
     if not title or len(alt.split()) < 4:
         raise SceneError(
             f"a scene has a title, and an alternative text that says what it shows; got {title!r}, {alt!r}"
@@ -102,7 +103,8 @@ def page_html(plotter: pyvista.Plotter, title: str, alt: str) -> str:
     if script is None:
         raise ScenePageError(f"trame-vtk comes with a viewer of an unknown kind: {CURE} in environment.txt's versions")
     packed = base64.b64encode(zlib.compress(script[1].encode("utf-8"), 9)).decode("ascii")
-    words = {"title": html.escape(title), "alt": html.escape(alt)}
+    caption = f"{title}. {legend}." if legend else f"{title}."
+    words = {"title": html.escape(title), "alt": html.escape(alt), "caption": html.escape(caption)}
     return _PAGE.format(**words, viewer=packed, scene=_archive(_scene_of(plotter)))
 
 
@@ -137,6 +139,7 @@ def _scene_of(plotter: pyvista.Plotter) -> dict:
     context = serializers.SynchronizationContext()
     context.set_ignore_last_dependencies(True)
     scene = serializers.serialize(None, window, 1, context, 1)
+    scene["mtime"] = 1  # VTK counts the changes of all that it ever drew
     scene["extra"] = {
         "vtkRefId": serializers.reference_id(window),
         "centerOfRotation": camera.GetFocalPoint(),
