@@ -12,7 +12,7 @@ from tests.lessons.kit import answers_01_to_07, answers_09, answers_10, answers_
 
 # Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
 SEEDS = range(4)
-ARGUMENTS = "have you used every argument?"
+LEFT_OUT = "which case is left out?"
 
 
 def table(errors):
@@ -86,7 +86,7 @@ def masked(layers, seen):
 
 
 WRONG = [
-    ("00.1", lambda m, s: np.minimum(np.abs(m - s), 10), "Right on some inputs"),
+    ("00.1", lambda m, s: np.minimum(np.abs(m - s), 10), LEFT_OUT),
     ("00.2", lambda d, alpha: alpha / alpha + d, "brackets"),
     ("00.2", lambda d, alpha: 0.1 / (0.1 + d), "alpha is always 0.1"),
     ("00.2", lambda d, alpha: alpha / (alpha + d) / d.size, "divide by the number of pixels"),
@@ -117,8 +117,8 @@ WRONG = [
     ("08.3", window_skips_last, "never look at the last score"),
     ("08.3", lambda s, limit, patience: first_row(s[:-1] < limit, patience), "never look at the last score"),
     ("08.3", window_runs_over, "for a whole row"),
-    ("08.3", lambda s, limit, patience: first_row(s < 0.45, patience), ARGUMENTS),
-    ("08.3", lambda s, limit, patience: first_row(s < limit, 2), ARGUMENTS),
+    ("08.3", lambda s, limit, patience: first_row(s < 0.45, patience), LEFT_OUT),
+    ("08.3", lambda s, limit, patience: first_row(s < limit, 2), LEFT_OUT),
     ("08.3", lambda s, limit, patience: first_row(s <= limit, patience), "equal to the limit"),
     ("08.3", counted_from_one, "count frames from 1"),
     ("08.3", minus_one_in_the_loop, "inside the loop"),
