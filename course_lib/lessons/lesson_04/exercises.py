@@ -176,7 +176,7 @@ def nearest_of(n: int) -> tuple[float, float]:
 
     The least is above x where all n are: P = (1 - Phi(x))^n, whose slope gives the density n phi (1 - Phi)^(n - 1).
     """
-    x = np.linspace(-9, 9, 36001)
+    x = np.linspace(-9, 9, 3001)
     density = n * norm.pdf(x) * norm.sf(x) ** (n - 1)
     step = x[1] - x[0]
     mean = np.sum(x * density) * step
@@ -266,7 +266,7 @@ EXERCISES = [
         mistakes=(
             Mistake(
                 lambda read_a, f_a, read_b, f_b, farthest: read_a,
-                "You return the reading at f_a. The surface may be one or more turns of c / 2f_a farther away.",
+                "That is the reading at f_a. The surface may be one or more turns of c / 2f_a farther away.",
             ),
             Mistake(
                 _along_a_line,

@@ -321,7 +321,7 @@ EXERCISES = [
                 "That is the spread after one frame. Where is t?",
             ),
             Mistake(
-                lambda spread0, sigma, t: np.sqrt(spread0**2 + (t - 1) * sigma**2),
+                lambda spread0, sigma, t: np.sqrt(np.maximum(spread0**2 + (t - 1) * sigma**2, 0)),
                 "One frame is missing: the first frame moves the particles already.",
             ),
             Mistake(

@@ -23,6 +23,11 @@ def _the_papers_alpha(rng: np.random.Generator) -> tuple:
     return np.array([1.0, 0.9, 0.5, 0.01]), 0.1
 
 
+def _turned_over(term: np.ndarray, alpha: float) -> np.ndarray:
+    with np.errstate(divide="ignore"):
+        return alpha * term / (1 - term)
+
+
 # 06.2: three faults in somebody's code
 
 
@@ -168,7 +173,7 @@ def _target_is_proposal(rng: np.random.Generator) -> tuple:
 
 def _one_outweighs_all(rng: np.random.Generator) -> tuple:
     x = np.linspace(-2, 2, 9)
-    return x, 1e-30 * norm.pdf(x, 1.5, 0.1), norm.pdf(x)
+    return x, 1e-30 * norm.pdf(x, 1.5, 0.2), norm.pdf(x)
 
 
 def _mean_with(error):
@@ -211,7 +216,7 @@ EXERCISES = [
         level="warm-up",
         mistakes=(
             Mistake(
-                lambda term, alpha: alpha * term / (1 - term),
+                _turned_over,
                 "Yours grows with the term. A pixel that counts more differs *less*.",
             ),
             Mistake(
@@ -261,6 +266,12 @@ EXERCISES = [
             Mistake(
                 _equal_as(0.0),
                 "Where all likelihoods agree your weights are all 0, and their sum is not 1.",
+            ),
+            Mistake(
+                lambda measured, images, alpha, beta: np.nan_to_num(
+                    _weigh(measured, images, alpha, beta, equal="not guarded")
+                ),
+                "You hide a 0/0: of particles all alike none has a weight then. Give each the same.",
             ),
             Mistake(
                 _equal_as(1.0),
@@ -394,6 +405,10 @@ EXERCISES = [
             Mistake(
                 _mean_with(lambda w, d: np.sqrt(np.sum(w * d**2) * np.sum(w**2))),
                 "Your mean is right. Spread over root N_eff is near, but heavy samples lie together: derive it.",
+            ),
+            Mistake(
+                lambda x, target, proposal: (importance_mean(x, target, proposal)[0], x.std() / np.sqrt(len(x))),
+                "Your mean is right. Your error is that of the unweighed samples, a mean over the proposal.",
             ),
             Mistake(
                 _mean_with(lambda w, d: np.sum((w * d) ** 2)),
