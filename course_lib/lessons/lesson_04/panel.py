@@ -13,7 +13,7 @@ from course_lib.lessons.lesson_04.figures import ERRORS, counts, error_axis
 from course_lib.lessons.lesson_04.time_of_flight import FAULTS, LENGTH, capture
 from course_lib.plots import figures
 
-_DEPTHS = np.linspace(0, 13, 66)
+_DEPTHS = np.linspace(-0.1, 13.1, 67)  # metres; whole and half metres lie inside a bin, never on an edge
 _FREQUENCIES = {"15 MHz (10 m model)": 15e6, "30 MHz (5 m model)": 30e6}
 
 
@@ -31,7 +31,7 @@ def faults_panel() -> Panel:
     steps = depths.stairs(np.ones(len(_DEPTHS) - 1), _DEPTHS, fill=True, color=figures.ORANGE, label="measured")
     steps.set_zorder(1)
     depths.set(title="Histogram of the depths", xlabel="depth Z [m]", ylabel="pixels [-]", yscale="log")
-    depths.set(ylim=(0.5, 3e4), xlim=(0, 13))
+    depths.set(ylim=(0.5, 3e4), xlim=(0, 13.1))
     depths.legend(loc="upper right", ncols=2, fontsize=8)
     error_steps = errors.stairs(np.ones(len(ERRORS) - 1), ERRORS, fill=True, color=figures.BLUE)
     error_axis(errors, "Histogram of the errors")
