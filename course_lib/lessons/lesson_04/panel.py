@@ -13,7 +13,7 @@ from course_lib.lessons.lesson_04.figures import ERRORS, counts, error_axis
 from course_lib.lessons.lesson_04.time_of_flight import FAULTS, LENGTH, capture
 from course_lib.plots import figures
 
-_DEPTHS = np.linspace(-0.1, 13.1, 67)  # metres; whole and half metres lie inside a bin, never on an edge
+_DEPTHS = np.linspace(-0.05, 13.15, 67)  # metres; the walls stand at whole decimetres, no edge of a bin does
 _FREQUENCIES = {"15 MHz (10 m model)": 15e6, "30 MHz (5 m model)": 30e6}
 
 
