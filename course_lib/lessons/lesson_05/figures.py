@@ -48,11 +48,8 @@ def beliefs_figure(beliefs: dict[str, np.ndarray], doors: list[int], shares: dic
         if title in shares:
             a.plot(shares[title], "o", color=figures.BLACK, markersize=4, label="200 particles")
             a.legend(loc="upper right", fontsize=8)
-        a.set(title=title, ylim=(-0.05, 0.75), xticks=np.arange(0, len(belief), 5))
-    for a in axes[1]:
-        a.set_xlabel("cell of the corridor [-]")
-    for a in axes[:, 0]:
-        a.set_ylabel("probability [-]")
+        a.set(title=title, xlabel="cell of the corridor [-]", ylabel="probability [-]")
+        a.set(ylim=(-0.05, 0.4), xticks=np.arange(0, len(belief), 5))
     return figure
 
 
