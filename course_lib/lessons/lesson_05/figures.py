@@ -67,7 +67,7 @@ def spread_figure(frames: np.ndarray, spreads: dict[str, np.ndarray], sigma: flo
 
 
 def trade_figure(sigma_x: np.ndarray, errors: np.ndarray, threshold: float, expected: np.ndarray) -> Figure:
-    """Distance to the nearest particle over sigma, `errors` (sigmas, runs): too small loses the wagon, too large thins."""
+    """Distance to the nearest particle over sigma, `errors` (sigmas, runs): too small loses, too large thins."""
     figure, axes = figures.new_figure(size=(6.8, 3.2))
     axes.loglog(sigma_x, np.median(errors, axis=1), **figures.line_style(0), label="mean over the frames, median run")
     axes.loglog(sigma_x, errors, ".", color=figures.BLUE, markersize=3)
