@@ -1,0 +1,192 @@
+"""Answers that students may give to lessons 00 to 03, for test_exercise_answers.py."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course_lib.geometry import BODY_FROM_OPTICAL, optical_pose, pose_matrix, state_from_matrix
+
+B = BODY_FROM_OPTICAL
+
+
+def one_by_one(measured, simulated):
+    return [[abs(a - b) for a, b in zip(*rows, strict=True)] for rows in zip(measured, simulated, strict=True)]
+
+
+def vote_by_vote(vote, alpha):
+    flat = [math.inf if v == 0 else alpha * (1 - v) / v for v in vote.flat]
+    return np.reshape(flat, vote.shape)
+
+
+def coordinate_after_coordinate(score, start):
+    """Rounds over x, y and yaw, each time the best of a few values, ever closer about the last best."""
+    best, reach = start.copy(), np.array([0.4, 0.3, 0.18])
+    for _ in range(8):
+        for k in range(3):
+            tried = np.tile(best, (16, 1))
+            tried[:, k] += np.linspace(-1, 1, 16) * reach[k]
+            best = tried[np.argmax(score(tried))]
+        reach = 0.6 * reach
+    return best
+
+
+def one_pose_at_a_time(score, start):
+    """A walk: a random step is kept where it leads uphill; the steps grow shorter."""
+    rng = np.random.default_rng(1)
+    best, height, reach = np.array(start), score(start), np.array([0.3, 0.25, 0.12])
+    for _ in range(399):
+        tried = best + reach * rng.normal(size=3)
+        if (value := score(tried)) > height:
+            best, height = tried, value
+        reach = 0.985 * reach
+    return best.tolist()
+
+
+def weighted_cloud(score, start):
+    """A small particle filter: resampled by a power of the score, moved less and less."""
+    rng = np.random.default_rng(2)
+    cloud, reach = np.tile(start, (50, 1)), np.array([0.3, 0.22, 0.12])
+    for _ in range(8):
+        cloud = cloud + reach * rng.normal(size=cloud.shape)
+        values = score(cloud)
+        best = cloud[values.argmax()]
+        cloud = cloud[rng.choice(50, 50, p=values**30 / (values**30).sum())]
+        cloud[0], reach = best, 0.6 * reach
+    return best
+
+
+def too_many(score, start):
+    return start + max(np.random.default_rng(0).normal(size=(500, 3)) * 0.1, key=lambda d: score(start + d))
+
+
+def degrees_for_radians(score, start):
+    rng = np.random.default_rng(0)
+    best, reach = start, np.array([0.28, 0.21, 7.0])
+    for _ in range(10):
+        cloud = best + reach * rng.normal(size=(40, 3))
+        cloud[0] = best
+        best, reach = cloud[np.argmax(score(cloud))], 0.5 * reach
+    return best
+
+
+def rotation(state):
+    return pose_matrix(state)[:3, :3]
+
+
+def homogeneous(points):
+    return np.column_stack([points, np.ones(len(points))])
+
+
+def turned_in_place(points, state):
+    points[:] = points @ B.T
+    return points @ rotation(state).T + state[:3]
+
+
+def six_numbers(matrix, R, pitch=None):
+    """Position of the matrix, angles of R, and another pitch where one is given."""
+    roll, yaw = np.arctan2(R[2, 1], R[2, 2]), np.arctan2(R[1, 0], R[0, 0])
+    usual = np.arctan2(-R[2, 0], np.hypot(R[0, 0], R[1, 0]))
+    return [*matrix[:3, 3], roll, usual if pitch is None else pitch, yaw]
+
+
+def body(matrix):
+    return matrix[:3, :3] @ B.T
+
+
+def swapped_arctan2(matrix):
+    R = body(matrix)
+    pitch = np.arctan2(-R[2, 0], np.hypot(R[0, 0], R[1, 0]))
+    return [*matrix[:3, 3], np.arctan2(R[2, 2], R[2, 1]), pitch, np.arctan2(R[0, 0], R[1, 0])]
+
+
+def left_on_the_whole_matrix(matrix):
+    four = np.eye(4)
+    four[:3, :3] = B
+    return state_from_matrix(four.T @ matrix)
+
+
+def distances(seen, mapped):
+    return np.linalg.norm(seen[:, None] - mapped[None], axis=2)
+
+
+def depth(b, near, far):
+    return near * far / (far - b * (far - near))
+
+
+def masked(layers, seen):
+    return np.where(seen, layers, np.inf)
+
+
+# Exercise, answer, words of the hint that must come.
+WRONG = [
+    ("00.1", lambda m, s: np.minimum(np.abs(m - s), 10), "stops at 10 m"),
+    ("00.1", lambda m, s: np.nan_to_num(np.abs(m - s)), "full agreement"),
+    ("00.1", lambda m, s: np.where(np.isnan(m), 0, np.abs(m - s)), "must stay nan"),
+    ("00.1", lambda m, s: np.abs(np.nan_to_num(m) - np.nan_to_num(s)), "before you subtract"),
+    ("00.1", lambda m, s: np.abs(m - s)[np.isfinite(m)], "shape"),
+    ("00.1", lambda m, s: np.nanmean(np.abs(m - s)), "shape"),
+    ("00.2", lambda v, a: a * v / (1 - v), "changed places"),
+    ("00.2", lambda v, a: a / v, "What is left to take away"),
+    ("00.2", lambda v, a: (1 - v) / v, "no unit"),
+    ("00.2", lambda v, a: 0.1 / v - 0.1, "paper's alpha"),
+    ("00.2", lambda v, a: a / np.maximum(v, 1e-9) - a, "inf"),
+    ("00.2", lambda v, a: np.where(v > 0, a / v - a, 0), "infinite one"),
+    ("00.2", lambda v, a: np.where(v > 2 * a, a / v - a, np.inf), "inf where a finite number"),
+    ("00.3", lambda score, start: start, "return the pose that you were given"),
+    ("00.3", too_many, "more than 400 poses"),
+    ("00.3", degrees_for_radians, "closer and closer"),
+    ("00.3", lambda score, start: start[:2], "three finite numbers"),
+    ("00.3", lambda score, start: score(start), "three finite numbers"),
+    ("00.3", lambda score, start: np.full(3, np.nan), "three finite numbers"),
+    ("01.1", lambda p, s: p @ B @ rotation(s) + s[:3], "Both of your turns run backwards"),
+    ("01.1", lambda p, s: p[:, [2, 0, 1]] @ rotation(s).T + s[:3], "keep their signs"),
+    ("01.1", lambda p, s: p @ (B @ rotation(s)).T + s[:3], "R acts before B"),
+    ("01.1", lambda p, s: p @ B.T @ rotation(s).T - s[:3], "added, not taken away"),
+    ("01.1", turned_in_place, "changes the array"),
+    ("01.2", left_on_the_whole_matrix, "turns the position, too"),
+    ("01.2", lambda m: six_numbers(m, body(m).T), "transposed"),
+    ("01.2", lambda m: six_numbers(m, body(m), np.arctan2(-body(m)[2, 0], body(m)[0, 0])), "R00 alone"),
+    ("01.2", lambda m: six_numbers(m, body(m), np.arctan(-body(m)[2, 0])), "*sine* of the pitch"),
+    ("01.2", swapped_arctan2, "sine part first"),
+    ("02.3", lambda s, m, limit: np.mean(distances(s, m) > limit), "share of all pairs"),
+    ("02.3", lambda s, m, limit: np.mean(distances(s[:, :2], m[:, :2]).min(1) > limit), "on the floor"),
+    ("02.3", lambda s, m, limit: np.mean((distances(s, m) ** 2).min(1) > limit), "take the root"),
+    ("02.3", lambda s, m, limit: np.mean(distances(s, m).min(1) > 0.1), "use the argument"),
+    ("02.3", lambda s, m, limit: np.mean(np.abs(s[:, None] - m).max(2).min(1) > limit), "a cube"),
+    ("02.3", lambda s, m, limit: np.mean(np.abs(s[:, None] - m).sum(2).min(1) > limit), "not yet"),
+    ("02.3", lambda s, m, limit: np.mean(distances(s, m).max(1) > limit), "Only the nearest"),
+    ("03.1", lambda b, n, f: np.where(b > 0.99, np.inf, depth(b, n, f)), "inf where a finite number is expected"),
+    ("03.1", lambda b, n, f: np.where(np.isclose(b, 1), np.inf, depth(b, n, f)), "just below 1"),
+    ("03.1", lambda b, n, f: np.where((b < 1) & (b > 0), depth(b, n, f), np.inf), "inf where a finite number"),
+    ("03.1", lambda b, n, f: np.where(b < 1, n * f / (f + b * (f - n)), np.inf), "the sign below"),
+    ("03.1", lambda b, n, f: np.where(b < 1, f / (f - b * (f - n)), np.inf), "missing above the fraction line"),
+    ("03.1", lambda b, n, f: np.where(b < 1, 1000 * depth(b, n, f), np.inf), "millimetres"),
+    ("03.1", lambda b, n, f: np.where(b < 1, n * f / (f - b * f - n), np.inf), "brackets"),
+    ("03.2", lambda a, b, s: 1 / ((1 - s) / min(a, b) + s / max(a, b)), "walk from the nearer end"),
+    ("03.2", lambda a, b, s: 1 / (1 / a + s / b), "At s = 1 only z_end"),
+    ("03.3", lambda layers, n, f: masked(layers, layers >= n).min(axis=0), "not far"),
+    ("03.3", lambda layers, n, f: masked(layers, layers <= f).min(axis=0), "not near"),
+    ("03.3", lambda layers, n, f: masked(layers, (layers >= n) & (layers <= f))[0], "first layer alone"),
+    ("03.3", lambda layers, n, f: masked(layers, (layers >= n) & (layers <= f)).mean(axis=0), "inf where a finite"),
+]
+RIGHT = [
+    ("00.1", lambda m, s: np.maximum(m, s) - np.minimum(m, s)),
+    ("00.1", one_by_one),
+    ("00.1", lambda m, s: np.abs(m.astype(np.float32) - s.astype(np.float32))),
+    ("00.1", lambda m, s: np.sqrt((s - m) ** 2)),
+    ("00.2", lambda v, a: a * (1 - v) / v),
+    ("00.2", vote_by_vote),
+    ("00.2", lambda v, a: a * (1 / v - 1)),
+    ("00.3", coordinate_after_coordinate),
+    ("00.3", one_pose_at_a_time),
+    ("00.3", weighted_cloud),
+    ("01.1", lambda p, s: (optical_pose(s) @ homogeneous(p).T)[:3].T),
+    ("01.1", lambda p, s: [list(rotation(s) @ B @ q + s[:3]) for q in p]),
+    ("01.2", lambda m: six_numbers(m, body(m), np.arcsin(-body(m)[2, 0]))),
+    ("02.3", lambda s, m, limit: sum(not any(np.linalg.norm(m - p, axis=1) <= limit) for p in s) / len(s)),
+    ("03.1", lambda b, n, f: [[np.inf if v == 1 else 1 / (v / f + (1 - v) / n) for v in row] for row in b]),
+    ("03.2", lambda a, b, s: a * b / (b + s * (a - b))),
+    ("03.3", lambda layers, n, f: np.sort(masked(layers, (layers >= n) & (layers <= f)), axis=0)[0]),
+]
