@@ -317,7 +317,7 @@ EXERCISES = [
         mistakes=(
             Mistake(
                 lambda score, start: start,
-                "You return the pose that you were given: ask `score` about others, and keep the best.",
+                "That is the pose that you were given: ask `score` about others, and keep the best.",
             ),
             Mistake(
                 _downhill,

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from course_lib.geometry import BODY_FROM_OPTICAL, optical_pose, pose_matrix, state_from_matrix
+from course_lib.geometry import BODY_FROM_OPTICAL, optical_pose, pose_matrix, state_from_matrix, wrap_angle
 
 B = BODY_FROM_OPTICAL
 
@@ -36,11 +38,11 @@ def one_pose_at_a_time(score, start):
     """A walk: a random step is kept where it leads uphill; the steps grow shorter."""
     rng = np.random.default_rng(1)
     best, height, reach = np.array(start), score(start), np.array([0.3, 0.25, 0.12])
-    for _ in range(399):
+    for _ in range(249):
         tried = best + reach * rng.normal(size=3)
         if (value := score(tried)) > height:
             best, height = tried, value
-        reach = 0.985 * reach
+        reach = 0.976 * reach
     return best.tolist()
 
 
@@ -119,6 +121,49 @@ def masked(layers, seen):
     return np.where(seen, layers, np.inf)
 
 
+def relative(before, after):
+    return np.linalg.inv(pose_matrix(before)) @ pose_matrix(after)
+
+
+def axis_by_axis(before, after):
+    """The step by dot products with the first camera's axes; the turn by its matrix."""
+    R, S = rotation(before), rotation(after)
+    step = [np.dot(R[:, k], after[:3] - before[:3]) for k in range(3)]
+    turn = R.T @ S
+    return [*step, math.atan2(turn[2, 1], turn[2, 2]), -math.asin(turn[2, 0]), math.atan2(turn[1, 0], turn[0, 0])]
+
+
+def flat(before, after):
+    """Right for a wagon: yaw alone."""
+    c, s = np.cos(before[5]), np.sin(before[5])
+    dx, dy, dz = after[:3] - before[:3]
+    return [c * dx + s * dy, c * dy - s * dx, dz, *wrap_angle(after - before)[3:]]
+
+
+def turn_about(axis, degrees):
+    angles = np.zeros(6)
+    angles[3 + axis] = np.deg2rad(degrees)
+    return rotation(angles)
+
+
+def product(axes, signs, first, row):
+    turns = [turn_about(axis, sign * angle) for axis, sign, angle in zip(axes, signs, row, strict=True)]
+    return turns[2] @ turns[1] @ turns[0] if first else turns[0] @ turns[1] @ turns[2]
+
+
+def tried_one_by_one(angles, rotations, new, firsts=(True, False), signs=(1, -1)):
+    """Every reading by matrices of our own, the first that fits."""
+    for axes in itertools.permutations(range(3)):
+        for sign in itertools.product(signs, repeat=3):
+            for first in firsts:
+                made = [product(axes, sign, first, row) for row in angles]
+                if np.allclose(made, rotations, atol=1e-6):
+                    matrices = np.tile(np.eye(4), (len(new), 1, 1))
+                    matrices[:, :3, :3] = [product(axes, sign, first, row) for row in new]
+                    return state_from_matrix(matrices)[:, 3:]
+    return None
+
+
 # Exercise, answer, words of the hint that must come.
 WRONG = [
     ("00.1", lambda m, s: np.minimum(np.abs(m - s), 10), "stops at 10 m"),
@@ -134,7 +179,7 @@ WRONG = [
     ("00.2", lambda v, a: a / np.maximum(v, 1e-9) - a, "inf"),
     ("00.2", lambda v, a: np.where(v > 0, a / v - a, 0), "infinite one"),
     ("00.2", lambda v, a: np.where(v > 2 * a, a / v - a, np.inf), "inf where a finite number"),
-    ("00.3", lambda score, start: start, "return the pose that you were given"),
+    ("00.3", lambda score, start: start, "the pose that you were given"),
     ("00.3", too_many, "more than 400 poses"),
     ("00.3", degrees_for_radians, "closer and closer"),
     ("00.3", lambda score, start: start[:2], "three finite numbers"),
@@ -150,6 +195,19 @@ WRONG = [
     ("01.2", lambda m: six_numbers(m, body(m), np.arctan2(-body(m)[2, 0], body(m)[0, 0])), "R00 alone"),
     ("01.2", lambda m: six_numbers(m, body(m), np.arctan(-body(m)[2, 0])), "*sine* of the pitch"),
     ("01.2", swapped_arctan2, "sine part first"),
+    ("01.1", lambda p, s: (p @ B.T - s[:3]) @ rotation(s), "from the body to the world already"),
+    ("01.2", lambda m: six_numbers(m, body(m)) * np.array([1, 1, 1, 0, 1, 1]), "A camera in a hand rolls"),
+    ("01.2", lambda m: [*m[:3, 3], *Rotation.from_matrix(body(m)).as_euler("zyx")[::-1]], "with capitals"),
+    ("01.3", flat, "Right for a wagon"),
+    ("01.3", lambda a, b: [*(b - a)[:3], *state_from_matrix(relative(a, b))[3:]], "along the world's axes"),
+    ("01.3", lambda a, b: state_from_matrix(np.linalg.inv(relative(a, b))), "the way back"),
+    ("01.3", lambda a, b: state_from_matrix(pose_matrix(b) @ np.linalg.inv(pose_matrix(a))), "wrong side"),
+    ("01.3", lambda a, b: relative(a, b), "shape"),
+    ("01.3", lambda a, b: b - a, "subtract the numbers"),
+    ("01.4", lambda a, R, new: np.deg2rad(new), "as this course does"),
+    ("01.4", lambda a, R, new: tried_one_by_one(a, R, new, firsts=(True,)), "None"),
+    ("01.4", lambda a, R, new: tried_one_by_one(a, R, new, signs=(1,)), "None"),
+    ("01.4", lambda a, R, new: np.rad2deg(tried_one_by_one(a, R, new)), "radians"),
     ("02.3", lambda s, m, limit: np.mean(distances(s, m) > limit), "share of all pairs"),
     ("02.3", lambda s, m, limit: np.mean(distances(s[:, :2], m[:, :2]).min(1) > limit), "on the floor"),
     ("02.3", lambda s, m, limit: np.mean((distances(s, m) ** 2).min(1) > limit), "take the root"),
@@ -185,6 +243,11 @@ RIGHT = [
     ("01.1", lambda p, s: (optical_pose(s) @ homogeneous(p).T)[:3].T),
     ("01.1", lambda p, s: [list(rotation(s) @ B @ q + s[:3]) for q in p]),
     ("01.2", lambda m: six_numbers(m, body(m), np.arcsin(-body(m)[2, 0]))),
+    ("01.1", lambda p, s: np.float32(p @ (rotation(s) @ B).T + s[:3])),
+    ("01.3", lambda a, b: state_from_matrix(np.linalg.solve(pose_matrix(a), pose_matrix(b)))),
+    ("01.3", axis_by_axis),
+    ("01.4", tried_one_by_one),
+    ("01.4", lambda a, R, new: tried_one_by_one(a, R, new, firsts=(False, True), signs=(-1, 1)).tolist()),
     ("02.3", lambda s, m, limit: sum(not any(np.linalg.norm(m - p, axis=1) <= limit) for p in s) / len(s)),
     ("03.1", lambda b, n, f: [[np.inf if v == 1 else 1 / (v / f + (1 - v) / n) for v in row] for row in b]),
     ("03.2", lambda a, b, s: a * b / (b + s * (a - b))),
