@@ -164,6 +164,49 @@ def tried_one_by_one(angles, rotations, new, firsts=(True, False), signs=(1, -1)
     return None
 
 
+def aimed(points):
+    """Range, azimuth, elevation one point after the other, with the standard library."""
+    found = [
+        (math.dist(p, (0, 0, 0)), math.atan2(p[1], p[0]), math.asin(p[2] / math.dist(p, (0, 0, 0)))) for p in points
+    ]
+    return [list(column) for column in zip(*found, strict=True)]
+
+
+def floor_range(points):
+    return np.hypot(points[:, 0], points[:, 1])
+
+
+def walked(steps):
+    """Places of a chain, with a place and a turn carried along."""
+    place, turn, places = np.zeros(3), np.eye(3), [[0.0, 0.0, 0.0]]
+    for step in steps:
+        place = place + turn @ step[:3, 3]
+        turn = turn @ step[:3, :3]
+        places.append(list(place))
+    return places
+
+
+def one_by_matrix_products(steps):
+    poses = [np.eye(4)]
+    for step in steps:
+        poses.append(poses[-1] @ step)
+    return np.stack(poses)[:, :3, 3]
+
+
+def simulated_sigma(n_steps, spacing, sigma_place, sigma_heading, runs=10_000):
+    """The same sigma by simulation: rows of stations with random errors."""
+    rng = np.random.default_rng(0)
+    x, y, heading = np.zeros(runs), np.zeros(runs), np.zeros(runs)
+    for _ in range(n_steps):
+        ahead, left = spacing + sigma_place * rng.normal(size=runs), sigma_place * rng.normal(size=runs)
+        x, y = (
+            x + np.cos(heading) * ahead - np.sin(heading) * left,
+            y + np.sin(heading) * ahead + np.cos(heading) * left,
+        )
+        heading = heading + sigma_heading * rng.normal(size=runs)
+    return np.std(y)
+
+
 # Exercise, answer, words of the hint that must come.
 WRONG = [
     ("00.1", lambda m, s: np.minimum(np.abs(m - s), 10), "stops at 10 m"),
@@ -208,6 +251,24 @@ WRONG = [
     ("01.4", lambda a, R, new: tried_one_by_one(a, R, new, firsts=(True,)), "None"),
     ("01.4", lambda a, R, new: tried_one_by_one(a, R, new, signs=(1,)), "None"),
     ("01.4", lambda a, R, new: np.rad2deg(tried_one_by_one(a, R, new)), "radians"),
+    ("02.1", lambda p: (np.linalg.norm(p, axis=1), np.arctan(p[:, 1] / p[:, 0]), aimed(p)[2]), "behind the scanner"),
+    ("02.1", lambda p: (aimed(p)[0], aimed(p)[1], -np.array(aimed(p)[2])), "wrong sign"),
+    ("02.1", lambda p: (aimed(p)[0], aimed(p)[1], np.arccos(p[:, 2] / aimed(p)[0])), "straight up"),
+    ("02.1", lambda p: (floor_range(p), *aimed(p)[1:]), "distance on the floor"),
+    ("02.1", lambda p: (aimed(p)[1], aimed(p)[2], aimed(p)[0]), "another order"),
+    ("02.1", lambda p: np.transpose(aimed(p)), "Return 3 values"),
+    ("02.2", lambda steps: np.vstack([np.zeros(3), steps[:, :3, 3].cumsum(axis=0)]), "as if no station were turned"),
+    ("02.2", lambda steps: one_by_matrix_products(steps)[1:], "first station is missing"),
+    ("02.2", lambda steps: one_by_matrix_products(np.linalg.inv(steps)), "walk every step backwards"),
+    ("02.2", lambda steps: steps[:, :3, 3], "shape"),
+    ("02.4", lambda n, d, place, heading: math.sqrt(n) * place, "leave the headings out"),
+    ("02.4", lambda n, d, place, heading: math.hypot(math.sqrt(n) * place, n * d * heading), "first heading swing"),
+    ("02.4", lambda n, d, place, heading: n * math.hypot(place, d * heading), "too large"),
+    ("02.4", lambda *given: 2 * simulated_sigma(*given), "too large"),
+    ("02.4", lambda *given: simulated_sigma(*given) ** 2, "too small"),
+    ("02.4", lambda *given: "0.05 m", "one number"),
+    ("02.3", lambda s, m, limit: 1 - np.sum(distances(s, m) <= limit) / len(s), "You count pairs"),
+    ("02.3", lambda s, m, limit: 1 - np.sum(distances(m, s).min(1) <= limit) / len(s), "Count the *places*"),
     ("02.3", lambda s, m, limit: np.mean(distances(s, m) > limit), "share of all pairs"),
     ("02.3", lambda s, m, limit: np.mean(distances(s[:, :2], m[:, :2]).min(1) > limit), "on the floor"),
     ("02.3", lambda s, m, limit: np.mean((distances(s, m) ** 2).min(1) > limit), "take the root"),
@@ -248,6 +309,13 @@ RIGHT = [
     ("01.3", axis_by_axis),
     ("01.4", tried_one_by_one),
     ("01.4", lambda a, R, new: tried_one_by_one(a, R, new, firsts=(False, True), signs=(-1, 1)).tolist()),
+    ("02.1", aimed),
+    ("02.1", lambda p: np.stack([np.linalg.norm(p, axis=1), np.angle(p[:, 0] + 1j * p[:, 1]), aimed(p)[2]])),
+    ("02.2", walked),
+    ("02.2", one_by_matrix_products),
+    ("02.3", lambda s, m, limit: np.array([np.mean(distances(s, m).min(1) > limit)])),
+    ("02.4", simulated_sigma),
+    ("02.4", lambda n, d, p, h: math.sqrt(n * p * p + sum((d * h * k) ** 2 for k in range(n)))),
     ("02.3", lambda s, m, limit: sum(not any(np.linalg.norm(m - p, axis=1) <= limit) for p in s) / len(s)),
     ("03.1", lambda b, n, f: [[np.inf if v == 1 else 1 / (v / f + (1 - v) / n) for v in row] for row in b]),
     ("03.2", lambda a, b, s: a * b / (b + s * (a - b))),
