@@ -52,6 +52,11 @@ class Lesson:
         return [output for cell in self.code_cells for output in cell.outputs]
 
     @property
+    def html(self) -> list[str]:
+        """Everything that the lesson shows as HTML: pictures, panels, scenes."""
+        return [output.data.get("text/html", "") for output in self.outputs if "data" in output]
+
+    @property
     def markdown(self) -> str:
         return "\n\n".join(cell.source for cell in self.cells if cell.cell_type == "markdown")
 

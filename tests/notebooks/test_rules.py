@@ -68,8 +68,7 @@ def test_outputs_are_of_known_types(lesson):
 
 
 def test_every_picture_has_alternative_text(lesson):
-    html = [output.data.get("text/html", "") for output in lesson.outputs if "data" in output]
-    for text in [*html, lesson.markdown]:
+    for text in [*lesson.html, lesson.markdown]:
         for image in re.findall(r"<img\b[^>]*>", text):
             alt = re.search(r'\balt="([^"]*)"', image)
             assert alt, f"no alternative text: {image[:80]}"
@@ -81,11 +80,33 @@ def test_every_picture_has_alternative_text(lesson):
 
 
 def test_scenes_are_small_and_there(lesson):
-    html = "".join(output.data.get("text/html", "") for output in lesson.outputs if "data" in output)
-    for source in re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', html + lesson.markdown):
+    for source in re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', "".join([*lesson.html, lesson.markdown])):
         scene = lesson.path.parent / source
         assert scene.parent.name == "scenes"
         assert scene.stat().st_size <= 2_000_000
+
+
+def test_nearly_every_printed_line_says_what_was_measured_not_whether_it_was_good(all_lessons):
+    printed = [
+        (lesson.number, line)
+        for lesson in all_lessons
+        for output in lesson.outputs
+        if output.get("name") == "stdout"
+        for line in output.text.splitlines()
+    ]
+    verdicts = [line for line in printed if re.search(r"\b(True|False)\b", line[1])]
+    assert len(printed) >= 500
+    assert len(verdicts) <= 10, verdicts
+
+
+def test_lessons_show_scenes_in_three_dimensions(all_lessons):
+    shown = [lesson.number for lesson in all_lessons if any("<iframe" in html for html in lesson.html)]
+    assert len(shown) >= 9
+
+
+def test_where_no_frame_is_shown_a_scene_has_its_picture(lesson):
+    for html in lesson.html:
+        assert html.count("<iframe") <= len(re.findall(r"<img\b[^>]*\balt=", html)) or "11_sphere" in html
 
 
 def test_cell_ids_are_the_lessons_own(lesson):
