@@ -146,6 +146,11 @@ def distances(scene_map: SceneMap, door_open: bool = False, n: int = 4000) -> np
     face = rng.choice(len(area), n, p=area / area.sum())
     # Equal chances all over a triangle: Dirichlet shares of its corners.
     points = np.einsum("nk,nkd->nd", rng.dirichlet(np.ones(3), n), corners[face])
+    return distance_to_room(points, door_open)
+
+
+def distance_to_room(points: np.ndarray, door_open: bool = False) -> np.ndarray:
+    """Distance [m] of each of points `(n, 3)` to the nearest surface of the room."""
     low, high = room(door_open).low, room(door_open).high
     off = np.maximum(low - points[:, None], points[:, None] - high)  # beyond each box's sides, negative inside
     outside = np.linalg.norm(np.maximum(off, 0), axis=2)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import base64
 from pathlib import Path
 
-from course_lib.lessons.lesson_11.sphere_scene import SCENE
+from course_lib.lessons.lesson_11.views import SCENE
 from course_lib.paths import REPOSITORY, data_path
 
 PICTURE = "room/experiment_1/05_b_upper.jpg"

@@ -11,9 +11,8 @@ import pytest
 from course_lib.lessons.kit.exercises import find_exercise, judge
 from course_lib.lessons.kit.room_photographs import room_recording, the_image
 from course_lib.lessons.lesson_11.panel import sphere_panel
-from course_lib.lessons.lesson_11.sphere_scene import SCENE, Scene
 from course_lib.lessons.lesson_11.sphere_view import SIZE, SphereView, circle_around, circle_on_panorama
-from course_lib.lessons.lesson_11.views import all_bearings, look_up, object_at_the_seam
+from course_lib.lessons.lesson_11.views import SCENE, all_bearings, look_up, object_at_the_seam
 from course_lib.lessons.lesson_11.write_sphere_scene import scene_html, write_scene
 from course_lib.paths import REPOSITORY, data_path
 from course_lib.spherical_stereo.panorama import direction_from_angles, direction_to_pixel, pixel_to_direction
@@ -92,11 +91,6 @@ def test_the_stored_scene_is_what_the_command_writes(tmp_path):
     assert write_scene(tmp_path / "scene.html").read_text() == stored.read_text()
     assert stored.stat().st_size <= 2_000_000
     assert "http" not in scene_html().replace("http-equiv", ""), "the scene loads nothing"
-
-
-def test_a_scene_is_shown_in_a_titled_frame():
-    bundle = Scene("scenes/a.html", 'A "quoted" title', 300)._repr_mimebundle_()
-    assert bundle["text/html"].startswith('<iframe src="scenes/a.html" title="A &quot;quoted&quot; title"')
 
 
 @pytest.fixture(scope="module")
