@@ -207,6 +207,28 @@ def simulated_sigma(n_steps, spacing, sigma_place, sigma_heading, runs=10_000):
     return np.std(y)
 
 
+def triangle_fan(corners, near):
+    """The cut by cases: how many corners are before the plane, and which one is alone."""
+    before = corners[:, 2] < near
+    if before.sum() in (0, 3):
+        return [] if before.all() else corners.tolist()
+    k = int(np.flatnonzero(before == (before.sum() == 1))[0])  # the corner that is alone on its side
+    alone, second, third = corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]
+    meets = [alone + (near - alone[2]) / (other[2] - alone[2]) * (other - alone) for other in (second, third)]
+    return np.array([meets[0], second, third, meets[1]] if before.sum() == 1 else [alone, *meets])
+
+
+def cut_by_rays(corners, near):
+    """New corners by mixing 1/Z, as on the screen: wrong where a corner is behind the camera."""
+    kept = []
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if a[2] >= near:
+            kept.append(a)
+        if (a[2] >= near) != (b[2] >= near):
+            kept.append(a + (1 / near - 1 / a[2]) / (1 / b[2] - 1 / a[2]) * (b - a))
+    return np.reshape(kept, (-1, 3))
+
+
 # Exercise, answer, words of the hint that must come.
 WRONG = [
     ("00.1", lambda m, s: np.minimum(np.abs(m - s), 10), "stops at 10 m"),
@@ -285,6 +307,24 @@ WRONG = [
     ("03.1", lambda b, n, f: np.where(b < 1, n * f / (f - b * f - n), np.inf), "brackets"),
     ("03.2", lambda a, b, s: 1 / ((1 - s) / min(a, b) + s / max(a, b)), "walk from the nearer end"),
     ("03.2", lambda a, b, s: 1 / (1 / a + s / b), "At s = 1 only z_end"),
+    ("03.1", lambda b, n, f: np.where(b < 1, depth(b, n, f), np.nan), "nan there"),
+    ("03.1", lambda b, n, f: np.where(b < 1, depth(b, n, f), 0), "a surface at the lens"),
+    ("03.1", lambda b, n, f: depth(b, n, f), "not far"),
+    (
+        "03.3",
+        lambda layers, n, f: np.where(
+            np.isinf(first := np.min(masked(layers, (layers >= n) & (layers <= f)), 0)), np.nan, first
+        ),
+        "reads nan",
+    ),
+    ("03.3", lambda layers, n, f: masked(layers, (layers > n) & (layers < f)).min(axis=0), "exactly on the near"),
+    ("03.3", lambda layers, n, f: np.nanmin(np.where((layers >= n) & (layers <= f), layers, np.nan), axis=0), "nan"),
+    ("03.4", lambda c, near: c[c[:, 2] >= near], "a corner is new"),
+    ("03.4", lambda c, near: np.maximum(c, [-np.inf, -np.inf, near]), "bends the triangle"),
+    ("03.4", cut_by_rays, "places"),
+    ("03.4", lambda c, near: c if c[:, 2].min() >= near else [], "corners and should have"),
+    ("03.4", lambda c, near: triangle_fan(c, near)[0:3], "corners and should have"),
+    ("03.4", lambda c, near: len(triangle_fan(c, near)), "(n, 3)"),
     ("03.3", lambda layers, n, f: masked(layers, layers >= n).min(axis=0), "not far"),
     ("03.3", lambda layers, n, f: masked(layers, layers <= f).min(axis=0), "not near"),
     ("03.3", lambda layers, n, f: masked(layers, (layers >= n) & (layers <= f))[0], "first layer alone"),
@@ -320,4 +360,10 @@ RIGHT = [
     ("03.1", lambda b, n, f: [[np.inf if v == 1 else 1 / (v / f + (1 - v) / n) for v in row] for row in b]),
     ("03.2", lambda a, b, s: a * b / (b + s * (a - b))),
     ("03.3", lambda layers, n, f: np.sort(masked(layers, (layers >= n) & (layers <= f)), axis=0)[0]),
+    ("03.1", lambda b, n, f: np.where(depth(b, n, f) >= f, np.inf, depth(b, n, f))),
+    ("03.1", lambda b, n, f: 1 / np.where(b == 1, 0, (1 - b) / n + b / f)),
+    ("03.2", lambda a, b, s: [1 / (1 / a + t * (1 / b - 1 / a)) for t in s]),
+    ("03.3", lambda layers, n, f: np.nanmin(np.where((layers >= n) & (layers <= f), layers, np.inf), axis=0).tolist()),
+    ("03.4", triangle_fan),
+    ("03.4", lambda c, near: np.array(triangle_fan(c, near))[::-1]),
 ]

@@ -83,7 +83,7 @@ def test_the_same_survey_comes_out_again():
 
 
 def test_a_row_tells_holes_and_distances_with_their_digits():
-    text = row(MapQuality(30295, 0.0025, 0.0173, 0.158, (0.1454, 0.1715), 0.02))
+    text = row(MapQuality(30295, 0.0025, 0.0173, 0.158, (0.1454, 0.1712), 0.02))
     assert text == "30295 triangles; map to room: median 2.5 mm, 90 % below 17 mm; holes 15.8 % (14.5 to 17.1)"
 
 
