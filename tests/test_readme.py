@@ -92,6 +92,7 @@ SIX_DEGREES = [
     *(CORRIDOR_RESULTS / f"kitchen_{name}.json" for name in ("six_degrees", "icp", "ablation")),
     CORRIDOR_RESULTS / "hand_1-5.json",
     ROOM_RESULTS / "walk_10061-10066.json",
+    ROOM_RESULTS / "walk_1-10.json",
 ]
 
 

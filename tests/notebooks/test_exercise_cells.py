@@ -33,10 +33,31 @@ def stub_of(lesson, number: str):
     return functions_of(lesson, only(lesson.exercise_cells(number, "exercise")))
 
 
-def test_a_lesson_has_two_to_five_exercises_and_the_library_knows_them(lesson):
+def test_a_lesson_has_three_to_six_exercises_and_the_library_knows_them(lesson):
     numbers = lesson.exercise_numbers()
-    assert 2 <= len(numbers) <= 5
+    assert 3 <= len(numbers) <= 6
     assert numbers == [exercise.number for exercise in lesson_exercises(lesson.number)]
+
+
+def test_a_lesson_has_a_warm_up_a_core_exercise_and_a_challenge_and_says_so(lesson):
+    exercises = {exercise.number: exercise for exercise in lesson_exercises(lesson.number)}
+    assert {exercise.level for exercise in exercises.values()} == {"warm-up", "core", "challenge"}
+    for number, exercise in exercises.items():
+        heading = only(lesson.exercise_cells(number, "task")).source.splitlines()[0]
+        said = re.search(r" · (warm-up|challenge)$", heading)
+        assert (said[1] if said else "core") == exercise.level, heading
+
+
+def test_the_series_has_75_exercises(all_lessons):
+    assert sum(len(lesson.exercise_numbers()) for lesson in all_lessons) >= 75
+
+
+def test_the_first_hint_asks_and_no_hint_is_the_code(lesson):
+    for number in lesson.exercise_numbers():
+        text = "".join(cell.source for cell in lesson.exercise_cells(number, "hint"))
+        hints = re.findall(r"<details><summary>[^<]*</summary>(.*?)</details>", text, re.S)
+        assert "?" in hints[0], f"{number}: the first hint is a question"
+        assert not any("```" in hint or re.search(r"\breturn\b[^.?,;]*[(\[]", hint) for hint in hints), number
 
 
 def test_every_exercise_is_complete(lesson):

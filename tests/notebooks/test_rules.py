@@ -69,8 +69,7 @@ def test_outputs_are_of_known_types(lesson):
 
 
 def test_every_picture_has_alternative_text(lesson):
-    html = [output.data.get("text/html", "") for output in lesson.outputs if "data" in output]
-    for text in [*html, lesson.markdown]:
+    for text in [*lesson.html, lesson.markdown]:
         for image in re.findall(r"<img\b[^>]*>", text):
             alt = re.search(r'\balt="([^"]*)"', image)
             assert alt, f"no alternative text: {image[:80]}"
@@ -82,8 +81,7 @@ def test_every_picture_has_alternative_text(lesson):
 
 
 def scene_sources(lesson) -> list[str]:
-    html = "".join(output.data.get("text/html", "") for output in lesson.outputs if "data" in output)
-    return re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', html + lesson.markdown)
+    return re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', "".join([*lesson.html, lesson.markdown]))
 
 
 def test_scenes_are_small_and_there(lesson):
@@ -104,6 +102,29 @@ def test_a_scene_made_with_pyvista_has_its_picture(lesson):
         if "show_scene(" in cell.source:
             html = "".join(output.get("data", {}).get("text/html", "") for output in cell.outputs)
             assert re.search(r"</iframe><details><summary>[^<]+</summary><img alt=", html), cell.id
+
+
+def test_nearly_every_printed_line_says_what_was_measured_not_whether_it_was_good(all_lessons):
+    printed = [
+        (lesson.number, line)
+        for lesson in all_lessons
+        for output in lesson.outputs
+        if output.get("name") == "stdout"
+        for line in output.text.splitlines()
+    ]
+    verdicts = [line for line in printed if re.search(r"\b(True|False)\b", line[1])]
+    assert len(printed) >= 500
+    assert len(verdicts) <= 10, verdicts
+
+
+def test_lessons_show_scenes_in_three_dimensions(all_lessons):
+    shown = [lesson.number for lesson in all_lessons if any("<iframe" in html for html in lesson.html)]
+    assert len(shown) >= 9
+
+
+def test_where_no_frame_is_shown_a_scene_has_its_picture(lesson):
+    for html in lesson.html:
+        assert html.count("<iframe") <= len(re.findall(r"<img\b[^>]*\balt=", html)) or "11_sphere" in html
 
 
 def test_cell_ids_are_the_lessons_own(lesson):

@@ -110,6 +110,13 @@ def test_the_recap_names_terms_in_both_languages(lesson):
     assert "Next" in recap
 
 
+def test_the_recap_says_what_to_read_next_and_what_for(lesson):
+    recap = text_of(section(lesson, "Recap"))
+    further = re.search(r"\*\*Further reading\b(.+?)\*\*Next", recap, re.S)
+    assert further, "**Further reading** stands before **Next:**"
+    assert 2 <= len(re.findall(r"\b(?:19|20)\d\d\b", further[1])) <= 6, "two to four works, with their years"
+
+
 def test_headings_step_down_one_level_at_a_time(lesson):
     levels = [len(marks) for marks in re.findall(r"^(#+) ", lesson.markdown, re.M)]
     assert levels[0] == 1

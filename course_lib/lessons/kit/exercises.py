@@ -1,10 +1,10 @@
 """Exercises that answer at once: `check("03.1", function)` says not attempted, right, or wrong with a fitting hint.
 
 An `Exercise` holds what is right (a reference function), how to make inputs, and the mistakes that people really make,
-each as a wrong function with the hint that mends it. A student's function runs on several random inputs; its values
-are compared with the reference's and, where they differ, with those of every known mistake. Neither the inputs nor the
-reference are ever shown. Lesson NN keeps its exercises in `course_lib/lessons/lesson_NN/exercises.py`, as a list
-`EXERCISES`.
+each as a wrong function with the hint that mends it. A student's function runs on the cases that matter and on several
+random inputs; its values are compared with the reference's and, where they differ, with those of every known mistake.
+Neither the inputs nor the reference are ever shown. Lesson NN keeps its exercises in
+`course_lib/lessons/lesson_NN/exercises.py`, as a list `EXERCISES`.
 """
 
 from __future__ import annotations
@@ -12,17 +12,22 @@ from __future__ import annotations
 import copy
 import dis
 import importlib
-import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
-from course_lib.lessons.kit.hints import agree, hint, kind_of
+from course_lib.lessons.kit.attempt import SECONDS, attempt
+from course_lib.lessons.kit.hints import MISSING_RETURN, agree_all, hint, kind_of, known_mistake
 
 # Random inputs per check: enough that a case drawn for one input in five is never missed, save once in 200 checks.
 N_INPUTS = 24
+SHOWN = 1000
+"""Characters shown of what a student's function prints; the first call's alone."""
+
+Level = Literal["warm-up", "core", "challenge"]
 
 
 @dataclass(frozen=True)
@@ -39,6 +44,10 @@ class Exercise:
 
     number: such as "03.1". reference: the right function. inputs: makes one tuple of arguments from a
     `numpy.random.Generator`. mistakes: at least three. tolerance: absolute, plus the same share of the value.
+    level: how hard it is. cases: like `inputs`, each drawn once in every check: the seam, the mirror image, the empty,
+    the equal and the extreme case. others: other functions that the task allows, such as another estimator.
+    verify: where many answers are right, `verify(arguments, answer)` tells what is wrong with one, or None, instead of
+    a comparison with the reference's.
     """
 
     number: str
@@ -46,14 +55,23 @@ class Exercise:
     inputs: Callable[[np.random.Generator], tuple]
     mistakes: tuple[Mistake, ...]
     tolerance: float = 1e-6
+    level: Level = "core"
+    cases: tuple[Callable[[np.random.Generator], tuple], ...] = ()
+    others: tuple[Callable, ...] = ()
+    verify: Callable[[tuple, object], str | None] | None = None
+
+    def draw(self, rng: np.random.Generator) -> list[tuple]:
+        """Arguments of every call of one check: the cases, then `N_INPUTS` random ones."""
+        return [make(rng) for make in (*self.cases, *[self.inputs] * N_INPUTS)]
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """Outcome of a check: status "not attempted", "right" or "wrong", and the sentence that is printed."""
+    """Outcome of a check, the sentence that is printed, and what the function itself `printed` in its first call."""
 
-    status: str
+    status: Literal["not attempted", "right", "wrong"]
     message: str
+    printed: str = ""
 
 
 class UnknownExerciseError(KeyError):
@@ -65,7 +83,10 @@ class UnknownExerciseError(KeyError):
 
 def check(number: str, function: Callable) -> None:
     """Print whether `function` solves exercise `number`: not attempted, right, or not yet with a hint."""
-    print(f"{number}: {judge(find_exercise(number), function).message}")
+    verdict = judge(find_exercise(number), function)
+    if verdict.printed:
+        print(f"(your function prints) {verdict.printed[:SHOWN].rstrip()}")
+    print(f"{number}: {verdict.message}")
 
 
 def find_exercise(number: str) -> Exercise:
@@ -79,45 +100,60 @@ def find_exercise(number: str) -> Exercise:
 
 
 def lesson_numbers() -> list[str]:
-    """Numbers ("03") of the lessons that have exercises."""
-    folders = Path(__file__).parents[1].glob("lesson_[0-9][0-9]/exercises.py")
-    return sorted(path.parent.name.removeprefix("lesson_") for path in folders)
+    """Numbers ("03") of the lessons that have exercises, and names ("P1") of the projects, whose stages are such."""
+    folders = [path.parent.name for path in Path(__file__).parents[1].glob("*_*/exercises.py")]
+    return sorted(name.removeprefix("lesson_").replace("project_", "P") for name in folders)
 
 
 def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
-    """Exercises of lesson "03"; none where the lesson has no file of exercises."""
+    """Exercises of lesson "03" or stages of project "P1"; none where there is no file of exercises."""
     if lesson not in lesson_numbers():
         return ()
-    return tuple(importlib.import_module(f"course_lib.lessons.lesson_{lesson}.exercises").EXERCISES)
+    folder = f"project_{lesson[1:]}" if lesson.startswith("P") else f"lesson_{lesson}"
+    return tuple(importlib.import_module(f"course_lib.lessons.{folder}.exercises").EXERCISES)
 
 
-def judge(exercise: Exercise, function: Callable, seed: int = 0) -> Verdict:
-    """Verdict on `function`, from its values on `N_INPUTS` inputs drawn with `seed`."""
+def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float = SECONDS) -> Verdict:
+    """Verdict on `function`, from its values on inputs drawn with `seed`; one call may take so many `seconds`."""
     if not callable(function):
-        return Verdict(
-            "wrong", f"not yet. Give the function itself, without calling it; this is a {kind_of(function)}."
-        )
+        return _wrong(f"Give the function itself, without calling it; this is a {kind_of(function)}.")
     if is_stub(function):
         return _not_attempted()
-    rng = np.random.default_rng(seed)
-    answers, wanted, arguments = [], [], []
-    for _ in range(N_INPUTS):
-        given = exercise.inputs(rng)
-        kept = copy.deepcopy(given)
-        try:
-            answer = function(*given)
-        except Exception as error:
-            return Verdict("wrong", f"not yet. Your function stops with {_describe(error, function)}.")
-        if answer is ...:
+    arguments = exercise.draw(np.random.default_rng(seed))
+    answers, printed = [], ""
+    for index, given in enumerate(arguments):
+        call = attempt(function, used := copy.deepcopy(given), seconds)
+        printed = printed if index else call.printed
+        if call.failure is not None:
+            return _wrong(f"Your function {call.failure}", printed)
+        if call.value is ...:
             return _not_attempted()
-        if not _same_values(given, kept):
-            return Verdict("wrong", "not yet. Your function changes the array it was given: work on a new one.")
-        answers.append(answer)
-        wanted.append(exercise.reference(*copy.deepcopy(kept)))
-        arguments.append(kept)
-    if all(agree(a, w, exercise.tolerance) for a, w in zip(answers, wanted, strict=True)):
-        return Verdict("right", "right.")
-    return Verdict("wrong", f"not yet. {hint(exercise, arguments, answers, wanted)}")
+        if not _same_values(used, given):
+            return _wrong("Your function changes the array it was given: work on a new one.", printed)
+        answers.append(call.value)
+    sentence = _verified(exercise, arguments, answers) if exercise.verify else _compared(exercise, arguments, answers)
+    return Verdict("right", "right.", printed) if sentence is None else _wrong(sentence, printed)
+
+
+def _compared(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
+    """None where the answers are those of the reference or of another function that the task allows, else a hint."""
+    wanted = [exercise.reference(*copy.deepcopy(given)) for given in arguments]
+    if agree_all(answers, wanted, exercise.tolerance):
+        return None
+    for other in exercise.others:
+        if agree_all(answers, [other(*copy.deepcopy(given)) for given in arguments], exercise.tolerance):
+            return None
+    return hint(exercise, arguments, answers, wanted)
+
+
+def _verified(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
+    """A known mistake's hint, or what `verify` says of the first answer that it refuses; None where it refuses none."""
+    for given, answer in zip(arguments, answers, strict=True):
+        if answer is None:
+            return MISSING_RETURN
+        if (sentence := exercise.verify(copy.deepcopy(given), answer)) is not None:
+            return known_mistake(exercise, arguments, answers) or sentence
+    return None
 
 
 def is_stub(function: Callable) -> bool:
@@ -135,14 +171,8 @@ def _same_values(given: tuple, kept: tuple) -> bool:
     return all(np.array_equal(g, k, equal_nan=np.asarray(k).dtype.kind == "f") for g, k in pairs)
 
 
-def _describe(error: Exception, function: Callable) -> str:
-    """Type and first line of an error, and the line of the student's function where it came up."""
-    code = getattr(function, "__code__", None)
-    frames = traceback.walk_tb(error.__traceback__)
-    lines = [line - code.co_firstlineno + 1 for frame, line in frames if frame.f_code is code]
-    where = f" in its line {lines[0]}" if lines else ""
-    text = (str(error).splitlines() or [""])[0]
-    return f"{type(error).__name__}{where}" + (f": {text}" if text else "")
+def _wrong(sentence: str, printed: str = "") -> Verdict:
+    return Verdict("wrong", f"not yet. {sentence}", printed)
 
 
 def _not_attempted() -> Verdict:

@@ -12,25 +12,40 @@ if TYPE_CHECKING:  # `exercises` asks here for hints
     from course_lib.lessons.kit.exercises import Exercise
 
 
+MISSING_RETURN = "Your function returns None: does every way through it end in `return`?"
+
+SINGLE_PRECISION = 1e-5
+"""Tolerance of an answer in float32, whose numbers hold seven digits."""
+
+
 def hint(exercise: Exercise, arguments: list[tuple], answers: list, wanted: list) -> str:
     """The sentence for wrong answers to a list of inputs; the inputs and the right values are never shown."""
     if any(answer is None for answer in answers):
-        return "Your function returns None: does every way through it end in `return`?"
-    for mistake in exercise.mistakes:
-        slips = [mistake.function(*copy.deepcopy(given)) for given in arguments]
-        if all(agree(a, s, exercise.tolerance) for a, s in zip(answers, slips, strict=True)):
-            return mistake.hint
+        return MISSING_RETURN
+    if (sentence := known_mistake(exercise, arguments, answers)) is not None:
+        return sentence
     if _only_reordered(answers, wanted, exercise.tolerance):
         return "The values are right, but in another order than the task names them."
     inf_is_an_answer = any(np.isinf(np.asarray(w, dtype=np.float64)).any() for right in wanted for w in _parts(right))
     for answer, right in zip(answers, wanted, strict=True):
         if (sentence := _difference(answer, right, inf_is_an_answer)) is not None:
             return sentence
-    wrong = sum(not agree(a, w, exercise.tolerance) for a, w in zip(answers, wanted, strict=True))
-    if wrong < len(answers):
-        question = "have you used every argument?" if len(arguments[0]) > 1 else "which case have you left out?"
-        return f"Right on some inputs and wrong on others ({wrong} of {len(answers)} inputs): {question}"
+    right = sum(agree(a, w, exercise.tolerance) for a, w in zip(answers, wanted, strict=True))
+    if right:
+        return (
+            f"Right on {right} of {len(answers)} inputs, wrong on {len(answers) - right}: which case is left out? "
+            "Try small inputs of your own: equal values, zeros, both signs, the ends of the range."
+        )
     return "Shape and type fit, but the values differ on every input. Work one small case by hand and compare."
+
+
+def known_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
+    """The hint of the known mistake that gives just these answers, or None."""
+    for mistake in exercise.mistakes:
+        slips = [mistake.function(*copy.deepcopy(given)) for given in arguments]
+        if agree_all(answers, slips, exercise.tolerance):
+            return mistake.hint
+    return None
 
 
 def _only_reordered(answers: list, wanted: list, tolerance: float) -> bool:
@@ -49,7 +64,7 @@ def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | 
         size = f" of {len(answer)}" if isinstance(answer, tuple | list) or getattr(answer, "ndim", 0) else ""
         return f"Return {len(right)} values, separated by commas; yours returns a {kind_of(answer)}{size}."
     for a, r in zip(answer if isinstance(right, tuple) else (answer,), _parts(right), strict=True):
-        values = _as_numbers(a)
+        values = _shaped(_as_numbers(a), r)
         if values is None:
             return f"Return numbers; yours returns a {kind_of(a)}."
         if values.shape != np.shape(r):
@@ -76,16 +91,31 @@ def _is_row_of(n: int, answer: object) -> bool:
     return isinstance(answer, tuple | list | np.ndarray) and len(answer) == n
 
 
+def agree_all(answers: list, wanted: list, tolerance: float) -> bool:
+    """Whether each answer agrees with what is wanted."""
+    return all(agree(answer, right, tolerance) for answer, right in zip(answers, wanted, strict=True))
+
+
 def agree(answer: object, right: object, tolerance: float) -> bool:
-    """Whether an answer has the right shape, and the right values within the tolerance."""
+    """Whether an answer has the right shape, and the right values within the tolerance.
+
+    Where a number is wanted, an array that holds this one number serves as well.
+    """
     if isinstance(right, tuple):
         return _is_row_of(len(right), answer) and all(
             agree(a, r, tolerance) for a, r in zip(answer, right, strict=True)
         )
-    values = _as_numbers(answer)
+    values = _shaped(_as_numbers(answer), right)
     if values is None or values.shape != np.shape(right):
         return False
-    return bool(np.allclose(values, right, rtol=tolerance, atol=tolerance, equal_nan=True))
+    if getattr(answer, "dtype", None) in (np.float16, np.float32):
+        tolerance = max(tolerance, SINGLE_PRECISION)
+    return bool(np.allclose(values.astype(np.float64), right, rtol=tolerance, atol=tolerance, equal_nan=True))
+
+
+def _shaped(values: np.ndarray | None, right: object) -> np.ndarray | None:
+    """`values`, without its axes of length one where a single number is wanted."""
+    return values.reshape(()) if values is not None and values.size == 1 and np.shape(right) == () else values
 
 
 def _as_numbers(value: object) -> np.ndarray | None:

@@ -215,6 +215,7 @@ EXERCISES = [
                 "You round to the nearest whole number. Leave it as it is.",
             ),
         ),
+        level="warm-up",
     ),
     Exercise(
         number="09.2",
@@ -365,5 +366,6 @@ EXERCISES = [
                 "Signs are turned round: the motion that brings the points onto the walls, not the one back.",
             ),
         ),
+        level="challenge",
     ),
 ]

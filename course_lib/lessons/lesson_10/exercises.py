@@ -334,6 +334,7 @@ EXERCISES = [
                 "You draw a row first: a row with one free cell gets as many places as a full one. Draw the cell.",
             ),
         ),
+        level="warm-up",
     ),
     Exercise(
         number="10.2",
@@ -522,5 +523,6 @@ EXERCISES = [
                 "The limit is in radians already.",
             ),
         ),
+        level="challenge",
     ),
 ]

@@ -383,6 +383,7 @@ EXERCISES = [
             ),
         ),
         tolerance=1e-4,
+        level="warm-up",
     ),
     Exercise(
         number="18.2",
@@ -562,5 +563,6 @@ EXERCISES = [
             ),
             Mistake(_given_wrong, "You give the share that is *not* answered."),
         ),
+        level="challenge",
     ),
 ]

@@ -217,6 +217,7 @@ EXERCISES = [
                 "You subtract the offset: that leads from the camera to the robot. Here it goes the other way.",
             ),
         ),
+        level="warm-up",
     ),
     Exercise(
         number="19.2",
@@ -361,5 +362,6 @@ EXERCISES = [
                 "A covariance is carried from both sides: J P is only half of it.",
             ),
         ),
+        level="challenge",
     ),
 ]

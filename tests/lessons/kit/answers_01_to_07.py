@@ -192,16 +192,6 @@ WRONG = [
     ("06.3", lambda v, beta: v[np.argmin(np.abs(w_of(v, beta) - 0.5))], "near one half"),
     ("06.3", lambda v, beta: (v.min() + v.max()) / 2, "normalized likelihood"),
     ("06.3", lambda v, beta: v.max() - 0.8326 * beta * np.ptp(v), "rounded"),
-    ("07.1", lambda y, w: np.arctan2(np.sin(w * y).sum(), np.cos(w * y).sum()), "weigh the angles themselves"),
-    ("07.1", lambda y, w: y.mean(), "plain mean"),
-    ("07.1", unwrapped, "Close"),
-    ("07.2", lambda w: (len(w) * w // 1, to_sum_one(np.clip(w - len(w) * w // 1, 0, None))), "Cut off at 0"),
-    ("07.2", lambda w: (len(w) * w // 1, to_sum_one(abs(w - len(w) * w // 1))), "absolute value hides"),
-    ("07.2", lambda w: (len(w) * w // 1, len(w) * w % 1 / len(w)), "by its own sum"),
-    ("07.2", lambda w: (to_sum_one(len(w) * w % 1), len(w) * w // 1), "in another order"),
-    ("07.3", lambda w: np.count_nonzero(len(w) * w >= 1), "N w of at least 1"),
-    ("07.3", lambda w: np.sum(1 - (1 - w) ** 2), "two draws"),
-    ("07.3", lambda w: 1 - np.sum((1 - w) ** len(w)), "belongs to every particle"),
 ]
 # Exercise, answer by another way than the solution.
 RIGHT = [
@@ -223,7 +213,4 @@ RIGHT = [
     ("06.1", pixel_by_pixel),
     ("06.2", lambda v, beta: to_sum_one(np.exp(-(((v - v.max()) / (np.ptp(v) + 1e-12) / beta) ** 2)))),
     ("06.3", lambda v, beta: np.interp(1 - beta * np.log(2) ** 0.5, [0, 1], [v.min(), v.max()])),
-    ("07.1", lambda y, w: np.angle(w @ np.exp(1j * y))),
-    ("07.2", lambda w: [(len(w) * w).astype(int), (len(w) * w % 1) / (len(w) - (len(w) * w).astype(int).sum())]),
-    ("07.3", lambda w: len(w) - sum((1 - share) ** len(w) for share in w)),
 ]

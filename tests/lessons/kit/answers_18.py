@@ -171,10 +171,10 @@ WRONG = [
     ("18.3", lambda cost: list(zip(*linear_sum_assignment(np.minimum(cost, 0)), strict=True)), "shape"),
     ("18.3", lambda cost: np.where(padded(cost) < 0, 0, padded(cost)), "-1"),
     ("18.4", strictly_above, "is the threshold itself"),
-    ("18.4", of_answered, "Right on some inputs"),
+    ("18.4", of_answered, "which case is left out?"),
     ("18.4", lambda c, r, w: 1 - by_sorting(c, r, w), "*not* answered"),
     ("18.4", lambda c, r, w: by_sorting(c, r, w) * len(c), "number of poses"),
-    ("18.4", lambda c, r, w: by_sorting(c, r, 0.25), "have you used every argument?"),
+    ("18.4", lambda c, r, w: by_sorting(c, r, 0.25), "which case is left out?"),
     ("18.4", lambda c, r, w: np.mean((c > 0) & r), "You count the right ones"),
 ]
 # Exercise, answer by another way than the solution.
