@@ -38,6 +38,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
     "make-data room": ("make_room", "make data/room again: stereo panoramas, exact boxes, the semantic map"),
     "make-data finale": ("make_finale", "make data/finale again: both maps of the room of the last lesson"),
+    "make-data projects": ("make_projects", "make data/projects again: what is seen in the rooms of P2 and P3"),
     "make-data training-rooms": (
         "make_training_rooms",
         "photograph generated rooms: a detector's training and test pictures",

@@ -9,6 +9,9 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
+STORE_SCENES = "COURSE_STORE_SCENES"
+"""Set in the environment: a lesson writes its scenes to notebooks/scenes. Only `refresh` sets it."""
+
 
 def data_path(relative: str) -> Path:
     """Path of a file or folder under `data/`, such as `data_path("corridor/map.ply")`.

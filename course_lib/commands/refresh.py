@@ -2,6 +2,7 @@
 
 Each notebook runs in a fresh kernel, in the folder notebooks/, without a network. It is written back only after its
 last cell ran without an error, in one step, and in one form, so that a difference in git is a difference in the lesson.
+Its scenes, pages in notebooks/scenes, are written as their cells run.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
-from course_lib.paths import REPOSITORY, notebook_paths, project_paths
+from course_lib.paths import REPOSITORY, STORE_SCENES, notebook_paths, project_paths
 
 MAX_BYTES = 400_000
 HANGS_S = 1800.0  # only what hangs takes so long
@@ -108,7 +109,7 @@ def execute(notebook: nbformat.NotebookNode, folder: Path, cell_timeout: float) 
         startup = Path(home) / "profile_default" / "startup"
         startup.mkdir(parents=True)
         (startup / "00-offline.py").write_text(OFFLINE_STARTUP, encoding="utf-8")
-        environment = os.environ | {"IPYTHONDIR": home}
+        environment = os.environ | {"IPYTHONDIR": home, STORE_SCENES: "1"}
         search = [str(REPOSITORY), *filter(None, [os.environ.get("PYTHONPATH")])]
         environment["PYTHONPATH"] = os.pathsep.join(search)
         client = NotebookClient(

@@ -30,7 +30,7 @@ import numpy as np
 
 from course_lib.experiments.corridor_seeds import median_interval
 from course_lib.experiments.results import write_results
-from course_lib.lessons.kit.attempt import attempt
+from course_lib.lessons.kit.attempt import Attempt, attempt
 from course_lib.lessons.kit.exercises import SHOWN, is_stub
 from course_lib.lessons.kit.hints import kind_of
 from course_lib.lessons.kit.progress_bar import progress
@@ -66,7 +66,7 @@ class UnknownProjectError(KeyError):
 class Rival:
     """A method whose result on the hidden seeds stands beside the student's: a submission like any other."""
 
-    key: Literal["paper", "ours", "none"]
+    key: Literal["paper", "ours", "none", "other"]
     name: str
     function: Callable
 
@@ -78,7 +78,8 @@ class Project:
     name: "P1". title: what is measured, in words. unit: of the number, "" for none. better: which way is up. digits:
     after the point. function: what the student's function is called in the notebook and in a file that is handed in.
     seeds: the hidden ones, at least six (fewer have no interval). prepare: a seed's `Task`. measure: what an answer to
-    it is worth. rivals: what to compare with. seconds: longest time that the student's function may take for a seed.
+    it is worth. rivals: what to compare with. seconds: longest time that one call of the student's function may take.
+    many: a task's arguments are those of many calls, a tuple for each, and the answer is the list of what they return.
     """
 
     name: str
@@ -92,6 +93,7 @@ class Project:
     measure: Callable[[Task, object], Result]
     rivals: tuple[Rival, ...]
     seconds: float = 120.0
+    many: bool = False
 
     @property
     def worst(self) -> float:
@@ -173,7 +175,7 @@ def one_outcome(project: Project, function: Callable, seed: int) -> Outcome:
     """What a function reaches on one seed, whatever it does."""
     task = project.prepare(seed)
     started = time.monotonic()
-    trial = attempt(function, task.arguments, project.seconds)
+    trial = answered(project, function, task)
     if trial.failure is not None:
         late = time.monotonic() - started >= project.seconds
         return Outcome(project.worst, f"Your function {trial.failure}", True, late, trial.printed)
@@ -184,6 +186,20 @@ def one_outcome(project: Project, function: Callable, seed: int) -> Outcome:
     if not np.isfinite(result.value):
         return Outcome(project.worst, f"failed: {result.remark or 'no number came of it'}", True, printed=trial.printed)
     return Outcome(float(result.value), result.remark, printed=trial.printed)
+
+
+def answered(project: Project, function: Callable, task: Task) -> Attempt:
+    """What a function answers to a task: one value, or where the task asks for many calls the list of theirs."""
+    if not project.many:
+        return attempt(function, task.arguments, project.seconds)
+    answers, printed = [], ""
+    for index, arguments in enumerate(task.arguments):
+        trial = attempt(function, arguments, project.seconds)
+        printed = printed if index else trial.printed
+        if trial.failure is not None:
+            return trial
+        answers.append(trial.value)
+    return Attempt(answers, None, printed)
 
 
 def report(

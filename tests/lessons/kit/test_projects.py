@@ -141,6 +141,17 @@ def test_a_value_that_is_no_number_fails(toy):
     assert not one_outcome(TOY, off_by(0.0), 901).failed
 
 
+def test_a_task_of_many_calls_is_measured_by_the_list_of_their_answers(toy):
+    many = dataclasses.replace(
+        TOY,
+        many=True,
+        prepare=lambda seed: Task(((1.0,), (2.0,), (3.0,)), None),
+        measure=lambda task, answers: Result(sum(answers)),
+    )
+    assert one_outcome(many, lambda x: 10 * x, 901).value == 60
+    assert one_outcome(many, lambda x: 1 / (x - 2), 901).remark.startswith("Your function stops with ZeroDivisionError")
+
+
 def test_seeds_of_ones_own_run_the_rivals_too(toy, capsys):
     lines = printed(capsys, off_by(0.3), seeds=[10_001, 10_002])
     assert lines[1:3] == ["seed 10001: 0.30 m (for 10001)", "seed 10002: 0.30 m (for 10002)"]

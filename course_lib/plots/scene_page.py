@@ -1,0 +1,201 @@
+"""One offline HTML page of a PyVista scene: to be turned with the mouse, without a kernel, a network or a program.
+
+The same as PyVista's `plotter.export_html`: the viewer vtk.js and the scene in one file, both from trame-vtk, which
+PyVista uses. But PyVista starts a web server for it, which reaches for the network; trame-vtk's part that writes down a
+scene needs neither. And the page gets a title, words for those who cannot see it and a line that says how to turn it;
+its viewer, a megabyte of script, is packed, and the browser unpacks it. The same scene gives the same bytes: its parts
+are numbered, not named by their addresses in memory, and no hour is written down. The page forbids itself the network.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+import json
+import re
+import zipfile
+import zlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from course_lib.plots.scenes import SceneError
+
+if TYPE_CHECKING:
+    import pyvista
+
+CURE = 'pip install "pyvista[jupyter]"'
+ROUNDING = 1e-3  # of numbers and of coordinates in metres: what another processor may round otherwise
+
+_ADDRESS = re.compile(r"""(?<=["{])[0-9A-Fa-f]{16}\b""")  # after a quote, or as instance:${...}; never a fraction
+_SCRIPT = re.compile(r'<script type="module">(.*?)</script>', re.DOTALL)
+_ICON = re.compile(r"`https://kitware\.github\.io/vtk-js/icon/[^`]*`")  # the viewer fetches its icons from there
+_DATA = re.compile(r'base64Str = "([A-Za-z0-9+/=]+)"')
+_WORDS = re.compile(r'<title>.*?</title>|<meta name="description".*?/>', re.DOTALL)
+_PAGE = """<!doctype html>
+<html lang="en">
+  <head>
+    <meta charset="utf-8" />
+    <meta name="viewport" content="width=device-width, initial-scale=1" />
+    <meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline';
+      style-src 'unsafe-inline'; img-src data: blob:; connect-src data: blob:; worker-src blob:" />
+    <title>{title}</title>
+    <meta name="description" content="{alt}" />
+    <link rel="icon" href="data:," />
+    <style>
+      html, body {{ margin: 0; height: 100%; font-family: sans-serif; }}
+      #help {{ position: fixed; z-index: 1; left: 0; bottom: 0; margin: 0; padding: 4px 8px; font-size: 13px;
+        color: #222; background: rgba(255, 255, 255, 0.8); pointer-events: none; }}
+    </style>
+  </head>
+  <body>
+    <p id="help">{caption} Drag to turn, wheel to zoom, Shift and drag to move.</p>
+    <noscript>{alt}</noscript>
+    <div class="content" role="img" aria-label="{alt}"></div>
+    <script>
+      window.global = window;
+      function loadDataSet() {{
+        const base64Str = "{scene}";
+        OfflineLocalView.load(document.querySelector(".content"), {{ base64Str }});
+      }}
+    </script>
+    <script type="module">
+      const packed = Uint8Array.from(atob("{viewer}"), (letter) => letter.charCodeAt(0));
+      const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+      const viewer = document.createElement("script");
+      viewer.type = "module";
+      viewer.textContent = await new Response(stream).text();
+      document.head.append(viewer);
+    </script>
+  </body>
+</html>
+"""
+
+
+class ScenePageError(RuntimeError):
+    """No page can be made of a scene: what PyVista needs for it is missing, or it writes another kind of page."""
+
+
+def write_page(plotter: pyvista.Plotter, path: str | Path, title: str, alt: str, legend: str = "") -> Path:
+    """Write the scene as one HTML page and return its path; parameters and errors as of `page_html`."""
+    path = Path(path)
+    text = page_html(plotter, title, alt, legend)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") -> str:
+    """The scene of a plotter as the text of one HTML page; the same text for the same scene.
+
+    title: of the page. alt: what the scene shows, in a sentence, for those who cannot see it. legend: what is
+    what, written below the scene beside the title.
+    Raises `SceneError` for a scene without objects, without title or alternative text, `ScenePageError` where PyVista
+    lacks what writes pages (the message says what to install).
+    """
+    title, alt, legend = (" ".join(text.split()) for text in (title, alt, legend))
+    if not title or len(alt.split()) < 4:
+        raise SceneError(
+            f"a scene has a title, and an alternative text that says what it shows; got {title!r}, {alt!r}"
+        )
+    if not plotter.actors:
+        raise SceneError("the scene is empty: add something with plotter.add_mesh(...)")
+    script = _SCRIPT.search(_viewer())
+    if script is None:
+        raise ScenePageError(f"trame-vtk comes with a viewer of an unknown kind: {CURE} in environment.txt's versions")
+    offline = _ICON.sub('"data:,"', script[1])
+    packed = base64.b64encode(zlib.compress(offline.encode("utf-8"), 9)).decode("ascii")
+    caption = f"{title}. {legend}." if legend else f"{title}."
+    words = {"title": html.escape(title), "alt": html.escape(alt), "caption": html.escape(caption)}
+    return _PAGE.format(**words, viewer=packed, scene=_archive(_scene_of(plotter)))
+
+
+def same_scene(page: str, other: str) -> bool:
+    """Whether two pages show the same: title, words and objects, up to rounding; their viewers may differ."""
+    try:
+        scenes = [_scene(text) for text in (page, other)]
+    except (ValueError, KeyError, TypeError, zipfile.BadZipFile):  # not one of our pages, or a damaged one
+        return False
+    return _WORDS.findall(page) == _WORDS.findall(other) and _agree(*scenes)
+
+
+def _viewer() -> str:
+    """The page of the viewer, without a scene, as trame-vtk ships it."""
+    try:
+        from trame_vtk.tools.vtksz2html import HTML_VIEWER_PATH
+    except ImportError as error:
+        raise ScenePageError(f"PyVista lacks what writes pages ({error}): {CURE}") from error
+    return HTML_VIEWER_PATH.read_text(encoding="utf-8")
+
+
+def _scene_of(plotter: pyvista.Plotter) -> dict:
+    """The parts of a plotter's scene and the arrays in them, as the viewer reads them."""
+    try:
+        from trame_vtk.modules.vtk import serializers
+    except ImportError as error:
+        raise ScenePageError(f"PyVista lacks what writes pages ({error}): {CURE}") from error
+    plotter.render()
+    window = plotter.render_window
+    camera = window.GetRenderers().GetFirstRenderer().GetActiveCamera()
+    serializers.initialize_serializers()
+    context = serializers.SynchronizationContext()
+    context.set_ignore_last_dependencies(True)
+    scene = serializers.serialize(None, window, 1, context, 1)
+    scene["mtime"] = 1  # VTK counts the changes of all that it ever drew
+    scene["extra"] = {
+        "vtkRefId": serializers.reference_id(window),
+        "centerOfRotation": camera.GetFocalPoint(),
+        "camera": serializers.reference_id(camera),
+    }
+    arrays = {entry["hash"]: dict(entry) for entry in serializers.extract_array_hash(scene)}
+    for name, entry in arrays.items():
+        entry["content"] = context.get_cached_data_array(name, False)
+    return {"hashes": arrays, "scene": scene}
+
+
+def _archive(scene: dict) -> str:
+    """The scene, its parts numbered instead of named by their address, as an archive without an hour, in base64."""
+    numbers: dict[str, str] = {}
+    parts = json.dumps(scene["scene"])
+    parts = _ADDRESS.sub(lambda found: numbers.setdefault(found[0], f"part{len(numbers)}"), parts)
+    text = json.dumps(scene | {"scene": json.loads(parts)}, separators=(",", ":"))
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as archive:
+        entry = zipfile.ZipInfo("index.json", date_time=(1980, 1, 1, 0, 0, 0))
+        archive.writestr(entry, text, zipfile.ZIP_DEFLATED, 9)
+    return base64.b64encode(file.getvalue()).decode("ascii")
+
+
+def _index(data: str) -> dict:
+    with zipfile.ZipFile(io.BytesIO(base64.b64decode(data))) as archive:
+        return json.loads(archive.read("index.json"))
+
+
+def _scene(page: str) -> dict:
+    """What a page shows: its parts, and its arrays in their order, for their names depend on the last digit."""
+    found = _DATA.search(page)
+    index = _index(found[1] if found else "")
+    text = json.dumps(index["scene"])
+    for number, name in enumerate(index["hashes"]):
+        text = text.replace(name, f"array {number}")
+    arrays = [
+        np.frombuffer(base64.b64decode(kept["content"]), np.dtype(kept["type"].removesuffix("Array").lower()))
+        for kept in index["hashes"].values()
+    ]
+    return {"scene": json.loads(text), "arrays": arrays}
+
+
+def _agree(a, b) -> bool:
+    """Whether two pieces of a scene are the same up to rounding."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        # The window's own class is the operating system's.
+        return a.keys() == b.keys() and all(_agree(a[k], b[k]) for k in a if not str(a[k]).endswith("RenderWindow"))
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(_agree, a, b))
+    if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
+        return a.shape == b.shape and np.allclose(a, b, rtol=ROUNDING, atol=ROUNDING, equal_nan=True)
+    if isinstance(a, float) and isinstance(b, float):
+        return bool(np.isclose(a, b, rtol=ROUNDING, atol=ROUNDING, equal_nan=True))
+    return a == b

@@ -1,0 +1,338 @@
+"""Objects of a scene in three dimensions: map, frustum, axes, particles, ellipsoids, depth images, paths.
+
+Every function returns a `pyvista.PolyData` in the world frame (metres, z up), to be drawn with `plotter.add_mesh`:
+
+    plotter = new_plotter(viewpoint=(4, -6, 5), focus=(4, 0, 1))
+    plotter.add_mesh(map_mesh(scene_map, below=2.3), color="lightgrey")
+    plotter.add_mesh(frustum(camera, state, far=4.0), color=BLUE, line_width=3)
+    plotter.add_mesh(body_axes(state, 0.5), rgb=True)
+
+`scene_page.write_page` makes one HTML file of a plotter, a lesson's `show_scene` shows it. What the page's viewer
+(vtk.js) does not draw is not used here: labels on the screen, scalar bars and lines with a width that follows the zoom.
+PyVista and VTK are imported when a scene is made: that takes a second, and most commands draw none.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from course_lib.geometry import as_states, optical_pose, pose_matrix
+
+if TYPE_CHECKING:
+    import pyvista
+
+    from course_lib.depth_mcl.camera import DepthCamera
+    from course_lib.depth_mcl.scene_map import SceneMap
+
+AXIS_COLOURS = np.array([[213, 40, 0], [0, 158, 60], [0, 80, 200]], dtype=np.uint8)
+"""Red x, green y, blue z, as robotics draws them; each axis also carries its letter."""
+
+MAP_FACES = 20_000
+"""Triangles of a map that a page shows: it stays below 1.3 MB, of which the viewer is 1.07."""
+
+# The strokes of the letters x, y and z in a unit square, each stroke a pair of points.
+_LETTERS = (
+    [((0, 0), (1, 1)), ((0, 1), (1, 0))],
+    [((0, 1), (0.5, 0.5)), ((1, 1), (0.5, 0.5)), ((0.5, 0.5), (0.5, -0.2))],
+    [((0, 1), (1, 1)), ((1, 1), (0, 0)), ((0, 0), (1, 0))],
+)
+
+
+class SceneError(ValueError):
+    """Something that cannot be drawn in a scene: a wrong shape, values that are not finite, no such covariance."""
+
+
+def new_plotter(
+    viewpoint: np.ndarray | None = None, focus: np.ndarray | None = None, size: tuple[int, int] = (800, 500)
+) -> pyvista.Plotter:
+    """An empty scene: white, z up, off the screen.
+
+    viewpoint: from where it is seen, `(3,)` metres; focus: the point in its middle, `(3,)` metres. Without them the
+    whole scene is seen from a corner above. size: pixels (width, height) of its picture.
+    Raises `SceneError` for one without the other or for one that is no point, `OpenGLError` where nothing can be drawn.
+    """
+    if (viewpoint is None) != (focus is None):
+        raise SceneError("new_plotter needs both viewpoint and focus, or neither of them")
+    pyvista = _pyvista()
+    theme = pyvista.themes.DocumentTheme()  # white, whatever the reader's own theme is
+    theme.cmap, theme.show_scalar_bar = "cividis", False  # the colours of the figures; a page cannot show the bar
+    theme.lighting_params.ambient, theme.lighting_params.diffuse = 0.35, 0.65  # no wall is black, no floor white
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(size), theme=theme)
+    if viewpoint is not None:
+        viewpoint, focus = _finite(viewpoint, "viewpoint", (3,)), _finite(focus, "focus", (3,))
+        plotter.camera_position = [tuple(viewpoint), tuple(focus), (0.0, 0.0, 1.0)]
+    return plotter
+
+
+def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = None) -> pyvista.PolyData:
+    """The map's triangles, at most `faces` of them, cut off at the height `below` (metres) so that one looks inside.
+
+    Where the map has more, surfaces are merged (quadric decimation): fit to be looked at, not to be measured in.
+    Raises `SceneError` for less than 100 faces, or where nothing of the map lies below that height.
+    """
+    if faces < 100:
+        raise SceneError(f"faces must be at least 100, or no map is left; got {faces}")
+    from course_lib.depth_mcl.simplification import simplified
+
+    fewer = simplified(scene_map)
+    mesh = _polydata(fewer.vertices, fewer.faces)
+    if below is not None:
+        mesh = mesh.clip(normal="z", origin=(0.0, 0.0, float(below))).triangulate()
+        if mesh.n_cells == 0:
+            low, high = scene_map.bounds[:, 2]
+            raise SceneError(
+                f"nothing of the map lies below {below:g} m: its heights go from {low:.2f} to {high:.2f} m"
+            )
+    if mesh.n_cells > faces:
+        mesh = mesh.clean().decimate(1 - faces / mesh.n_cells)
+    mesh.clear_data()
+    return mesh
+
+
+def frustum(camera: DepthCamera, state: np.ndarray, far: float | None = None) -> pyvista.PolyData:
+    """What a depth camera sees, as lines: from its centre to the corners of its image, and the planes near and far.
+
+    state: `(6,)` of the camera's body, metres and radians. far: where it is cut off, metres (None: the camera's own).
+    Edges are those of the image, half a pixel outside the outermost pixel centres.
+    Raises `SceneError` for a state of another shape or a far plane that is not beyond `camera.near`.
+    """
+    far = camera.far if far is None else float(far)
+    if not (np.isfinite(far) and far > camera.near):
+        raise SceneError(f"far must lie beyond the near plane at {camera.near:g} m; got {far}")
+    u = np.array([-0.5, camera.width - 0.5, camera.width - 0.5, -0.5])
+    v = np.array([-0.5, -0.5, camera.height - 0.5, camera.height - 0.5])
+    corners = np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones(4)], axis=-1)
+    points = np.vstack([np.zeros(3), camera.near * corners, far * corners])
+    edges = [(0, 5 + k) for k in range(4)]
+    edges += [(first + k, first + (k + 1) % 4) for first in (1, 5) for k in range(4)]
+    return _lines(_placed(points, optical_pose(_one_state(state))), edges)
+
+
+def body_axes(state: np.ndarray, length: float = 0.5) -> pyvista.PolyData:
+    """The axes of a pose: x red (forward), y green (left), z blue (up), each with its letter at the end.
+
+    state: `(6,)`, metres and radians; length: metres. Colours are point data: draw with `add_mesh(axes, rgb=True)`.
+    Raises `SceneError` for a state of another shape or a length that is not positive.
+    """
+    matrix, length = pose_matrix(_one_state(state)), _positive(length, "length")
+    points, edges, colours = [], [], []
+    for k, axis in enumerate(np.eye(3)):
+        # The letter stands upright beside the axis' end; z's stands where one who looks along x sees it.
+        across, up = (np.eye(3)[0], np.eye(3)[2]) if k == 0 else (np.eye(3)[1], np.eye(3)[2])
+        strokes = [(0.16 * (a - 0.5) * across + 0.16 * b * up for a, b in stroke) for stroke in _LETTERS[k]]
+        letter = [[1.1 * axis + point for point in stroke] for stroke in strokes]
+        for start, end in [(np.zeros(3), axis), *letter]:
+            edges.append((len(points), len(points) + 1))
+            points += [length * start, length * end]
+            colours += [AXIS_COLOURS[k]] * 2
+    mesh = _tubes(_placed(np.array(points), matrix), edges, 0.02 * length)
+    mesh.point_data["colour"] = np.repeat(np.array(colours), mesh.n_points // len(colours), axis=0)
+    mesh.set_active_scalars("colour")
+    return mesh
+
+
+def arrows(states: np.ndarray, length: float = 0.3, weights: np.ndarray | None = None) -> pyvista.PolyData:
+    """Particles as flat arrowheads that point along x, each with a fin on top, so that roll and pitch show too.
+
+    states: `(N, 6)`, metres and radians, the position at the arrow's middle; length: metres. weights: `(N,)`, they
+    become the point data "weight" (with `add_mesh(..., cmap="cividis")` the colour).
+    Raises `SceneError` for no states, another shape, or weights that do not fit or are not finite.
+    """
+    states = np.atleast_2d(_states(states))
+    if states.ndim != 2 or len(states) == 0:
+        raise SceneError(f"states must have shape (N, 6), N at least 1; got {states.shape}")
+    # Tip, the two ends of the tail, the notch between them, the top of the fin.
+    dart = np.array([[0.6, 0, 0], [-0.4, 0.3, 0], [-0.4, -0.3, 0], [-0.2, 0, 0], [-0.4, 0, 0.2]])
+    triangles = np.array([[0, 1, 3], [0, 3, 2], [0, 3, 4]])
+    matrices = pose_matrix(states)
+    placed = np.einsum("nij,kj->nki", matrices[:, :3, :3], _positive(length, "length") * dart)
+    placed += matrices[:, None, :3, 3]
+    faces = triangles + len(dart) * np.arange(len(states))[:, None, None]
+    mesh = _polydata(placed.reshape(-1, 3), faces.reshape(-1, 3))
+    if weights is not None:
+        mesh.point_data["weight"] = np.repeat(_finite(weights, "weights", (len(states),)), len(dart))
+    return mesh
+
+
+def ellipsoid(mean: np.ndarray, covariance: np.ndarray, sigmas: float = 3.0) -> pyvista.PolyData:
+    """The surface (p - mean)' C^-1 (p - mean) = sigmas^2 of a covariance: half axes of sigmas standard deviations.
+
+    mean: `(..., 3)` metres. covariance: `(..., 3, 3)` square metres; of rank two (nothing said of height) it is a disc.
+    Raises `SceneError` for shapes that do not fit or a matrix that is no covariance (symmetric, no negative variance).
+    """
+    covariance = _finite(covariance, "covariance")
+    if covariance.shape[-2:] != (3, 3):
+        raise SceneError(
+            f"covariance must have shape (..., 3, 3), of x, y, z in square metres; got {covariance.shape}. "
+            "Of a state's: covariance[:3, :3]"
+        )
+    covariance = covariance.reshape(-1, 3, 3)
+    mean = _finite(mean, "mean").reshape(-1, 3)
+    if len(mean) != len(covariance):
+        raise SceneError(f"there must be as many means as covariances; got {len(mean)} and {len(covariance)}")
+    variances, axes = np.linalg.eigh(covariance)
+    largest = np.abs(variances).max(axis=-1, keepdims=True)
+    if (np.abs(covariance - covariance.swapaxes(-1, -2)) > 1e-6 * largest[..., None]).any():
+        raise SceneError("a covariance is symmetric; this one is not")
+    if (variances < -1e-6 * largest).any():
+        raise SceneError(f"a covariance has no negative variance; got {variances.min():.3g} m^2 along one of its axes")
+    # An eigenvector's sign is anybody's choice; the ellipsoid is the same, and so, this way, are its points.
+    largest_entry = np.take_along_axis(axes, np.abs(axes).argmax(axis=-2, keepdims=True), axis=-2)
+    axes = axes * np.where(largest_entry < 0, -1.0, 1.0)
+    ball = _pyvista().Icosphere(radius=1.0, nsub=2)
+    half_axes = _positive(sigmas, "sigmas") * axes * np.sqrt(np.maximum(variances, 0))[:, None, :]
+    points = np.einsum("nij,kj->nki", half_axes, np.asarray(ball.points)) + mean[:, None]
+    faces = ball.regular_faces + ball.n_points * np.arange(len(mean))[:, None, None]
+    return _polydata(points.reshape(-1, 3), faces.reshape(-1, 3))
+
+
+def depth_surface(
+    depth: np.ndarray, camera: DepthCamera, state: np.ndarray, every: int = 1, jump: float = 0.1
+) -> pyvista.PolyData:
+    """A depth image as a surface in the world: neighbouring pixels joined, with the point data "depth" in metres.
+
+    depth: `(H, W)` metres, NaN or infinite where nothing was hit. state: `(6,)` of the camera. every: takes each
+    so-many-th row and column. jump: pixels are not joined where their depths differ by more than this share of the
+    smaller one: there a near thing stands before a far one. With `add_mesh(..., style="points")` it is a cloud.
+    Raises `SceneError` where shapes do not fit or no pixel has a neighbour.
+    """
+    depth = np.asarray(depth, dtype=np.float64)
+    if depth.shape != camera.shape:
+        raise SceneError(
+            f"the depth image must have the camera's shape {camera.shape} (height, width); got {depth.shape}"
+        )
+    if every < 1:
+        raise SceneError(f"every must be a whole number, at least 1; got {every}")
+    points = camera.points(np.where(np.isfinite(depth), depth, 0.0))[::every, ::every]
+    z = np.where(np.isfinite(depth) & (depth > 0), depth, np.inf)[::every, ::every]
+    index = np.arange(z.size).reshape(z.shape)
+    corners = [index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]]
+    triangles = [np.stack([corners[a], corners[b], corners[c]], axis=-1).reshape(-1, 3) for a, b, c in _HALVES]
+    triangles = np.concatenate(triangles)
+    least, greatest = z.ravel()[triangles].min(axis=1), z.ravel()[triangles].max(axis=1)
+    triangles = triangles[np.isfinite(greatest) & (greatest <= (1 + _positive(jump, "jump")) * np.minimum(least, 1e9))]
+    if len(triangles) == 0:
+        raise SceneError("no pixel of this depth image has a neighbour at about its depth: nothing to draw")
+    used, triangles = np.unique(triangles, return_inverse=True)
+    placed = _placed(points.reshape(-1, 3)[used], optical_pose(_one_state(state)))
+    mesh = _polydata(placed, triangles.reshape(-1, 3))
+    mesh.point_data["depth"] = z.ravel()[used].astype(np.float32)
+    return mesh
+
+
+_HALVES = ((0, 1, 2), (0, 2, 3))  # of a square of four pixels
+
+
+def path(points: np.ndarray, dashed: bool = False) -> pyvista.PolyData:
+    """A trajectory as a line through positions `(N, 3)`, metres; dashed: every other piece of it is left out.
+
+    Raises `SceneError` for fewer than two positions or another shape.
+    """
+    points = _finite(points, "points")
+    if points.ndim != 2 or points.shape[1] != 3 or len(points) < 2:
+        raise SceneError(f"points must have shape (N, 3), N at least 2; got {points.shape}. Of states: states[:, :3]")
+    return _lines(points, [(k, k + 1) for k in range(0, len(points) - 1, 2 if dashed else 1)])
+
+
+def post(foot: np.ndarray, height: float, radius: float = 0.03) -> pyvista.PolyData:
+    """A thin upright post on a point `(3,)`: something of which the place is known, but not the shape. Metres.
+
+    Raises `SceneError` for a foot that is no point or a height or radius that is not positive.
+    """
+    foot = _finite(foot, "foot", (3,))
+    top = foot + np.array([0.0, 0.0, _positive(height, "height")])
+    return _tubes(np.stack([foot, top]), [(0, 1)], _positive(radius, "radius"))
+
+
+def text(words: str, at: np.ndarray, height: float = 0.2) -> pyvista.PolyData:
+    """Words as letters that lie flat, their foot towards -y, from the point `(3,)` on; capitals so high, in metres.
+
+    Labels on the screen are not shown by a page; these turn with the scene. Raises `SceneError` for no words or no
+    such point.
+    """
+    at = _finite(at, "at", (3,))
+    if not words.strip():
+        raise SceneError("text needs words; got none")
+    pyvista = _pyvista()
+    from vtkmodules.vtkRenderingFreeType import vtkVectorText
+
+    source = vtkVectorText()
+    source.SetText(words)
+    source.Update()
+    letters = pyvista.PolyData(source.GetOutput())
+    points = np.asarray(letters.points, float) - [letters.bounds[0], 0.0, 0.0]
+    letters.points = (points * _positive(height, "height") + at).astype(np.float32)
+    letters.clear_data()
+    return letters
+
+
+def _placed(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Points `(N, 3)` of a frame in the world, by that frame's pose `(4, 4)`."""
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _lines(points: np.ndarray, edges: list[tuple[int, int]]) -> pyvista.PolyData:
+    """A PolyData of points `(N, 3)` with a line for each pair of them."""
+    cells = np.column_stack([np.full(len(edges), 2), np.asarray(edges)])
+    return _pyvista().PolyData(np.asarray(points, dtype=np.float32), lines=cells.ravel())
+
+
+def _tubes(points: np.ndarray, edges: list[tuple[int, int]], radius: float) -> pyvista.PolyData:
+    """Lines as thin prisms of four sides: unlike a line they grow when one comes nearer. Eight points an edge."""
+    start, end = (np.asarray(points)[[edge[k] for edge in edges]] for k in (0, 1))
+    along = (end - start) / np.linalg.norm(end - start, axis=-1, keepdims=True)
+    helper = np.eye(3)[np.abs(along).argmin(axis=-1)]
+    side = np.cross(along, helper)
+    side /= np.linalg.norm(side, axis=-1, keepdims=True)
+    other = np.cross(along, side)
+    ring = np.stack([side, other, -side, -other], axis=1) * radius
+    corners = np.concatenate([start[:, None] + ring, end[:, None] + ring], axis=1)
+    sides = [(k, (k + 1) % 4, 4 + (k + 1) % 4) for k in range(4)] + [(k, 4 + (k + 1) % 4, 4 + k) for k in range(4)]
+    faces = np.array(sides) + 8 * np.arange(len(edges))[:, None, None]
+    return _polydata(corners.reshape(-1, 3), faces.reshape(-1, 3))
+
+
+def _polydata(vertices: np.ndarray, faces: np.ndarray) -> pyvista.PolyData:
+    """A PolyData of vertices `(V, 3)` and triangles `(F, 3)`; single precision is a tenth of a millimetre at 1 km."""
+    return _pyvista().PolyData.from_regular_faces(np.asarray(vertices, dtype=np.float32), np.asarray(faces, np.int64))
+
+
+def _one_state(state: np.ndarray) -> np.ndarray:
+    state = _states(state)
+    if state.shape != (6,):
+        raise SceneError(f"state must have shape (6,) [x, y, z, roll, pitch, yaw]; got {state.shape}")
+    return state
+
+
+def _states(states: np.ndarray) -> np.ndarray:
+    try:
+        return as_states(states)
+    except ValueError as error:
+        raise SceneError(str(error)) from error
+
+
+def _finite(values: np.ndarray, name: str, shape: tuple[int, ...] | None = None) -> np.ndarray:
+    array = np.asarray(values, dtype=np.float64)
+    if shape is not None and array.shape != shape:
+        raise SceneError(f"{name} must have shape {shape}; got {array.shape}")
+    if array.size == 0 or not np.isfinite(array).all():
+        raise SceneError(f"{name} must be numbers, all of them finite; got {'NaN or inf' if array.size else 'none'}")
+    return array
+
+
+def _positive(value: float, name: str) -> float:
+    if not (np.isfinite(value) and value > 0):
+        raise SceneError(f"{name} must be positive and finite; got {value}")
+    return float(value)
+
+
+def _pyvista():
+    """PyVista, its windows off the screen; imported late, since it takes a second."""
+    from course_lib.depth_mcl.rendering import off_screen  # first: no display is needed then
+
+    off_screen.off_screen_window()  # raises OpenGLError with the cure, where VTK itself would crash
+    import pyvista
+
+    return pyvista

@@ -1,0 +1,167 @@
+"""Objects of a scene: where their points lie, what they refuse."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl import DepthCamera, SceneMap
+from course_lib.geometry import optical_pose, pose_matrix
+from course_lib.plots import scenes
+from course_lib.plots.scenes import SceneError
+
+STATE = np.array([2.0, -1.0, 1.2, 0.2, -0.3, 0.8])
+CAMERA = DepthCamera.from_fov(40, 30, 60, 45, near=0.5, far=8.0)
+
+
+@pytest.fixture(scope="module")
+def room() -> SceneMap:
+    """A box of 4 x 3 x 2.5 m, each side in 40 x 40 squares."""
+    import trimesh
+
+    box = trimesh.creation.box(extents=(4, 3, 2.5)).apply_translation((0, 0, 1.25))
+    for _ in range(5):
+        box = box.subdivide()
+    return SceneMap(box.vertices, box.faces)
+
+
+def test_pyvista_is_not_imported_before_something_is_drawn():
+    code = "import sys, course_lib.plots.scenes; sys.exit('pyvista' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+def test_a_map_has_few_triangles_and_no_ceiling(room):
+    mesh = scenes.map_mesh(room, faces=1000, below=2.0)
+    assert 100 < mesh.n_cells <= 1000
+    assert mesh.bounds[4:] == pytest.approx((0, 2.0), abs=1e-5)
+    assert mesh.bounds[:4] == pytest.approx((-2, 2, -1.5, 1.5), abs=1e-3)
+
+
+def test_a_whole_map_keeps_its_ceiling(room):
+    assert scenes.map_mesh(room).bounds[5] == pytest.approx(2.5)
+
+
+def test_a_frustum_reaches_the_corners_of_the_image(room):
+    points = np.asarray(scenes.frustum(CAMERA, STATE, far=4.0).points, float)
+    matrix = optical_pose(STATE)
+    local = (points - matrix[:3, 3]) @ matrix[:3, :3]
+    assert sorted(np.round(local[:, 2], 4)) == [0, *[0.5] * 4, *[4.0] * 4]
+    u, v, _ = CAMERA.project(local[5:])
+    assert np.allclose(np.sort(u), [-0.5, -0.5, 39.5, 39.5], atol=1e-3)
+    assert np.allclose(np.sort(v), [-0.5, -0.5, 29.5, 29.5], atol=1e-3)
+
+
+def test_a_frustum_ends_at_the_cameras_far_plane_and_has_twelve_lines():
+    mesh = scenes.frustum(CAMERA, np.zeros(6))
+    assert mesh.bounds[1] == pytest.approx(8.0)
+    assert mesh.n_lines == 12
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_each_axis_has_its_colour_and_its_direction(axis):
+    mesh = scenes.body_axes(STATE, 0.5)
+    assert scenes.AXIS_COLOURS[axis].argmax() == axis, "red, green, blue"
+    mine = np.asarray(mesh.points)[(mesh["colour"] == scenes.AXIS_COLOURS[axis]).all(axis=1)]
+    local = (mine - STATE[:3]) @ pose_matrix(STATE)[:3, :3]
+    assert 0.5 < local[:, axis].max() < 0.75
+    assert np.abs(np.delete(local, axis, axis=1)).max() < 0.13
+    assert (mesh.point_data.active_scalars == mesh["colour"]).all()
+
+
+def test_arrows_point_along_x_with_their_fin_up():
+    states = np.array([STATE, np.zeros(6)])
+    mesh = scenes.arrows(states, 0.4, weights=np.array([0.25, 0.75]))
+    darts = np.asarray(mesh.points).reshape(2, 5, 3)
+    tip_from_notch = pose_matrix(STATE)[:3, 0]
+    heading = darts[0, 0] - darts[0, 3]
+    assert np.allclose(heading / np.linalg.norm(heading), tip_from_notch, atol=1e-5)
+    assert np.ptp(darts[1, :, 0]) == pytest.approx(0.4)
+    assert darts[1, 4, 2] > 0
+    assert np.asarray(mesh["weight"]).reshape(2, 5).tolist() == [[0.25] * 5, [0.75] * 5]
+    assert mesh.n_cells == 6
+
+
+def test_arrows_of_one_state_and_without_weights():
+    mesh = scenes.arrows(STATE)
+    assert mesh.n_cells == 3
+    assert "weight" not in mesh.point_data
+
+
+def test_an_ellipsoid_lies_where_its_covariance_says():
+    root = np.random.default_rng(3).normal(size=(3, 3))
+    covariance, mean = root @ root.T, np.array([1.0, 2.0, 3.0])
+    offsets = np.asarray(scenes.ellipsoid(mean, covariance, sigmas=2).points, float) - mean
+    squares = np.einsum("ni,ij,nj->n", offsets, np.linalg.inv(covariance), offsets)
+    assert np.allclose(squares, 4.0, rtol=1e-3)
+
+
+def test_many_ellipsoids_are_one_mesh_and_a_flat_one_is_a_disc():
+    covariances = np.stack([np.diag([1.0, 1.0, 0.0]), np.diag([0.01, 0.04, 0.09])])
+    mesh = scenes.ellipsoid(np.array([[0.0, 0, 5], [10, 0, 0]]), covariances, sigmas=1)
+    first, second = np.asarray(mesh.points).reshape(2, -1, 3)
+    assert np.allclose(first[:, 2], 5)
+    assert np.allclose(np.ptp(second, axis=0), [0.2, 0.4, 0.6], rtol=0.06)
+    assert mesh.n_cells == 2 * 320
+
+
+def test_a_depth_image_becomes_the_surface_that_it_shows():
+    depth = np.full(CAMERA.shape, 3.0)
+    mesh = scenes.depth_surface(depth, CAMERA, STATE)
+    matrix = optical_pose(STATE)
+    local = (np.asarray(mesh.points, float) - matrix[:3, 3]) @ matrix[:3, :3]
+    assert np.allclose(local[:, 2], 3.0, atol=1e-5)
+    assert np.allclose(np.sort(CAMERA.project(local)[0])[[0, -1]], [0, 39], atol=1e-3)
+    assert mesh.n_cells == 2 * 39 * 29
+    assert np.allclose(mesh["depth"], 3.0)
+
+
+def test_a_surface_is_cut_at_edges_and_at_pixels_without_depth():
+    depth = np.full(CAMERA.shape, 3.0)
+    depth[:, 20:] = 5.0
+    depth[0, 0], depth[-1, 0] = np.nan, np.inf
+    mesh = scenes.depth_surface(depth, CAMERA, STATE)
+    # Of the corner squares, the one cut by the diagonal loses both triangles, the other one.
+    assert mesh.n_cells == 2 * 38 * 29 - 2 - 1
+    assert set(np.asarray(mesh["depth"]).tolist()) == {3.0, 5.0}
+    assert scenes.depth_surface(depth, CAMERA, STATE, jump=0.7).n_cells == 2 * 39 * 29 - 3
+    assert scenes.depth_surface(depth, CAMERA, STATE, every=3).n_points < mesh.n_points / 8
+
+
+def test_a_path_is_whole_or_dashed():
+    points = np.random.default_rng(0).normal(size=(5, 3))
+    assert scenes.path(points).n_lines == 4
+    assert scenes.path(points, dashed=True).n_lines == 2
+    assert np.allclose(scenes.path(points).points, points)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda room: scenes.new_plotter(viewpoint=(0, 0, 1)), "both viewpoint and focus"),
+        (lambda room: scenes.new_plotter((0, 0), (0, 0, 1)), r"viewpoint must have shape \(3,\)"),
+        (lambda room: scenes.map_mesh(room, faces=0), "at least 100"),
+        (lambda room: scenes.map_mesh(room, below=-1), "heights go from 0.00 to 2.50"),
+        (lambda room: scenes.frustum(CAMERA, np.zeros(3)), r"shape \(\.\.\., 6\)"),
+        (lambda room: scenes.frustum(CAMERA, np.zeros((2, 6))), r"shape \(6,\)"),
+        (lambda room: scenes.frustum(CAMERA, STATE, far=0.4), "near plane at 0.5 m"),
+        (lambda room: scenes.body_axes(STATE, -1), "length must be positive"),
+        (lambda room: scenes.arrows(np.zeros((0, 6))), "N at least 1"),
+        (lambda room: scenes.arrows(np.full((1, 6), np.nan)), "finite"),
+        (lambda room: scenes.arrows(np.zeros((3, 6)), weights=np.ones(2)), r"weights must have shape \(3,\)"),
+        (lambda room: scenes.ellipsoid(np.zeros(3), np.eye(6)), r"covariance\[:3, :3\]"),
+        (lambda room: scenes.ellipsoid(np.zeros(3), np.diag([1, 1, -1])), "no negative variance"),
+        (lambda room: scenes.ellipsoid(np.zeros(3), np.eye(3) + np.eye(3, k=1)), "symmetric"),
+        (lambda room: scenes.ellipsoid(np.zeros((2, 3)), np.eye(3)), "as many means"),
+        (lambda room: scenes.depth_surface(np.ones((3, 3)), CAMERA, STATE), r"shape \(30, 40\)"),
+        (lambda room: scenes.depth_surface(np.full(CAMERA.shape, np.nan), CAMERA, STATE), "nothing to draw"),
+        (lambda room: scenes.depth_surface(np.ones(CAMERA.shape), CAMERA, STATE, every=0), "at least 1"),
+        (lambda room: scenes.path(np.zeros((4, 6))), "states"),
+        (lambda room: scenes.path(np.zeros((1, 3))), "N at least 2"),
+    ],
+)
+def test_what_cannot_be_drawn_is_named(room, call, words):
+    with pytest.raises(SceneError, match=words):
+        call(room)
