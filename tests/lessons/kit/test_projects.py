@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit import projects
+from course_lib.lessons.kit.exercises import find_exercise, lesson_numbers
 from course_lib.lessons.kit.projects import (
     AnswerError,
     Project,
@@ -176,6 +177,11 @@ def test_stored_numbers_of_other_seeds_are_refused(toy, tmp_path):
 def test_an_unknown_project_is_named():
     with pytest.raises(UnknownProjectError, match="no project 'P9'"):
         find_project("P9")
+
+
+def test_the_stages_of_a_project_are_found_as_exercises_are():
+    assert find_exercise("P1.1").number == "P1.1"
+    assert {"03", *project_names()} <= set(lesson_numbers())
 
 
 @pytest.mark.parametrize("name", project_names())
