@@ -6,17 +6,18 @@ import argparse
 import subprocess
 import sys
 
-PASSES_ARGUMENTS_ON = True
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("project", metavar="P1", help="which project")
     parser.add_argument(
         "file", metavar="FILE", help="a Python file, or a notebook, that defines the project's function"
     )
+    parser.add_argument(
+        "--seeds", nargs="+", metavar="N", help="score on these seeds, such as 10001, not the hidden ones"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     # A process of its own: what a student's file does to it ends with it.
-    words = [arguments.project, arguments.file, *arguments.passed_on]
+    words = [arguments.project, arguments.file, *(["--seeds", *arguments.seeds] if arguments.seeds else [])]
     return subprocess.run([sys.executable, "-m", "course_lib.lessons.kit.score", *words]).returncode
