@@ -36,7 +36,7 @@ def location_scene(
     low, high = semantic_map.positions.min(axis=0), semantic_map.positions.max(axis=0)
     size = max(3.0, float((high - low).max()))
     focus = np.array([*(low + high) / 2, floor / 2])
-    plotter = new_plotter(focus + size * np.array([-0.35, -1.1, 1.1]), focus)
+    plotter = new_plotter(focus + size * np.array([-0.45, -1.4, 1.4]), focus)
     if semantic_map.walls is not None:
         corners = np.column_stack([semantic_map.walls, np.full(len(semantic_map.walls), floor)])
         plotter.add_mesh(path(np.vstack([corners, corners[:1]])), color="grey", line_width=2)
