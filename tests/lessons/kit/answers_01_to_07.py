@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.integrate import trapezoid
 from scipy.optimize import brentq
 from scipy.stats import norm
 
@@ -106,8 +107,8 @@ def least_of(n):
     """04.4: mean and deviation from P(least > x) = sf(x)^n alone, by parts."""
     x = np.linspace(-8, 8, 8001)
     above = norm.sf(x) ** n
-    mean = x[0] + np.trapezoid(above, x)
-    second = x[0] ** 2 + 2 * np.trapezoid(x * above, x)
+    mean = x[0] + trapezoid(above, x)
+    second = x[0] ** 2 + 2 * trapezoid(x * above, x)
     return mean, np.sqrt(second - mean**2)
 
 
