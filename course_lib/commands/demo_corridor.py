@@ -70,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         default=Path("results/corridor"),
         metavar="FOLDER",
-        help="where results and figures go (default: results/corridor)",
+        help="where results, figures and a scene to be turned in a browser go (default: results/corridor)",
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
 
@@ -115,8 +115,9 @@ def _run_seed(arguments: argparse.Namespace) -> int:
         maps, sequence, rows = _rows_of(arguments, arguments.seed, Path(temporary))
         summary = summarize(arguments, arguments.seed, rows)
         figures = draw(maps, sequence, rows, arguments.backend)
+        scene = _write_scene(arguments.out, maps, sequence, rows)
     write(arguments.out / "corridor.json", summary, rows)
-    written = [*write_figures(arguments.out, sequence, rows, figures), "corridor.json", "corridor.csv"]
+    written = [*write_figures(arguments.out, sequence, rows, figures), "corridor.json", "corridor.csv", scene]
     if arguments.json:
         print(json.dumps(summary))
     else:
@@ -291,6 +292,18 @@ def draw(maps: Maps, sequence: DepthSequence, rows: dict[str, Row], backend: str
         "figure_6.png": figure_6(np.asarray(ours.run.frames), lines),
         "overview.png": overview_figure(maps.detailed, sequence, ours.run, backend),
     }
+
+
+def _write_scene(out: Path, maps: Maps, sequence: DepthSequence, rows: dict[str, Row]) -> str:
+    """Writes the run in three dimensions; what was written, in words."""
+    from course_lib.commands.scene_output import write_scene
+    from course_lib.depth_mcl.sequence import FAR, NEAR
+    from course_lib.plots.track_scene import track_scene
+
+    def make():
+        return track_scene(maps.detailed, rows["proposed"].run, sequence, "z", NEAR, FAR)
+
+    return write_scene(out / "corridor.html", "The paper's filter in the corridor", make)
 
 
 def write(path: Path, summary: dict, rows: dict[str, Row]) -> None:

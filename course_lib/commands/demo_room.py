@@ -57,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         default=Path("results/room"),
         metavar="FOLDER",
-        help="where results and figures go (default: results/room)",
+        help="where results, figures and scenes to be turned in a browser go (default: results/room)",
     )
     parser.add_argument(
         "--roll",
@@ -161,13 +161,14 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
             ]
         )
     written = write(arguments.out, summary, results, draw(semantic_map, results))
+    scenes = _write_scenes(arguments.out, semantic_map, results)
     if arguments.json:
         print(json.dumps(summary))
     else:
         print(tables(summary))
         if arguments.views > 1:
             print("\n" + views_table(summary))
-        print(f"\nWritten to {arguments.out}: " + ", ".join(written))
+        print(f"\nWritten to {arguments.out}: " + ", ".join([*written, *scenes]))
     return 0
 
 
@@ -237,18 +238,39 @@ def draw(semantic_map: SemanticMap, results: dict) -> dict[str, Figure]:
     for experiment, by_source in results.items():
         title = f"{experiment.replace('_', ' ').capitalize()}: true and estimated poses, from images"
         drawn[f"{experiment}.png"] = figures.experiment_figure(semantic_map, by_source["images"], title)
-    from_images = [result for by_source in results.values() for result in by_source["images"]]
     for kind in (CORRECT, INCORRECT):
-        result = next((one for one in from_images if one.outcome.kind == kind), None)
+        result = _first_of(results, kind)
         if result is not None:
             title = f"Place {result.pair.name}: {kind}"
             drawn[f"pose_{kind}.png"] = figures.pose_figure(semantic_map, result, title)
-    shown = next((one for one in from_images if one.outcome.kind == CORRECT), from_images[0])
+    shown = _first_of(results, CORRECT) or results["experiment_1"]["images"][0]
     upper, lower = shown.pair.images()
     drawn["detections.png"] = figures.detections_figure(upper, shown.localization.upper_detections)
     if shown.localization.matches:
         drawn["matched_pairs.png"] = figures.matches_figure(upper, lower, shown.localization)
     return drawn
+
+
+def _write_scenes(out: Path, semantic_map: SemanticMap, results: dict) -> list[str]:
+    """Writes one pose that is right and one that is wrong in three dimensions; what was written, in words."""
+    from functools import partial
+
+    from course_lib.commands.scene_output import write_scene
+    from course_lib.experiments.room_evaluation import CORRECT, INCORRECT
+    from course_lib.plots.location_scene import location_scene
+
+    written = []
+    for kind in (CORRECT, INCORRECT):
+        result = _first_of(results, kind)
+        if result is not None:
+            make = partial(location_scene, semantic_map, result.localization, result.pair.pose)
+            written.append(write_scene(out / f"pose_{kind}.html", f"Place {result.pair.name}: {kind}", make))
+    return written
+
+
+def _first_of(results: dict, kind: str):
+    """The first pose from images of that outcome, or None."""
+    return next((one for by in results.values() for one in by["images"] if one.outcome.kind == kind), None)
 
 
 def write(out: Path, summary: dict, results: dict, figures: dict[str, Figure]) -> list[str]:

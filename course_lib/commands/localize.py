@@ -97,7 +97,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (default: 2; xyyaw: 1.5)"
     )
     add_backend_argument(parser)
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help="write results, trajectory, figure here")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="FOLDER",
+        help="write results, trajectory, figure and scene here (track.html: map, path and the worst frames' points, to "
+        "be turned in a browser)",
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
 
 
@@ -169,10 +175,10 @@ def run(arguments: argparse.Namespace) -> int:
         "ms_per_frame": result.ms_per_frame,
     }
     if arguments.out:
-        write_localized(arguments.out, summary, result, sequence, scene_map)
+        written = write_localized(arguments.out, summary, result, sequence, scene_map)
     print(json.dumps(summary) if arguments.json else localize_table(summary))
     if arguments.out and not arguments.json:
-        print(f"Written to {arguments.out}: localize.json, localize.csv, trajectory.txt (TUM), track.png")
+        print(f"Written to {arguments.out}: " + ", ".join(written))
     if not arguments.json:
         print(summary["believes"])
     return 0

@@ -63,12 +63,16 @@ def _in_the_mean(normalized: float | None) -> str:
     return f"{normalized:.2f} in the mean (1 is honest)"
 
 
-def write_localized(folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap) -> None:
-    """Writes options and numbers (JSON), a row a frame (CSV), the trajectory (TUM) and the figure."""
+def write_localized(
+    folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap
+) -> list[str]:
+    """Writes options and numbers (JSON), a row a frame (CSV), the trajectory (TUM), figure and scene; says what."""
+    from course_lib.commands.scene_output import write_scene
     from course_lib.depth_mcl.evaluation import pose_errors
     from course_lib.depth_mcl.poses import write_tum
     from course_lib.experiments.results import write_results
     from course_lib.plots.track_figure import track_figure
+    from course_lib.plots.track_scene import track_scene
 
     count, positions = len(result.frames), result.camera_to_world[:, :3, 3]
     rows = [
@@ -90,13 +94,20 @@ def write_localized(folder: Path, summary: dict, result: Run, sequence: DepthSeq
     write_results(folder / "localize.json", summary, rows)
     times = np.asarray(result.frames, float) if sequence.times is None else sequence.times[:count]
     write_tum(folder / "trajectory.txt", times, result.camera_to_world)
+    up = None if summary["up"] == "unknown" else summary["up"]
     figure = track_figure(
         scene_map,
         result.frames,
         positions,
         result.scores,
         result.statuses,
-        None if summary["up"] == "unknown" else summary["up"],
+        up,
         None if true is None else true[:, :3, 3],
     )
     figure.savefig(folder / "track.png", dpi=130)
+    scene = write_scene(
+        folder / "track.html",
+        f"Path of {sequence.folder.name} in {Path(summary['map']).name}",
+        lambda: track_scene(scene_map, result, sequence, up, summary["near_m"], summary["far_m"]),
+    )
+    return ["localize.json", "localize.csv", "trajectory.txt (TUM)", "track.png", scene]

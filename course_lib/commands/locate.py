@@ -41,7 +41,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="the paper's method as it is: a pose that its own residuals contradict is given, too (default: not)",
     )
     parser.add_argument(
-        "--out", type=Path, metavar="FOLDER", help="write locate.json, .csv and .png here (default: nowhere)"
+        "--out",
+        type=Path,
+        metavar="FOLDER",
+        help="write locate.json, .csv and .png here, and locate.html: map, rays and pose, to be turned in a browser "
+        "(default: nowhere)",
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the tables")
 
@@ -87,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
         **localization_summary(found, localizer.semantic_map),
     }
     if arguments.out:
-        _write(arguments.out, summary, views, found, localizer.semantic_map)
+        written = _write(arguments.out, summary, views, found, localizer.semantic_map)
     if arguments.json:
         print(json.dumps(summary))
         return 0
@@ -98,7 +102,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
     print(_text(summary))
     if arguments.out:
-        print(f"\nWritten to {arguments.out}: locate.json, locate.csv, locate.png")
+        print(f"\nWritten to {arguments.out}: " + ", ".join(written))
     return 0
 
 
@@ -209,12 +213,17 @@ def _row(row: dict) -> str:
 
 def _write(
     folder: Path, summary: dict, views: tuple[View, View], found: Localization, semantic_map: SemanticMap
-) -> None:
+) -> list[str]:
+    """Writes numbers, figure and scene; says what."""
+    from course_lib.commands.scene_output import write_scene
     from course_lib.experiments.results import write_results
     from course_lib.plots.location_figure import location_figure
+    from course_lib.plots.location_scene import location_scene
 
     write_results(folder / "locate.json", summary, summary["objects"])
     lines = [f"{n:2d} {_row(row)}" for n, row in enumerate(summary["objects"], start=1)]
     title = "On the map" if found.pose else f"No pose: {found.reason}"
     images = [view.image for view in views]
     location_figure(images, semantic_map, found, lines, title).savefig(folder / "locate.png", dpi=110)
+    scene = write_scene(folder / "locate.html", title, lambda: location_scene(semantic_map, found))
+    return ["locate.json", "locate.csv", "locate.png", scene]

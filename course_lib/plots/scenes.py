@@ -9,7 +9,7 @@ Every function returns a `pyvista.PolyData` in the world frame (metres, z up), t
 
 `scene_page.write_page` makes one HTML file of a plotter, a lesson's `show_scene` shows it. What the page's viewer
 (vtk.js) does not draw is not used here: labels on the screen, scalar bars and lines with a width that follows the zoom.
-PyVista is imported when a scene is made: it takes a second, and most commands draw none.
+PyVista and VTK are imported when a scene is made: that takes a second, and most commands draw none.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.scene_map import SceneMap
-from course_lib.depth_mcl.simplification import simplified
 from course_lib.geometry import as_states, optical_pose, pose_matrix
 
 if TYPE_CHECKING:
     import pyvista
+
+    from course_lib.depth_mcl.camera import DepthCamera
+    from course_lib.depth_mcl.scene_map import SceneMap
 
 AXIS_COLOURS = np.array([[213, 40, 0], [0, 158, 60], [0, 80, 200]], dtype=np.uint8)
 """Red x, green y, blue z, as robotics draws them; each axis also carries its letter."""
@@ -58,7 +58,7 @@ def new_plotter(
     pyvista = _pyvista()
     theme = pyvista.themes.DocumentTheme()  # white, whatever the reader's own theme is
     theme.cmap, theme.show_scalar_bar = "cividis", False  # the colours of the figures; a page cannot show the bar
-    theme.lighting_params.ambient = 0.35  # walls that one sees at a slant are not black
+    theme.lighting_params.ambient, theme.lighting_params.diffuse = 0.35, 0.65  # no wall is black, no floor white
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size), theme=theme)
     if viewpoint is not None:
         viewpoint, focus = _finite(viewpoint, "viewpoint", (3,)), _finite(focus, "focus", (3,))
@@ -74,6 +74,8 @@ def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = 
     """
     if faces < 100:
         raise SceneError(f"faces must be at least 100, or no map is left; got {faces}")
+    from course_lib.depth_mcl.simplification import simplified
+
     fewer = simplified(scene_map)
     mesh = _polydata(fewer.vertices, fewer.faces)
     if below is not None:
@@ -232,6 +234,38 @@ def path(points: np.ndarray, dashed: bool = False) -> pyvista.PolyData:
     if points.ndim != 2 or points.shape[1] != 3 or len(points) < 2:
         raise SceneError(f"points must have shape (N, 3), N at least 2; got {points.shape}. Of states: states[:, :3]")
     return _lines(points, [(k, k + 1) for k in range(0, len(points) - 1, 2 if dashed else 1)])
+
+
+def post(foot: np.ndarray, height: float, radius: float = 0.03) -> pyvista.PolyData:
+    """A thin upright post on a point `(3,)`: something of which the place is known, but not the shape. Metres.
+
+    Raises `SceneError` for a foot that is no point or a height or radius that is not positive.
+    """
+    foot = _finite(foot, "foot", (3,))
+    top = foot + np.array([0.0, 0.0, _positive(height, "height")])
+    return _tubes(np.stack([foot, top]), [(0, 1)], _positive(radius, "radius"))
+
+
+def text(words: str, at: np.ndarray, height: float = 0.2) -> pyvista.PolyData:
+    """Words as letters that lie flat, their foot towards -y, from the point `(3,)` on; capitals so high, in metres.
+
+    Labels on the screen are not shown by a page; these turn with the scene. Raises `SceneError` for no words or no
+    such point.
+    """
+    at = _finite(at, "at", (3,))
+    if not words.strip():
+        raise SceneError("text needs words; got none")
+    pyvista = _pyvista()
+    from vtkmodules.vtkRenderingFreeType import vtkVectorText
+
+    source = vtkVectorText()
+    source.SetText(words)
+    source.Update()
+    letters = pyvista.PolyData(source.GetOutput())
+    points = np.asarray(letters.points, float) - [letters.bounds[0], 0.0, 0.0]
+    letters.points = (points * _positive(height, "height") + at).astype(np.float32)
+    letters.clear_data()
+    return letters
 
 
 def _placed(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:

@@ -61,12 +61,14 @@ def test_another_process_without_opengl_writes_the_same_bytes_to_the_last_figure
     for name in ("corridor.csv", "trajectory.txt"):
         assert (tmp_path / name).read_bytes() == (printed[1] / name).read_bytes()
     assert (tmp_path / "overview.png").exists()
+    assert "no corridor.html (OpenGL cannot start" in done.stdout
 
 
 @pytest.mark.slow
 def test_figures_and_results_are_written(demo):
     for name in ("figure_5.png", "figure_6.png"):
         assert (demo / name).read_bytes().startswith(b"\x89PNG")
+    assert len((demo / "corridor.html").read_text()) < 1_300_000
     rows = list(csv.DictReader((demo / "corridor.csv").open()))
     stored = json.loads((demo / "corridor.json").read_text())
     errors = sorted(float(row["proposed_nearest_m"]) for row in rows)

@@ -42,6 +42,9 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, capsys)
     assert all(0.4 < float(row["score"]) < 1 and float(row["position_error_m"]) < 0.3 for row in rows)
     assert read_tum(tmp_path / "trajectory.txt")[1].shape == (6, 4, 4)
     assert (tmp_path / "track.png").read_bytes().startswith(b"\x89PNG")
+    page = (tmp_path / "track.html").read_text()
+    assert "<title>Path of wagon in map.ply</title>" in page
+    assert len(page) < 1_300_000
 
 
 def test_a_hand_carried_run_is_followed_in_six_degrees(corridor_folder, capsys):

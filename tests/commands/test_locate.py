@@ -91,6 +91,9 @@ def test_the_table_and_the_files_say_the_same(pair, tmp_path, capsys):
     figure = cv2.imread(str(out / "locate.png"))
     assert min(figure.shape[:2]) > 1000
     assert figure.std() > 30
+    assert "Written to" in printed
+    assert "locate.html (to be turned in a browser)" in printed
+    assert "<title>On the map</title>" in (out / "locate.html").read_text()
 
 
 def test_no_pose_is_an_answer_and_is_drawn_too(pair, tmp_path, capsys):
@@ -101,6 +104,7 @@ def test_no_pose_is_an_answer_and_is_drawn_too(pair, tmp_path, capsys):
     stored = json.loads((out / "locate.json").read_text())
     assert (stored["status"], stored["x_m"], len(stored["rejected_pose"])) == ("unable", None, 3)
     assert (out / "locate.png").is_file()
+    assert "<title>No pose: implausible</title>" in (out / "locate.html").read_text()
     assert answer(capsys, *words(pair, "--paper", baseline=1.0))["status"] == "ok"
 
 

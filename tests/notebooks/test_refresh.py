@@ -78,6 +78,44 @@ def test_a_progress_bar_leaves_nothing_that_changes(refreshed):
     assert printed.text == "done: 6\n"
 
 
+SCENE = """
+import numpy as np
+from course_lib.lessons import show_scene
+from course_lib.plots.scenes import body_axes, new_plotter
+plotter = new_plotter()
+plotter.add_mesh(body_axes(np.zeros(6), 0.5), rgb=True)
+show_scene(plotter, "99_axes", title="Three axes", alt="Three axes that meet at the origin")
+"""
+
+
+@pytest.fixture(scope="module")
+def refreshed_scene(tmp_path_factory):
+    """A notebook with a scene, refreshed; its page is stored beside it."""
+    path = written(tmp_path_factory.mktemp("scene"), SCENE)
+    refresh.refresh(path)
+    return path
+
+
+def test_refresh_stores_a_scene_and_a_run_of_the_lesson_agrees_and_writes_none(refreshed_scene):
+    folder = refreshed_scene.parent / "scenes"
+    assert [path.name for path in folder.iterdir()] == ["99_axes.html"]
+    assert "1 passed" in run_nbval(refreshed_scene).stdout
+    assert [path.name for path in folder.iterdir()] == ["99_axes.html"]
+
+
+def test_a_run_agrees_where_another_vtk_makes_another_page_but_not_with_another_title(refreshed_scene, tmp_path):
+    """Another page than the stored one goes to scenes/yours; only its address may differ."""
+    copy = tmp_path / refreshed_scene.name
+    copy.write_text(refreshed_scene.read_text())
+    assert "1 passed" in run_nbval(copy).stdout
+    assert [path.relative_to(tmp_path).as_posix() for path in tmp_path.glob("**/*.html")] == [
+        "scenes/yours/99_axes.html"
+    ]
+    copy.write_text(refreshed_scene.read_text().replace('title=\\"Three axes\\" width', 'title=\\"Two axes\\" width'))
+    assert copy.read_text() != refreshed_scene.read_text()
+    assert "1 failed" in run_nbval(copy).stdout
+
+
 def test_a_second_refresh_changes_no_byte(refreshed):
     before = refreshed.read_bytes()
     refresh.refresh(refreshed)

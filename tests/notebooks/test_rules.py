@@ -10,6 +10,7 @@ from course_lib.commands.refresh import MAX_BYTES, METADATA, WIDGET_VIEW
 from course_lib.paths import REPOSITORY
 
 FORBIDDEN_WIDGETS = {"Output", "interact", "interactive", "interactive_output", "interact_manual", "Play"}
+MAX_SCENE_BYTES, MAX_SCENES_BYTES = 1_300_000, 15_000_000
 SHOWN_TYPES = {"text/plain", "text/html", "text/markdown", "text/latex"}
 
 
@@ -79,11 +80,28 @@ def test_every_picture_has_alternative_text(lesson):
         assert len(alt.split()) >= 4, f"alternative text too short: {alt!r}"
 
 
+def scene_sources(lesson) -> list[str]:
+    return re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', "".join([*lesson.html, lesson.markdown]))
+
+
 def test_scenes_are_small_and_there(lesson):
-    for source in re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', "".join([*lesson.html, lesson.markdown])):
-        scene = lesson.path.parent / source
-        assert scene.parent.name == "scenes"
-        assert scene.stat().st_size <= 2_000_000
+    for source in scene_sources(lesson):
+        assert re.fullmatch(rf"scenes/{lesson.number}_[a-z0-9_]+\.html", source)
+        assert (lesson.path.parent / source).stat().st_size <= MAX_SCENE_BYTES
+
+
+def test_every_stored_scene_is_shown_and_all_of_them_are_small(all_lessons):
+    shown = {source for lesson in all_lessons for source in scene_sources(lesson)}
+    stored = sorted((REPOSITORY / "notebooks" / "scenes").glob("*.html"))
+    assert {f"scenes/{path.name}" for path in stored} == shown
+    assert sum(path.stat().st_size for path in stored) <= MAX_SCENES_BYTES
+
+
+def test_a_scene_made_with_pyvista_has_its_picture(lesson):
+    for cell in lesson.code_cells:
+        if "show_scene(" in cell.source:
+            html = "".join(output.get("data", {}).get("text/html", "") for output in cell.outputs)
+            assert re.search(r"</iframe><details><summary>[^<]+</summary><img alt=", html), cell.id
 
 
 def test_nearly_every_printed_line_says_what_was_measured_not_whether_it_was_good(all_lessons):

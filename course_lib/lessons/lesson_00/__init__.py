@@ -2,7 +2,7 @@
 
 from course_lib.lessons.lesson_00.figures import covered_figure, filter_figure, hills_figure, idea_figure, room_figure
 from course_lib.lessons.lesson_00.panel import PANELS, pose_panel
-from course_lib.lessons.lesson_00.recorded import FRAME, PAIR, moment, moved, true_positions, wall_reads
+from course_lib.lessons.lesson_00.recorded import FRAME, PAIR, mean_votes, moment, moved, true_positions, wall_reads
 
 __all__ = [
     "FRAME",
@@ -12,6 +12,7 @@ __all__ = [
     "filter_figure",
     "hills_figure",
     "idea_figure",
+    "mean_votes",
     "moment",
     "moved",
     "pose_panel",

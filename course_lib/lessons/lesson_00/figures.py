@@ -11,7 +11,8 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.lessons.lesson_00.recorded import Moment
 from course_lib.plots import figures
 from course_lib.plots.corridor_figures import floor_plan
-from course_lib.plots.room_figures import draw_box, draw_pose, map_axes, panorama
+from course_lib.plots.panorama_drawing import add_list, draw_box, draw_numbers, panorama
+from course_lib.plots.room_figures import draw_pose, map_axes
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.recording import StereoPair
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
@@ -89,10 +90,9 @@ def filter_figure(estimates: list[Estimate], true: np.ndarray) -> Figure:
 def room_figure(pair: StereoPair, found: Localization, semantic_map: SemanticMap) -> Figure:
     """The second method on one pair: what was detected in the upper panorama, and the pose on the map."""
     image, _ = pair.images()
-    figure, (view, plan) = figures.new_figure(1, 2, size=(10.4, 4.0))
+    figure, (view, plan) = figures.new_figure(1, 2, size=(10.4, 4.6))
     panorama(view, image, f"Upper camera: {len(found.upper_detections)} objects found")
-    for one in found.upper_detections:
-        draw_box(view, one.box, image.shape[1], one.label, one.label)
+    labels = [one.label for one in found.upper_detections]
     for index, (_, landmark) in enumerate(found.used_pairs):
         ends = np.stack([(found.pose.x, found.pose.y), semantic_map.positions[landmark]])
         plan.plot(*ends.T, color="0.6", linewidth=0.8, label=None if index else "used for the pose")
@@ -100,4 +100,10 @@ def room_figure(pair: StereoPair, found: Localization, semantic_map: SemanticMap
     draw_pose(plan, found.pose.x, found.pose.y, found.pose.theta, figures.ORANGE, "estimated pose")
     map_axes(plan, semantic_map, "The semantic map, from above")
     plan.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7, frameon=False)
+    lines = [f"{number:2d} {label}" for number, label in enumerate(labels, start=1)]
+    add_list(figure, lines, 7, "the numbers in the panorama", labels)
+    boxes = [one.box for one in found.upper_detections]
+    for box, label in zip(boxes, labels, strict=True):
+        draw_box(view, box, image.shape[1], label)
+    draw_numbers(view, boxes, labels, image.shape[1])
     return figure

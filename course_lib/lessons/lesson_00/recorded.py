@@ -8,14 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
+from course_lib.depth_mcl.likelihood import ALPHA, likelihood, valid_pixels
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.sequence import DepthSequence
-from course_lib.geometry import state_from_optical_pose
+from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
 from course_lib.lessons.kit.box_world import box_map
 from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 
 FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
+CEILING = 2.6  # metres above the floor, in the corridor
+_SURFACE = 0.08  # metres: what is nearer to floor or ceiling belongs to it (chosen)
 PAIR = 3  # of the room's experiment 1: most objects in view, nothing special (chosen)
 
 
@@ -53,6 +55,26 @@ def moved(state: np.ndarray, name: str, offsets: np.ndarray) -> np.ndarray:
     states = np.tile(state, (len(np.atleast_1d(offsets)), 1))
     states[:, {"x": 0, "y": 1, "yaw": 5}[name]] += np.deg2rad(offsets) if name == "yaw" else offsets
     return states
+
+
+def mean_votes(now: Moment, back: float) -> dict[str, tuple[float, float]]:
+    """Mean term of eq. (8), 0 to 1, of the pixels on each surface: at the true pose, and from `back` metres behind it.
+
+    Which surface a pixel sees is what the map shows there from the true pose: floor and ceiling by their heights,
+    the side walls with all that stands before them by the side of the camera's path on which they are.
+    """
+    states = np.stack([now.state, now.state - [back, 0, 0, 0, 0, 0]])
+    views = now.renderer.render(states)
+    votes = ALPHA / (ALPHA + np.abs(now.measured - views))
+    pose = pose_matrix(now.state)
+    optical = np.where(np.isfinite(views[0]), views[0], 0)[..., None] * now.renderer.camera.rays()
+    seen = optical @ (pose[:3, :3] @ BODY_FROM_OPTICAL).T + pose[:3, 3]
+    y, z = seen[..., 1], seen[..., 2]
+    floor, ceiling = z < _SURFACE, z > CEILING - _SURFACE
+    parts = {"floor": floor, "ceiling": ceiling}
+    parts |= {"left side": ~floor & ~ceiling & (y > 0), "right side": ~floor & ~ceiling & (y <= 0)}
+    both = valid_pixels(now.measured) & np.isfinite(views).all(axis=0)
+    return {name: tuple(votes[:, part & both].mean(axis=1).tolist()) for name, part in parts.items()}
 
 
 def true_positions(sequence: DepthSequence, frames: range) -> np.ndarray:

@@ -1,8 +1,11 @@
-"""Exercises of lesson 01: points from the camera to the world, a state from an optical pose, a mean of headings."""
+"""Exercises of lesson 01: points to the world, a state from an optical pose, a motion, another program's angles."""
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from course_lib.geometry import BODY_FROM_OPTICAL, optical_pose, pose_matrix, state_from_matrix, wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
@@ -30,6 +33,15 @@ def _points_and_state(rng: np.random.Generator) -> tuple:
     return points, _random_state(rng)
 
 
+def _level_camera(rng: np.random.Generator) -> tuple:
+    """The paper's wagon, facing the way it came from: only x, y and yaw are not zero."""
+    return _points_and_state(rng)[0], np.array([10.0, -0.4, 1.2, 0.0, 0.0, np.deg2rad(179.5)])
+
+
+def _one_point(rng: np.random.Generator) -> tuple:
+    return rng.uniform([-2, -1, 1], [2, 1, 8], size=(1, 3)), _random_state(rng)
+
+
 def _turns_in_other_order(points: np.ndarray, state: np.ndarray) -> np.ndarray:
     roll, pitch, yaw = (pose_matrix(np.eye(6)[3 + k] * state[3 + k])[:3, :3] for k in range(3))
     return points @ (roll @ pitch @ yaw @ BODY_FROM_OPTICAL).T + state[:3]
@@ -37,6 +49,10 @@ def _turns_in_other_order(points: np.ndarray, state: np.ndarray) -> np.ndarray:
 
 def _into_the_camera(points: np.ndarray, state: np.ndarray) -> np.ndarray:
     return _moved(points, np.linalg.inv(optical_pose(state)))
+
+
+def _into_the_body(points: np.ndarray, state: np.ndarray) -> np.ndarray:
+    return _moved(points @ BODY_FROM_OPTICAL.T, np.linalg.inv(pose_matrix(state)))
 
 
 def _position_first(points: np.ndarray, state: np.ndarray) -> np.ndarray:
@@ -63,6 +79,21 @@ def state_of(matrix: np.ndarray) -> np.ndarray:
 
 def _optical(rng: np.random.Generator) -> tuple:
     return (optical_pose(_random_state(rng)),)
+
+
+def _facing_back(rng: np.random.Generator) -> tuple:
+    """Just across the wrap: yaw -179.5 degrees, with roll and pitch on either side of zero."""
+    return (optical_pose(np.array([3.0, 1.0, 1.2, 0.3, -0.4, np.deg2rad(-179.5)])),)
+
+
+def _unturned(rng: np.random.Generator) -> tuple:
+    return (optical_pose(np.array([3.0, 4.0, 1.0, 0.0, 0.0, 0.0])),)
+
+
+def _other_order(matrix: np.ndarray) -> np.ndarray:
+    """What scipy's "zyx" reads, small letters: turns about axes that stay put."""
+    angles = Rotation.from_matrix(matrix[:3, :3] @ BODY_FROM_OPTICAL.T).as_euler("zyx")
+    return np.concatenate([matrix[:3, 3], angles[::-1]])
 
 
 def _with_rotation(matrix: np.ndarray, rotation: np.ndarray) -> np.ndarray:
@@ -96,32 +127,143 @@ def _sine_second(matrix: np.ndarray) -> np.ndarray:
     return np.array([*state[:3], roll, state[4], yaw])
 
 
-# 01.3: the weighted mean direction
+# 01.3: the motion between two poses
 
 
-def mean_heading(yaws: np.ndarray, w: np.ndarray) -> float:
-    """Weighted mean direction [rad] of headings (N,) with weights (N,)."""
-    return float(np.arctan2(np.sum(w * np.sin(yaws)), np.sum(w * np.cos(yaws))))
+def motion(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """State (6,) of the pose `after`, in the body frame of the pose `before`: what the camera itself did in between."""
+    return state_from_matrix(np.linalg.inv(pose_matrix(before)) @ pose_matrix(after))
 
 
-def _headings(rng: np.random.Generator) -> tuple:
-    """Headings round some direction, mostly near the wrap, always on both sides of their mean."""
-    n = int(rng.integers(4, 9))
-    middle = rng.choice([np.pi, rng.uniform(-np.pi, np.pi)], p=[0.7, 0.3])
-    yaws = middle + np.concatenate([[0.7, -0.6], rng.uniform(-0.9, 0.9, n - 2)])
-    # Weights that sum to anything but one: dividing by their sum must make no difference, not dividing neither.
-    return wrap_angle(yaws), rng.uniform(0.1, 2.0, n)
+def _two_states(rng: np.random.Generator) -> tuple:
+    """A tilted pose and the next one, a step and a turn of any direction later."""
+    before = _random_state(rng)
+    step = rng.uniform(0.2, [0.8, 0.8, 0.8, 0.5, 0.5, 0.5]) * rng.choice([-1, 1], 6)
+    return before, state_from_matrix(pose_matrix(before) @ pose_matrix(step))
 
 
-def _mean_of_numbers(yaws: np.ndarray, w: np.ndarray) -> float:
-    return np.sum(w * yaws) / np.sum(w)
+def _over_the_seam(rng: np.random.Generator) -> tuple:
+    """A level wagon whose yaw goes from 179 to -179 degrees."""
+    before = np.array([5.0, 0.3, 1.0, 0.0, 0.0, np.deg2rad(179)])
+    return before, before + np.array([-0.1, 0.02, 0, 0, 0, np.deg2rad(-358)])
+
+
+def _at_rest(rng: np.random.Generator) -> tuple:
+    state = _random_state(rng)
+    return state, state.copy()
+
+
+def _joined(position: np.ndarray, rotation: np.ndarray) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = rotation, position
+    return state_from_matrix(matrix)
+
+
+def _rotations(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return pose_matrix(before)[:3, :3], pose_matrix(after)[:3, :3]
+
+
+def _numbers_subtracted(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    return np.concatenate([(after - before)[:3], wrap_angle(after - before)[3:]])
+
+
+def _angles_subtracted(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    return np.concatenate([motion(before, after)[:3], wrap_angle(after - before)[3:]])
+
+
+def _step_in_the_world(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    return np.concatenate([(after - before)[:3], motion(before, after)[3:]])
+
+
+def _by_yaw_alone(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Right for a wagon, that neither rolls nor pitches."""
+    step = pose_matrix(before * [0, 0, 0, 0, 0, 1])[:3, :3].T @ (after - before)[:3]
+    return np.concatenate([step, wrap_angle(after - before)[3:]])
+
+
+def _turn_on_the_wrong_side(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    r, s = _rotations(before, after)
+    return _joined(r.T @ (after - before)[:3], s @ r.T)
+
+
+def _step_turned_on(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    r, s = _rotations(before, after)
+    return _joined(r @ (after - before)[:3], r.T @ s)
+
+
+def _step_seen_from_the_second(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    r, s = _rotations(before, after)
+    return _joined(s.T @ (after - before)[:3], r.T @ s)
+
+
+# 01.4, the challenge: which rules does another program follow?
+
+Reading = tuple[tuple[int, ...], tuple[int, ...], bool]
+"""Body axis (0 forward, 1 left, 2 up) of each column, sign of each column, and whether the last column acts first."""
+
+
+def readings() -> list[Reading]:
+    """All 96 ways to read three columns of angles."""
+    orders, signs = itertools.permutations(range(3)), list(itertools.product((1, -1), repeat=3))
+    return [(axes, sign, last) for axes in orders for sign in signs for last in (True, False)]
+
+
+def rotations_of(angles_deg: np.ndarray, reading: Reading) -> np.ndarray:
+    """Rotation matrices `(K, 3, 3)` of angles `(K, 3)` [degrees], read in one way."""
+    axes, signs, last_acts_first = reading
+    name = "".join("xyz"[axis] for axis in axes)
+    # scipy: capitals turn about the body's own axes, so that the last one acts first.
+    return Rotation.from_euler(name.upper() if last_acts_first else name, angles_deg * signs, degrees=True).as_matrix()
+
+
+def decode(angles: np.ndarray, rotations: np.ndarray, new: np.ndarray) -> np.ndarray:
+    """Roll, pitch, yaw `(M, 3)` [rad] of `new` angles of a program whose `angles` have known `rotations`."""
+    return _best_of(readings(), angles, rotations, new)
+
+
+def _best_of(candidates: list[Reading], angles: np.ndarray, rotations: np.ndarray, new: np.ndarray) -> np.ndarray:
+    best = min(candidates, key=lambda reading: np.abs(rotations_of(angles, reading) - rotations).max())
+    return _angles(rotations_of(new, best))
+
+
+def _angles(rotations: np.ndarray) -> np.ndarray:
+    return Rotation.from_matrix(rotations).as_euler("ZYX")[:, ::-1]
+
+
+def _of_a_program(rng: np.random.Generator, reading: Reading) -> tuple:
+    axes, signs, last_acts_first = reading
+    name = "".join("xyz"[axis] for axis in axes)
+    body = np.column_stack([rng.uniform(-1.2, 1.2, (7, 2)), rng.uniform(-3, 3, 7)])
+    rotations = Rotation.from_euler("ZYX", body[:, ::-1])
+    written = rotations.as_euler(name.upper() if last_acts_first else name, degrees=True) * signs
+    return written[:4], rotations.as_matrix()[:4], written[4:]
+
+
+def _some_program(rng: np.random.Generator) -> tuple:
+    return _of_a_program(rng, readings()[rng.integers(96)])
+
+
+def _this_course(rng: np.random.Generator) -> tuple:
+    return _of_a_program(rng, ((0, 1, 2), (1, 1, 1), False))
+
+
+def _an_airplane(rng: np.random.Generator) -> tuple:
+    """Heading, pitch, roll of a body whose y points to the right and z down."""
+    return _of_a_program(rng, ((2, 1, 0), (-1, -1, 1), True))
+
+
+def _only_sorted(angles: np.ndarray, rotations: np.ndarray, new: np.ndarray) -> np.ndarray:
+    best = min(readings(), key=lambda reading: np.abs(rotations_of(angles, reading) - rotations).max())
+    return np.deg2rad(new * best[1])[:, np.argsort(best[0])]
 
 
 EXERCISES = [
     Exercise(
         number="01.1",
+        level="warm-up",
         reference=to_world,
         inputs=_points_and_state,
+        cases=(_level_camera, _one_point),
         mistakes=(
             Mistake(
                 lambda points, state: _moved(points, pose_matrix(state)),
@@ -148,6 +290,10 @@ EXERCISES = [
             ),
             Mistake(
                 _into_the_camera, "You go from the world into the camera. The task goes the other way: no inverse."
+            ),
+            Mistake(
+                _into_the_body,
+                "Your second step goes the wrong way: `pose_matrix` leads from the body to the world already.",
             ),
             Mistake(_yaw_alone, "You use yaw alone. The camera may be tilted and rolled as well."),
             Mistake(_taken_as_degrees, "The state's angles are in radians already."),
@@ -181,6 +327,7 @@ EXERCISES = [
         number="01.2",
         reference=state_of,
         inputs=_optical,
+        cases=(_facing_back, _unturned),
         mistakes=(
             Mistake(
                 state_from_matrix,
@@ -201,6 +348,14 @@ EXERCISES = [
             Mistake(
                 lambda matrix: state_of(np.linalg.inv(matrix)),
                 "You inverted the matrix. It is camera-to-world already: its last column is the position.",
+            ),
+            Mistake(
+                lambda matrix: state_of(matrix) * [1, 1, 1, 0, 1, 1],
+                "Your roll is always 0. A camera in a hand rolls: which entries of R hold sin(roll)?",
+            ),
+            Mistake(
+                _other_order,
+                'That is scipy\'s "zyx", about axes that stay put. The course\'s order is "ZYX", with capitals.',
             ),
             Mistake(
                 _half_circle,
@@ -254,67 +409,102 @@ EXERCISES = [
     ),
     Exercise(
         number="01.3",
-        reference=mean_heading,
-        inputs=_headings,
+        reference=motion,
+        inputs=_two_states,
+        cases=(_over_the_seam, _at_rest),
         mistakes=(
             Mistake(
-                _mean_of_numbers,
-                "That is the mean of the numbers. Near +-180 degrees it points the opposite way: add arrows.",
+                lambda before, after: after - before,
+                "You subtract the numbers. The camera's own forward is not the world's x, and angles wrap.",
             ),
             Mistake(
-                lambda yaws, w: np.arctan2(np.sum(np.sin(yaws)), np.sum(np.cos(yaws))),
-                "All your headings count alike. Multiply each arrow by its weight.",
+                _numbers_subtracted,
+                "You subtract the numbers: that is a step along the world's axes. How far *forward* did the camera go?",
             ),
             Mistake(
-                lambda yaws, w: np.arctan2(np.sum(w * np.cos(yaws)), np.sum(w * np.sin(yaws))),
-                "np.arctan2 takes the sine part first, then the cosine part.",
+                _angles_subtracted,
+                "The step is right. The angles of two turns cannot be subtracted: multiply matrices, then read angles.",
             ),
             Mistake(
-                lambda yaws, w: np.arctan(np.sum(w * np.sin(yaws)) / np.sum(w * np.cos(yaws))),
-                "Your mean stays within 90 degrees: arctan cannot tell an arrow from its opposite. Use arctan2.",
+                _by_yaw_alone,
+                "Right for a wagon: you turn by yaw alone. A camera that is tilted or rolled needs the whole of R.",
             ),
             Mistake(
-                lambda yaws, w: np.mod(mean_heading(yaws, w), 2 * np.pi),
-                "The direction is right; the task wants it from -pi to pi, not from 0 to 2 pi.",
+                _step_in_the_world,
+                "The turn is right. Your step counts along the world's axes: turn it into the first camera's frame.",
             ),
             Mistake(
-                lambda yaws, w: np.rad2deg(mean_heading(yaws, w)), "Your mean is in degrees; the task wants radians."
+                lambda before, after: motion(after, before),
+                "That is the way back: the first pose, seen from the second.",
             ),
             Mistake(
-                lambda yaws, w: np.sum(w * np.mod(yaws, 2 * np.pi)) / np.sum(w),
-                "From 0 to 2 pi the wrap only moves to 0 degrees. No range of numbers is safe: add arrows.",
+                lambda before, after: state_from_matrix(pose_matrix(after) @ np.linalg.inv(pose_matrix(before))),
+                "The inverse is on the wrong side: what is in the world must go into the first camera's frame *last*.",
             ),
             Mistake(
-                lambda yaws, w: np.sum(w * yaws),
-                "You sum weights times numbers, and the weights need not sum to one. Angles: add arrows instead.",
+                lambda before, after: state_from_matrix(pose_matrix(before) @ pose_matrix(after)),
+                "You go from body to world twice. One of the two has to be undone.",
             ),
             Mistake(
-                lambda yaws, w: np.arctan2(np.sin(np.sum(w * yaws)), np.cos(np.sum(w * yaws))),
-                "You take sine and cosine of the summed numbers. Take them of each heading, then sum.",
+                _turn_on_the_wrong_side,
+                "The step is right. Your turn is told in the world: put the undone rotation on the left of the other.",
             ),
             Mistake(
-                lambda yaws, w: wrap_angle(_mean_of_numbers(yaws, w) + np.pi),
-                "Adding 180 degrees to the mean of the numbers helps only by luck. Add arrows.",
+                _step_turned_on,
+                "The turn is right. R leads from body to world; your step has to go from world to body.",
             ),
             Mistake(
-                lambda yaws, w: np.arctan2(np.sum(np.sin(w * yaws)), np.sum(np.cos(w * yaws))),
-                "You weigh the headings themselves. A weight is the length of an arrow: w * sin(yaw), w * cos(yaw).",
+                _step_seen_from_the_second,
+                "The turn is right. Your step is told in the frame of the second pose; the task asks for the first.",
             ),
             Mistake(
-                lambda yaws, w: np.arctan2(np.sum(w * np.sin(yaws)), np.sum(np.cos(yaws))),
-                "You weigh the sines, but not the cosines.",
+                lambda before, after: motion(before, after) * [1, 1, 1, *[180 / np.pi] * 3],
+                "Your angles are in degrees; a state holds radians.",
+            ),
+        ),
+    ),
+    Exercise(
+        number="01.4",
+        level="challenge",
+        reference=decode,
+        inputs=_some_program,
+        cases=(_this_course, _an_airplane),
+        mistakes=(
+            Mistake(
+                lambda angles, rotations, new: np.deg2rad(new),
+                "You read the columns as this course does. What do the given matrices say about that?",
             ),
             Mistake(
-                lambda yaws, w: np.arctan2(np.sum(w * np.sin(yaws)) / w.sum(), np.sum(w * np.cos(yaws))),
-                "You divide one of the two sums by the sum of the weights. Divide both, or none.",
+                lambda angles, rotations, new: np.rad2deg(decode(angles, rotations, new)),
+                "The reading is right. Return radians; only the other program writes degrees.",
             ),
             Mistake(
-                lambda yaws, w: mean_heading(np.deg2rad(yaws), w),
-                "The headings are in radians already; you convert them once more.",
+                lambda angles, rotations, new: _best_of([r for r in readings() if r[2]], angles, rotations, new),
+                "You never try that the *first* column acts first. Each order of axes can be multiplied in two ways.",
             ),
             Mistake(
-                lambda yaws, w: wrap_angle(yaws[0] + np.sum(w * wrap_angle(yaws - yaws[0])) / np.sum(w)),
-                "Close: you move the wrap away, then average numbers. Add arrows instead: sines and cosines.",
+                lambda angles, rotations, new: _best_of([r for r in readings() if not r[2]], angles, rotations, new),
+                "You never try that the *last* column acts first. Each order of axes can be multiplied in two ways.",
+            ),
+            Mistake(
+                lambda angles, rotations, new: _best_of(
+                    [r for r in readings() if r[1] == (1, 1, 1)], angles, rotations, new
+                ),
+                "You never try a negative sign: an airplane's pitch is positive upward.",
+            ),
+            Mistake(
+                lambda angles, rotations, new: _best_of(
+                    [r for r in readings() if len(set(r[1])) == 1], angles, rotations, new
+                ),
+                "You give all three columns one sign. Each column may have its own: 8 mixtures.",
+            ),
+            Mistake(
+                _only_sorted,
+                "You sort columns and mend signs. But turns in another order have other angles: go through matrices.",
+            ),
+            Mistake(
+                lambda angles, rotations, new: decode(angles, rotations.transpose(0, 2, 1), new),
+                "You compare with the transposed matrices: those turn the other way.",
             ),
         ),
     ),

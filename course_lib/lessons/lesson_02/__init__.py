@@ -9,14 +9,16 @@ from course_lib.lessons.lesson_02.figures import (
     views_figure,
 )
 from course_lib.lessons.lesson_02.panel import PANELS, survey_panel
-from course_lib.lessons.lesson_02.small_room import fusion, quality, room_map, scans
+from course_lib.lessons.lesson_02.small_room import STATIONS, distance_to_room, fusion, quality, room_map, scans
 from course_lib.lessons.lesson_02.views import camera_view, corridor_difference, row, shipped_numbers, true_view
 
 __all__ = [
     "PANELS",
+    "STATIONS",
     "camera_view",
     "corridor_difference",
     "corridor_figure",
+    "distance_to_room",
     "fusion",
     "fusion_figure",
     "idea_figure",

@@ -10,6 +10,7 @@ import numpy as np
 import trimesh
 
 from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.experiments.rooms_summary import wilson_percent
 from course_lib.lessons.kit.box_world import Box, BoxWorld
 from course_lib.simulation.corridor.mesh_files import to_polydata
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
@@ -60,15 +61,15 @@ def scanner(noise_mm: float = 1.0, registration_mm: float = 0.0) -> ScannerModel
 
 
 def scans(
-    n_stations: int, noise_mm: float = 1.0, registration_mm: float = 0.0, door_open: bool = False
+    n_stations: int, noise_mm: float = 1.0, registration_mm: float = 0.0, door_open: bool = False, seed: int = 2
 ) -> tuple[Scan, ...]:
     """The room scanned from the first `n_stations` of `STATIONS`; kept, since a panel asks again and again."""
-    return _scans(n_stations, float(noise_mm), float(registration_mm), door_open)
+    return _scans(n_stations, float(noise_mm), float(registration_mm), door_open, seed)
 
 
 @functools.lru_cache(maxsize=16)
-def _scans(n_stations: int, noise_mm: float, registration_mm: float, door_open: bool) -> tuple[Scan, ...]:
-    model, rng = scanner(noise_mm, registration_mm), np.random.default_rng(2)
+def _scans(n_stations: int, noise_mm: float, registration_mm: float, door_open: bool, seed: int) -> tuple[Scan, ...]:
+    model, rng = scanner(noise_mm, registration_mm), np.random.default_rng(seed)
     return tuple(survey(room(door_open), model, rng, STATIONS[:n_stations]))
 
 
@@ -85,9 +86,13 @@ def room_map(
     voxel: float = 0.1,
     keep: float = 1.0,
     door_open: bool = False,
+    seed: int = 2,
 ) -> SceneMap:
-    """Scans of the room, fused and decimated to the share `keep` of the triangles; kept like `scans`."""
-    return _decimated((n_stations, float(noise_mm), float(registration_mm), door_open), voxel, keep)
+    """Scans of the room, fused and decimated to the share `keep` of the triangles; kept like `scans`.
+
+    Another `seed` is another survey: other noise, other errors of the stations' places.
+    """
+    return _decimated((n_stations, float(noise_mm), float(registration_mm), door_open, seed), voxel, keep)
 
 
 @functools.lru_cache(maxsize=12)
@@ -111,14 +116,26 @@ class MapQuality(NamedTuple):
     """nine in ten of these distances are below it [m]"""
     holes: float
     """share of what eyes in the room see that has no map within `HOLE_DISTANCE`"""
+    holes_interval: tuple[float, float]
+    """95 % interval of that share, Wilson's"""
+    false: float
+    """share of the map's surface that is farther than `HOLE_DISTANCE` from anything in the room"""
 
 
 @functools.lru_cache(maxsize=64)
 def quality(scene_map: SceneMap, door_open: bool = False) -> MapQuality:
     """Distances from the map to the room as it was on the survey day, and the share of holes."""
     distance = distances(scene_map, door_open)
-    holes = float((gaps(scene_map, door_open) > HOLE_DISTANCE).mean())
-    return MapQuality(len(scene_map), float(np.median(distance)), float(np.percentile(distance, 90)), holes)
+    hole = gaps(scene_map, door_open) > HOLE_DISTANCE
+    low, high = wilson_percent(int(hole.sum()), len(hole))
+    return MapQuality(
+        triangles=len(scene_map),
+        median=float(np.median(distance)),
+        p90=float(np.percentile(distance, 90)),
+        holes=float(hole.mean()),
+        holes_interval=(float(low) / 100, float(high) / 100),
+        false=float((distance > HOLE_DISTANCE).mean()),
+    )
 
 
 def distances(scene_map: SceneMap, door_open: bool = False, n: int = 4000) -> np.ndarray:
@@ -129,6 +146,11 @@ def distances(scene_map: SceneMap, door_open: bool = False, n: int = 4000) -> np
     face = rng.choice(len(area), n, p=area / area.sum())
     # Equal chances all over a triangle: Dirichlet shares of its corners.
     points = np.einsum("nk,nkd->nd", rng.dirichlet(np.ones(3), n), corners[face])
+    return distance_to_room(points, door_open)
+
+
+def distance_to_room(points: np.ndarray, door_open: bool = False) -> np.ndarray:
+    """Distance [m] of each of points `(n, 3)` to the nearest surface of the room."""
     low, high = room(door_open).low, room(door_open).high
     off = np.maximum(low - points[:, None], points[:, None] - high)  # beyond each box's sides, negative inside
     outside = np.linalg.norm(np.maximum(off, 0), axis=2)

@@ -22,15 +22,12 @@ CUT = 1.2  # metres, height of the cuts
 
 
 def row(found: MapQuality) -> str:
-    """The numbers of a map in one line, rounded so that they hold on any computer."""
-    triangles = float(f"{found.triangles:.2g}")
-    median, p90 = (_millimetres(value) for value in (found.median, found.p90))
-    holes = "below 1 %" if found.holes < 0.01 else f"{100 * found.holes:.0f} %"
-    return f"about {triangles:,.0f} triangles; map to room: median {median}, 90 % below {p90}; holes {holes}"
-
-
-def _millimetres(value: float) -> str:
-    return "< 5 mm" if value < 0.005 else f"{1000 * value:.0f} mm"
+    """The numbers of a map in one line; holes with their 95 % interval."""
+    low, high = found.holes_interval
+    return (
+        f"{found.triangles} triangles; map to room: median {1000 * found.median:.1f} mm, 90 % below "
+        f"{1000 * found.p90:.0f} mm; holes {100 * found.holes:.1f} % ({100 * low:.1f} to {100 * high:.1f})"
+    )
 
 
 def cut(vertices: np.ndarray, faces: np.ndarray, height: float = CUT) -> np.ndarray:

@@ -4,7 +4,7 @@ from course_lib.lessons.kit.box_world import box_map
 from course_lib.lessons.lesson_03.figures import buffer_figure, idea_figure, time_figure, window_figure
 from course_lib.lessons.lesson_03.measurements import buffer_step, seconds_per_view, slanted_wall_error, views_that_see
 from course_lib.lessons.lesson_03.panel import PANELS, camera_panel
-from course_lib.lessons.lesson_03.scenes import SLOPES, corridor_end, pole_ahead, side_view, wall_with_hole
+from course_lib.lessons.lesson_03.scenes import SLOPES, corridor, corridor_end, pole_ahead, side_view, wall_with_hole
 from course_lib.plots.figures import depth_images
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "buffer_figure",
     "buffer_step",
     "camera_panel",
+    "corridor",
     "corridor_end",
     "depth_images",
     "idea_figure",

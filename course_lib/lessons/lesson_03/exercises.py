@@ -1,6 +1,8 @@
-"""Exercises of lesson 03: the depth buffer's scale, depth along an edge, and what a pixel keeps."""
+"""Exercises of lesson 03: the depth buffer's scale, depth along an edge, what a pixel keeps, a triangle cut."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
@@ -16,11 +18,21 @@ def linearize(b: np.ndarray, near: float, far: float) -> np.ndarray:
 
 
 def _buffers(rng: np.random.Generator) -> tuple:
-    near, far = rng.uniform(0.05, 1.0), rng.uniform(5.0, 40.0)
+    # Binary fractions: where b is 1 the formula then gives far itself, so that one may ask for Z >= far as well.
+    near, far = rng.integers(4, 64) / 64, rng.integers(20, 160) / 4
     b = rng.uniform(0.0, 0.99, size=(rng.integers(3, 6), rng.integers(3, 6)))
     # The near plane, never drawn, and two far surfaces that a careless comparison takes for never drawn.
     b.flat[rng.choice(b.size, size=4, replace=False)] = 0.0, 1.0, 0.995, 0.999999
     return b, near, far
+
+
+def _nothing_drawn(rng: np.random.Generator) -> tuple:
+    return np.ones((3, 4)), 0.125, 30.0
+
+
+def _the_papers_planes(rng: np.random.Generator) -> tuple:
+    """One row, from the lens to the SR4000's 10 m; every value was drawn."""
+    return np.linspace(0.0, 0.9999, 9)[None], 0.125, 10.0
 
 
 def _taken_as_linear(b: np.ndarray, near: float, far: float) -> np.ndarray:
@@ -59,6 +71,14 @@ def _close_to_one(b: np.ndarray, near: float, far: float) -> np.ndarray:
     return np.where(np.isclose(b, 1), np.inf, linearize(b, near, far))
 
 
+def _nan_for_nothing_drawn(b: np.ndarray, near: float, far: float) -> np.ndarray:
+    return np.where(b < 1, linearize(b, near, far), np.nan)
+
+
+def _zero_for_nothing_drawn(b: np.ndarray, near: float, far: float) -> np.ndarray:
+    return np.where(b < 1, linearize(b, near, far), 0.0)
+
+
 # 03.2: depth between two corners, as the screen sees it
 
 
@@ -70,6 +90,11 @@ def depth_on_edge(z_start: float, z_end: float, s: np.ndarray) -> np.ndarray:
 def _edges(rng: np.random.Generator) -> tuple:
     z_start, z_end = rng.permutation([rng.uniform(0.5, 3.0), rng.uniform(4.0, 20.0)])
     return z_start, z_end, np.concatenate([[0.0, 1.0], rng.uniform(0.05, 0.95, size=rng.integers(3, 9))])
+
+
+def _level_edge(rng: np.random.Generator) -> tuple:
+    """Both ends equally far away."""
+    return 3.0, 3.0, np.linspace(0, 1, 5)
 
 
 def _ends_sorted(z_start: float, z_end: float, s: np.ndarray) -> np.ndarray:
@@ -90,6 +115,25 @@ def _layers(rng: np.random.Generator) -> tuple:
     layers = rng.uniform(0.1, 15.0, size=(rng.integers(2, 6), rng.integers(4, 8), rng.integers(4, 8)))
     layers[rng.random(layers.shape) < 0.35] = np.inf
     return layers, near, far
+
+
+def _on_the_planes(rng: np.random.Generator) -> tuple:
+    """Depths of exactly near and far, which are seen, and a pixel that nothing covers."""
+    return np.array([[[0.5, 8.0, np.inf]], [[2.0, 9.0, np.inf]], [[0.4, np.inf, 0.1]]]), 0.5, 8.0
+
+
+def _one_surface(rng: np.random.Generator) -> tuple:
+    return (_layers(rng)[0][:1], 0.75, 10.0)
+
+
+def _nan_for_nothing(layers: np.ndarray, near: float, far: float) -> np.ndarray:
+    image = nearest_surface(layers, near, far)
+    return np.where(np.isfinite(image), image, np.nan)
+
+
+def _planes_left_out(layers: np.ndarray, near: float, far: float) -> np.ndarray:
+    seen = (layers > near) & (layers < far)
+    return np.where(seen, layers, np.inf).min(axis=0)
 
 
 def _last_drawn(layers: np.ndarray, near: float, far: float) -> np.ndarray:
@@ -136,11 +180,135 @@ def _zero_for_nothing(layers: np.ndarray, near: float, far: float) -> np.ndarray
     return np.where(np.isfinite(image), image, 0.0)
 
 
+# 03.4, the challenge: a triangle that reaches behind the near plane
+
+
+def cut_at_near(corners: np.ndarray, near: float) -> np.ndarray:
+    """Corners (n, 3) [m], n = 0, 3 or 4, in order round the edge, of the part of a triangle (3, 3) with Z >= near."""
+    kept = []
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if a[2] >= near:
+            kept.append(a)
+        if (a[2] >= near) != (b[2] >= near):
+            kept.append(a + (near - a[2]) / (b[2] - a[2]) * (b - a))
+    return np.array(kept).reshape(-1, 3)
+
+
+def _triangle(depths: np.ndarray, rng: np.random.Generator) -> tuple:
+    corners = np.column_stack([rng.uniform(-2, 2, 3), rng.uniform(-2, 2, 3), depths])
+    while np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0])) < 0.5:
+        corners[:, :2] = rng.uniform(-2, 2, (3, 2))
+    return corners, 0.1
+
+
+def _any_triangle(rng: np.random.Generator) -> tuple:
+    """One, two or three corners before the near plane or none, some of them behind the camera."""
+    before = rng.permutation(3) < rng.integers(0, 4)
+    corners, _ = _triangle(np.where(before, rng.uniform(-3, 0.3, 3), rng.uniform(0.6, 6, 3)), rng)
+    return corners, rng.uniform(0.35, 0.55)
+
+
+def _one_before(rng: np.random.Generator) -> tuple:
+    return _triangle(np.array([2.0, -1.0, 3.0]), rng)
+
+
+def _two_before(rng: np.random.Generator) -> tuple:
+    return _triangle(np.array([-0.5, 4.0, 0.05]), rng)
+
+
+def _all_before(rng: np.random.Generator) -> tuple:
+    return _triangle(np.array([-0.5, 0.05, -2.0]), rng)
+
+
+def _none_before(rng: np.random.Generator) -> tuple:
+    return _triangle(np.array([1.0, 2.5, 0.2]), rng)
+
+
+def _a_corner_on_the_plane(rng: np.random.Generator) -> tuple:
+    return _triangle(np.array([0.1, -1.0, 3.0]), rng)
+
+
+def _distinct(corners: np.ndarray) -> np.ndarray:
+    """The corners without those that repeat the one before; none where no area is left."""
+    after = np.roll(corners, 1, axis=0)
+    distinct = corners[np.linalg.norm(corners - after, axis=1) > 1e-6]
+    return distinct if len(distinct) >= 3 else np.empty((0, 3))
+
+
+def off_the_cut(arguments: tuple, answer: object) -> str | None:
+    """What is wrong with a cut triangle, or None; the corners may begin anywhere and go round either way."""
+    _, near = arguments
+    right = _distinct(cut_at_near(*arguments))
+    try:
+        given = np.asarray(answer, dtype=np.float64)
+    except (TypeError, ValueError):
+        return "Give the corners as rows of three numbers: an array (n, 3)."
+    if given.size == 0:
+        given = np.empty((0, 3))
+    if given.ndim != 2 or given.shape[1] != 3:
+        return f"Give the corners as rows of three numbers, (n, 3); yours has the shape {given.shape}."
+    if not np.isfinite(given).all():
+        return "One of your corners is nan or inf: did you divide by a difference of depths that is zero?"
+    given = _distinct(given)
+    if len(given) and given[:, 2].min() < near - 1e-6:
+        return "Some of your corners lie before the near plane: nothing of that part may be left."
+    if len(given) != len(right):
+        return f"One of your polygons has {len(given)} corners and should have {len(right)}: draw that case on paper."
+    if len(given) == 0 or any(
+        np.allclose(np.roll(turned, k, axis=0), right, atol=1e-6) for turned in (given, given[::-1]) for k in range(4)
+    ):
+        return None
+    if all(np.linalg.norm(right - corner, axis=1).min() < 1e-6 for corner in given):
+        return "The corners are right, but not in order round the edge: the polygon crosses itself."
+    return "The number of corners is right, but not their places: where exactly does an edge meet the plane Z = near?"
+
+
+def _dropped(corners: np.ndarray, near: float) -> np.ndarray:
+    return corners[corners[:, 2] >= near]
+
+
+def _whole_or_nothing(corners: np.ndarray, near: float) -> np.ndarray:
+    return corners if (corners[:, 2] >= near).all() else np.empty((0, 3))
+
+
+def _pulled_forward(corners: np.ndarray, near: float) -> np.ndarray:
+    return np.column_stack([corners[:, :2], np.maximum(corners[:, 2], near)])
+
+
+def _the_other_part(corners: np.ndarray, near: float) -> np.ndarray:
+    return cut_at_near(corners * [1, 1, -1], -near) * [1, 1, -1]
+
+
+def _cut_with(share) -> Callable:
+    """A cut whose new corners lie at `share(a, b, near)` of the edge from a to b."""
+
+    def cut(corners: np.ndarray, near: float) -> np.ndarray:
+        kept = []
+        for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            if a[2] >= near:
+                kept.append(a)
+            if (a[2] >= near) != (b[2] >= near):
+                kept.append(a + share(a[2], b[2], near) * (b - a))
+        return np.array(kept).reshape(-1, 3)
+
+    return cut
+
+
+def _new_corners_last(corners: np.ndarray, near: float) -> np.ndarray:
+    new = []
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if (a[2] >= near) != (b[2] >= near):
+            new.append(a + (near - a[2]) / (b[2] - a[2]) * (b - a))
+    return np.concatenate([_dropped(corners, near), np.reshape(new, (-1, 3))])
+
+
 EXERCISES = [
     Exercise(
         number="03.1",
+        level="warm-up",
         reference=linearize,
         inputs=_buffers,
+        cases=(_nothing_drawn, _the_papers_planes),
         mistakes=(
             Mistake(
                 _taken_as_linear,
@@ -171,6 +339,14 @@ EXERCISES = [
                 _near_forgotten,
                 "At b = 0 your depth is always 1; it must be near. What is missing above the fraction line?",
             ),
+            Mistake(
+                _nan_for_nothing_drawn,
+                "Right, except where b = 1: yours is nan there. Nothing was drawn, so the depth is inf.",
+            ),
+            Mistake(
+                _zero_for_nothing_drawn,
+                "Right, except where b = 1: yours is 0 there, a surface at the lens. It must be inf.",
+            ),
             Mistake(_in_millimetres, "Yours is 1000 times too large: millimetres? The task asks for metres."),
             Mistake(
                 _close_to_one,
@@ -182,6 +358,7 @@ EXERCISES = [
         number="03.2",
         reference=depth_on_edge,
         inputs=_edges,
+        cases=(_level_edge,),
         mistakes=(
             Mistake(
                 lambda z_start, z_end, s: (1 - s) * z_start + s * z_end,
@@ -213,6 +390,7 @@ EXERCISES = [
         number="03.3",
         reference=nearest_surface,
         inputs=_layers,
+        cases=(_on_the_planes, _one_surface),
         mistakes=(
             Mistake(
                 _last_drawn,
@@ -237,7 +415,61 @@ EXERCISES = [
             Mistake(
                 _far_for_nothing, "Where nothing is seen yours reads far, as if a wall stood there: it must be inf."
             ),
+            Mistake(
+                _nan_for_nothing,
+                "Right where something is seen. Where nothing is, yours reads nan: it must be inf.",
+            ),
+            Mistake(
+                _planes_left_out,
+                "Close: a surface exactly on the near or the far plane is still seen.",
+            ),
             Mistake(_zero_for_nothing, "Where nothing is seen yours reads 0 m, right at the lens: it must be inf."),
+        ),
+    ),
+    Exercise(
+        number="03.4",
+        level="challenge",
+        reference=cut_at_near,
+        inputs=_any_triangle,
+        cases=(_one_before, _two_before, _all_before, _none_before, _a_corner_on_the_plane),
+        verify=off_the_cut,
+        mistakes=(
+            Mistake(
+                _dropped,
+                "You drop the corners before the plane and cut no edge: where one crosses the plane a corner is new.",
+            ),
+            Mistake(
+                _whole_or_nothing,
+                "You throw the whole triangle away that reaches before the plane: then the floor at your feet is gone.",
+            ),
+            Mistake(
+                _pulled_forward,
+                "You push corners onto the plane. That bends the triangle: it must keep lying in its own plane.",
+            ),
+            Mistake(
+                lambda corners, near: corners,
+                "You cut nothing. Which part of the triangle lies before the near plane?",
+            ),
+            Mistake(
+                _the_other_part,
+                "You keep the part that is cut away: what is seen has Z of at least near.",
+            ),
+            Mistake(
+                _cut_with(lambda a, b, near: 0.5),
+                "You halve every edge that is cut. It meets the plane where its Z is near, rarely at the middle.",
+            ),
+            Mistake(
+                _cut_with(lambda a, b, near: 1 - (near - a) / (b - a)),
+                "You measure the share of an edge from the wrong end.",
+            ),
+            Mistake(
+                _cut_with(lambda a, b, near: -a / (b - a)),
+                "You cut where Z is 0, at the lens itself. The near plane lies a little before it.",
+            ),
+            Mistake(
+                _new_corners_last,
+                "The corners are right. Put each new one where its edge is, or the polygon crosses itself.",
+            ),
         ),
     ),
 ]

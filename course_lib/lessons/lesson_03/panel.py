@@ -15,6 +15,7 @@ from course_lib.lessons.lesson_03.measurements import buffer_step
 from course_lib.lessons.lesson_03.scenes import corridor
 from course_lib.plots import figures
 
+_LEAST_HALF_WIDTH = 0.5  # metres, of the near plane as it is drawn (chosen)
 _NEAR_PLANES = ("1", "0.5", "0.1", "0.01", "0.001", "0.0001")
 
 
@@ -27,11 +28,12 @@ def _renderer(near: float, backend: str) -> DepthRenderer:
 def camera_panel() -> Panel:
     """Move the virtual camera and its near plane; see the depth image and how far it is from ray casting."""
     figure, (plan, left, right) = figures.new_figure(1, 3, size=(9.8, 3.0))
-    walls = [(0, -1.5, 8, 3), (5.0, 0.5, 0.3, 0.3), (4.0, -0.8, 0.5, 0.5)]
-    for x, y, length, width in walls:
+    plan.plot([0, 8, 8, 0], [-1.5, -1.5, 1.5, 1.5], color=figures.BLACK)  # open behind
+    for x, y, length, width in ((5.0, 0.5, 0.3, 0.3), (4.0, -0.8, 0.5, 0.5)):
         plan.plot([x, x + length, x + length, x, x], [y, y, y + width, y + width, y], color=figures.BLACK)
     (wedge,) = plan.plot([], [], color=figures.VERMILION, linewidth=1.6)
-    (near_line,) = plan.plot([], [], color=figures.PURPLE, linestyle=":", linewidth=2)
+    (near_line,) = plan.plot([], [], color=figures.PURPLE, linestyle=":", linewidth=2, label="near plane")
+    plan.legend(loc="upper left", fontsize=7)
     plan.set(xlim=(-0.5, 8.5), ylim=(-3, 3), title="From above", xlabel="x [m]", ylabel="y [m]", aspect="equal")
     camera = DepthCamera.sr4000()
     depth = figures.depth_image(left, np.zeros(camera.shape), "What the virtual camera sees", (0, 8))
@@ -54,8 +56,12 @@ def camera_panel() -> Panel:
         ends = np.array([heading - half, heading, heading + half])
         reach = 1.6 / np.cos([half, 0, half])
         wedge.set_data([x, *(x + reach * np.cos(ends)), x], [y, *(y + reach * np.sin(ends)), y])
-        cut = plane / np.cos(half)
-        near_line.set_data(x + cut * np.cos(ends[::2]), y + cut * np.sin(ends[::2]))
+        # Drawn beyond the view where it would be too short to be seen: at 0.1 m only 8 cm of it are in view.
+        across = max(plane * np.tan(half), _LEAST_HALF_WIDTH) * np.array([1, -1])
+        near_line.set_data(
+            x + plane * np.cos(heading) - across * np.sin(heading),
+            y + plane * np.sin(heading) + across * np.cos(heading),
+        )
         middle = truth[camera.height // 2, camera.width // 2]
         step = buffer_step(middle, plane, camera.far) * 1000
         seen = (

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
+import importlib
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from tests.lessons.kit import answers_01_to_07, answers_09, answers_10, answers_11_to_17, answers_18, answers_19
 
 # Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
 SEEDS = range(4)
@@ -17,10 +17,6 @@ LEFT_OUT = "which case is left out?"
 
 def table(errors):
     return np.median(errors), np.sqrt(np.mean(errors**2)), np.mean(errors <= 0.30)
-
-
-def depth(b, near, far):
-    return near * far / (far - b * (far - near))
 
 
 def first_row(low, patience):
@@ -74,39 +70,7 @@ def segments(estimated, path):
     return np.array(result)
 
 
-def all_of_two(n_a, mean_a, std_a, n_b, mean_b, std_b):
-    """Mean and deviation of two groups by their moments about zero."""
-    first = (n_a * mean_a + n_b * mean_b) / (n_a + n_b)
-    second = (n_a * (std_a**2 + mean_a**2) + n_b * (std_b**2 + mean_b**2)) / (n_a + n_b)
-    return first, math.sqrt(second - first**2)
-
-
-def masked(layers, seen):
-    return np.where(seen, layers, np.inf)
-
-
 WRONG = [
-    ("00.1", lambda m, s: np.minimum(np.abs(m - s), 10), LEFT_OUT),
-    ("00.2", lambda d, alpha: alpha / alpha + d, "brackets"),
-    ("00.2", lambda d, alpha: 0.1 / (0.1 + d), "alpha is always 0.1"),
-    ("00.2", lambda d, alpha: alpha / (alpha + d) / d.size, "divide by the number of pixels"),
-    ("03.1", lambda b, n, f: np.where(b > 0.99, np.inf, depth(b, n, f)), "inf where a finite number is expected"),
-    ("03.1", lambda b, n, f: np.where(np.isclose(b, 1), np.inf, depth(b, n, f)), "just below 1"),
-    ("03.1", lambda b, n, f: np.where((b < 1) & (b > 0), depth(b, n, f), np.inf), "inf where a finite number"),
-    ("03.1", lambda b, n, f: np.where(b < 1, n * f / (f + b * (f - n)), np.inf), "the sign below"),
-    ("03.1", lambda b, n, f: np.where(b < 1, f / (f - b * (f - n)), np.inf), "missing above the fraction line"),
-    ("03.1", lambda b, n, f: np.where(b < 1, 1000 * depth(b, n, f), np.inf), "millimetres"),
-    ("03.1", lambda b, n, f: np.where(b < 1, n * f / (f - b * f - n), np.inf), "brackets"),
-    ("03.2", lambda a, b, s: 1 / ((1 - s) / min(a, b) + s / max(a, b)), "walk from the nearer end"),
-    ("03.2", lambda a, b, s: 1 / (1 / a + s / b), "At s = 1 only z_end"),
-    ("03.3", lambda layers, n, f: masked(layers, layers >= n).min(axis=0), "not far"),
-    ("03.3", lambda layers, n, f: masked(layers, layers <= f).min(axis=0), "not near"),
-    ("03.3", lambda layers, n, f: masked(layers, (layers >= n) & (layers <= f))[0], "first layer alone"),
-    (
-        "03.3",
-        lambda layers, n, f: masked(layers, (layers >= n) & (layers <= f)).mean(axis=0),
-        "inf where a finite number is expected",
-    ),
     ("08.1", segments, "lines between the points"),
     ("08.1", lambda e, p: np.array([np.abs(p[:, :2] - q).sum(axis=1).min() for q in e[:, :2]]), "add the ways"),
     ("08.2", lambda e: (*table(e)[:2], np.mean(e < 0.30)), "exactly 0.30 m"),
@@ -123,19 +87,6 @@ WRONG = [
     ("08.3", counted_from_one, "count frames from 1"),
     ("08.3", minus_one_in_the_loop, "inside the loop"),
     ("08.3", moving_average, "mean of a row"),
-    (
-        "17.1",
-        lambda dx, dy, used, wrong: [int(w == 0 and x <= 2 and y <= 2) for x, y, w in zip(dx, dy, wrong, strict=True)],
-        "unable",
-    ),
-    ("17.2", lambda n, m, s, k, p, t: ((n * m + k * p) / (n + k), (n * s + k * t) / (n + k)), "cannot be averaged"),
-    ("17.2", lambda n, m, s, k, p, t: ((n * m + k * p) / (n + k), np.hypot(s, t)), "one beside the other"),
-    (
-        "17.3",
-        lambda n, q: sum(math.comb(n, k) * q**k * (1 - q) ** (n - k) for k in range(3)),
-        "Two objects give a pose",
-    ),
-    ("17.3", lambda n, q: q**n + n * (1 - q) * q ** (n - 1), "took q for the probability of missing"),
     ("20.1", lambda raw, units, invalid: [[v / units if v else np.nan for v in row] for row in raw], "You take 0"),
     ("20.2", lambda k, s: np.diag([s, s, 1]) @ k, "half a pixel off"),
     (
@@ -147,30 +98,18 @@ WRONG = [
     ("20.3", lambda u, v, h, d: np.median(d) * np.median(np.tan(np.pi * (u - v) / h)), "differ"),
 ]
 RIGHT = [
-    ("00.1", lambda m, s: np.maximum(m, s) - np.minimum(m, s)),
-    ("00.2", lambda d, alpha: 1 / (1 + d / alpha)),
-    ("03.1", lambda b, n, f: [[np.inf if v == 1 else 1 / (v / f + (1 - v) / n) for v in row] for row in b]),
-    ("03.2", lambda a, b, s: a * b / (b + s * (a - b))),
-    ("03.3", lambda layers, n, f: np.sort(masked(layers, (layers >= n) & (layers <= f)), axis=0)[0]),
     ("08.1", lambda e, p: [min(np.hypot(*(q - r)[:2]) for r in p) for q in e]),
     ("08.2", lambda e: np.array(table(e))),
     ("08.2", lambda e: list(table(e))),
     ("08.3", lambda s, limit, patience: first_row(s < limit, patience)),
-    (
-        "17.1",
-        lambda dx, dy, used, wrong: [
-            -1 if u < 2 else int(not w and max(x, y) <= 2) for x, y, u, w in zip(dx, dy, used, wrong, strict=True)
-        ],
-    ),
-    ("17.2", lambda n, m, s, k, p, t: all_of_two(n, m, s, k, p, t)),
-    ("17.3", lambda n, q: sum(math.comb(n, k) * q**k * (1 - q) ** (n - k) for k in range(2))),
     ("20.1", lambda raw, units, invalid: [[np.nan if v == invalid else v / units for v in row] for row in raw]),
     ("20.2", lambda k, s: np.array([[s, 0, s / 2 - 0.5], [0, s, s / 2 - 0.5], [0, 0, 1]]) @ k),
     ("20.3", lambda u, v, h, d: np.median(d * (1 / np.tan(np.pi * v / h) - 1 / np.tan(np.pi * u / h)))),
 ]
 
 
-OTHERS = (answers_01_to_07, answers_09, answers_10, answers_11_to_17, answers_18, answers_19)
+FILES = sorted(Path(__file__).parent.glob("answers_*.py"))
+OTHERS = [importlib.import_module(f"{__package__}.{path.stem}") for path in FILES]
 WRONG_ANSWERS = [*WRONG, *(answer for module in OTHERS for answer in module.WRONG)]
 RIGHT_ANSWERS = [*RIGHT, *(answer for module in OTHERS for answer in module.RIGHT)]
 

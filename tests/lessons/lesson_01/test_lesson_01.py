@@ -75,7 +75,6 @@ def world_by_loop(points, state):
 ANSWERS = [
     ("01.1", world_by_loop),
     ("01.2", euler_of_scipy),
-    ("01.3", lambda yaws, w: np.angle(np.sum(w * np.exp(1j * yaws)))),
 ]
 
 

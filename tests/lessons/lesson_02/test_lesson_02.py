@@ -82,10 +82,27 @@ def test_the_same_survey_comes_out_again():
     np.testing.assert_array_equal(scans(1)[0].ranges, before)
 
 
-def test_a_row_tells_holes_and_distances_in_round_numbers():
-    text = row(MapQuality(30295, 0.0025, 0.0173, 0.158))
-    assert text == "about 30,000 triangles; map to room: median < 5 mm, 90 % below 17 mm; holes 16 %"
-    assert row(MapQuality(300, 0.02, 0.03, 0.003)).endswith("holes below 1 %")
+def test_a_row_tells_holes_and_distances_with_their_digits():
+    text = row(MapQuality(30295, 0.0025, 0.0173, 0.158, (0.1454, 0.1712), 0.02))
+    assert text == "30295 triangles; map to room: median 2.5 mm, 90 % below 17 mm; holes 15.8 % (14.5 to 17.1)"
+
+
+def test_the_interval_of_the_holes_holds_their_share():
+    found = quality(room_map(1))
+    assert 0.13 < found.holes_interval[0] < found.holes < found.holes_interval[1] < 0.19
+    assert np.diff(found.holes_interval)[0] == pytest.approx(2 * 1.96 * np.sqrt(0.16 * 0.84 / 3000), rel=0.03)
+
+
+def test_one_station_grows_a_surface_that_is_not_there_behind_the_pillar():
+    assert quality(room_map(1)).false > 0.02
+    assert 0.3 < distances(room_map(1)).max() < 0.6
+    assert quality(room_map(3)).false < 0.015
+
+
+def test_another_seed_is_another_survey():
+    first, second = (scans(1, registration_mm=20, seed=seed)[0] for seed in (1, 3))
+    assert not np.allclose(first.registered_pose, second.registered_pose, atol=0.001)
+    assert np.nanmedian(np.abs(first.ranges - second.ranges)) > 0.0005
 
 
 def test_the_shipped_numbers_are_those_of_the_papers_order():

@@ -1,0 +1,30 @@
+"""The page in three dimensions that a command writes beside its figures, where this computer can make one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # imported where it is used, so that --help does not wait for it
+    import pyvista
+
+
+def write_scene(path: Path, title: str, make: Callable[[], tuple[pyvista.Plotter, str]]) -> str:
+    """Write the scene that `make` gives, with the words that say what is to be seen; what was written, in words.
+
+    A command's numbers do not depend on its page: without PyVista, or where nothing can be drawn, the reason is told
+    instead of the file's name.
+    """
+    from course_lib.depth_mcl.rendering.renderer import OpenGLError
+    from course_lib.plots.scene_page import ScenePageError, write_page
+
+    try:
+        plotter, words = make()
+        try:
+            write_page(plotter, path, title, f"{title}. {words}", words)
+        finally:
+            plotter.close()
+    except (ScenePageError, OpenGLError, ImportError) as reason:
+        return f"no {path.name} ({reason})"
+    return f"{path.name} (to be turned in a browser)"

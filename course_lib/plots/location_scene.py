@@ -1,0 +1,87 @@
+"""A localization on the semantic map in three dimensions: landmarks, rays, the places they end at, and the pose."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from course_lib.plots.figures import BLACK, BLUE, ORANGE, VERMILION
+from course_lib.plots.panorama_drawing import class_style
+from course_lib.plots.scenes import body_axes, ellipsoid, new_plotter, path, post, text
+from course_lib.spherical_stereo.pose.localization import Localization
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+if TYPE_CHECKING:
+    import pyvista
+
+_SIGMAS = 3
+_BELOW = 1.2  # metres below the upper camera that are shown where no object was placed lower (chosen)
+_LETTERS = 0.22  # metres
+_AXES = 0.6
+
+
+def location_scene(
+    semantic_map: SemanticMap, found: Localization, true_pose: np.ndarray | None = None
+) -> tuple[pyvista.Plotter, str]:
+    """The scene, and in a sentence what is to be seen in it; heights are measured from the upper camera.
+
+    Landmarks are posts, since the map says nothing of heights. From the pose, or the one that was rejected, a ray goes
+    to every object that was placed, an ellipse tells how sure its place is, and a line joins it to the landmark that
+    it was taken for. true_pose: `(3,)` [x, y, theta], metres and radians, where it is known.
+    """
+    heights = [one.position[2] for one in found.objects if one.observation is not None]
+    floor = min([-_BELOW, *heights])
+    low, high = semantic_map.positions.min(axis=0), semantic_map.positions.max(axis=0)
+    size = max(3.0, float((high - low).max()))
+    focus = np.array([*(low + high) / 2, floor / 2])
+    plotter = new_plotter(focus + size * np.array([-0.45, -1.4, 1.4]), focus)
+    if semantic_map.walls is not None:
+        corners = np.column_stack([semantic_map.walls, np.full(len(semantic_map.walls), floor)])
+        plotter.add_mesh(path(np.vstack([corners, corners[:1]])), color="grey", line_width=2)
+    for landmark in semantic_map.landmarks:
+        colour = class_style(landmark.label)[0]
+        foot = np.array([landmark.x, landmark.y, floor])
+        plotter.add_mesh(post(foot, -floor), color=colour)
+        plotter.add_mesh(text(landmark.label, foot + np.array([0.08, -0.5 * _LETTERS, 0.0]), _LETTERS), color=colour)
+    words = "Landmarks: posts with their class"
+    if true_pose is not None:
+        x, y, theta = true_pose
+        plotter.add_mesh(body_axes(np.array([x, y, 0.0, 0.0, 0.0, theta]), 0.5 * _AXES), color=BLACK)
+        words += "; true pose: short black axes"
+    pose = found.pose or found.rejected_pose
+    if pose is None:
+        return plotter, f"{words}; no pose, {found.reason}"
+    _add_places(plotter, semantic_map, found, pose)
+    plotter.add_mesh(body_axes(np.array([pose.x, pose.y, 0.0, 0.0, 0.0, pose.theta]), _AXES), rgb=True)
+    if found.covariance is not None:
+        plotter.add_mesh(_disc([pose.x, pose.y, 0.0], found.covariance[:2, :2]), color=ORANGE, opacity=0.5)
+    words += f"; {'pose' if found.pose else 'rejected pose'}: coloured axes; rays to the measured places, discs of "
+    return plotter, f"{words}{_SIGMAS} standard deviations, blue lines to the landmarks they were taken for"
+
+
+def _add_places(plotter: pyvista.Plotter, semantic_map: SemanticMap, found: Localization, pose: Pose2D) -> None:
+    """Rays from a pose to the observed objects, their ellipses, and the lines to their landmarks."""
+    camera, landmark_of = np.array([pose.x, pose.y, 0.0]), dict(found.used_pairs)
+    for one in found.objects:
+        if one.observation is None:
+            continue
+        observation = found.observations[one.observation]
+        place = np.array([*pose.apply([[observation.x, observation.y]])[0], one.position[2]])
+        colour = class_style(one.label)[0]
+        plotter.add_mesh(path(np.stack([camera, place])), color="dimgrey", line_width=1)
+        if observation.covariance is not None:
+            turn = np.array([[np.cos(pose.theta), -np.sin(pose.theta)], [np.sin(pose.theta), np.cos(pose.theta)]])
+            plotter.add_mesh(_disc(place, turn @ observation.covariance @ turn.T), color=colour, opacity=0.5)
+        if one.observation in landmark_of:
+            landmark = np.array([*semantic_map.positions[landmark_of[one.observation]], place[2]])
+            ends = path(np.stack([place, landmark]))
+            plotter.add_mesh(ends, color=BLUE if found.pose else VERMILION, line_width=4)
+
+
+def _disc(middle: np.ndarray, covariance: np.ndarray) -> pyvista.PolyData:
+    """The error ellipse of a place in the plane, `(2, 2)` square metres, at its height."""
+    flat = np.zeros((3, 3))
+    flat[:2, :2] = covariance
+    return ellipsoid(middle, flat, _SIGMAS)

@@ -1,0 +1,77 @@
+"""A localization as a scene: landmarks, rays, ellipses and pose stand where the answer says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from course_lib.plots.location_scene import location_scene
+from course_lib.plots.panorama_drawing import class_style
+from course_lib.plots.scene_page import page_html
+from course_lib.spherical_stereo import SemanticLocalizer, StereoRig
+from tests.plots.test_track_scene import of_colour
+from tests.spherical_stereo.stereo_scene import TRUE_POSE, mapped_scene
+from tests.spherical_stereo.vertical_pair import BASELINE
+
+
+@pytest.fixture(scope="module")
+def answer():
+    upper, lower, semantic_map = mapped_scene()
+    localizer = SemanticLocalizer(StereoRig(BASELINE), semantic_map)
+    return semantic_map, localizer.localize_views(upper, lower)
+
+
+def test_every_landmark_has_a_post_and_its_class(answer):
+    semantic_map, found = answer
+    plotter, _ = location_scene(semantic_map, found)
+    for label in set(semantic_map.labels):
+        chosen = semantic_map.positions[[one == label for one in semantic_map.labels]]
+        posts = [mesh for mesh in of_colour(plotter, class_style(label)[0]) if mesh.n_points == 8]
+        middles = np.array([np.asarray(mesh.center)[:2] for mesh in posts])
+        assert np.allclose(np.sort(middles, axis=0), np.sort(chosen, axis=0), atol=1e-4)
+
+
+def test_rays_go_from_the_pose_to_the_places_and_ellipses_lie_there(answer):
+    semantic_map, found = answer
+    plotter, words = location_scene(semantic_map, found)
+    rays = of_colour(plotter, "#696969")
+    assert len(rays) == len(found.observations) == 5
+    places = found.pose.apply([[one.x, one.y] for one in found.observations])
+    ends = np.array([mesh.points for mesh in rays])
+    assert np.allclose(ends[:, 0, :2], [found.pose.x, found.pose.y], atol=1e-4)
+    assert np.allclose(ends[:, 1, :2], places[[one.observation for one in found.objects]], atol=1e-4)
+    discs = [m for mesh in plotter.actors.values() if (m := mesh.mapper.dataset).n_cells == 320]
+    assert len(discs) == 6, "five places and the pose"
+    first = found.objects[0].observation
+    widths = np.sqrt(np.linalg.eigvalsh(found.observations[first].covariance))
+    spread = np.linalg.norm(np.asarray(discs[0].points)[:, :2] - places[first], axis=1)
+    assert spread.max() == pytest.approx(3 * widths[1], rel=0.03)
+    turn = np.array([[np.cos(found.pose.theta), -np.sin(found.pose.theta)],
+                     [np.sin(found.pose.theta), np.cos(found.pose.theta)]])  # fmt: skip
+    world = turn @ found.observations[first].covariance @ turn.T
+    offsets = np.asarray(discs[0].points, float)[:, :2] - places[first]
+    assert np.einsum("ni,ij,nj->n", offsets, np.linalg.inv(world), offsets).max() == pytest.approx(9, rel=0.02)
+    assert "rejected" not in words
+
+
+def test_a_rejected_pose_is_called_so_and_no_pose_is_said(answer):
+    semantic_map, _ = answer
+    upper, lower, _ = mapped_scene()
+    rejected = SemanticLocalizer(StereoRig(1.0), semantic_map).localize_views(upper, lower)
+    assert rejected.pose is None
+    assert "rejected pose: coloured axes" in location_scene(semantic_map, rejected)[1]
+    nothing = SemanticLocalizer(StereoRig(BASELINE), semantic_map).localize_views(replace(upper, detections=()), lower)
+    plotter, words = location_scene(semantic_map, nothing)
+    assert "no pose, no detections" in words
+    assert len(page_html(plotter, "A map", words)) < 1_300_000
+
+
+def test_the_true_pose_is_drawn_where_it_is_known(answer):
+    semantic_map, found = answer
+    plotter, words = location_scene(semantic_map, found, np.array(TRUE_POSE))
+    axes = of_colour(plotter, "#000000")[0]
+    assert axes.bounds[4:] == pytest.approx((-0.1, 0.4), abs=0.15)
+    assert np.asarray(axes.points)[:, :2].mean(axis=0) == pytest.approx(TRUE_POSE[:2], abs=0.3)
+    assert "true pose" in words

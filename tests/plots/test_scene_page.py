@@ -1,0 +1,133 @@
+"""The page of a scene: its words, the same bytes for the same scene, which pages show the same, no network."""
+
+from __future__ import annotations
+
+import base64
+import re
+import subprocess
+import sys
+import zlib
+
+import numpy as np
+import pytest
+
+from course_lib.plots import scene_page, scenes
+from course_lib.plots.scene_page import ScenePageError, page_html, same_scene, write_page
+from course_lib.plots.scenes import SceneError
+
+WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose <seen> from above"}
+STATE = np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])
+
+
+def axes_page(state=STATE, colour="#0072B2", **words) -> str:
+    plotter = scenes.new_plotter(viewpoint=(4, 3, 6), focus=(1, 2, 3))
+    plotter.add_mesh(scenes.body_axes(state, 0.5), rgb=True)
+    plotter.add_mesh(scenes.path(np.array([[0.0, 0, 0], [1, 2, 3]])), color=colour, line_width=3)
+    page = page_html(plotter, **(WORDS | words))
+    plotter.close()
+    return page
+
+
+@pytest.fixture(scope="module")
+def page() -> str:
+    return axes_page()
+
+
+def test_a_page_has_title_language_words_and_help(page):
+    assert page.startswith('<!doctype html>\n<html lang="en">')
+    assert "<title>Axes &amp; &quot;more&quot;</title>" in page
+    assert 'name="description" content="The axes of a pose &lt;seen&gt; from above"' in page
+    assert 'aria-label="The axes of a pose &lt;seen&gt; from above"' in page
+    assert "Drag to turn, wheel to zoom" in page
+
+
+def test_a_page_is_small_and_loads_nothing(page):
+    assert len(page) < 600_000
+    outside = re.findall(r'(?:src|href)="(?!data:)[^"]*"|https?:', page)
+    assert outside == []
+    viewer = zlib.decompress(base64.b64decode(re.search(r'atob\("([^"]+)"\)', page)[1])).decode()
+    assert "vtk-js/icon" not in viewer, "trame-vtk's viewer fetches its icons from the network"
+    assert "default-src 'none'" in page
+
+
+def test_the_same_scene_gives_the_same_bytes_also_in_another_process(page, tmp_path):
+    assert axes_page() == page
+    code = f"import runpy; page = runpy.run_path({__file__!r})['axes_page']; open('page', 'w').write(page())"
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True)
+    assert (tmp_path / "page").read_text() == page
+
+
+def test_pages_that_differ_by_rounding_show_the_same(page):
+    moved = axes_page(STATE + 1e-5)
+    assert moved != page
+    assert same_scene(moved, page)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"state": STATE + 0.01},
+        {"colour": "#D55E00"},
+        {"title": "Other axes"},
+        {"alt": "The axes of another pose"},
+    ],
+    ids=["place", "colour", "title", "words"],
+)
+def test_pages_that_differ_show_something_else(page, change):
+    assert not same_scene(axes_page(**change), page)
+
+
+def test_a_page_with_one_object_more_shows_something_else(page):
+    plotter = scenes.new_plotter(viewpoint=(4, 3, 6), focus=(1, 2, 3))
+    plotter.add_mesh(scenes.body_axes(STATE, 0.5), rgb=True)
+    assert not same_scene(page_html(plotter, **WORDS), page)
+
+
+def test_a_damaged_page_is_no_such_page(page):
+    for other in ("", "<html></html>", page.replace('base64Str = "UEsD', 'base64Str = "AAAA')):
+        assert not same_scene(other, page)
+        assert not same_scene(page, other)
+
+
+def test_no_socket_is_opened_for_a_page(monkeypatch):
+    import socket
+
+    def refuse(*_):
+        raise AssertionError("a page is written without a network")
+
+    monkeypatch.setattr(socket.socket, "connect", refuse)
+    monkeypatch.setattr(socket.socket, "bind", refuse)
+    assert len(axes_page()) > 100_000
+
+
+def test_a_page_is_written_where_it_is_asked_for(page, tmp_path):
+    plotter = scenes.new_plotter()
+    plotter.add_mesh(scenes.body_axes(STATE, 0.5), rgb=True)
+    path = write_page(plotter, tmp_path / "new" / "scene.html", **WORDS)
+    assert path.read_text(encoding="utf-8").startswith("<!doctype html>")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"), [({"title": " "}, "has a title"), ({"alt": "some axes"}, "says what it shows")]
+)
+def test_a_page_without_words_is_refused(words, said):
+    with pytest.raises(SceneError, match=said):
+        axes_page(**words)
+
+
+def test_an_empty_scene_is_refused():
+    with pytest.raises(SceneError, match="empty"):
+        page_html(scenes.new_plotter(), **WORDS)
+
+
+def test_what_to_install_is_said_where_pyvista_writes_no_pages(monkeypatch):
+    monkeypatch.setitem(sys.modules, "trame_vtk", None)
+    monkeypatch.delitem(sys.modules, "trame_vtk.tools.vtksz2html", raising=False)
+    with pytest.raises(ScenePageError, match=re.escape('pip install "pyvista[jupyter]"')):
+        axes_page()
+
+
+def test_an_unknown_viewer_is_named(monkeypatch):
+    monkeypatch.setattr(scene_page, "_viewer", lambda: "<html></html>")
+    with pytest.raises(ScenePageError, match="unknown kind"):
+        axes_page()
