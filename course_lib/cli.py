@@ -38,12 +38,14 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
     "make-data room": ("make_room", "make data/room again: stereo panoramas, exact boxes, the semantic map"),
     "make-data finale": ("make_finale", "make data/finale again: both maps of the room of the last lesson"),
+    "make-data projects": ("make_projects", "make data/projects again: what is seen in the rooms of P2 and P3"),
     "make-data training-rooms": (
         "make_training_rooms",
         "photograph generated rooms: a detector's training and test pictures",
     ),
     "train-detector": ("train_detector", "train the room detector (needs PyTorch, which the course does not install)"),
     "score-detector": ("score_detector", "measure a detector's precision and recall on known rooms"),
+    "score": ("score", "score a file that was handed in for a project, on its hidden seeds"),
     "refresh": ("refresh", "run the lessons again and store their outputs"),
 }
 

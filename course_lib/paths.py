@@ -30,3 +30,8 @@ def data_path(relative: str) -> Path:
 def notebook_paths() -> list[Path]:
     """The lessons, `notebooks/NN_title.ipynb`, in order."""
     return sorted((REPOSITORY / "notebooks").glob("[0-9][0-9]_*.ipynb"))
+
+
+def project_paths() -> list[Path]:
+    """The projects, `notebooks/projects/Pn_title.ipynb`, in order."""
+    return sorted((REPOSITORY / "notebooks" / "projects").glob("P[0-9]_*.ipynb"))

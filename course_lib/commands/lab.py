@@ -137,5 +137,5 @@ def trust_lessons(state: Path) -> None:
     data = state / "data"
     data.mkdir(parents=True, exist_ok=True)
     notary = NotebookNotary(data_dir=str(data))
-    for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
+    for path in sorted([*(ROOT / "notebooks").glob("*.ipynb"), *(ROOT / "notebooks" / "projects").glob("*.ipynb")]):
         notary.sign(read(path, as_version=4))

@@ -19,7 +19,7 @@ import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
-from course_lib.paths import REPOSITORY, STORE_SCENES, notebook_paths
+from course_lib.paths import REPOSITORY, STORE_SCENES, notebook_paths, project_paths
 
 MAX_BYTES = 400_000
 HANGS_S = 1800.0  # only what hangs takes so long
@@ -49,7 +49,9 @@ class RefreshError(RuntimeError):
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("lessons", nargs="*", metavar="NN", help="lesson numbers, such as 03 (default: all)")
+    parser.add_argument(
+        "lessons", nargs="*", metavar="NN", help="lessons and projects, such as 03 or P1 (default: all)"
+    )
     parser.add_argument(
         "--cell-timeout",
         type=float,
@@ -74,8 +76,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def select(lessons: list[str]) -> list[Path]:
-    """Notebooks of these lesson numbers, all of them for none. Raises `ValueError` for a number without a notebook."""
-    paths = {path.name[:2]: path for path in notebook_paths()}
+    """Notebooks of these lessons ("03") and projects ("P1"), all of them for none.
+
+    Raises `ValueError` for a number without a notebook.
+    """
+    paths = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
     wanted = [number.zfill(2) for number in lessons] or sorted(paths)
     unknown = sorted(set(wanted) - set(paths))
     if unknown or not wanted:

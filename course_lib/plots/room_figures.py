@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from course_lib.experiments.room_evaluation import CORRECT, NO_OBJECT
-from course_lib.plots.figures import BLACK, BLUE, GREEN, ORANGE, VERMILION, new_figure
+from course_lib.plots.figures import BLACK, BLUE, GREEN, VERMILION, new_figure
 from course_lib.plots.panorama_drawing import add_list, class_style, draw_box, draw_numbers, panorama
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -24,6 +24,9 @@ __all__ = [
     "panorama",
     "pose_figure",
 ]
+
+ESTIMATE = "#7B2D8E"
+"""Colour of an estimated pose: a dark violet, which no class of objects has (`class_style`)."""
 
 
 def detections_figure(image_bgr: np.ndarray, detections: Sequence, title: str = "Detected objects") -> Figure:
@@ -125,7 +128,7 @@ def _draw_result(axes: Axes, semantic_map: SemanticMap, result) -> None:
     found = result.localization
     if found.pose is None:
         return
-    draw_pose(axes, found.pose.x, found.pose.y, found.pose.theta, ORANGE, "estimated pose")
+    draw_pose(axes, found.pose.x, found.pose.y, found.pose.theta, ESTIMATE, "estimated pose")
     points = found.pose.apply(np.array([[one.x, one.y] for one in found.observations]))
     named: set[bool] = set()
     for observation, landmark in found.used_pairs:

@@ -4,7 +4,7 @@ The same as PyVista's `plotter.export_html`: the viewer vtk.js and the scene in 
 PyVista uses. But PyVista starts a web server for it, which reaches for the network; trame-vtk's part that writes down a
 scene needs neither. And the page gets a title, words for those who cannot see it and a line that says how to turn it;
 its viewer, a megabyte of script, is packed, and the browser unpacks it. The same scene gives the same bytes: its parts
-are numbered, not named by their addresses in memory, and no hour is written down.
+are numbered, not named by their addresses in memory, and no hour is written down. The page forbids itself the network.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ ROUNDING = 1e-3  # of numbers and of coordinates in metres: what another process
 
 _ADDRESS = re.compile(r"""(?<=["{])[0-9A-Fa-f]{16}\b""")  # after a quote, or as instance:${...}; never a fraction
 _SCRIPT = re.compile(r'<script type="module">(.*?)</script>', re.DOTALL)
+_ICON = re.compile(r"`https://kitware\.github\.io/vtk-js/icon/[^`]*`")  # the viewer fetches its icons from there
 _DATA = re.compile(r'base64Str = "([A-Za-z0-9+/=]+)"')
 _WORDS = re.compile(r'<title>.*?</title>|<meta name="description".*?/>', re.DOTALL)
 _PAGE = """<!doctype html>
@@ -38,6 +39,8 @@ _PAGE = """<!doctype html>
   <head>
     <meta charset="utf-8" />
     <meta name="viewport" content="width=device-width, initial-scale=1" />
+    <meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline';
+      style-src 'unsafe-inline'; img-src data: blob:; connect-src data: blob:; worker-src blob:" />
     <title>{title}</title>
     <meta name="description" content="{alt}" />
     <link rel="icon" href="data:," />
@@ -102,7 +105,8 @@ def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") 
     script = _SCRIPT.search(_viewer())
     if script is None:
         raise ScenePageError(f"trame-vtk comes with a viewer of an unknown kind: {CURE} in environment.txt's versions")
-    packed = base64.b64encode(zlib.compress(script[1].encode("utf-8"), 9)).decode("ascii")
+    offline = _ICON.sub('"data:,"', script[1])
+    packed = base64.b64encode(zlib.compress(offline.encode("utf-8"), 9)).decode("ascii")
     caption = f"{title}. {legend}." if legend else f"{title}."
     words = {"title": html.escape(title), "alt": html.escape(alt), "caption": html.escape(caption)}
     return _PAGE.format(**words, viewer=packed, scene=_archive(_scene_of(plotter)))

@@ -46,7 +46,7 @@ def scores():
     return json.loads((FOLDER / "scores.json").read_text())
 
 
-FILES = ("room_yolo.cfg", "room_yolo.names", "room_yolo.weights", "scores.json", "training.json")
+FILES = ("room_yolo.cfg", "room_yolo.names", "room_yolo.weights", "scores.json", "training.json", "training_picture")
 
 
 def test_the_checksums_are_those_of_the_files():

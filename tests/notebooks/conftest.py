@@ -1,4 +1,5 @@
-"""The lessons as the tests see them: every notebooks/NN_title.ipynb, so that a new one is covered at once."""
+"""The notebooks as the tests see them: every lesson notebooks/NN_title.ipynb and every project, so that a new one is
+covered at once."""
 
 from __future__ import annotations
 
@@ -9,8 +10,10 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from course_lib.paths import notebook_paths
+from course_lib.paths import notebook_paths, project_paths
 
+# Tests of what every notebook must keep: projects have the rules of the lessons, but a shape of their own.
+OF_PROJECTS_TOO = ("test_rules",)
 OPT_OUTS = ("NBVAL_IGNORE_OUTPUT", "NBVAL_SKIP", "NBVAL_RAISES_EXCEPTION", "PYTEST_VALIDATE_IGNORE_OUTPUT")
 
 
@@ -84,8 +87,12 @@ def read(path: Path) -> Lesson:
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "lesson" in metafunc.fixturenames:
-        lessons = [read(path) for path in notebook_paths()]
+        projects = project_paths() if metafunc.module.__name__.endswith(OF_PROJECTS_TOO) else []
+        lessons = [read(path) for path in [*notebook_paths(), *projects]]
         metafunc.parametrize("lesson", lessons, ids=[lesson.path.stem for lesson in lessons])
+    if "project" in metafunc.fixturenames:
+        projects = [read(path) for path in project_paths()]
+        metafunc.parametrize("project", projects, ids=[project.number for project in projects])
 
 
 @pytest.fixture

@@ -81,8 +81,7 @@ def test_every_picture_has_alternative_text(lesson):
 
 
 def scene_sources(lesson) -> list[str]:
-    html = "".join(output.data.get("text/html", "") for output in lesson.outputs if "data" in output)
-    return re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', html + lesson.markdown)
+    return re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', "".join([*lesson.html, lesson.markdown]))
 
 
 def test_scenes_are_small_and_there(lesson):

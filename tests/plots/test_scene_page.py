@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import base64
 import re
 import subprocess
 import sys
+import zlib
 
 import numpy as np
 import pytest
@@ -43,6 +45,9 @@ def test_a_page_is_small_and_loads_nothing(page):
     assert len(page) < 600_000
     outside = re.findall(r'(?:src|href)="(?!data:)[^"]*"|https?:', page)
     assert outside == []
+    viewer = zlib.decompress(base64.b64decode(re.search(r'atob\("([^"]+)"\)', page)[1])).decode()
+    assert "vtk-js/icon" not in viewer, "trame-vtk's viewer fetches its icons from the network"
+    assert "default-src 'none'" in page
 
 
 def test_the_same_scene_gives_the_same_bytes_also_in_another_process(page, tmp_path):

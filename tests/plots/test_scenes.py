@@ -63,6 +63,7 @@ def test_a_frustum_ends_at_the_cameras_far_plane_and_has_twelve_lines():
 @pytest.mark.parametrize("axis", range(3))
 def test_each_axis_has_its_colour_and_its_direction(axis):
     mesh = scenes.body_axes(STATE, 0.5)
+    assert scenes.AXIS_COLOURS[axis].argmax() == axis, "red, green, blue"
     mine = np.asarray(mesh.points)[(mesh["colour"] == scenes.AXIS_COLOURS[axis]).all(axis=1)]
     local = (mine - STATE[:3]) @ pose_matrix(STATE)[:3, :3]
     assert 0.5 < local[:, axis].max() < 0.75

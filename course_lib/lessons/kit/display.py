@@ -5,24 +5,26 @@ from __future__ import annotations
 import base64
 import html
 import re
+from typing import Literal
 
 from IPython.display import display
 from matplotlib.figure import Figure
 
-from course_lib.plots.figures import png_bytes
+from course_lib.plots.figures import jpeg_bytes, png_bytes
 
 
 class FigureError(ValueError):
     """A figure that lacks what every figure of the course has: title, labels with units, alternative text."""
 
 
-def show(figure: Figure, alt: str) -> None:
+def show(figure: Figure, alt: str, photograph: bool = False) -> None:
     """Display a finished figure as one compressed picture with its alternative text.
 
+    photograph: for a figure that is mostly one, which the few colours of a palette would turn into patches.
     Raises `FigureError` where title, axis labels with units (such as "depth Z [m]") or `alt` are missing.
     """
     require_labels(figure)
-    display(Picture(png_bytes(figure), alt))
+    display(Picture(jpeg_bytes(figure), alt, "jpeg") if photograph else Picture(png_bytes(figure), alt))
 
 
 def require_labels(figure: Figure) -> None:
@@ -40,20 +42,20 @@ def require_labels(figure: Figure) -> None:
 
 
 class Picture:
-    """A PNG with alternative text, shown as `<img alt=...>`.
+    """A PNG or JPEG with alternative text, shown as `<img alt=...>`.
 
     JupyterLab drops the alternative text of an `image/png` output, so the picture travels as HTML.
     """
 
-    def __init__(self, png: bytes, alt: str) -> None:
+    def __init__(self, data: bytes, alt: str, kind: Literal["png", "jpeg"] = "png") -> None:
         if len(alt.split()) < 4:
             raise FigureError(f"alternative text says what the picture shows, in a sentence; got {alt!r}")
-        self.png, self.alt = png, " ".join(alt.split())
+        self.data, self.alt, self.kind = data, " ".join(alt.split()), kind
 
     def html(self) -> str:
         """The `<img>` element, its bytes inside."""
-        data = base64.b64encode(self.png).decode("ascii")
-        return f'<img alt="{html.escape(self.alt)}" src="data:image/png;base64,{data}" style="max-width: 100%">'
+        data = base64.b64encode(self.data).decode("ascii")
+        return f'<img alt="{html.escape(self.alt)}" src="data:image/{self.kind};base64,{data}" style="max-width: 100%">'
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
         return {"text/plain": repr(self), "text/html": self.html()}

@@ -100,16 +100,17 @@ def find_exercise(number: str) -> Exercise:
 
 
 def lesson_numbers() -> list[str]:
-    """Numbers ("03") of the lessons that have exercises."""
-    folders = Path(__file__).parents[1].glob("lesson_[0-9][0-9]/exercises.py")
-    return sorted(path.parent.name.removeprefix("lesson_") for path in folders)
+    """Numbers ("03") of the lessons that have exercises, and names ("P1") of the projects, whose stages are such."""
+    folders = [path.parent.name for path in Path(__file__).parents[1].glob("*_*/exercises.py")]
+    return sorted(name.removeprefix("lesson_").replace("project_", "P") for name in folders)
 
 
 def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
-    """Exercises of lesson "03"; none where the lesson has no file of exercises."""
+    """Exercises of lesson "03" or stages of project "P1"; none where there is no file of exercises."""
     if lesson not in lesson_numbers():
         return ()
-    return tuple(importlib.import_module(f"course_lib.lessons.lesson_{lesson}.exercises").EXERCISES)
+    folder = f"project_{lesson[1:]}" if lesson.startswith("P") else f"lesson_{lesson}"
+    return tuple(importlib.import_module(f"course_lib.lessons.{folder}.exercises").EXERCISES)
 
 
 def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float = SECONDS) -> Verdict:

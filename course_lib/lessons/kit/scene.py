@@ -71,7 +71,7 @@ def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> Non
     name: of its page, the lesson's number first ("01_frustum"). title: of frame and page. alt: what it shows, in a
     sentence. Raises `SceneError` for another kind of name, an empty scene, or words that are missing.
     """
-    if not re.fullmatch(r"\d\d_[a-z0-9_]+", name):
+    if not re.fullmatch(r"(\d\d|P\d)_[a-z0-9_]+", name):
         raise SceneError(f"a scene's name is the lesson's number and a word, such as '01_frustum'; got {name!r}")
     try:
         picture = Picture(small_picture(plotter), alt)

@@ -8,7 +8,7 @@ from course_lib.lessons.lesson_04.figures import (
     two_surfaces_figure,
 )
 from course_lib.lessons.lesson_04.panel import PANELS, faults_panel
-from course_lib.lessons.lesson_04.recorded import sort_errors, true_depths
+from course_lib.lessons.lesson_04.recorded import kinds_of, sort_errors, true_depths
 from course_lib.lessons.lesson_04.time_of_flight import capture, frames_of, returns, wall
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "faults_panel",
     "frames_of",
     "idea_figure",
+    "kinds_of",
     "noise_figure",
     "phase_figure",
     "recorded_figure",

@@ -1,8 +1,9 @@
-"""Exercises of lesson 04: range and depth, ranges that repeat, and a pixel that sees two surfaces."""
+"""Exercises of lesson 04: range and depth, two frequencies, a pole in a pixel, and the nearest of n noisy points."""
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.stats import norm
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.lessons.kit.exercises import Exercise, Mistake
@@ -25,6 +26,19 @@ def _range_image(rng: np.random.Generator) -> tuple:
     return ranges, DepthCamera.from_fov(width, height, *fov_deg).rays()
 
 
+def _task_ray(rng: np.random.Generator) -> tuple:
+    return np.array([[5.0]]), np.array([[[0.75, 0.0, 1.0]]])
+
+
+def _nothing_measured(rng: np.random.Generator) -> tuple:
+    return np.full((3, 4), np.nan), DepthCamera.from_fov(4, 3, 60, 45).rays()
+
+
+def _paper_camera(rng: np.random.Generator) -> tuple:
+    camera = DepthCamera.sr4000().resized(11, 9)
+    return rng.uniform(0.3, 9.9, camera.shape), camera.rays()
+
+
 def _forward_left_out(ranges: np.ndarray, rays: np.ndarray) -> np.ndarray:
     with np.errstate(divide="ignore"):
         return ranges / np.linalg.norm(rays[..., :2], axis=-1)
@@ -35,69 +49,159 @@ def _rays_as_metres(ranges: np.ndarray, rays: np.ndarray) -> np.ndarray:
         return np.sqrt(ranges**2 - rays[..., 0] ** 2 - rays[..., 1] ** 2)
 
 
-# 04.2: ranges that repeat
+# 04.2: one range of two readings
 
 
-def range_read(r: np.ndarray, f: float) -> np.ndarray:
-    """Range [m] that a camera modulated at f [Hz] reads of true ranges r [m]: r modulo c / 2f."""
-    return r % (SPEED_OF_LIGHT / (2 * f))
+def range_from_two(read_a: np.ndarray, f_a: float, read_b: np.ndarray, f_b: float, farthest: float) -> np.ndarray:
+    """Range (n,) [m] of readings (n,) at two frequencies [Hz]: of read_a + k c / 2f_a up to `farthest`, the best."""
+    candidates, misses = _candidates(read_a, f_a, read_b, f_b, farthest)
+    return _best(candidates, np.abs(misses))
 
 
-def _true_ranges(rng: np.random.Generator) -> tuple:
-    f = rng.uniform(10e6, 40e6)
-    repeats = SPEED_OF_LIGHT / (2 * f)
-    turns = np.concatenate([rng.uniform(0.1, 0.9, 2), rng.uniform(1.1, 1.9, 2), rng.uniform(2.1, 3.9, 2)])
-    return repeats * rng.permutation(turns), f
+def _turn(f: float) -> float:
+    return SPEED_OF_LIGHT / (2 * f)
 
 
-def _once(r: np.ndarray, f: float) -> np.ndarray:
-    repeats = SPEED_OF_LIGHT / (2 * f)
-    return np.where(r >= repeats, r - repeats, r)
+def _candidates(read_a, f_a, read_b, f_b, farthest) -> tuple[np.ndarray, np.ndarray]:
+    """Ranges (n, k) that are read as read_a, inf beyond `farthest`, and how far each misses read_b on its circle."""
+    candidates = read_a[:, None] + np.arange(int(farthest / _turn(f_a)) + 1) * _turn(f_a)
+    candidates = np.where(candidates <= farthest, candidates, np.inf)
+    with np.errstate(invalid="ignore"):
+        misses = (candidates - read_b[:, None] + _turn(f_b) / 2) % _turn(f_b) - _turn(f_b) / 2
+    return candidates, np.where(np.isfinite(candidates), misses, np.inf)
 
 
-def _half_turns(r: np.ndarray, f: float) -> np.ndarray:
-    repeats = SPEED_OF_LIGHT / (2 * f)
-    return (r + repeats / 2) % repeats - repeats / 2
+def _best(candidates: np.ndarray, costs: np.ndarray) -> np.ndarray:
+    return candidates[np.arange(len(candidates)), np.argmin(costs, axis=1)]
 
 
-# 04.3: one pixel, two surfaces
+def _readings(rng: np.random.Generator) -> tuple:
+    f_a = rng.uniform(14e6, 16e6)
+    return _two_readings(rng, f_a, f_a * rng.uniform(1.25, 1.4))
 
 
-def mixed_range(r1: np.ndarray, a1: np.ndarray, r2: np.ndarray, a2: np.ndarray, f: float) -> np.ndarray:
-    """Range [m], 0 to c / 2f, of the sum of two phasors with amplitudes a1, a2 from ranges r1, r2 [m]."""
-    turns = 2 * f / SPEED_OF_LIGHT
-    total = a1 * np.exp(2j * np.pi * turns * r1) + a2 * np.exp(2j * np.pi * turns * r2)
-    return np.angle(total) / (2 * np.pi) % 1 / turns
+def _two_readings(rng: np.random.Generator, f_a: float, f_b: float, farthest: float = 25.0) -> tuple:
+    """Readings of ranges near and far: the last reading at f_b has slipped over its seam by noise."""
+    r = rng.permutation(np.concatenate([rng.uniform(0.5, 7, 2), rng.uniform(10.5, 19, 2), rng.uniform(20.5, 24, 2)]))
+    r = np.append(r, 2 * _turn(f_b) - 0.005)
+    noise_a, noise_b = rng.uniform(-0.02, 0.02, (2, len(r)))
+    noise_b[-1] = 0.015
+    near_seam = np.abs((r + _turn(f_a) / 2) % _turn(f_a) - _turn(f_a) / 2) < 0.05
+    return np.where(near_seam, r, r + noise_a) % _turn(f_a), f_a, (r + noise_b) % _turn(f_b), f_b, farthest
 
 
-def _two_returns(rng: np.random.Generator) -> tuple:
-    f, n = rng.uniform(10e6, 40e6), int(rng.integers(5, 9))
-    repeats = SPEED_OF_LIGHT / (2 * f)
-    near, apart = rng.uniform(0.05, 0.55, n), rng.uniform(0.1, 0.4, n)
-    near[0], apart[0] = 0.6, 0.3  # both in the second half of the circle: their angle is negative
-    near[1], apart[1] = 0.1, 0.65  # more than half a turn apart: the sum is not between the two
-    a1, a2 = rng.uniform(0.1, 1.0, (2, n))
-    return near * repeats, a1, (near + apart) * repeats, a2, f
+def _at_15_and_20(rng: np.random.Generator) -> tuple:
+    return _two_readings(rng, 15e6, 20e6)
 
 
-def _half_phase(r1: np.ndarray, a1: np.ndarray, r2: np.ndarray, a2: np.ndarray, f: float) -> np.ndarray:
-    return mixed_range(r1, a1, r2, a2, f / 2)
+def _at_20_and_15(rng: np.random.Generator) -> tuple:
+    return _two_readings(rng, 20e6, 15e6)
 
 
-def _not_wrapped(r1: np.ndarray, a1: np.ndarray, r2: np.ndarray, a2: np.ndarray, f: float) -> np.ndarray:
-    repeats = SPEED_OF_LIGHT / (2 * f)
-    reading = mixed_range(r1, a1, r2, a2, f)
-    return np.where(reading > repeats / 2, reading - repeats, reading)
+def _along_a_line(read_a, f_a, read_b, f_b, farthest):
+    candidates, _ = _candidates(read_a, f_a, read_b, f_b, farthest)
+    with np.errstate(invalid="ignore"):
+        misses = np.abs(candidates % _turn(f_b) - read_b[:, None])
+    return _best(candidates, np.where(np.isfinite(candidates), misses, np.inf))
 
 
-def _with_round_number(r1: np.ndarray, a1: np.ndarray, r2: np.ndarray, a2: np.ndarray, f: float) -> np.ndarray:
-    share = 3e8 / SPEED_OF_LIGHT  # another speed of light acts like another frequency
-    return mixed_range(r1, a1, r2, a2, f / share)
+def _not_read_at_b(read_a, f_a, read_b, f_b, farthest):
+    candidates, _ = _candidates(read_a, f_a, read_b, f_b, farthest)
+    return _best(candidates, np.abs(candidates - read_b[:, None]))
 
 
-def _half_circle(r1: np.ndarray, a1: np.ndarray, r2: np.ndarray, a2: np.ndarray, f: float) -> np.ndarray:
-    half = SPEED_OF_LIGHT / (4 * f)
-    return ((mixed_range(r1, a1, r2, a2, f) + half / 2) % half - half / 2) % (2 * half)
+def _one_turn_at_most(read_a, f_a, read_b, f_b, farthest):
+    candidates, misses = _candidates(read_a, f_a, read_b, f_b, farthest)
+    return _best(candidates[:, :2], np.abs(misses[:, :2]))
+
+
+def _without_absolute_value(read_a, f_a, read_b, f_b, farthest):
+    return _best(*_candidates(read_a, f_a, read_b, f_b, farthest))
+
+
+def _turns_of_a(read_a, f_a, read_b, f_b, farthest):
+    return np.round((range_from_two(read_a, f_a, read_b, f_b, farthest) - read_a) / _turn(f_a))
+
+
+def _from_b(read_a, f_a, read_b, f_b, farthest):
+    return range_from_two(read_b, f_b, read_a, f_a, farthest)
+
+
+def _mean_of_both(read_a, f_a, read_b, f_b, farthest):
+    from_a, turn = range_from_two(read_a, f_a, read_b, f_b, farthest), _turn(f_b)
+    return from_a - ((from_a - read_b + turn / 2) % turn - turn / 2) / 2
+
+
+# 04.3: how much of a pixel is on the pole
+
+
+def pole_share(r: np.ndarray, r1: np.ndarray, rho1: np.ndarray, r2: np.ndarray, rho2: np.ndarray, f: float):
+    """Share (n,) of a pixel on the nearer surface at r1 for which it reads r, the rest being on that at r2 [m]."""
+    return _share(r, r1, rho1 / r1**2, r2, rho2 / r2**2, f)
+
+
+def _share(r, r1, a1, r2, a2, f):
+    """The share for which the parts of both phasors across the hand of r cancel; a1, a2: amplitudes at full cover."""
+    k = 4 * np.pi * f / SPEED_OF_LIGHT
+    nearer, farther = a1 * np.sin(k * (r - r1)), a2 * np.sin(k * (r2 - r))
+    return farther / (nearer + farther)
+
+
+def _pole_and_wall(rng: np.random.Generator) -> tuple:
+    f, n = rng.uniform(10e6, 30e6), int(rng.integers(6, 10))
+    r1 = rng.uniform(0.05, 0.45, n) * _turn(f)
+    r2 = r1 + rng.uniform(0.1, 0.45, n) * _turn(f)
+    between = rng.uniform(0.1, 0.9, n)
+    between[:2] = 0, 1
+    rho1, rho2 = rng.uniform(0.1, 0.9, (2, n))
+    return r1 + between * (r2 - r1), r1, rho1, r2, rho2, f
+
+
+def _same_paint(rng: np.random.Generator) -> tuple:
+    r1, rho = rng.uniform(1, 3, 4), rng.uniform(0.1, 0.9, 4)
+    r2 = r1 + rng.uniform(0.5, 4.5, 4)
+    return (r1 + r2) / 2, r1, rho, r2, rho, 15e6
+
+
+def _by_weighted_ranges(r, r1, rho1, r2, rho2, f):
+    a1, a2 = rho1 / r1**2, rho2 / r2**2
+    return a2 * (r2 - r) / (a2 * (r2 - r) + a1 * (r - r1))
+
+
+# 04.4: the nearest of n points
+
+
+def nearest_of(n: int) -> tuple[float, float]:
+    """Mean and standard deviation of the least of n independent standard normal numbers.
+
+    The least is above x where all n are: P = (1 - Phi(x))^n, whose slope gives the density n phi (1 - Phi)^(n - 1).
+    """
+    x = np.linspace(-9, 9, 3001)
+    density = n * norm.pdf(x) * norm.sf(x) ** (n - 1)
+    step = x[1] - x[0]
+    mean = np.sum(x * density) * step
+    return float(mean), float(np.sqrt(np.sum((x - mean) ** 2 * density) * step))
+
+
+def _how_many(rng: np.random.Generator) -> tuple:
+    return (int(rng.integers(3, 41)),)
+
+
+def _one_point(rng: np.random.Generator) -> tuple:
+    return (1,)
+
+
+def _two_points(rng: np.random.Generator) -> tuple:
+    return (2,)
+
+
+def _sixteen_points(rng: np.random.Generator) -> tuple:
+    return (16,)
+
+
+def _density_without_n(n: int) -> tuple[float, float]:
+    mean, deviation = nearest_of(n)
+    return mean / n, float(np.sqrt((deviation**2 + mean**2) / n - (mean / n) ** 2 * (2 - 1 / n)))
 
 
 EXERCISES = [
@@ -105,6 +209,8 @@ EXERCISES = [
         number="04.1",
         reference=range_to_depth,
         inputs=_range_image,
+        cases=(_task_ray, _nothing_measured, _paper_camera),
+        level="warm-up",
         mistakes=(
             Mistake(
                 lambda ranges, rays: ranges * np.linalg.norm(rays, axis=-1),
@@ -131,6 +237,10 @@ EXERCISES = [
                 "A pixel without a measurement stays NaN; yours makes it 0 m, right at the lens.",
             ),
             Mistake(
+                lambda ranges, rays: np.nan_to_num(ranges / np.linalg.norm(rays, axis=-1), nan=np.inf),
+                "A pixel without a measurement stays NaN; inf would say that the camera looked and nothing was there.",
+            ),
+            Mistake(
                 _forward_left_out,
                 "Your ray has no forward component: the length of (x, y, 1) is not that of (x, y).",
             ),
@@ -150,128 +260,160 @@ EXERCISES = [
     ),
     Exercise(
         number="04.2",
-        reference=range_read,
-        inputs=_true_ranges,
+        reference=range_from_two,
+        inputs=_readings,
+        cases=(_at_15_and_20, _at_20_and_15),
         mistakes=(
             Mistake(
-                lambda r, f: r % (SPEED_OF_LIGHT / f),
-                "Yours repeats after c / f. The light goes out and back: it travels 2 r.",
+                lambda read_a, f_a, read_b, f_b, farthest: read_a,
+                "That is the reading at f_a. The surface may be one or more turns of c / 2f_a farther away.",
             ),
             Mistake(
-                lambda r, f: r % (SPEED_OF_LIGHT / (4 * f)),
-                "Yours repeats after c / 4f, half of the right distance.",
-            ),
-            Mistake(_once, "You take away c / 2f once. A surface can be two or three times as far: see % (modulo)."),
-            Mistake(
-                lambda r, f: np.minimum(r, SPEED_OF_LIGHT / (2 * f)),
-                "You stop at c / 2f. The camera does not know that the wall is far: it starts again from 0.",
+                _along_a_line,
+                "Mind the seam at f_b: 0.1 m and 7.4 m are neighbours on a circle of 7.5 m. Measure on the circle.",
             ),
             Mistake(
-                lambda r, f: np.where(r < SPEED_OF_LIGHT / (2 * f), r, np.nan),
-                "You drop what is too far. The camera cannot: it does not know. It starts again from 0.",
+                _not_read_at_b,
+                "You compare a range with a reading. What would the camera *read* at f_b of each candidate?",
             ),
             Mistake(
-                lambda r, f: r / (SPEED_OF_LIGHT / (2 * f)) % 1,
-                "That is the share of a turn, without unit. The task asks for metres.",
-            ),
-            Mistake(lambda r, f: r % (3e8 / (2 * f)), "Close, but 3e8 is rounded: take c = 299_792_458 m/s."),
-            Mistake(
-                lambda r, f: range_read(r, 15e6),
-                "You use 15 MHz always: the frequency is an argument, f.",
+                _one_turn_at_most,
+                "You try no or one turn. A surface can be two or three turns away: how many fit below `farthest`?",
             ),
             Mistake(
-                lambda r, f: r % (SPEED_OF_LIGHT / 2 * f),
-                "Nothing is wrapped in yours. Mind the brackets: c / 2 * f is c times f, halved.",
+                _without_absolute_value,
+                "The miss has a sign, and you take the most negative one. The best candidate has the *smallest* miss.",
+            ),
+            Mistake(_turns_of_a, "That is the number of turns. Return the range: read_a plus these turns, in metres."),
+            Mistake(
+                _from_b,
+                "You add turns to read_b. The two differ by the noise: the task starts from read_a.",
             ),
             Mistake(
-                lambda r, f: r // (SPEED_OF_LIGHT / (2 * f)),
-                "That is how many whole turns the clock has made. The camera reads what is left: %, not //.",
+                _mean_of_both,
+                "You average the two readings' ranges. A fine idea, but the task asks for read_a plus whole turns.",
             ),
             Mistake(
-                lambda r, f: range_read(r, f) * (4 * np.pi * f / SPEED_OF_LIGHT),
-                "That is the phase in radians. One whole turn, 2 pi, stands for c / 2f metres.",
+                lambda read_a, f_a, read_b, f_b, farthest: range_from_two(read_a, f_a / 2, read_b, f_b / 2, farthest),
+                "Your turns are c / f long. The light goes out and back: a turn is c / 2f.",
             ),
             Mistake(
-                _half_turns,
-                "Some of your ranges are negative: np.angle runs from -pi to pi. The camera reads 0 to c / 2f.",
+                lambda read_a, f_a, read_b, f_b, farthest: range_from_two(
+                    read_a, f_a * SPEED_OF_LIGHT / 3e8, read_b, f_b * SPEED_OF_LIGHT / 3e8, farthest
+                ),
+                "Close, but 3e8 is rounded: take c = 299_792_458 m/s.",
             ),
-            Mistake(lambda r, f: range_read(r, 1e6 * f), "f is in 1/s already: 15 MHz comes as 15e6."),
-            Mistake(lambda r, f: r % 10, "Ranges repeat every 10 m at 15 MHz only: the frequency decides."),
             Mistake(
-                lambda r, f: range_read(r / 2, f),
-                "Your phase is 2 pi f r / c. The light goes out *and* back: it travels 2 r.",
+                lambda read_a, f_a, read_b, f_b, farthest: (
+                    read_a + (_candidates(read_a, f_a, read_b, f_b, farthest)[0].shape[1] - 1) * _turn(f_a)
+                ),
+                "You take the farthest candidate always. Ask of each how well it fits the reading at f_b.",
             ),
         ),
     ),
     Exercise(
         number="04.3",
-        reference=mixed_range,
-        inputs=_two_returns,
+        reference=pole_share,
+        inputs=_pole_and_wall,
+        cases=(_same_paint,),
         mistakes=(
             Mistake(
-                lambda r1, a1, r2, a2, f: (a1 * r1 + a2 * r2) / (a1 + a2),
-                "You average the ranges. The pixel adds the phasors, complex numbers; only the sum has a range.",
+                lambda r, r1, rho1, r2, rho2, f: (r2 - r) / (r2 - r1),
+                "You mix ranges. The pixel adds phasors: the nearer surface sends more light and pulls harder.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: (r1 + r2) / 2,
-                "You take the middle of the two ranges. Add the phasors, then read the range of the sum.",
+                _by_weighted_ranges,
+                "You weigh the ranges by the light. The pixel adds *phasors*; of their sum it reads the angle.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: np.where(a1 > a2, r1, r2),
-                "In yours the stronger surface wins. The camera sees their sum.",
+                lambda r, r1, rho1, r2, rho2, f: 1 - pole_share(r, r1, rho1, r2, rho2, f),
+                "That is the share on the farther surface.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: mixed_range(r1, 1, r2, 1, f),
-                "Both surfaces count the same in yours: multiply each phasor by its amplitude.",
-            ),
-            Mistake(_half_phase, "Your phase is 2 pi f r / c. The light travels 2 r: 4 pi f r / c, out and back."),
-            Mistake(
-                _not_wrapped,
-                "Some of your ranges are negative: np.angle runs from -pi to pi. Bring its share of a turn to 0 ... 1.",
+                lambda r, r1, rho1, r2, rho2, f: pole_share(r, r1, 1.0, r2, 1.0, f),
+                "Both surfaces have the same paint in yours: rho1 and rho2 are not used.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: mixed_range(r1, a1, r2, a2, f) * 2 * f / SPEED_OF_LIGHT,
-                "That is the share of a turn. Times c / 2f it becomes metres.",
+                lambda r, r1, rho1, r2, rho2, f: _share(r, r1, rho1, r2, rho2, f),
+                "In yours a far surface is as bright as a near one: the amplitude falls with the range squared.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: mixed_range(r1, a1, r2, a2, f) * 2,
-                "Yours is twice too far: a whole turn is c / 2f, not c / f.",
+                lambda r, r1, rho1, r2, rho2, f: _share(r, r1, rho1 / r1, r2, rho2 / r2, f),
+                "Your light falls with the range. It falls with its square.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: mixed_range(r1, a1 / r1**2, r2, a2 / r2**2, f),
-                "a1 and a2 are amplitudes already: what is lost on the way, 1 / r^2, is in them.",
+                lambda r, r1, rho1, r2, rho2, f: _share(r, r1, rho1 / r1**4, r2, rho2 / r2**4, f),
+                "Your light falls with the fourth power of the range. The lesson's phasor has the square.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: mixed_range(r1, a1**2, r2, a2**2, f),
-                "You square the amplitudes. A phasor is as long as its amplitude.",
+                lambda r, r1, rho1, r2, rho2, f: pole_share(r, r1, rho1, r2, rho2, f / 2),
+                "Your phase is 2 pi f r / c. The light travels 2 r: 4 pi f r / c.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: mixed_range(r1, a1, r2, a2, f) * (4 * np.pi * f / SPEED_OF_LIGHT),
-                "That is the phase in radians. One whole turn, 2 pi, stands for c / 2f metres.",
-            ),
-            Mistake(
-                lambda r1, a1, r2, a2, f: np.abs(_not_wrapped(r1, a1, r2, a2, f)),
-                "You drop the sign of the angle. A hand at -90 degrees has made three quarters of a turn, not one.",
-            ),
-            Mistake(
-                _half_circle,
-                "arctan of a quotient knows half of the circle only: take np.angle, or arctan2.",
-            ),
-            Mistake(
-                lambda r1, a1, r2, a2, f: mixed_range(r1, a1, r2, a2, 15e6),
+                lambda r, r1, rho1, r2, rho2, f: pole_share(r, r1, rho1, r2, rho2, 15e6),
                 "You use 15 MHz always: the frequency is an argument, f.",
             ),
             Mistake(
-                _with_round_number,
-                "Close, but 3e8 is rounded: take c = 299_792_458 m/s.",
+                lambda r, r1, rho1, r2, rho2, f: 100 * pole_share(r, r1, rho1, r2, rho2, f),
+                "Yours is in percent; the task asks for a share from 0 to 1.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: _half_phase(r1, a1, r2, a2, f) / 2,
-                "Your phase grows too slowly, 2 pi f r / c. Light goes out and back: it travels 2 r.",
+                lambda r, r1, rho1, r2, rho2, f: pole_share(r, r1, rho2, r2, rho1, f),
+                "The paints have changed places: rho1 belongs to the surface at r1.",
+            ),
+        ),
+    ),
+    Exercise(
+        number="04.4",
+        reference=nearest_of,
+        inputs=_how_many,
+        cases=(_one_point, _two_points, _sixteen_points),
+        tolerance=0.004,
+        level="challenge",
+        mistakes=(
+            Mistake(
+                lambda n: (-np.sqrt(2 * np.log(n)), nearest_of(n)[1]),
+                "sqrt(2 ln n) is the limit for very large n. For 16 it is a third too much: integrate.",
             ),
             Mistake(
-                lambda r1, a1, r2, a2, f: mixed_range(r1, a1, r2, a2, f) * f**2,
-                "Far too far. Mind the brackets: c / 2 * f is c times f, halved.",
+                lambda n: (-nearest_of(n)[0], nearest_of(n)[1]),
+                "That is the farthest of n points. The z-buffer keeps the nearest: its mean is negative.",
+            ),
+            Mistake(
+                lambda n: (0.0, 1 / np.sqrt(n)),
+                "That is the *mean* of n points. The z-buffer keeps the least of them.",
+            ),
+            Mistake(
+                lambda n: (nearest_of(n)[0], nearest_of(n)[1] ** 2),
+                "Your mean is right. The second value is the variance: take its root.",
+            ),
+            Mistake(
+                lambda n: (nearest_of(n)[0], 1.0),
+                "Your mean is right. But the least of n scatters less than one point does.",
+            ),
+            Mistake(
+                lambda n: (nearest_of(n)[0], 1 / np.sqrt(n)),
+                "Your mean is right. 1 / sqrt(n) is the scatter of a mean; the least of n has another.",
+            ),
+            Mistake(
+                lambda n: (nearest_of(n)[0], float(np.hypot(*nearest_of(n)))),
+                "Your mean is right. Your second value is the root of the mean square: take the mean away first.",
+            ),
+            Mistake(
+                lambda n: (norm.ppf(1 - 0.5 ** (1 / n)), nearest_of(n)[1]),
+                "That is the median of the least. Its distribution is lopsided: the mean lies farther out.",
+            ),
+            Mistake(
+                lambda n: (norm.ppf(1 / (n + 1)), nearest_of(n)[1]),
+                "The point with a share of 1 / (n + 1) below it is near the mean of the least, not equal to it.",
+            ),
+            Mistake(
+                lambda n: nearest_of(n + 1),
+                "That is the least of n + 1. In the density the power of 1 - Phi is n - 1.",
+            ),
+            Mistake(
+                _density_without_n,
+                "Your density does not integrate to 1: any of the n points may be the least, so it has a factor n.",
             ),
         ),
     ),

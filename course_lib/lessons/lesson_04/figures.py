@@ -48,7 +48,7 @@ def phase_figure(distances: tuple[float, ...] = (2.0, 6.0, 12.0), frequency: flo
         right.plot(distance, distance % repeats, **(style | {"linestyle": "none", "markersize": 8}))
     left.set(title="The phase of what comes back", xlabel="in step with the lamp [-]", aspect="equal")
     left.set(ylabel="a quarter turn late [-]", xlim=(-1.35, 1.35), ylim=(-1.2, 1.2))
-    left.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    left.legend(title="(lengths only for sight)", loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     right.set(title="What the camera reads", xlabel="true range r [m]", ylabel="range that is read [m]")
     return figure
 

@@ -13,7 +13,7 @@ from course_lib.lessons.lesson_04.figures import ERRORS, counts, error_axis
 from course_lib.lessons.lesson_04.time_of_flight import FAULTS, LENGTH, capture
 from course_lib.plots import figures
 
-_DEPTHS = np.linspace(0, 13, 66)
+DEPTHS = np.linspace(-0.05, 13.15, 67)  # metres; the walls stand at whole decimetres, no edge of a bin does
 _FREQUENCIES = {"15 MHz (10 m model)": 15e6, "30 MHz (5 m model)": 30e6}
 
 
@@ -27,11 +27,11 @@ def faults_panel() -> Panel:
     error_image = figures.depth_image(off, blank, "Measured - true (hatched: no measurement)", (-0.1, 0.1))
     error_image.set_cmap(_two_sided())
     figures.colour_bar(figure, error_image, off, "error [m], cut at 0.1")
-    true_steps = depths.stairs(np.ones(len(_DEPTHS) - 1), _DEPTHS, color=figures.BLACK, linewidth=1.4, label="true")
-    steps = depths.stairs(np.ones(len(_DEPTHS) - 1), _DEPTHS, fill=True, color=figures.ORANGE, label="measured")
+    true_steps = depths.stairs(np.ones(len(DEPTHS) - 1), DEPTHS, color=figures.BLACK, linewidth=1.4, label="true")
+    steps = depths.stairs(np.ones(len(DEPTHS) - 1), DEPTHS, fill=True, color=figures.ORANGE, label="measured")
     steps.set_zorder(1)
     depths.set(title="Histogram of the depths", xlabel="depth Z [m]", ylabel="pixels [-]", yscale="log")
-    depths.set(ylim=(0.5, 3e4), xlim=(0, 13))
+    depths.set(ylim=(0.5, 3e4), xlim=(0, 13.1))
     depths.legend(loc="upper right", ncols=2, fontsize=8)
     error_steps = errors.stairs(np.ones(len(ERRORS) - 1), ERRORS, fill=True, color=figures.BLUE)
     error_axis(errors, "Histogram of the errors")
@@ -44,8 +44,8 @@ def faults_panel() -> Panel:
         error = np.where(there, shot.depth - np.where(there, shot.true, 0), np.nan)
         image.set_data(np.ma.masked_invalid(shot.depth))
         error_image.set_data(np.ma.masked_invalid(np.clip(error, -0.1, 0.1)))
-        steps.set_data(counts(shot.depth[np.isfinite(shot.depth)], _DEPTHS))
-        true_steps.set_data(counts(shot.true[np.isfinite(shot.true)], _DEPTHS))
+        steps.set_data(counts(shot.depth[np.isfinite(shot.depth)], DEPTHS))
+        true_steps.set_data(counts(shot.true[np.isfinite(shot.true)], DEPTHS))
         error_steps.set_data(counts(error[there], ERRORS))
         lost, small = np.isnan(shot.depth).mean(), (np.abs(error[there]) <= 0.05).mean()
         far = (np.abs(error[there]) > 1).mean()

@@ -31,12 +31,17 @@ def true_depths(recording: DepthSequence, camera: DepthCamera, frames: range) ->
 KINDS = ("no measurement", "within 5 cm", "5 to 30 cm off", "wrapped", "other, mostly edges")
 
 
-def sort_errors(measured: np.ndarray, true: np.ndarray, repeats: float = MODEL.unambiguous_range) -> dict[str, float]:
-    """Share of all pixels in each of `KINDS`. Wrapped: about one whole c / 2f too near."""
+def kinds_of(measured: np.ndarray, true: np.ndarray, repeats: float = MODEL.unambiguous_range) -> dict[str, np.ndarray]:
+    """Which pixels are of each of `KINDS`, a mask of the images' shape. Wrapped: about one whole c / 2f too near."""
     error = measured - true
     lost = np.isnan(measured)
     with np.errstate(invalid="ignore"):
         close, middling = np.abs(error) <= 0.05, (np.abs(error) > 0.05) & (np.abs(error) <= 0.3)
         wrapped = np.abs(error + repeats) < 0.1 * repeats
     rest = ~(lost | close | middling | wrapped)
-    return dict(zip(KINDS, (float(kind.mean()) for kind in (lost, close, middling, wrapped, rest)), strict=True))
+    return dict(zip(KINDS, (lost, close, middling, wrapped, rest), strict=True))
+
+
+def sort_errors(measured: np.ndarray, true: np.ndarray, repeats: float = MODEL.unambiguous_range) -> dict[str, float]:
+    """Share of all pixels in each of `KINDS`."""
+    return {kind: float(mask.mean()) for kind, mask in kinds_of(measured, true, repeats).items()}

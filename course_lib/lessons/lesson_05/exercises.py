@@ -1,8 +1,9 @@
-"""Exercises of lesson 05: the spread after t frames, noise along a wagon's own axes, particles near a state."""
+"""Exercises of lesson 05: spread, noise along own axes, who is near, a step of the Bayes filter, the least noise."""
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.stats import norm
 
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
@@ -20,6 +21,14 @@ def _spreads(rng: np.random.Generator) -> tuple:
     spread0[rng.integers(6)] = 0.0
     sigma[rng.integers(6)] = 0.0
     return spread0, sigma, int(rng.integers(2, 60))
+
+
+def _the_courses_noise(rng: np.random.Generator) -> tuple:
+    return np.zeros(6), np.array([0.15, 0.04, 0, 0, 0, np.deg2rad(1.5)]), 100
+
+
+def _no_frame(rng: np.random.Generator) -> tuple:
+    return rng.uniform(0.1, 0.5, 6), rng.uniform(0.1, 0.5, 6), 0
 
 
 # 05.2: noise along the particle's own axes
@@ -42,8 +51,25 @@ def _particles_and_draws(rng: np.random.Generator) -> tuple:
     n = int(rng.integers(4, 9))
     particles = np.zeros((n, 6))
     particles[:, :3] = rng.uniform([5, -1, 0.8], [15, 1, 1.2], (n, 3))
+    particles[:, 3:5] = rng.uniform(-0.3, 0.3, (n, 2))
     particles[:, 5] = rng.uniform(-np.pi, np.pi, n)
     return particles, rng.uniform(0.1, 0.3), rng.uniform(0.02, 0.09), rng.standard_normal((n, 2))
+
+
+def _four_headings(rng: np.random.Generator) -> tuple:
+    """Headings along the axes and at the seam, one step forward and one to the left."""
+    particles = np.tile([10.0, 0.5, 1.0, 0.1, -0.2, 0.0], (8, 1))
+    particles[:, 5] = np.tile(np.deg2rad([0, 90, -90, -180]), 2)
+    return particles, 0.2, 0.05, np.repeat(np.eye(2), 4, axis=0)
+
+
+def _by_column(column):
+    """A mistake: the particles turn their steps by another column of their states."""
+
+    def mistaken(particles, sigma_forward, sigma_left, draws):
+        return _moved(particles, sigma_forward * draws[:, 0], sigma_left * draws[:, 1], particles[:, column])
+
+    return mistaken
 
 
 def _with(change):
@@ -102,7 +128,8 @@ def _cloud_and_state(rng: np.random.Generator) -> tuple:
     radius, angle = rng.choice([0.125, 0.25]), np.deg2rad(rng.uniform(5, 15))
     place = rng.integers(40, 121, 2) / 8
     middle = np.array([*place, 1.0, 0, 0, rng.choice([np.pi, rng.uniform(-2, 2)], p=[0.8, 0.2])])
-    particles = middle + rng.standard_normal((n, 6)) * [0.8 * radius, 0.8 * radius, 0.8 * radius, 0, 0, angle]
+    scatter = [0.8 * radius, 0.8 * radius, 0.8 * radius, 2 * angle, 2 * angle, angle]
+    particles = middle + rng.standard_normal((n, 6)) * scatter
     particles[:3, 5] += np.pi
     state = middle + np.array([0, 0, 0.3 * radius, 0, 0, -0.3 * angle])
     if rng.random() < 0.5:
@@ -111,9 +138,39 @@ def _cloud_and_state(rng: np.random.Generator) -> tuple:
     return particles, state, radius, angle
 
 
+def _nobody_near(rng: np.random.Generator) -> tuple:
+    particles = rng.normal([10, 0, 1, 0, 0, 0], 0.2, (12, 6))
+    return particles, np.array([20.0, 0, 1, 0, 0, 0]), 0.5, 0.2
+
+
+def _exactly_there(rng: np.random.Generator) -> tuple:
+    """A radius and an angle of 0: only particles at the state itself are near, and they are."""
+    particles = np.tile([10.0, 0.5, 1.0, 0, 0, 0.5], (4, 1))
+    particles[1, 0] += 0.25
+    particles[2, 5] += 0.25
+    return particles, particles[0].copy(), 0.0, 0.0
+
+
+def _at_the_seam(rng: np.random.Generator) -> tuple:
+    """The task's own example."""
+    state = np.array([10.0, 0.5, 1.0, 0, 0, np.deg2rad(-179)])
+    return np.array([[10.0, 0.5, 1.0, 0, 0, np.deg2rad(179)]]), state, 0.1, np.deg2rad(5)
+
+
 def _tests(particles: np.ndarray, state: np.ndarray, radius: float, angle: float) -> tuple[np.ndarray, np.ndarray]:
     near = np.hypot(*(particles[:, :2] - state[:2]).T) <= radius
     return near, np.abs(wrap_angle(particles[:, 5] - state[5])) <= angle
+
+
+def _near_in(columns):
+    """A mistake: near on the floor, and near in these angles of the state."""
+
+    def mistaken(particles, state, radius, angle):
+        near, _ = _tests(particles, state, radius, angle)
+        turned = np.abs(wrap_angle(particles[:, columns] - state[columns])) <= angle
+        return np.mean(near & turned.all(axis=1))
+
+    return mistaken
 
 
 def _not_wrapped(particles, state, radius, angle):
@@ -151,11 +208,89 @@ def _squares_against_radius(particles, state, radius, angle):
     return np.mean(turned & (((particles[:, :2] - state[:2]) ** 2).sum(axis=1) <= radius))
 
 
+# 05.4: one step of the Bayes filter on cells
+
+
+def bayes_step(bel: np.ndarray, moves: np.ndarray, doors: np.ndarray, seen: bool, hit: float, false_alarm: float):
+    """Belief (n,) over the cells of a corridor with an end, after a move and a look for doors.
+
+    moves: probabilities of 0, 1, 2, ... cells forward; what would pass the last cell stops there. hit, false_alarm:
+    probability of seeing a door where there is one, and where there is none.
+    """
+    return _to_one(_look(_move(bel, moves), doors, seen, hit, false_alarm))
+
+
+def _to_one(bel: np.ndarray) -> np.ndarray:
+    return bel / bel.sum()
+
+
+def _move(bel: np.ndarray, moves: np.ndarray, at_the_end: str = "stops") -> np.ndarray:
+    moved, n = np.zeros(len(bel)), len(bel)
+    for cell in range(n):
+        for k, p in enumerate(moves):
+            if cell + k < n:
+                moved[cell + k] += p * bel[cell]
+            elif at_the_end == "stops":
+                moved[-1] += p * bel[cell]
+            elif at_the_end == "ring":
+                moved[(cell + k) % n] += p * bel[cell]
+    return moved
+
+
+def _look(bel: np.ndarray, doors: np.ndarray, seen: bool, hit: float, false_alarm: float) -> np.ndarray:
+    at_door = np.where(doors, hit, false_alarm)
+    return bel * (at_door if seen else 1 - at_door)
+
+
+def _corridor_with_doors(rng: np.random.Generator) -> tuple:
+    n = int(rng.integers(8, 15))
+    doors = rng.permutation(np.arange(n) < 3)
+    bel, moves = rng.dirichlet(np.ones(n)), rng.dirichlet([2, 5, 2])
+    return bel, moves, doors, bool(rng.random() < 0.5), rng.uniform(0.6, 0.95), rng.uniform(0.05, 0.3)
+
+
+def _nearly_at_the_end(rng: np.random.Generator) -> tuple:
+    return np.array([0, 0, 0, 0.3, 0.7]), np.array([0.1, 0.8, 0.1]), np.arange(5) == 4, True, 0.8, 0.1
+
+
+def _a_sure_sensor(rng: np.random.Generator) -> tuple:
+    return np.full(6, 1 / 6), np.array([0.0, 1.0]), np.arange(6) % 3 == 0, False, 1.0, 0.0
+
+
+def _the_tasks_corridor(rng: np.random.Generator) -> tuple:
+    return np.array([0.5, 0.5, 0.0]), np.array([0.0, 1.0]), np.array([False, True, False]), True, 0.8, 0.2
+
+
+# 05.5: the least noise that keeps up
+
+
+def least_sigma(step: float, n: int, frames: int, p: float) -> float:
+    """Least sigma [m] at which, with probability p, in each of `frames` frames one of n normal steps is >= step [m].
+
+    P(one of n) = 1 - Phi(step / sigma)^n; the frames are independent, so that this to the power of `frames` is p.
+    """
+    return step / norm.ppf((1 - p ** (1 / frames)) ** (1 / n))
+
+
+def _wagons(rng: np.random.Generator) -> tuple:
+    return rng.uniform(0.02, 0.3), int(rng.integers(50, 2000)), int(rng.integers(20, 500)), rng.uniform(0.6, 0.99)
+
+
+def _the_courses_wagon(rng: np.random.Generator) -> tuple:
+    return 0.0965, 200, 303, 0.95
+
+
+def _one_frame(rng: np.random.Generator) -> tuple:
+    return 0.1, 20, 1, 0.9
+
+
 EXERCISES = [
     Exercise(
         number="05.1",
         reference=spread_after,
         inputs=_spreads,
+        cases=(_the_courses_noise, _no_frame),
+        level="warm-up",
         mistakes=(
             Mistake(
                 lambda spread0, sigma, t: spread0 + np.sqrt(t) * sigma,
@@ -186,7 +321,7 @@ EXERCISES = [
                 "That is the spread after one frame. Where is t?",
             ),
             Mistake(
-                lambda spread0, sigma, t: np.sqrt(spread0**2 + (t - 1) * sigma**2),
+                lambda spread0, sigma, t: np.sqrt(np.maximum(spread0**2 + (t - 1) * sigma**2, 0)),
                 "One frame is missing: the first frame moves the particles already.",
             ),
             Mistake(
@@ -211,7 +346,10 @@ EXERCISES = [
         number="05.2",
         reference=propagate_own_axes,
         inputs=_particles_and_draws,
+        cases=(_four_headings,),
         mistakes=(
+            Mistake(_by_column(4), "You turn the steps by the pitch. The heading is the yaw, the last of the six."),
+            Mistake(_by_column(3), "You turn the steps by the roll. The heading is the yaw, the last of the six."),
             Mistake(
                 _with(lambda forward, left, yaw: (forward, left, 0 * yaw)),
                 "You add forward to x and left to y. That holds for yaw 0 only: turn the step by the particle's yaw.",
@@ -295,7 +433,21 @@ EXERCISES = [
         number="05.3",
         reference=share_near,
         inputs=_cloud_and_state,
+        cases=(_at_the_seam, _nobody_near, _exactly_there),
         mistakes=(
+            Mistake(
+                _near_in([3, 4, 5]),
+                "You ask for roll and pitch as well. The task asks for the yaw alone.",
+            ),
+            Mistake(_near_in([3]), "You compare the roll. The heading is the yaw, the last of the six."),
+            Mistake(_near_in([4]), "You compare the pitch. The heading is the yaw, the last of the six."),
+            Mistake(
+                lambda particles, state, radius, angle: np.mean(
+                    _tests(particles, state, radius, angle)[0]
+                    & (np.abs(wrap_angle(particles[:, 5] - state[5])) < angle)
+                ),
+                "With an angle of 0 nobody is near in yours, not even a twin of the state. *At most* means <=.",
+            ),
             Mistake(
                 _not_wrapped,
                 "Wrap the difference of the yaws: 179 and -179 degrees are 2 degrees apart, not 358.",
@@ -378,6 +530,129 @@ EXERCISES = [
                     & _tests(particles, state, radius, angle)[1]
                 ),
                 "You add the ways along x and y. The distance is the root of dx^2 + dy^2.",
+            ),
+        ),
+    ),
+    Exercise(
+        number="05.4",
+        reference=bayes_step,
+        inputs=_corridor_with_doors,
+        cases=(_nearly_at_the_end, _a_sure_sensor, _the_tasks_corridor),
+        mistakes=(
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: _to_one(
+                    _look(_move(bel, moves, "ring"), doors, seen, hit, false_alarm)
+                ),
+                "In yours the corridor is a ring: what passes its end comes in at its start. Here it stops at the end.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: _to_one(
+                    _look(_move(bel, moves, "is lost"), doors, seen, hit, false_alarm)
+                ),
+                "What would pass the last cell gets lost in yours, and dividing by the sum hides it. It stops there.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: _look(
+                    _move(bel, moves), doors, seen, hit, false_alarm
+                ),
+                "Your belief does not sum to 1: what is eta for?",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: _move(
+                    _to_one(_look(bel, doors, seen, hit, false_alarm)), moves
+                ),
+                "You look first and move then. The picture was taken after the move.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: bayes_step(bel, moves, doors, True, hit, false_alarm),
+                "You always take it that a door was seen. What is the probability of *not* seeing one?",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: _to_one(
+                    _move(bel, moves) * np.where(doors == seen, hit, false_alarm)
+                ),
+                "Not seeing a door where there is none has the probability 1 - false_alarm, not hit.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: _to_one(
+                    _move(bel, moves) * np.where(doors == seen, hit, 1 - hit)
+                ),
+                "Your sensor errs as often at a door as elsewhere. There are two numbers: hit and false_alarm.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: bayes_step(bel, moves, doors, seen, false_alarm, hit),
+                "hit and false_alarm have changed places: hit is the probability of seeing a door *at* a door.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: bayes_step(
+                    bel[::-1], moves, doors[::-1], seen, hit, false_alarm
+                )[::-1],
+                "Your wagon rolls backwards: moves[k] is the probability of k cells *forward*.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: _move(bel, moves),
+                "That is the prediction alone. The correction by what was seen is missing.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: _to_one(_look(bel, doors, seen, hit, false_alarm)),
+                "That is the correction alone. The wagon has moved before.",
+            ),
+        ),
+    ),
+    Exercise(
+        number="05.5",
+        reference=least_sigma,
+        inputs=_wagons,
+        cases=(_the_courses_wagon, _one_frame),
+        level="challenge",
+        mistakes=(
+            Mistake(
+                lambda step, n, frames, p: least_sigma(step, n, 1, p),
+                "That holds for one frame. It must go well in *every* one of them: multiply the probabilities.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / norm.ppf((1 - p) ** (1 / (n * frames))),
+                "Yours reaches the step in at least one of all frames. It has to in every single one.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / norm.ppf((1 - (1 - (1 - p) / frames)) ** (1 / n)),
+                "Nearly: adding up the frames' risks is a bound. The frames are independent: multiply.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / norm.ppf(p ** (1 / (frames * n))),
+                "You ask that *all* particles stay below the step. One that reaches it is enough: 1 - Phi^n.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / norm.ppf((1 - p ** (1 / frames)) / n),
+                "Phi^n is no product with n: undo a power by a root.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / norm.isf((1 - p ** (1 / frames)) ** (1 / n)),
+                "The sign is turned: Phi is the probability of being *below* the step.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: least_sigma(step, n, frames, 1 - p),
+                "You took p for the probability of failing.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / norm.ppf((1 + (1 - p ** (1 / frames)) ** (1 / n)) / 2),
+                "A step backwards of the same size does not help: only one side of the normal distribution counts.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: norm.ppf((1 - p ** (1 / frames)) ** (1 / n)),
+                "That is how many sigmas the farthest step surely reaches. How large is sigma then?",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step * norm.ppf((1 - p ** (1 / frames)) ** (1 / n)),
+                "Close: sigma times that number shall be the step, so divide.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / np.sqrt(2 * np.log(n)),
+                "sqrt(2 ln n) is roughly where the farthest of n lies in the mean. Here p and the frames count, too.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / norm.ppf(p ** (1 / frames)),
+                "Where is n? With more particles the farthest step is longer.",
             ),
         ),
     ),

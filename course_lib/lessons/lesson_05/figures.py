@@ -39,6 +39,20 @@ def clouds_figure(clouds: np.ndarray, frames: list[int]) -> Figure:
     return figure
 
 
+def beliefs_figure(beliefs: dict[str, np.ndarray], doors: list[int], shares: dict[str, np.ndarray]) -> Figure:
+    """Beliefs over the cells of a corridor as bars, doors marked below; dots: the shares of a particle set."""
+    figure, axes = figures.new_figure(2, 2, size=(9.4, 4.4))
+    for a, (title, belief) in zip(axes.flat, beliefs.items(), strict=True):
+        a.bar(np.arange(len(belief)), belief, color=figures.SKY_BLUE, label="belief, exact")
+        a.plot(doors, np.full(len(doors), -0.025), "s", color=figures.VERMILION, markersize=7, label="door")
+        if title in shares:
+            a.plot(shares[title], "o", color=figures.BLACK, markersize=4, label="200 particles")
+            a.legend(loc="upper right", fontsize=8)
+        a.set(title=title, xlabel="cell of the corridor [-]", ylabel="probability [-]")
+        a.set(ylim=(-0.05, 0.4), xticks=np.arange(0, len(belief), 5))
+    return figure
+
+
 def spread_figure(frames: np.ndarray, spreads: dict[str, np.ndarray], sigma: float) -> Figure:
     """Measured spread over the frames, and sqrt(t) sigma."""
     figure, axes = figures.new_figure(size=(6.4, 3.0))
@@ -53,9 +67,10 @@ def spread_figure(frames: np.ndarray, spreads: dict[str, np.ndarray], sigma: flo
 
 
 def trade_figure(sigma_x: np.ndarray, errors: np.ndarray, threshold: float, expected: np.ndarray) -> Figure:
-    """Distance to the nearest particle over sigma: too small loses the wagon, too large thins the cloud."""
+    """Distance to the nearest particle over sigma, `errors` (sigmas, runs): too small loses, too large thins."""
     figure, axes = figures.new_figure(size=(6.8, 3.2))
-    axes.loglog(sigma_x, errors, **figures.line_style(0), label="measured, median over the frames")
+    axes.loglog(sigma_x, np.median(errors, axis=1), **figures.line_style(0), label="mean over the frames, median run")
+    axes.loglog(sigma_x, errors, ".", color=figures.BLUE, markersize=3)
     axes.loglog(sigma_x, expected, color="black", linewidth=1.0, label="too large: from the cloud's density")
     axes.axvline(threshold, color=figures.VERMILION, linestyle="--", label="too small: step / farthest of N")
     axes.set(title="How near the best particle is to the wagon", xlabel="sigma along the corridor [m]")

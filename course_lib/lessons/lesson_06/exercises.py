@@ -1,123 +1,119 @@
-"""Exercises of lesson 06: the sum of equation (8), the weights of (9) to (11), and beta read backwards."""
+"""Exercises of lesson 06: (8) read backwards, faults in given code, beta read backwards, an error bar of weights."""
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.stats import norm
 
 from course_lib.lessons.kit.exercises import Exercise, Mistake
 
-# 06.1: the likelihood of one particle, with pixels that are empty
+# 06.1: equation (8) read backwards
 
 
-def likelihood_of(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> float:
-    """Eq. (8) for images (H, W) in metres: measured NaN is left out, a simulated inf contributes 0."""
-    return float(np.sum(alpha / (alpha + _differences(measured, simulated))))
+def difference_at(term: np.ndarray, alpha: float) -> np.ndarray:
+    """Differences (n,) [m] at which a pixel's term of eq. (8) has these values, more than 0 and at most 1."""
+    return alpha * (1 - term) / term
 
 
-def _differences(measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
-    valid = np.isfinite(measured)
-    return np.abs(measured[valid] - simulated[valid])
+def _terms(rng: np.random.Generator) -> tuple:
+    return rng.uniform(0.02, 0.98, int(rng.integers(3, 7))), rng.uniform(0.01, 1.0)
+
+
+def _the_papers_alpha(rng: np.random.Generator) -> tuple:
+    return np.array([1.0, 0.9, 0.5, 0.01]), 0.1
+
+
+def _turned_over(term: np.ndarray, alpha: float) -> np.ndarray:
+    with np.errstate(divide="ignore"):
+        return alpha * term / (1 - term)
+
+
+# 06.2: three faults in somebody's code
+
+
+def weigh(measured: np.ndarray, images: np.ndarray, alpha: float, beta: float) -> np.ndarray:
+    """Eqs (8) to (11): weights (N,) of images (N, H, W) beside a measured one (H, W); equal where all agree."""
+    return _weigh(measured, images, alpha, beta)
+
+
+def _weigh(measured, images, alpha, beta, misses="count 0", equal="guarded", square="of beta"):
+    """Weights with each of the given code's faults left in or mended."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        terms = alpha / (alpha + np.abs(measured - images))
+        hit = np.isfinite(measured) & np.isfinite(images)
+        counted = hit if misses == "left out" else np.broadcast_to(np.isfinite(measured), hit.shape)
+        number = counted.sum(axis=(1, 2)) if misses == "left out" else 1
+        values = np.where(counted, terms, 0).sum(axis=(1, 2)) / number
+        spread = np.ptp(values)
+        if equal == "guarded" and not spread > 0:
+            return np.full(len(images), 1 / len(images))
+        normalized = (values - values.min()) / (spread + 1e-12)
+        return _to_one(_exponential(normalized, beta, square))
+
+
+def _exponential(normalized: np.ndarray, beta: float, square: str) -> np.ndarray:
+    miss = normalized - 1
+    return np.exp(-(miss**2) / beta**2) if square == "of beta" else np.exp(-((miss / beta**2) ** 2))
+
+
+def _to_one(w: np.ndarray) -> np.ndarray:
+    return w / w.sum()
+
+
+def _with_faults(**faults):
+    return lambda measured, images, alpha, beta: _weigh(measured, images, alpha, beta, **faults)
 
 
 def _images(rng: np.random.Generator) -> tuple:
-    """Images, most of them with pixels that were not measured or where nothing is hit, or both, some on one pixel."""
-    shape = (int(rng.integers(3, 6)), int(rng.integers(4, 7)))
-    simulated = rng.uniform(1, 6, size=shape)
-    measured = simulated + rng.normal(0, 0.3, size=shape)
-    places = rng.permutation(measured.size)
-    case = rng.integers(4)  # whole images, unmeasured pixels alone, misses alone, both
-    if case in (1, 3):
-        measured.flat[places[:3]] = np.nan
-    if case in (2, 3):
-        simulated.flat[places[2:5]] = np.inf
-    return measured, simulated, rng.uniform(0.05, 0.5)
+    """Images with pixels that were not measured, and particles that look into holes, more or less deep."""
+    n, shape = int(rng.integers(4, 8)), (4, 5)
+    measured = rng.uniform(1, 6, shape)
+    images = measured + rng.normal(0, 1, (n, 1, 1)) * 0.2 + rng.normal(0, 0.05, (n, *shape))
+    measured.flat[rng.permutation(20)[:4]] = np.nan
+    for image in images:
+        image.flat[rng.permutation(20)[: rng.integers(1, 12)]] = np.inf
+    return measured, images, rng.uniform(0.05, 0.3), rng.uniform(0.2, 0.6)
 
 
-def _nan_pixels_kept(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> float:
-    return float(np.sum(alpha / (alpha + np.abs(measured - simulated))))
+def _all_alike(rng: np.random.Generator) -> tuple:
+    return np.full((2, 3), 2.0), np.full((4, 2, 3), 2.1), 0.1, 0.01
 
 
-def _as_printed(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> float:
-    d = _differences(measured, simulated)
-    with np.errstate(invalid="ignore"):
-        return float(np.sum(1 - d / (alpha + d)))
+def _nothing_measured(rng: np.random.Generator) -> tuple:
+    return np.full((2, 3), np.nan), rng.uniform(1, 6, (5, 2, 3)), 0.1, 0.3
 
 
-def _as_printed_with_all_pixels(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> float:
-    d = np.abs(measured - simulated)
-    with np.errstate(invalid="ignore"):
-        return float(np.sum(1 - d / (alpha + d)))
+def _a_lucky_pixel(rng: np.random.Generator) -> tuple:
+    """The lesson's case: 2 cm off everywhere, beside one right pixel in a hole; and somebody far off."""
+    images = np.stack([np.full((1, 6), 2.02), [[2.0] + [np.inf] * 5], np.full((1, 6), 2.3)])
+    return np.full((1, 6), 2.0), images, 0.1, 0.3
 
 
-def _empty_pixels_agree(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> float:
-    return likelihood_of(measured, simulated, alpha) + float(np.isnan(measured).sum())
+def _misses_at(depth: float):
+    return lambda measured, images, alpha, beta: weigh(measured, np.where(np.isinf(images), depth, images), alpha, beta)
 
 
-def _measured_as_zero(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> float:
-    return likelihood_of(np.nan_to_num(measured, nan=0.0), simulated, alpha)
+def _misses_agree(measured, images, alpha, beta):
+    return weigh(measured, np.where(np.isinf(images) & np.isfinite(measured), measured, images), alpha, beta)
 
 
-def _mean_of_hits(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> float:
-    compared = np.isfinite(measured) & np.isfinite(simulated)
-    return likelihood_of(measured, simulated, alpha) / compared.sum()
+def _unmeasured_at_zero(measured, images, alpha, beta):
+    return weigh(np.nan_to_num(measured), images, alpha, beta)
 
 
-def _no_absolute_value(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> float:
-    valid = np.isfinite(measured)
-    return float(np.sum(alpha / (alpha + measured[valid] - simulated[valid])))
+def _not_to_one(measured, images, alpha, beta):
+    w = weigh(measured, images, alpha, beta)
+    return w / w.max()
 
 
-def _misses_agree(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> float:
-    missed = np.isfinite(measured) & np.isinf(simulated)
-    return likelihood_of(measured, simulated, alpha) + float(missed.sum())
+def _equal_as(value: float):
+    """A mistake: where all likelihoods agree every particle gets `value`."""
 
+    def mistaken(measured, images, alpha, beta):
+        w = weigh(measured, images, alpha, beta)
+        return np.full(len(w), value) if np.ptp(w) < 1e-12 else w
 
-# 06.2: weights
-
-
-def weights_of(values: np.ndarray, beta: float) -> np.ndarray:
-    """Eqs (9) to (11): weights (N,) of likelihoods (N,), summing to one; equal weights where all likelihoods agree."""
-    w = _unnormalized(values, beta)
-    return w / w.sum()
-
-
-def _spread(values: np.ndarray) -> np.ndarray:
-    spread = values.max() - values.min()
-    return np.ones(len(values)) if spread == 0 else (values - values.min()) / spread
-
-
-def _unnormalized(values: np.ndarray, beta: float) -> np.ndarray:
-    return np.exp(-((_spread(values) - 1) ** 2) / beta**2)
-
-
-def _likelihoods(rng: np.random.Generator) -> tuple:
-    n = int(rng.integers(5, 12))
-    same = rng.random() < 0.25
-    likelihoods = np.full(n, rng.uniform(100, 900)) if same else rng.uniform(100, 900, size=n)
-    return likelihoods, rng.uniform(0.1, 0.6)
-
-
-def _sums_to_one(w: np.ndarray) -> np.ndarray:
-    return w / w.sum()
-
-
-def _without_guard(values: np.ndarray, beta: float) -> np.ndarray:
-    with np.errstate(invalid="ignore", divide="ignore"):
-        normalized = (values - values.min()) / (values.max() - values.min())
-    return _sums_to_one(np.exp(-((normalized - 1) ** 2) / beta**2))
-
-
-def _zeros_where_equal(values: np.ndarray, beta: float) -> np.ndarray:
-    return np.zeros(len(values)) if np.ptp(values) == 0 else weights_of(values, beta)
-
-
-def _ones_where_equal(values: np.ndarray, beta: float) -> np.ndarray:
-    return np.ones(len(values)) if np.ptp(values) == 0 else weights_of(values, beta)
-
-
-def _without_least(values: np.ndarray, beta: float) -> np.ndarray:
-    spread = np.ptp(values)
-    return _sums_to_one(np.exp(-((values / spread - 1) ** 2) / beta**2) if spread else np.ones(len(values)))
+    return mistaken
 
 
 # 06.3: beta read backwards
@@ -132,158 +128,162 @@ def _unequal_likelihoods(rng: np.random.Generator) -> tuple:
     return rng.uniform(100, 900, size=int(rng.integers(5, 12))), rng.uniform(0.05, 0.6)
 
 
+def _the_papers_beta(rng: np.random.Generator) -> tuple:
+    return rng.uniform(600, 900, 9), 0.01
+
+
+def _a_large_beta(rng: np.random.Generator) -> tuple:
+    """Even the worst particle has more than one half here: the answer lies below all of them."""
+    return rng.uniform(100, 900, 6), 1.5
+
+
+def _unnormalized(values: np.ndarray, beta: float) -> np.ndarray:
+    return _exponential((values - values.min()) / np.ptp(values), beta, "of beta")
+
+
+# 06.4: the error bar of a weighted mean
+
+
+def importance_mean(x: np.ndarray, target: np.ndarray, proposal: np.ndarray) -> tuple[float, float]:
+    """Mean of x (n,) over the target and its standard error, of samples of the proposal; densities (n,), any scale.
+
+    The mean is sum(w x) / sum(w). Its error is sum(w (x - mean)) / sum(w), a sum of independent terms of mean 0, so
+    that its variance is the sum of their squares.
+    """
+    w = _to_one(target / proposal)
+    mean = w @ x
+    return float(mean), float(np.sqrt(np.sum((w * (x - mean)) ** 2)))
+
+
+def _with_bessel(x: np.ndarray, target: np.ndarray, proposal: np.ndarray) -> tuple[float, float]:
+    mean, error = importance_mean(x, target, proposal)
+    return mean, error * np.sqrt(len(x) / (len(x) - 1))
+
+
+def _samples(rng: np.random.Generator) -> tuple:
+    x = rng.normal(0, 1, int(rng.integers(20, 60)))
+    target = norm.pdf(x, rng.uniform(-0.8, 0.8), rng.uniform(0.4, 0.9))
+    return x + 10, rng.uniform(0.01, 100) * target, norm.pdf(x)
+
+
+def _target_is_proposal(rng: np.random.Generator) -> tuple:
+    x = rng.normal(0, 1, 30)
+    return x, norm.pdf(x), norm.pdf(x)
+
+
+def _one_outweighs_all(rng: np.random.Generator) -> tuple:
+    x = np.linspace(-2, 2, 9)
+    return x, 1e-30 * norm.pdf(x, 1.5, 0.2), norm.pdf(x)
+
+
+def _mean_with(error):
+    """A mistake: the right mean, and `error(w, deviations)` of weights that sum to one."""
+
+    def mistaken(x, target, proposal):
+        w = _to_one(target / proposal)
+        return w @ x, error(w, x - w @ x)
+
+    return mistaken
+
+
+def _mean_by(weight):
+    """A mistake: everything right but the weights, `weight(target, proposal)`."""
+
+    def mistaken(x, target, proposal):
+        return importance_mean(x, weight(target, proposal), np.ones(len(x)))
+
+    return mistaken
+
+
+_MISSES, _EQUAL, _SQUARE = ("misses", "left out"), ("equal", "not guarded"), ("square", "of beta squared")
+# Which faults of the given code are still in an answer, and what to say.
+FAULTS_LEFT = (
+    ((_MISSES,), "A particle that looks into a hole pays nothing in yours. One fault is left, in the first two lines."),
+    ((_EQUAL,), "One fault is left: what does (9) give where all agree, and what is exp(-1 / beta^2) at beta = 0.01?"),
+    ((_SQUARE,), "One fault is left: compare the exponent with (10) at a beta other than 1. What is squared?"),
+    ((_MISSES, _EQUAL), "One fault is mended, two are left: think of a hole in the map, and of particles all alike."),
+    ((_MISSES, _SQUARE), "One fault is mended, two are left: think of a hole in the map, and of the exponent."),
+    ((_EQUAL, _SQUARE), "One fault is mended, two are left: think of particles all alike, and of the exponent."),
+    ((_MISSES, _EQUAL, _SQUARE), "All three faults are still in. Try a hole, particles all alike, and a small beta."),
+)
+
 EXERCISES = [
     Exercise(
         number="06.1",
-        reference=likelihood_of,
-        inputs=_images,
+        reference=difference_at,
+        inputs=_terms,
+        cases=(_the_papers_alpha,),
+        level="warm-up",
         mistakes=(
             Mistake(
-                _nan_pixels_kept,
-                "Your sum is NaN where a pixel was not measured: one such pixel spoils it. Leave them out.",
+                _turned_over,
+                "Yours grows with the term. A pixel that counts more differs *less*.",
             ),
             Mistake(
-                _as_printed_with_all_pixels,
-                "Your sum is NaN in two cases: a pixel that was not measured, and inf / inf where nothing is hit.",
+                lambda term, alpha: alpha * (1 - term),
+                "Put yours back into (8): at one half it gives two thirds. A term t is alpha / (alpha + d), so divide.",
             ),
             Mistake(
-                _as_printed,
-                "Your sum is NaN at a miss: |dz| is inf, and inf / inf is NaN. Rewrite the term as one fraction.",
+                lambda term, alpha: alpha / term,
+                "That is alpha + d. The difference is what is left without alpha.",
             ),
             Mistake(
-                lambda measured, simulated, alpha: float(
-                    np.sum(1 - alpha / (alpha + _differences(measured, simulated)))
-                ),
-                "You sum what the pixels lose. The term of a pixel is 1 minus that.",
+                lambda term, alpha: (1 - term) / term, "That is the difference in units of alpha. Metres are asked."
             ),
-            Mistake(_no_absolute_value, "Your differences have a sign. Equation (8) takes their absolute value."),
+            Mistake(lambda term, alpha: 0.1 * (1 - term) / term, "Your alpha is always 0.1 m: use the argument."),
             Mistake(
-                lambda measured, simulated, alpha: (
-                    likelihood_of(measured, simulated, alpha) / np.isfinite(measured).sum()
-                ),
-                "You divide by the number of pixels. That is the raw score l / m; equation (8) is the sum.",
+                lambda term, alpha: -alpha * np.log(term),
+                "You undo an exponential. The term of (8) is a fraction.",
             ),
             Mistake(
-                _mean_of_hits,
-                "You average over the pixels that hit something: a particle that looks into holes would pay nothing.",
+                lambda term, alpha: alpha * np.sqrt((1 - term) / term),
+                "You undo a square. Equation (8) has none.",
             ),
             Mistake(
-                _empty_pixels_agree,
-                "A pixel that was not measured counts 1 in yours, as if it agreed. Leave it out of the sum.",
-            ),
-            Mistake(
-                _misses_agree,
-                "A pixel where the particle sees nothing counts 1 in yours. Its difference is infinite: it counts 0.",
-            ),
-            Mistake(
-                _measured_as_zero,
-                "You take a pixel without a measurement for a depth of 0 m. It says nothing: leave it out.",
-            ),
-            Mistake(
-                lambda measured, simulated, alpha: float(
-                    np.sum(alpha**2 / (alpha**2 + _differences(measured, simulated) ** 2))
-                ),
-                "Your differences are squared. Equation (8) has none of that: a large difference costs at most 1.",
-            ),
-            Mistake(
-                lambda measured, simulated, alpha: likelihood_of(measured, simulated, 0.1),
-                "Your alpha is always 0.1 m: use the argument.",
-            ),
-            Mistake(
-                lambda measured, simulated, alpha: float(np.sum(1 / (alpha + _differences(measured, simulated)))),
-                "Where both images agree a pixel must count 1. What stands above the fraction line?",
-            ),
-            Mistake(
-                lambda measured, simulated, alpha: likelihood_of(measured, simulated, alpha) / measured.size,
-                "You divide by the number of pixels, even of those not measured. Equation (8) is the sum.",
-            ),
-            Mistake(
-                lambda measured, simulated, alpha: float(np.sum(1 + _differences(measured, simulated))),
-                "Brackets are missing: alpha / alpha + d is 1 + d. Write alpha / (alpha + d).",
-            ),
-            Mistake(
-                lambda measured, simulated, alpha: float(np.sum(1 - _differences(measured, simulated) / alpha)),
-                "Below the fraction line stands alpha + |dz|, not alpha alone: so no pixel can count less than 0.",
-            ),
-            Mistake(
-                lambda measured, simulated, alpha: float(alpha / (alpha + np.sum(_differences(measured, simulated)))),
-                "You sum the differences first. Each pixel has a term of its own; equation (8) sums the terms.",
-            ),
-            Mistake(
-                lambda measured, simulated, alpha: float(np.sum(np.exp(-_differences(measured, simulated) / alpha))),
-                "An exponential forgets pixels that are far off sooner than equation (8). Write its fraction.",
-            ),
-            Mistake(
-                lambda measured, simulated, alpha: likelihood_of(measured, np.nan_to_num(simulated, posinf=0), alpha),
-                "Where the particle sees nothing you take a depth of 0 m. The depth is inf, and the pixel counts 0.",
+                lambda term, alpha: alpha * (1 / term + 1),
+                "One sign: alpha / t is alpha *plus* the difference.",
             ),
         ),
     ),
     Exercise(
         number="06.2",
-        reference=weights_of,
-        inputs=_likelihoods,
+        reference=weigh,
+        inputs=_images,
+        cases=(_a_lucky_pixel, _all_alike, _nothing_measured),
         mistakes=(
+            *(Mistake(_with_faults(**dict(faults)), hint) for faults, hint in FAULTS_LEFT),
+            Mistake(_misses_at(0.0), "You take a miss for a depth of 0 m. Its difference is infinite: it counts 0."),
             Mistake(
-                _without_guard,
-                "Where all likelihoods agree, (9) is 0/0, and yours is NaN. Give all particles the same weight there.",
+                _misses_at(11.0),
+                "You take a miss for a wall at 11 m. That was the Gaussian's makeshift; in (8) a miss counts 0.",
             ),
-            Mistake(_unnormalized, "Your weights do not sum to 1: equation (11) is missing."),
+            Mistake(_misses_agree, "In yours a particle that sees nothing agrees with everything: misses count 1."),
             Mistake(
-                _zeros_where_equal,
-                "Where all likelihoods agree your weights are all 0, and their sum is not 1. Give them equal weights.",
+                _unmeasured_at_zero,
+                "You take a pixel without a measurement for a depth of 0 m. It says nothing: leave it out for all.",
             ),
+            Mistake(_not_to_one, "The best has weight 1 in yours. Equation (11) makes the *sum* 1."),
             Mistake(
-                _ones_where_equal,
-                "Where all likelihoods agree your weights are all 1. They have to pass through (11) as well.",
-            ),
-            Mistake(
-                lambda values, beta: _sums_to_one(np.exp(-(_spread(values) ** 2) / beta**2)),
-                "In yours the worst particle weighs most: equation (10) measures the distance from 1, not from 0.",
-            ),
-            Mistake(
-                lambda values, beta: _sums_to_one(np.exp((_spread(values) - 1) ** 2 / beta**2)),
-                "The minus sign in the exponent is missing: your weights grow with the distance from the best.",
+                _equal_as(0.0),
+                "Where all likelihoods agree your weights are all 0, and their sum is not 1.",
             ),
             Mistake(
-                lambda values, beta: _sums_to_one(np.exp(-((_spread(values) - 1) ** 2) / beta)),
+                lambda measured, images, alpha, beta: np.nan_to_num(
+                    _weigh(measured, images, alpha, beta, equal="not guarded")
+                ),
+                "You hide a 0/0: of particles all alike none has a weight then. Give each the same.",
+            ),
+            Mistake(
+                _equal_as(1.0),
+                "Where all likelihoods agree your weights are all 1. Their sum shall be 1.",
+            ),
+            Mistake(
+                lambda measured, images, alpha, beta: weigh(measured, images, 0.1, beta),
+                "Your alpha is always 0.1 m: use the argument.",
+            ),
+            Mistake(
+                lambda measured, images, alpha, beta: weigh(measured, images, alpha, np.sqrt(beta)),
                 "beta is squared in equation (10).",
-            ),
-            Mistake(
-                lambda values, beta: _sums_to_one(np.exp(-((_spread(values) - 1) ** 2) / (2 * beta**2))),
-                "That is the usual Gaussian, with a 2 below. Equation (10) has none.",
-            ),
-            Mistake(
-                lambda values, beta: _sums_to_one(np.exp(-np.abs(_spread(values) - 1) / beta)),
-                "The square above the fraction line is missing.",
-            ),
-            Mistake(
-                lambda values, beta: _sums_to_one(np.exp(-((values / values.max() - 1) ** 2) / beta**2)),
-                "You divide by the largest likelihood. Equation (9) takes l_min away first, so that the worst gets 0.",
-            ),
-            Mistake(
-                lambda values, beta: _sums_to_one(_spread(values)),
-                "These are normalized likelihoods, summing to 1. Equation (10), with beta, comes between (9) and (11).",
-            ),
-            Mistake(
-                lambda values, beta: weights_of(values, 0.01),
-                "Your beta is always 0.01: use the argument.",
-            ),
-            Mistake(
-                lambda values, beta: _sums_to_one(values),
-                "You only divide by the sum, eq. (11). Before that come eq. (9), which spreads them, and eq. (10).",
-            ),
-            Mistake(
-                lambda values, beta: _unnormalized(values, beta) / len(values),
-                "You divide by N. Equation (11) divides by the sum of the weights.",
-            ),
-            Mistake(
-                lambda values, beta: _sums_to_one(np.exp(-(((_spread(values) - 1) / beta**2) ** 2))),
-                "The square is taken of beta squared as well: in equation (10) beta is squared once.",
-            ),
-            Mistake(
-                _without_least,
-                "l_min is missing above the fraction line of (9): the worst particle has to get 0.",
             ),
         ),
     ),
@@ -291,7 +291,12 @@ EXERCISES = [
         number="06.3",
         reference=least_likelihood,
         inputs=_unequal_likelihoods,
+        cases=(_the_papers_beta, _a_large_beta),
         mistakes=(
+            Mistake(
+                lambda values, beta: max(least_likelihood(values, beta), values.min()),
+                "You stop at the worst particle. For a large beta the l of one half lies below all of them.",
+            ),
             Mistake(
                 lambda values, beta: float(1 - beta * np.sqrt(np.log(2))),
                 "That is the normalized likelihood. Turn (9) around, too, to get back to l.",
@@ -359,6 +364,67 @@ EXERCISES = [
             Mistake(
                 lambda values, beta: float(values.max() - 0.83 * beta * np.ptp(values)),
                 "Close: 0.83 is a rounded root of ln 2. Let NumPy work it out.",
+            ),
+        ),
+    ),
+    Exercise(
+        number="06.4",
+        reference=importance_mean,
+        inputs=_samples,
+        cases=(_target_is_proposal, _one_outweighs_all),
+        others=(_with_bessel,),
+        level="challenge",
+        mistakes=(
+            Mistake(
+                lambda x, target, proposal: (x.mean(), np.sqrt(np.mean((x - x.mean()) ** 2) / len(x))),
+                "These are the samples unweighed: they belong to the proposal. The target's mean is asked.",
+            ),
+            Mistake(
+                _mean_by(lambda target, proposal: proposal / target),
+                "Your weights are upside down. Where the proposal is dense there are too many samples: divide by it.",
+            ),
+            Mistake(
+                _mean_by(lambda target, proposal: target),
+                "You weigh by the target alone. The samples are dense already where the proposal is: divide by it.",
+            ),
+            Mistake(
+                lambda x, target, proposal: (
+                    np.mean(target / proposal * x),
+                    np.sqrt(np.sum((target / proposal * (x - np.mean(target / proposal * x))) ** 2)) / len(x),
+                ),
+                "You divide by n. The target's scale is not known, so divide by the sum of the weights.",
+            ),
+            Mistake(
+                _mean_with(lambda w, d: np.sqrt(np.sum(w * d**2))),
+                "Your mean is right. That is the spread of the target; its mean is known better than that.",
+            ),
+            Mistake(
+                _mean_with(lambda w, d: np.sqrt(np.sum(w * d**2) / len(w))),
+                "Your mean is right. Spread over root n holds for equal weights: here some samples count for many.",
+            ),
+            Mistake(
+                _mean_with(lambda w, d: np.sqrt(np.sum(w * d**2) * np.sum(w**2))),
+                "Your mean is right. Spread over root N_eff is near, but heavy samples lie together: derive it.",
+            ),
+            Mistake(
+                lambda x, target, proposal: (importance_mean(x, target, proposal)[0], x.std() / np.sqrt(len(x))),
+                "Your mean is right. Your error is that of the unweighed samples, a mean over the proposal.",
+            ),
+            Mistake(
+                _mean_with(lambda w, d: np.sum((w * d) ** 2)),
+                "Your mean is right. The second value is the variance of the mean: take its root.",
+            ),
+            Mistake(
+                _mean_with(lambda w, d: np.sqrt(np.sum((w * d) ** 2) / len(w))),
+                "Your mean is right. In the error you divide by n though the weights sum to 1 already.",
+            ),
+            Mistake(
+                _mean_with(lambda w, d: np.sum(w * np.abs(d))),
+                "Your mean is right. Independent errors add by their squares, each with its own weight.",
+            ),
+            Mistake(
+                _mean_with(lambda w, d: np.abs(np.sum(w * d))),
+                "Your mean is right. Deviations from the mean cancel: square each term before you add.",
             ),
         ),
     ),

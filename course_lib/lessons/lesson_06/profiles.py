@@ -69,18 +69,18 @@ class Scene(NamedTuple):
     """One frame of the wagon's run as a small image, and what draws the map for small images."""
 
     measured: np.ndarray
-    """`(36, 44)` metres, NaN = no measurement."""
+    """`(H, W)` metres, NaN = no measurement."""
     truth: np.ndarray
     """`(6,)` where the camera was."""
     renderer: DepthRenderer
 
 
 @functools.cache
-def small_scene() -> Scene:
-    """The frame of this lesson at 44 x 36 pixels. Small images are drawn faster by rays than by a window."""
+def small_scene(width: int = SMALL[0], height: int = SMALL[1]) -> Scene:
+    """The frame of this lesson at so many pixels. Small images are drawn faster by rays than by a window."""
     sequence = wagon_run()
     camera = sequence.camera()
-    small = camera.resized(*SMALL)
+    small = camera.resized(width, height)
     renderer = DepthRenderer(corridor_map(), small, "ray", exact=True)
     truth = state_from_optical_pose(sequence.camera_to_world[FRAME])
     return Scene(subsample_depth(sequence.depth(FRAME), camera, small), truth, renderer)

@@ -1,10 +1,17 @@
-"""Lesson 07, estimate and resample: means on the circle, four resamplers and a bug in one, and the filter stepper."""
+"""Lesson 07, estimate and resample: means on the circle, four resamplers, the Kalman filter, and the filter stepper."""
 
+from course_lib.lessons.lesson_07.beside_kalman import (
+    beside_kalman,
+    best_bells,
+    door_likelihood,
+    doors_figure,
+    wagon_and_laser,
+)
 from course_lib.lessons.lesson_07.figures import circle_figure, comb_figure, copies_figure, rounds_figure
 from course_lib.lessons.lesson_07.panel import PANELS, stepper_panel
 from course_lib.lessons.lesson_07.resampling import (
     SCHEMES,
-    copies_of,
+    copies,
     different_over_rounds,
     follow,
     mean_copies,
@@ -14,14 +21,19 @@ from course_lib.lessons.lesson_07.resampling import (
 __all__ = [
     "PANELS",
     "SCHEMES",
+    "beside_kalman",
+    "best_bells",
     "circle_figure",
     "comb_figure",
+    "copies",
     "copies_figure",
-    "copies_of",
     "different_over_rounds",
+    "door_likelihood",
+    "doors_figure",
     "follow",
     "mean_copies",
     "numpy_global_seed",
     "rounds_figure",
     "stepper_panel",
+    "wagon_and_laser",
 ]

@@ -1,17 +1,20 @@
-"""Exercises of lesson 07: the mean angle, residual resampling mended, and how many particles survive."""
+"""Exercises of lesson 07: a mean of angles, residual resampling mended, who survives, what stratified draws cost."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
 from course_lib.lessons.kit.exercises import Exercise, Mistake
 
-# 07.1: the mean of angles
+# 07.1: the mean of angles, and how far they agree
 
 
-def mean_angle(angles: np.ndarray, w: np.ndarray) -> float:
-    """Mean direction of angles (N,) [rad] with weights (N,), in [-pi, pi]."""
-    return float(np.arctan2(np.sum(w * np.sin(angles)), np.sum(w * np.cos(angles))))
+def mean_angle(angles: np.ndarray, w: np.ndarray) -> tuple[float, float]:
+    """Mean direction in [-pi, pi] of angles (N,) [rad] with weights (N,), and the length R of the mean point."""
+    s, c = np.sum(w * np.sin(angles)), np.sum(w * np.cos(angles))
+    return float(np.arctan2(s, c)), float(np.hypot(s, c))
 
 
 def _angles(rng: np.random.Generator) -> tuple:
@@ -21,6 +24,16 @@ def _angles(rng: np.random.Generator) -> tuple:
     angles = (centre + rng.normal(0, 0.4, size=n) + np.pi) % (2 * np.pi) - np.pi
     w = rng.uniform(0.1, 1, size=n)
     return angles, w / w.sum()
+
+
+def _given(*degrees: float) -> Callable[[np.random.Generator], tuple]:
+    """Headings that are always asked for, with uneven weights: about the wrap, about zero, all around the circle."""
+    w = np.arange(1.0, len(degrees) + 1)
+    return lambda rng: (np.deg2rad(degrees), w / w.sum())
+
+
+def _length(angles: np.ndarray, w: np.ndarray) -> float:
+    return mean_angle(angles, w)[1]
 
 
 def _cut_at_zero(angles: np.ndarray, w: np.ndarray) -> float:
@@ -53,12 +66,27 @@ def _uneven_weights(rng: np.random.Generator) -> tuple:
     return (rng.permutation(np.concatenate([light, heavy / heavy.sum() * (1 - light.sum())])),)
 
 
+def _some_whole(rng: np.random.Generator) -> tuple:
+    """N w of 2, 1, 1/2 and 1/2: two particles are owed nothing more."""
+    return (np.array([0.5, 0.25, 0.125, 0.125]),)
+
+
+def _all_equal(rng: np.random.Generator) -> tuple:
+    n = int(rng.integers(3, 9))
+    return (np.full(n, 1 / n),)
+
+
+def _one_has_all(rng: np.random.Generator) -> tuple:
+    return (rng.permutation(np.eye(int(rng.integers(3, 9)))[0]),)
+
+
 def _copies(w: np.ndarray) -> np.ndarray:
     return np.floor(len(w) * w)
 
 
 def _shares(values: np.ndarray) -> np.ndarray:
-    return values / values.sum()
+    with np.errstate(divide="ignore", invalid="ignore"):  # what a wrong rest adds up to may be zero
+        return values / values.sum()
 
 
 # 07.3: how many different particles survive
@@ -69,67 +97,148 @@ def expected_survivors(w: np.ndarray) -> float:
     return float(np.sum(1 - (1 - w) ** len(w)))
 
 
+# 07.4: the error bar of stratified resampling
+
+
+def stratified_error(w: np.ndarray, x: np.ndarray) -> float:
+    """Standard deviation of the mean of x (N,) after stratified resampling with weights w (N,)."""
+    p = _shares_of_parts(w)
+    return float(np.sqrt(np.sum(_variances(p, x))) / len(w))
+
+
+def _overlaps(w: np.ndarray) -> np.ndarray:
+    """How much of each part of the strip (rows) each particle's field (columns) covers, `(N, N)`; sum 1 in all."""
+    right, parts = np.cumsum(w), np.arange(len(w))[:, None] / len(w)
+    return np.clip(np.minimum(right, parts + 1 / len(w)) - np.maximum(right - w, parts), 0, None)
+
+
+def _shares_of_parts(w: np.ndarray) -> np.ndarray:
+    return len(w) * _overlaps(w)
+
+
+def _variances(p: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Variance of x in each row of probabilities."""
+    return np.sum(p * (x - (p @ x)[:, None]) ** 2, axis=1)
+
+
+def _one_draw(w: np.ndarray, x: np.ndarray) -> float:
+    """Variance of x in one draw with probabilities w."""
+    return float(np.sum(w * (x - w @ x) ** 2))
+
+
+def _residual_error(w: np.ndarray, x: np.ndarray) -> float:
+    copies, rest = residual_parts(w)
+    return float(np.sqrt((len(w) - copies.sum()) * _one_draw(rest, x)) / len(w))
+
+
+def _weights_and_values(rng: np.random.Generator) -> tuple:
+    (w,) = _uneven_weights(rng)
+    return w, rng.normal(rng.uniform(-3, 3), 1.0, size=len(w))
+
+
+def _three_and_values(rng: np.random.Generator) -> tuple:
+    return np.array([0.5, 0.3, 0.2]), rng.permutation(np.arange(3.0))
+
+
+def _light_ones_last(rng: np.random.Generator) -> tuple:
+    """The ten particles of the lesson, two of them heavy."""
+    return np.array([0.22] * 2 + [0.07] * 8), rng.normal(size=10)
+
+
 EXERCISES = [
     Exercise(
         number="07.1",
         reference=mean_angle,
         inputs=_angles,
+        level="warm-up",
+        cases=(_given(170, 175, -175, -165), _given(-20, 5, 10), _given(0, 90, 170, -90), _given(30, 30, 30)),
         mistakes=(
             Mistake(
-                lambda angles, w: float(np.sum(w * angles)),
-                "That is eq. (12) as printed: it fails at the wrap. Average directions, as points on the circle.",
+                lambda angles, w: (float(np.sum(w * angles)), _length(angles, w)),
+                "Your direction is eq. (12) as printed: it fails at the wrap. Take the direction of the mean point.",
             ),
             Mistake(
-                _cut_at_zero,
+                lambda angles, w: (_cut_at_zero(angles, w), _length(angles, w)),
                 "You count angles from 0 to 2 pi and average those. That only moves the wrap: it now fails near 0.",
             ),
             Mistake(
-                lambda angles, w: float(np.arctan(np.sum(w * np.sin(angles)) / np.sum(w * np.cos(angles)))),
+                lambda angles, w: (
+                    float(np.arctan(np.sum(w * np.sin(angles)) / np.sum(w * np.cos(angles)))),
+                    _length(angles, w),
+                ),
                 "arctan of a quotient cannot tell a direction from its opposite. np.arctan2 takes two arguments.",
             ),
             Mistake(
-                lambda angles, w: float(np.arctan2(np.sum(w * np.cos(angles)), np.sum(w * np.sin(angles)))),
+                lambda angles, w: (
+                    float(np.arctan2(np.sum(w * np.cos(angles)), np.sum(w * np.sin(angles)))),
+                    _length(angles, w),
+                ),
                 "np.arctan2 takes the sine first, then the cosine: yours is turned by a quarter and mirrored.",
             ),
             Mistake(
-                lambda angles, w: float(np.arctan2(np.sum(np.sin(angles)), np.sum(np.cos(angles)))),
+                lambda angles, w: mean_angle(angles, np.full(len(w), 1 / len(w))),
                 "You have not used the weights: every particle counts the same in yours.",
             ),
             Mistake(
-                lambda angles, w: float(np.rad2deg(mean_angle(angles, w))),
-                "Yours is in degrees. Angles in, angles out: radians.",
+                lambda angles, w: (
+                    float(np.arctan2(np.sum(np.sin(angles)), np.sum(np.cos(angles)))),
+                    float(np.hypot(np.sum(np.sin(angles)), np.sum(np.cos(angles)))),
+                ),
+                "You add up the points without their weights: the length then grows with the number of particles.",
             ),
             Mistake(
-                lambda angles, w: float(mean_angle(angles, w) % (2 * np.pi)),
+                lambda angles, w: (float(np.rad2deg(mean_angle(angles, w)[0])), _length(angles, w)),
+                "Your direction is in degrees. Angles in, angles out: radians.",
+            ),
+            Mistake(
+                lambda angles, w: (mean_angle(angles, w)[0] % (2 * np.pi), _length(angles, w)),
                 "Right direction, but from 0 to 2 pi. The task asks for -pi to pi, as np.arctan2 gives it.",
             ),
             Mistake(
-                lambda angles, w: float(angles[np.argmax(w)]),
+                lambda angles, w: (float(angles[np.argmax(w)]), _length(angles, w)),
                 "That is the heading of the heaviest particle. Eq. (12) lets all of them take part.",
             ),
             Mistake(
-                lambda angles, w: float(np.mean(angles)),
+                lambda angles, w: (float(np.mean(angles)), _length(angles, w)),
                 "A plain mean of the numbers: it has no weights, and it fails at the wrap. Add points on the circle.",
             ),
             Mistake(
-                lambda angles, w: float(np.arctan2(np.sum(np.sin(w * angles)), np.sum(np.cos(w * angles)))),
+                lambda angles, w: (
+                    float(np.arctan2(np.sum(np.sin(w * angles)), np.sum(np.cos(w * angles)))),
+                    float(np.hypot(np.sum(np.sin(w * angles)), np.sum(np.cos(w * angles)))),
+                ),
                 "You weigh the angles themselves. The weight stands before sine and cosine: w * np.sin(angles).",
-            ),
-            Mistake(
-                lambda angles, w: float(np.arctan2(np.sum(w * np.sin(angles)), np.sum(np.cos(angles)))),
-                "You weigh the sines, but not the cosines.",
             ),
             Mistake(
                 lambda angles, w: mean_angle(np.deg2rad(angles), w),
                 "The angles are in radians already; you convert them once more.",
             ),
             Mistake(
-                _about_the_first,
+                lambda angles, w: (_about_the_first(angles, w), _length(angles, w)),
                 "Close: you move the wrap away, then average numbers. Add points on the circle: sines and cosines.",
             ),
             Mistake(
-                lambda angles, w: float(np.arcsin(np.sum(w * np.sin(angles)))),
+                lambda angles, w: (float(np.arcsin(np.sum(w * np.sin(angles)))), _length(angles, w)),
                 "arcsin knows half of the circle only, and the sum is no longer of length 1: use sine *and* cosine.",
+            ),
+            Mistake(
+                lambda angles, w: (mean_angle(angles, w)[0], _length(angles, w) ** 2),
+                "Your R is its square: the root of the sum of the two squares is missing.",
+            ),
+            Mistake(
+                lambda angles, w: (mean_angle(angles, w)[0], 1 - _length(angles, w)),
+                "Yours is 1 - R, how far they disagree. R itself is asked for: 1 where all look the same way.",
+            ),
+            Mistake(
+                lambda angles, w: (mean_angle(angles, w)[0], 1.0),
+                "A point *on* the circle has length 1; the mean of several lies inside it. How far from the middle?",
+            ),
+            Mistake(
+                lambda angles, w: (
+                    mean_angle(angles, w)[0],
+                    float(np.sum(w * np.cos(angles)) + np.sum(w * np.sin(angles))),
+                ),
+                "You add the two coordinates of the mean point. Its length is the root of the sum of their squares.",
             ),
         ),
     ),
@@ -137,6 +246,7 @@ EXERCISES = [
         number="07.2",
         reference=residual_parts,
         inputs=_uneven_weights,
+        cases=(_some_whole,),
         mistakes=(
             Mistake(
                 lambda w: (_copies(w), _shares(w - _copies(w))),
@@ -153,6 +263,18 @@ EXERCISES = [
             Mistake(
                 lambda w: (np.round(len(w) * w), _shares(np.abs(len(w) * w - np.round(len(w) * w)))),
                 "You round N w. A particle with 2.7 has only 2 copies for certain: np.floor.",
+            ),
+            Mistake(
+                lambda w: (np.round(len(w) * w), _shares(len(w) * w - np.round(len(w) * w))),
+                "np.round may give a copy too many, and then the rest is negative. Certain is what np.floor leaves.",
+            ),
+            Mistake(
+                lambda w: (np.round(len(w) * w), residual_parts(w)[1]),
+                "Your probabilities are right. Your copies are rounded: with 2.7 only 2 are certain, np.floor.",
+            ),
+            Mistake(
+                lambda w: (_copies(w), len(w) * w / np.sum(len(w) * w - _copies(w))),
+                "You divide by the right sum, but what has been given out is still in it: subtract the copies.",
             ),
             Mistake(
                 lambda w: (np.ceil(len(w) * w), _shares(np.ceil(len(w) * w) - len(w) * w)),
@@ -192,6 +314,7 @@ EXERCISES = [
         number="07.3",
         reference=expected_survivors,
         inputs=_uneven_weights,
+        cases=(_all_equal, _one_has_all, _some_whole),
         mistakes=(
             Mistake(
                 lambda w: float(np.sum((1 - w) ** len(w))),
@@ -248,6 +371,65 @@ EXERCISES = [
             Mistake(
                 lambda w: len(w) * (1 - np.exp(-1)),
                 "That is for many particles of equal weight. Here every particle has a chance of its own.",
+            ),
+        ),
+    ),
+    Exercise(
+        number="07.4",
+        reference=stratified_error,
+        inputs=_weights_and_values,
+        level="challenge",
+        cases=(_three_and_values, _light_ones_last),
+        mistakes=(
+            Mistake(
+                lambda w, x: float(np.sqrt(_one_draw(w, x) / len(w))),
+                "That is the formula for independent draws. Here each part of the strip has a mean of its own.",
+            ),
+            Mistake(
+                lambda w, x: float(np.sqrt(np.sum(_variances(_shares_of_parts(w), x)))),
+                "That is for the *sum* of the new x. Their mean divides it by N, and its standard deviation with it.",
+            ),
+            Mistake(
+                lambda w, x: float(np.sqrt(np.sum(_variances(_shares_of_parts(w), x)) / len(w))),
+                "A factor 1/N enters a variance squared: N variances, divided by N * N.",
+            ),
+            Mistake(
+                lambda w, x: stratified_error(w, x) ** 2,
+                "That is the variance. The task asks for the standard deviation: its root.",
+            ),
+            Mistake(
+                lambda w, x: float(np.sum(np.sqrt(_variances(_shares_of_parts(w), x))) / len(w)),
+                "You add standard deviations. Of independent draws the *variances* add; the root comes last.",
+            ),
+            Mistake(
+                lambda w, x: float(np.sqrt(np.sum(_variances(_overlaps(w), x))) / len(w)),
+                "In each part your probabilities sum to 1/N. The point is in that part for certain: they sum to 1.",
+            ),
+            Mistake(
+                lambda w, x: float(
+                    np.sqrt(np.sum(_overlaps(w) * (x - (_shares_of_parts(w) @ x)[:, None]) ** 2)) / len(w)
+                ),
+                "Your means are right. In the variances too the probabilities of a part sum to 1, not to 1/N.",
+            ),
+            Mistake(
+                _residual_error,
+                "That is residual resampling: certain copies, then independent draws. Here each part has one draw.",
+            ),
+            Mistake(
+                lambda w, x: float(np.sqrt(_one_draw(w, x))),
+                "That is how far the x themselves are spread. Asked for is how far their *mean* strays.",
+            ),
+            Mistake(
+                lambda w, x: float(np.sqrt(_one_draw(w, x)) / len(w)),
+                "The spread of x, divided by N? Find the variance of each part's draw, add, then divide the root by N.",
+            ),
+            Mistake(
+                lambda w, x: 0.0,
+                "It is not zero: in a part that two fields share, chance decides which of them is picked.",
+            ),
+            Mistake(
+                lambda w, x: float(np.std(x) / np.sqrt(len(x))),
+                "That is the error of a plain mean of the old x. Where are the weights, and the parts of the strip?",
             ),
         ),
     ),

@@ -31,10 +31,10 @@ def mean_copies(draw: Callable[[np.ndarray], np.ndarray], w: np.ndarray, repeats
     return np.mean(counts, axis=0)
 
 
-def copies_of(scheme: str, w: np.ndarray, particle: int, repeats: int, seed: int) -> np.ndarray:
-    """Copies of one particle in each of many draws `(repeats,)`."""
+def copies(scheme: str, w: np.ndarray, repeats: int, seed: int) -> np.ndarray:
+    """How many copies each particle got in each of many resamplings `(repeats, N)`."""
     rng = np.random.default_rng(seed)
-    return np.array([(resample(w, rng, scheme) == particle).sum() for _ in range(repeats)])
+    return np.array([np.bincount(resample(w, rng, scheme), minlength=len(w)) for _ in range(repeats)])
 
 
 def different_over_rounds(scheme: str, n: int, rounds: int, seed: int) -> np.ndarray:

@@ -3,23 +3,33 @@
 from course_lib.lessons.lesson_08.along import STRETCH
 from course_lib.lessons.lesson_08.figures import (
     along_figure,
+    as_in_the_paper_figure,
     experiment_figure,
     lost_figure,
     relative_weights_figure,
     two_errors_figure,
 )
 from course_lib.lessons.lesson_08.panel import PANELS, along_panel
-from course_lib.lessons.lesson_08.stored_runs import over_seeds, stored_runs, table_1
+from course_lib.lessons.lesson_08.stored_runs import (
+    neighbours_correlation,
+    over_seeds,
+    spread_over_seeds,
+    stored_runs,
+    table_1,
+)
 
 __all__ = [
     "PANELS",
     "STRETCH",
     "along_figure",
     "along_panel",
+    "as_in_the_paper_figure",
     "experiment_figure",
     "lost_figure",
+    "neighbours_correlation",
     "over_seeds",
     "relative_weights_figure",
+    "spread_over_seeds",
     "stored_runs",
     "table_1",
     "two_errors_figure",

@@ -1,4 +1,4 @@
-"""Exercises of lesson 08: the paper's error, the three numbers of its table 1, and noticing that a filter is lost."""
+"""Exercises of lesson 08: the paper's error, a row of its table 1, noticing a loss, what frames that are alike say."""
 
 from __future__ import annotations
 
@@ -20,9 +20,31 @@ def _pairwise(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def _track_and_path(rng: np.random.Generator) -> tuple:
     n, p = int(rng.integers(4, 8)), int(rng.integers(9, 15))
-    path = np.column_stack([np.linspace(0, 6, p), 0.3 * rng.normal(size=p), np.zeros(p)])
-    estimated = np.column_stack([rng.uniform(0, 6, n), rng.normal(0, 0.3, n), np.full(n, rng.uniform(0.8, 1.2))])
+    # The floor is uneven and the camera bobs: the nearest point in space need not be the nearest on the floor.
+    path = np.column_stack([np.linspace(0, 6, p), 0.3 * rng.normal(size=p), 0.2 * rng.normal(size=p)])
+    estimated = np.column_stack([rng.uniform(0, 6, n), rng.normal(0, 0.3, n), rng.uniform(0.8, 1.2, n)])
     return estimated, path
+
+
+def _on_the_path(rng: np.random.Generator) -> tuple:
+    """Estimates above points of the path, in another order: all errors are 0."""
+    path = np.column_stack([np.arange(6.0), rng.normal(size=6), np.zeros(6)])
+    return path[[4, 0, 2]] + [0.0, 0.0, 1.0], path
+
+
+def _a_single_estimate(rng: np.random.Generator) -> tuple:
+    return rng.normal(size=(1, 3)), rng.normal(size=(2, 3))
+
+
+def _a_hump_in_the_floor(rng: np.random.Generator) -> tuple:
+    """The nearest point in space, on a hump of the floor, is not the nearest on the floor plan."""
+    path = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.9]])
+    return np.array([[1.3, 0.1, 1.0]]), path
+
+
+def _nearest_in_space(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
+    nearest = _pairwise(estimated, path).argmin(axis=1)
+    return np.linalg.norm(estimated[:, :2] - path[nearest, :2], axis=1)
 
 
 def _same_index(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
@@ -60,6 +82,11 @@ def _errors(rng: np.random.Generator) -> tuple:
     return (errors,)
 
 
+def _all_alike(rng: np.random.Generator) -> tuple:
+    """A filter that is off by the same everywhere, by just the limit: no scatter, and yet an error."""
+    return (np.full(int(rng.integers(3, 9)), 0.30),)
+
+
 def _own_three_sigma(errors: np.ndarray) -> tuple[float, float, float]:
     sigma = np.sqrt(np.mean(errors**2))
     return np.median(errors), sigma, np.mean(errors <= 3 * sigma)
@@ -94,6 +121,61 @@ def _scores(rng: np.random.Generator) -> tuple:
         scores[start : start + length] = low[start : start + length]
     scores[8 + patience - 1] = limit
     return scores, limit, patience
+
+
+def _alternating(rng: np.random.Generator) -> tuple:
+    """Rows that are one too short, with single good scores between them: nothing may be carried over."""
+    low, high, limit = 0.2, 0.7, 0.5
+    rows = [low] * 4 + [high] + [low] * 4 + [high] * 3 + [low] * 2 + [high] + [low] * 3 + [high]
+    return np.array(rows), limit, 5
+
+
+def _starts_low(rng: np.random.Generator) -> tuple:
+    """Low in the first frames, but not for long enough; later long enough."""
+    return np.array([0.2, 0.3, 0.9, 0.8, 0.9, 0.1, 0.2, 0.1, 0.2, 0.9]), 0.5, 3
+
+
+def _twice_lost(rng: np.random.Generator) -> tuple:
+    """The alarm is that of the first time."""
+    return np.array([0.9, 0.2, 0.2, 0.2, 0.9, 0.9, 0.1, 0.2, 0.1]), 0.5, 2
+
+
+def _shorter_than_patience(rng: np.random.Generator) -> tuple:
+    """All low, but fewer scores than `patience`: never."""
+    return np.array([0.1, 0.2]), 0.5, 4
+
+
+def _low_from_the_start(rng: np.random.Generator) -> tuple:
+    return np.full(6, 0.1), 0.5, 3
+
+
+def _never_low(rng: np.random.Generator) -> tuple:
+    return np.full(8, 0.9), 0.5, 2
+
+
+def _counter(scores: np.ndarray, limit: float, patience: int, after_good) -> int:
+    """The alarm of a counter that becomes `after_good(counter)` at a good score."""
+    in_a_row = 0
+    for frame, score in enumerate(scores):
+        in_a_row = in_a_row + 1 if score < limit else after_good(in_a_row)
+        if in_a_row == patience:
+            return frame
+    return -1
+
+
+def _short_first_windows(scores: np.ndarray, limit: float, patience: int) -> int:
+    low = (bool((scores[max(0, i - patience + 1) : i + 1] < limit).all()) for i in range(len(scores)))
+    return next((i for i, is_low in enumerate(low) if is_low), -1)
+
+
+def _last_alarm(scores: np.ndarray, limit: float, patience: int) -> int:
+    alarms = [f for f in range(patience - 1, len(scores)) if (scores[f - patience + 1 : f + 1] < limit).all()]
+    return alarms[-1] if alarms else -1
+
+
+def _length_for_never(scores: np.ndarray, limit: float, patience: int) -> int:
+    frame = lost_since(scores, limit, patience)
+    return frame if frame >= 0 else len(scores)
 
 
 def _first_dip(scores: np.ndarray, limit: float, patience: int) -> int:
@@ -138,6 +220,12 @@ def _averaged(scores: np.ndarray, limit: float, patience: int) -> int:
     return next((i + patience - 1 for i, mean in enumerate(means) if mean < limit), -1)
 
 
+def _convolved(scores: np.ndarray, limit: float, patience: int) -> int:
+    """The mean by np.convolve, which exchanges its two arrays where the first is the shorter one."""
+    below = np.flatnonzero(np.convolve(scores, np.ones(patience) / patience, mode="valid") < limit)
+    return int(below[0]) + patience - 1 if len(below) else -1
+
+
 def _gives_up(scores: np.ndarray, limit: float, patience: int) -> int:
     return patience - 1 if (scores[:patience] < limit).all() else -1
 
@@ -146,12 +234,55 @@ def _zero_for_never(scores: np.ndarray, limit: float, patience: int) -> int:
     return max(lost_since(scores, limit, patience), 0)
 
 
+# 08.4: what frames that are alike are worth
+
+
+def effective_frames(n: int, a: float) -> float:
+    """How many independent errors have a mean as sure as that of n errors whose correlation is a^k at k frames apart.
+
+    Var(mean) = s^2 / n^2 sum_ij a^|i - j|, and s^2 / n_eff of independent ones.
+    """
+    i = np.arange(n)
+    return float(n**2 / np.sum(float(a) ** np.abs(i[:, None] - i)))
+
+
+def _run_length_and_likeness(rng: np.random.Generator) -> tuple:
+    return int(rng.integers(3, 60)), float(rng.uniform(0.05, 0.95))
+
+
+def _independent(rng: np.random.Generator) -> tuple:
+    return int(rng.integers(3, 60)), 0.0
+
+
+def _all_the_same(rng: np.random.Generator) -> tuple:
+    return int(rng.integers(3, 60)), 1.0
+
+
+def _taking_turns(rng: np.random.Generator) -> tuple:
+    """Errors that tend to change their sign: their mean is surer than that of independent ones."""
+    return int(rng.integers(3, 60)), float(rng.uniform(-0.8, -0.2))
+
+
+def _four_frames(rng: np.random.Generator) -> tuple:
+    return 4, 0.5
+
+
+def _fallons_run(rng: np.random.Generator) -> tuple:
+    return 304, 0.99
+
+
 EXERCISES = [
     Exercise(
         number="08.1",
         reference=nearest_distances,
         inputs=_track_and_path,
+        level="warm-up",
+        cases=(_on_the_path, _a_single_estimate, _a_hump_in_the_floor),
         mistakes=(
+            Mistake(
+                _nearest_in_space,
+                "You search in space and measure on the floor. Leave out z before you search, not after.",
+            ),
             Mistake(
                 lambda estimated, path: _pairwise(estimated, path).min(axis=1),
                 "Your distance includes z: the camera is a metre above the line on the floor. Use x and y only.",
@@ -202,6 +333,7 @@ EXERCISES = [
         number="08.2",
         reference=table_row,
         inputs=_errors,
+        cases=(_all_alike,),
         mistakes=(
             Mistake(
                 lambda errors: (np.median(errors), np.std(errors), np.mean(errors <= 0.30)),
@@ -254,7 +386,32 @@ EXERCISES = [
         number="08.3",
         reference=lost_since,
         inputs=_scores,
+        cases=(
+            _alternating,
+            _starts_low,
+            _twice_lost,
+            _shorter_than_patience,
+            _low_from_the_start,
+            _never_low,
+        ),
         mistakes=(
+            Mistake(
+                lambda scores, limit, patience: _counter(scores, limit, patience, lambda n: max(n - 1, 0)),
+                "Your counter goes down by one at a good score. In a row means: a good score ends the row.",
+            ),
+            Mistake(
+                lambda scores, limit, patience: _counter(scores, limit, patience, lambda n: n // 2),
+                "Your counter is halved at a good score. In a row means: start again from nothing.",
+            ),
+            Mistake(
+                _short_first_windows,
+                "In the first frames your window holds fewer than `patience` scores, and yours takes them for a row.",
+            ),
+            Mistake(_last_alarm, "That is the last frame of an alarm. Asked for is the first one: stop there."),
+            Mistake(
+                _length_for_never,
+                "Where the filter is never lost yours says the number of frames. The task asks for -1.",
+            ),
             Mistake(_first_dip, "You raise the alarm at the first low score. A person who walks by would do that."),
             Mistake(
                 _counted_in_all,
@@ -277,11 +434,59 @@ EXERCISES = [
                 "You take the mean of a row: one very low score then hides a good one. Each of them must be low.",
             ),
             Mistake(
+                _convolved,
+                "np.convolve gives the mean of a row: one very low score hides a good one. Each of them must be low.",
+            ),
+            Mistake(
                 lambda scores, limit, patience: -1,
                 "Yours says -1 whatever the scores are. Does the -1 stand inside the loop? It belongs after it.",
             ),
             Mistake(_gives_up, "Yours gives up at the first good score. That only starts the count again: go on."),
             Mistake(_zero_for_never, "Where the filter is never lost yours says frame 0. The task asks for -1."),
+        ),
+    ),
+    Exercise(
+        number="08.4",
+        reference=effective_frames,
+        inputs=_run_length_and_likeness,
+        level="challenge",
+        cases=(_independent, _all_the_same, _taking_turns, _four_frames, _fallons_run),
+        mistakes=(
+            Mistake(
+                lambda n, a: n * (1 - a) / (1 + a),
+                "Close: that is the limit of long runs. Near the ends a frame has fewer neighbours: sum over pairs.",
+            ),
+            Mistake(
+                lambda n, a: n / (1 + sum((1 - k / n) * a**k for k in range(1, n))),
+                "Every pair counts twice: frame 3 with frame 5, and frame 5 with frame 3.",
+            ),
+            Mistake(
+                lambda n, a: n / (1 + 2 * a * (n - 1) / n),
+                "You count direct neighbours only. Frames two apart are alike as well, by a * a, and so on.",
+            ),
+            Mistake(
+                lambda n, a: n / (1 + 2 * sum(a**k for k in range(1, n))),
+                "How many pairs are k apart? Not n: only n - k.",
+            ),
+            Mistake(
+                lambda n, a: effective_frames(n, a) / n,
+                "That is the share of the frames that counts. Asked for is their number.",
+            ),
+            Mistake(
+                lambda n, a: n / effective_frames(n, a),
+                "That is by how much the variance grows. Divide n by it.",
+            ),
+            Mistake(
+                lambda n, a: n / np.sqrt(n / effective_frames(n, a)),
+                "Compare variances, not standard deviations: no root.",
+            ),
+            Mistake(lambda n, a: n * (1 - a), "A guess? Write down the variance of the sum of n errors, pair by pair."),
+            Mistake(lambda n, a: n * (1 - a**2), "That is how much *new* each frame brings, not what the mean gains."),
+            Mistake(
+                lambda n, a: n / (2 * sum((1 - k / n) * a**k for k in range(n))),
+                "A frame with itself counts once, not twice: only pairs of different frames are doubled.",
+            ),
+            Mistake(lambda n, a: float(n), "That is for independent frames. These are alike: a of their neighbours."),
         ),
     ),
 ]

@@ -55,6 +55,24 @@ def two_errors_figure() -> tuple[Figure, dict[str, float]]:
     }
 
 
+def as_in_the_paper_figure(run: StoredRun, path: np.ndarray) -> Figure:
+    """Figures 5 and 6 of the paper: its own method alone, on plain axes, with our numbers.
+
+    path: `(P, 2 or 3)` the line on the floor, metres.
+    """
+    figure, (place, error) = figures.new_figure(2, 1, size=(8.0, 4.6))
+    place.get_gridspec().set_height_ratios([1.0, 1.5])
+    place.plot(path[:, 0], path[:, 1], color="black", linewidth=1.1, zorder=4, label="ground truth")
+    dots = figures.line_style(0) | {"linestyle": "none", "markersize": 2.5}
+    place.plot(*run.positions("proposed").T, **dots, label="estimated position")
+    place.set(title="As figure 5: ground truth and estimates", xlabel="x [m]", ylabel="y [m]", ylim=(-0.6, 0.9))
+    place.legend(loc="upper center", ncols=2, fontsize=8, framealpha=0.95)
+    error.plot(run.columns["frame"], run.columns["proposed_nearest_m"], color=figures.BLUE, linewidth=1.0)
+    error.set(title="As figure 6: distance to the nearest point of the path", xlabel="frame [-]", ylabel="error [m]")
+    error.set_ylim(0, None)
+    return figure
+
+
 def along_figure(run: StoredRun, true_x: np.ndarray, methods: tuple[str, ...]) -> Figure:
     """Estimated and true position along the corridor over the frames."""
     figure, axes = figures.new_figure(size=(8.0, 3.0))
@@ -76,7 +94,7 @@ def lost_figure(frames: range, runs: dict[str, list[Estimate]]) -> Figure:
         axes[0].plot(frames, [e.score for e in estimates], **style, label=name)
         axes[1].plot(frames, [e.weights.max() for e in estimates], **style, label=name)
     axes[0].set(title="Raw score of the best particle", xlabel="frame [-]", ylabel="l / m [-]", ylim=(0, 0.9))
-    axes[1].set(title="Weight of the best particle", xlabel="frame [-]", ylabel="weight [-]", ylim=(0, 1.1))
+    axes[1].set(title="Its normalized weight, eq. (11)", xlabel="frame [-]", ylabel="weight w~ [-]", ylim=(0, 1.1))
     axes[0].legend(loc="lower left", framealpha=0.95)
     return figure
 

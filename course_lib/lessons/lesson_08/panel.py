@@ -22,14 +22,15 @@ def along_panel() -> Panel:
     place.set(title="Where along the corridor", xlabel="frame [-]", ylabel="x [m]", ylim=(low - 3, high + 3.5))
     lines = []
     for index, name in enumerate(("timed", "nearest path")):
-        style = figures.line_style(index) | {"markersize": 3}
-        lines += error.semilogy(frames, np.ones(len(frames)), **style, label=name)
+        # The nearest path's line lies on the timed one wherever both are small: a thin line on a broad, pale one.
+        broad = {"linewidth": 5, "alpha": 0.4, "marker": ""} if index == 0 else {"markersize": 3}
+        lines += error.semilogy(frames, np.ones(len(frames)), **(figures.line_style(index) | broad), label=name)
     error.axhline(3 * PAPER_SIGMA, color="black", linewidth=0.9, linestyle=(0, (6, 3)), label="0.30 m")
     error.set(title="Error (below 1 cm drawn as 1 cm)", xlabel="frame [-]", ylabel="error [m]", ylim=(0.005, 100))
-    for index, name in enumerate(("raw score l / m", "weight")):
+    for index, name in enumerate(("raw score l / m", "normalized weight w~")):
         style = figures.line_style(index + 2) | {"markersize": 3}
         lines += signal.plot(frames, np.zeros(len(frames)), **style, label=name)
-    signal.set(title="The best particle", xlabel="frame [-]", ylabel="score or weight [-]", ylim=(0, 1.6))
+    signal.set(title="The best particle", xlabel="frame [-]", ylabel="score, weight [-]", ylim=(0, 1.6))
     for axes in (place, error, signal):
         axes.set_xlim(frames[0] - 1, frames[-1] + 1)
         axes.legend(loc="upper left", fontsize=8, framealpha=0.95)

@@ -75,3 +75,14 @@ def table_1(runs: list[StoredRun]) -> str:
         median, sigma, within, timed = (float(np.median(over_seeds(runs, method, key))) for key in keys)
         lines.append(f"{row['name']:36} {median:>10.2f} {sigma:>9.2f} {within:>7.0f} % {timed:>11.2f}")
     return "\n".join(lines)
+
+
+def spread_over_seeds(runs: list[StoredRun], method: str, key: str, digits: int = 3) -> str:
+    """A number of the summary as its median over the seeds, least and greatest: "0.016 (0.014 to 0.017)"."""
+    values = over_seeds(runs, method, key)
+    return f"{np.median(values):.{digits}f} ({values.min():.{digits}f} to {values.max():.{digits}f})"
+
+
+def neighbours_correlation(values: np.ndarray) -> float:
+    """How alike successive values `(T,)` of a series are: their correlation at a distance of one, -1 to 1."""
+    return float(np.corrcoef(values[:-1], values[1:])[0, 1])

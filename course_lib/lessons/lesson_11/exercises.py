@@ -1,17 +1,34 @@
-"""Exercises of lesson 11: from pixel to direction, the angle between two columns, the mean of several columns."""
+"""Exercises of lesson 11: somebody else's pixels, the way to turn, a stretch across the seam, a knocked tripod."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
+from course_lib.geometry import pose_matrix, state_from_matrix, wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
+from course_lib.spherical_stereo.panorama import (
+    azimuth_elevation,
+    direction_from_angles,
+    direction_to_pixel,
+    pixel_to_direction,
+)
 
-# 11.1: from a pixel to a direction
+# 11.1: from a pixel of somebody else's panorama to a direction
 
 
-def direction_of(u: float, v: float, width: int, height: int) -> np.ndarray:
-    """Unit vector (3,) of edge coordinates on a panorama: x ahead, y left, z up."""
-    return _from_angles((0.5 - u / width) * 2 * np.pi, (0.5 - v / height) * np.pi)
+def direction_of(column: float, row: float, width: int, height: int) -> np.ndarray:
+    """Unit vector (3,), x ahead, y left, z up, of a pixel of a panorama whose left edge is ahead.
+
+    Columns and rows are counted from pixel centres: 0 is the middle of the first pixel.
+    """
+    return _from_angles(*_angles(column, row, width, height))
+
+
+def _angles(column: float, row: float, width: int, height: int) -> tuple[float, float]:
+    """Azimuth, to the left, and elevation, radians."""
+    return -(column + 0.5) / width * 2 * np.pi, (0.5 - (row + 0.5) / height) * np.pi
 
 
 def _from_angles(azimuth: float, elevation: float) -> np.ndarray:
@@ -19,23 +36,28 @@ def _from_angles(azimuth: float, elevation: float) -> np.ndarray:
     return np.array([ahead, left, np.sin(elevation)])
 
 
+def _slip(azimuth: Callable = lambda a: a, elevation: Callable = lambda e: e) -> Callable:
+    """A mistake: the right function with another azimuth or elevation."""
+
+    def mistaken(column: float, row: float, width: int, height: int) -> np.ndarray:
+        a, e = _angles(column, row, width, height)
+        return _from_angles(azimuth(a), elevation(e))
+
+    return mistaken
+
+
 def _pixel(rng: np.random.Generator) -> tuple:
     height = int(rng.choice([320, 512, 640, 960]))
     return float(rng.uniform(0, 2 * height)), float(rng.uniform(0.05, 0.95) * height), 2 * height, height
 
 
-def _angles(u: float, v: float, width: int, height: int) -> tuple[float, float]:
-    return (0.5 - u / width) * 2 * np.pi, (0.5 - v / height) * np.pi
-
-
-def _no_cosine(u: float, v: float, width: int, height: int) -> np.ndarray:
-    azimuth, elevation = _angles(u, v, width, height)
+def _no_cosine(column: float, row: float, width: int, height: int) -> np.ndarray:
+    azimuth, elevation = _angles(column, row, width, height)
     return np.array([np.cos(azimuth), np.sin(azimuth), np.sin(elevation)])
 
 
-def _polar_angle(u: float, v: float, width: int, height: int) -> np.ndarray:
-    azimuth, _ = _angles(u, v, width, height)
-    return _from_angles(azimuth, v / height * np.pi)
+def _clamped(column: float, row: float, width: int, height: int) -> np.ndarray:
+    return direction_of(min(max(column, 0), width - 1), row, width, height)
 
 
 # 11.2: the angle from one column to another
@@ -71,121 +93,235 @@ def _other_side_only(u_from: float, u_to: float, width: int) -> float:
     return gap + 360 if gap < -180 else gap
 
 
-# 11.3: the mean of several columns
+# 11.3: the shortest stretch of columns that holds all points
 
 
-def mean_column(columns: np.ndarray, width: int) -> float:
-    """The mean of columns (n,) on the circle, in [0, width)."""
-    angles = np.asarray(columns) / width * 2 * np.pi
-    mean = np.arctan2(np.sin(angles).sum(), np.cos(angles).sum())
-    return float(mean / (2 * np.pi) * width % width)
+def shortest_stretch(columns: np.ndarray, width: int) -> tuple[float, float]:
+    """(u_min, u_max) of the shortest stretch with all columns (n,): 0 <= u_min < width, u_max may pass the width."""
+    around = np.sort(np.asarray(columns) % width)
+    gaps = np.diff(np.append(around, around[0] + width))
+    start = around[(gaps.argmax() + 1) % len(around)]
+    return float(start), float(start + width - gaps.max())
 
 
-def _columns_of_an_object(rng: np.random.Generator) -> tuple:
-    """Columns within a quarter of the panorama, across the seam in about half of the inputs."""
+def _points_of_an_object(rng: np.random.Generator) -> tuple:
+    """Columns within 0.1 to 0.6 of a turn, unsorted, across the seam in more than half of the inputs."""
     width = int(rng.choice([640, 1280, 1920]))
-    middle = rng.uniform(-0.08, 0.08) if rng.random() < 0.6 else rng.uniform(0.2, 0.8)
-    columns = (middle + rng.uniform(-0.1, 0.1, size=int(rng.integers(4, 9)))) * width
+    spread = rng.uniform(0.05, 0.3)
+    middle = rng.uniform(-0.8, 0.8) * spread if rng.random() < 0.6 else rng.uniform(0.35, 0.65)
+    columns = (middle + rng.uniform(-spread, spread, size=int(rng.integers(4, 9)))) * width
     return columns % width, width
 
 
-def _signed(columns: np.ndarray, width: int) -> float:
-    angles = columns / width * 2 * np.pi
-    return float(np.arctan2(np.sin(angles).sum(), np.cos(angles).sum()) / (2 * np.pi) * width)
+def _signed_start(columns: np.ndarray, width: int) -> tuple[float, float]:
+    low, high = shortest_stretch(columns, width)
+    return (low - width, high - width) if high >= width else (low, high)
 
 
-def _unrolled(columns: np.ndarray, width: int) -> float:
-    first = columns[0]
-    return float((first + np.mean((columns - first + width / 2) % width - width / 2)) % width)
+def _split_in_the_middle(columns: np.ndarray, width: int) -> tuple[float, float]:
+    """Columns of the left half are moved by a turn wherever both halves hold some."""
+    left = columns < width / 2
+    moved = columns + width * (left & (not left.all()))
+    return float(moved.min()), float(moved.max())
 
 
-def _by_half_circle(columns: np.ndarray, width: int) -> float:
-    angles = columns / width * np.pi
-    return float(np.arctan2(np.sin(angles).sum(), np.cos(angles).sum()) / np.pi * width % width)
+def _around_the_first(columns: np.ndarray, width: int) -> tuple[float, float]:
+    """Each column in the turn nearest to the first one: right for a stretch below half a turn only."""
+    near = (columns - columns[0] + width / 2) % width - width / 2 + columns[0]
+    start = near.min() % width
+    return float(start), float(start + np.ptp(near))
 
 
-def _swapped_arctan2(columns: np.ndarray, width: int) -> float:
-    angles = columns / width * 2 * np.pi
-    return float(np.arctan2(np.cos(angles).sum(), np.sin(angles).sum()) / (2 * np.pi) * width % width)
+def _around_the_mean(columns: np.ndarray, width: int) -> tuple[float, float]:
+    middle = np.angle(np.exp(2j * np.pi * columns / width).sum()) / (2 * np.pi) * width
+    near = (columns - middle + width / 2) % width - width / 2 + middle
+    start = near.min() % width
+    return float(start), float(start + np.ptp(near))
 
 
-def _arctan_of_ratio(columns: np.ndarray, width: int) -> float:
-    angles = columns / width * 2 * np.pi
-    return float(np.arctan(np.sin(angles).sum() / np.cos(angles).sum()) / (2 * np.pi) * width % width)
+def _largest_gap_itself(columns: np.ndarray, width: int) -> tuple[float, float]:
+    low, high = shortest_stretch(columns, width)
+    return (high % width, low + width * (low < high % width))
 
 
-def _still_an_angle(columns: np.ndarray, width: int) -> float:
-    return mean_column(columns, width) / width * 2 * np.pi
+def _gaps_without_the_last(columns: np.ndarray, width: int) -> tuple[float, float]:
+    """The gap across the seam is never looked at."""
+    around = np.sort(columns)
+    k = int(np.diff(around, append=around[-1]).argmax()) + 1 if len(around) > 1 else 0
+    return float(around[k]), float(around[k - 1] + width)
+
+
+# 11.4: a knock against the tripod
+
+
+def knock(before: np.ndarray, after: np.ndarray, width: int, height: int) -> tuple[float, float, float]:
+    """Roll, pitch, yaw (degrees) of a camera that saw the same far points first at `before`, then at `after`.
+
+    The rotation R with d_before = R d_after, by the singular values of the sum of outer products (Kabsch).
+    """
+    first, then = pixel_to_direction(before, width, height), pixel_to_direction(after, width, height)
+    u, _, vt = np.linalg.svd(first.T @ then)
+    rotation = u @ np.diag([1, 1, np.sign(np.linalg.det(u @ vt))]) @ vt
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation
+    return tuple(np.degrees(state_from_matrix(matrix)[3:]).tolist())
+
+
+def knock_linear(before: np.ndarray, after: np.ndarray, width: int, height: int) -> tuple[float, float, float]:
+    """The same for small angles: d_before = d_after + w x d_after, by linear least squares."""
+    first, then = pixel_to_direction(before, width, height), pixel_to_direction(after, width, height)
+    cross = np.concatenate([_cross_matrix(d) for d in then])
+    w = np.linalg.lstsq(-cross, (first - then).ravel(), rcond=None)[0]
+    return tuple(np.degrees(w).tolist())
+
+
+def _cross_matrix(d: np.ndarray) -> np.ndarray:
+    """The matrix [d]x with [d]x w = d x w."""
+    x, y, z = d
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def _knocked(angles_deg: np.ndarray, around: np.ndarray, width: int) -> tuple:
+    """The arguments for a camera turned by so much, and points at azimuths and elevations (n, 2), radians."""
+    height = width // 2
+    first = direction_from_angles(around[:, 0], around[:, 1])
+    turn = pose_matrix(np.concatenate([np.zeros(3), np.radians(angles_deg)]))[:3, :3]
+    before, after = (direction_to_pixel(d, width, height) for d in (first, first @ turn))
+    return before, after, width, height
+
+
+def _a_knock(rng: np.random.Generator) -> tuple:
+    n = int(rng.integers(8, 15))
+    around = np.column_stack([rng.uniform(-np.pi, np.pi, n), rng.uniform(-0.9, 0.6, n)])
+    return _knocked(rng.uniform(-1, 1, 3), around, int(rng.choice([640, 1280, 1920])))
+
+
+def _no_knock(rng: np.random.Generator) -> tuple:
+    around = np.column_stack([rng.uniform(-np.pi, np.pi, 9), rng.uniform(-0.9, 0.6, 9)])
+    return _knocked(np.zeros(3), around, 1280)
+
+
+def _points_behind(rng: np.random.Generator) -> tuple:
+    """All points near the seam: every second one of them crosses it."""
+    around = np.column_stack([np.pi + rng.uniform(-0.02, 0.02, 12), rng.uniform(-0.9, 0.6, 12)])
+    return _knocked(np.array([0.5, -0.7, 0.9]), around, 1280)
+
+
+def _yaw_alone(before: np.ndarray, after: np.ndarray, width: int, height: int) -> tuple[float, float, float]:
+    return 0.0, 0.0, _mean_turn(before, after, width)
+
+
+def _mean_turn(before: np.ndarray, after: np.ndarray, width: int) -> float:
+    """The mean of the columns that the points moved to the right, as degrees."""
+    gap = (after[:, 0] - before[:, 0] + width / 2) % width - width / 2
+    return float(gap.mean() / width * 360)
+
+
+def _rows_and_columns(before: np.ndarray, after: np.ndarray, width: int, height: int) -> tuple[float, float, float]:
+    """Pitch from the mean of the rows, yaw from that of the columns: as for a picture of a flat wall."""
+    return 0.0, float((before[:, 1] - after[:, 1]).mean() / height * 180), _mean_turn(before, after, width)
+
+
+def _not_across_the_seam(before: np.ndarray, after: np.ndarray, width: int, height: int) -> tuple[float, float, float]:
+    """Azimuth differences without a wrap, in the linear formula for azimuth and elevation."""
+    return _from_angle_differences(before, after, width, height, wrap=False)
+
+
+def _from_angle_differences(before, after, width, height, wrap: bool = True) -> tuple[float, float, float]:
+    """Small angles: da = yaw - tan e (roll cos a + pitch sin a), de = roll sin a - pitch cos a, off the poles."""
+    (a, e), (a_then, e_then) = (azimuth_elevation(pixel_to_direction(uv, width, height)) for uv in (before, after))
+    gap = wrap_angle(a - a_then) if wrap else a - a_then
+    rows = np.column_stack([-np.tan(e) * np.cos(a), -np.tan(e) * np.sin(a), np.ones_like(a)])
+    others = np.column_stack([np.sin(a), -np.cos(a), np.zeros_like(a)])
+    w = np.linalg.lstsq(np.concatenate([rows, others]), np.concatenate([gap, e - e_then]), rcond=None)[0]
+    return tuple(np.degrees(w).tolist())
 
 
 EXERCISES = [
     Exercise(
         number="11.1",
+        level="warm-up",
         reference=direction_of,
         inputs=_pixel,
+        cases=(
+            lambda rng: (-0.5, 319.5, 1280, 640),  # straight ahead, on the edge of the first pixel
+            lambda rng: (1290.0, 400.0, 1280, 640),  # a box across the seam goes on beyond the width
+            lambda rng: (-20.0, 400.0, 1280, 640),
+            lambda rng: (100.0, -0.5, 1280, 640),  # straight up
+        ),
         mistakes=(
             Mistake(
-                lambda u, v, w, h: _from_angles((u / w - 0.5) * 2 * np.pi, (0.5 - v / h) * np.pi),
-                "Your picture is mirrored: columns run to the right, but azimuth grows to the left (y is left).",
+                _slip(azimuth=lambda a: a + np.pi),
+                "That is our own panorama, whose middle is ahead. In this one the left edge is ahead.",
             ),
             Mistake(
-                lambda u, v, w, h: _from_angles((0.5 - u / w) * 2 * np.pi, (v / h - 0.5) * np.pi),
+                lambda c, r, w, h: _slip(azimuth=lambda a: a + np.pi)(c - 0.5, r - 0.5, w, h),
+                "That is our own panorama, in edge coordinates. Here the left edge is ahead, 0 a pixel's middle.",
+            ),
+            Mistake(
+                _slip(azimuth=lambda a: -a),
+                "Mirrored: to the right, which is where columns go, y gets less, not more.",
+            ),
+            Mistake(
+                _slip(elevation=lambda e: -e),
                 "Yours is upside down: row 0 is straight up, so elevation falls with the row.",
             ),
             Mistake(
-                lambda u, v, w, h: _from_angles((u / w - 0.5) * 2 * np.pi, (v / h - 0.5) * np.pi),
+                _slip(azimuth=lambda a: -a, elevation=lambda e: -e),
                 "Both signs are turned around: azimuth falls with the column, elevation falls with the row.",
             ),
             Mistake(
                 _no_cosine,
                 "Your vectors are longer than 1 off the horizon: x and y shrink with the cosine of the elevation.",
             ),
+            Mistake(_slip(azimuth=lambda a: a / 2), "Your panorama spans half a turn: the whole width is 2 pi."),
             Mistake(
-                lambda u, v, w, h: _from_angles((0.5 - u / w) * np.pi, (0.5 - v / h) * np.pi),
-                "Your panorama spans half a turn: the whole width is 2 pi.",
-            ),
-            Mistake(
-                lambda u, v, w, h: _from_angles((0.5 - u / w) * 2 * np.pi, (0.5 - v / h) * 2 * np.pi),
+                _slip(elevation=lambda e: 2 * e),
                 "Your elevation runs over a whole turn: from straight up to straight down it is pi.",
             ),
             Mistake(
-                lambda u, v, w, h: _from_angles(-u / w * 2 * np.pi, (0.5 - v / h) * np.pi),
-                "Your azimuth is 0 at the left edge. It is 0 in the middle: that is where the camera looks.",
-            ),
-            Mistake(
-                _polar_angle,
+                _slip(elevation=lambda e: np.pi / 2 - e),
                 "You measure from straight up, so at the horizon yours is 90 degrees. Elevation is 0 there.",
             ),
             Mistake(
-                lambda u, v, w, h: _from_angles((0.5 - u / w) * 360, (0.5 - v / h) * 180),
+                _slip(np.degrees, np.degrees),
                 "np.cos and np.sin take radians; you give them degrees.",
             ),
             Mistake(
-                lambda u, v, w, h: direction_of(u + 0.5, v + 0.5, w, h),
-                "You add half a pixel. These are edge coordinates already: the middle of the image is W/2, H/2.",
+                lambda c, r, w, h: direction_of(c - 0.5, r - 0.5, w, h),
+                "You take its numbers for edge coordinates: its column 0 is the middle of a pixel, half a pixel on.",
             ),
             Mistake(
-                lambda u, v, w, h: direction_of(u, v, w, h)[[1, 0, 2]],
+                lambda c, r, w, h: direction_of(c - 1, r - 1, w, h),
+                "Half a pixel the wrong way: the middle of its first pixel is at 0.5 in edge coordinates.",
+            ),
+            Mistake(
+                lambda c, r, w, h: direction_of(c, r - 0.5, w, h),
+                "The columns are right. Its rows are counted from pixel centres, too.",
+            ),
+            Mistake(
+                lambda c, r, w, h: direction_of(c - 0.5, r, w, h),
+                "The rows are right. Its columns are counted from pixel centres, too.",
+            ),
+            Mistake(
+                lambda c, r, w, h: direction_of(c, r, w, h)[[1, 0, 2]],
                 "x and y are swapped: x (ahead) takes the cosine of the azimuth, y (left) the sine.",
             ),
+            Mistake(_clamped, "A column beyond the edge is a direction, too: do not cut it off there."),
             Mistake(
-                lambda u, v, w, h: direction_of(u, v, 1280, 640),
+                lambda c, r, w, h: direction_of(c, r, 1280, 640),
                 "Your image is always 1280 x 640: use the arguments.",
             ),
             Mistake(
-                lambda u, v, w, h: _from_angles(u / w * 2 * np.pi, (0.5 - v / h) * np.pi),
-                "Your azimuth is 0 at the left edge and grows to the right. It is 0 in the middle and grows leftwards.",
-            ),
-            Mistake(
-                lambda u, v, w, h: _from_angles((0.5 - u / w) * 2 * np.pi, (0.5 - v / w) * np.pi),
+                lambda c, r, w, h: _from_angles(_angles(c, r, w, h)[0], (0.5 - (r + 0.5) / w) * np.pi),
                 "You divide the row by the width. Rows run over the height.",
             ),
             Mistake(
-                lambda u, v, w, h: direction_of(u, v, w, h)[[1, 2, 0]] * [-1, -1, 1],
+                lambda c, r, w, h: direction_of(c, r, w, h)[[1, 2, 0]] * [-1, -1, 1],
                 "That is x right, y down, z forward, as in a depth camera. Here x is ahead, y left, z up.",
             ),
             Mistake(
-                lambda u, v, w, h: np.array([*direction_of(u, v, w, h)[:2], np.cos((0.5 - v / h) * np.pi)]),
+                lambda c, r, w, h: np.array([*direction_of(c, r, w, h)[:2], np.cos(_angles(c, r, w, h)[1])]),
                 "z is the sine of the elevation: 0 on the horizon, 1 straight up.",
             ),
         ),
@@ -194,6 +330,14 @@ EXERCISES = [
         number="11.2",
         reference=column_gap_deg,
         inputs=_columns,
+        cases=(
+            lambda rng: (960.0, 320.0, 1280),  # half a turn: -180, by the range
+            lambda rng: (320.0, 960.0, 1280),
+            lambda rng: (77.0, 77.0, 1280),
+            lambda rng: (0.0, 1280.0, 1280),  # both edges are one line
+            lambda rng: (1410.0, 130.0, 1280),  # u_max of a box across the seam
+            lambda rng: (10.0, 1900.0, 1280),
+        ),
         mistakes=(
             Mistake(
                 _plain_gap,
@@ -214,6 +358,22 @@ EXERCISES = [
             Mistake(
                 lambda a, b, w: _plain_gap(a, b, w) % 360,
                 "Yours lies in [0, 360): something 10 degrees to the right comes out as 350.",
+            ),
+            Mistake(
+                lambda a, b, w: 180.0 - (180 - _plain_gap(a, b, w)) % 360,
+                "Half a turn is -180 here, not +180: the range is [-180, 180), its right end is out.",
+            ),
+            Mistake(
+                lambda a, b, w: abs(_plain_gap(a, b, w) + 180) % 360 - 180,
+                "An absolute value before the remainder spoils gaps below -180. `%` alone copes with negative numbers.",
+            ),
+            Mistake(
+                lambda a, b, w: float(np.sign(_plain_gap(a, b, w)) * (abs(_plain_gap(a, b, w)) % 180)),
+                "Size and sign apart lose the way round: a gap of 200 degrees one way is 160 the other way.",
+            ),
+            Mistake(
+                lambda a, b, w: float(min(abs(_plain_gap(a, b, w)), 360 - abs(_plain_gap(a, b, w)))),
+                "The sign is lost, and beyond a whole turn yours is negative. Wrap the signed gap instead.",
             ),
             Mistake(
                 _one_side_only,
@@ -240,8 +400,12 @@ EXERCISES = [
                 "Your image is always 1280 columns wide: use the argument.",
             ),
             Mistake(
-                lambda a, b, w: float(np.sign(a - b) * abs(column_gap_deg(a, b, w))),
+                lambda a, b, w: float(np.sign(a - b) * min(abs(a - b), w - abs(a - b)) / w * 360),
                 "The size is right. But across the seam the shorter way goes to the other side: wrap sign and all.",
+            ),
+            Mistake(
+                lambda a, b, w: float(np.degrees(np.angle(np.exp(2j * np.pi * (a - b) / w)))),
+                "Half a turn comes out as 180 in one direction, as -180 in the other. The range has -180 alone.",
             ),
             Mistake(
                 lambda a, b, w: float(column_gap_deg(a, b, 2 * w)),
@@ -259,64 +423,101 @@ EXERCISES = [
     ),
     Exercise(
         number="11.3",
-        reference=mean_column,
-        inputs=_columns_of_an_object,
+        reference=shortest_stretch,
+        inputs=_points_of_an_object,
+        cases=(
+            lambda rng: (np.array([1270.0, 2.0, 1278.0, 18.0]), 1280),
+            lambda rng: (np.array([300.0]), 1280),
+            lambda rng: (np.array([5.0, 5.0, 5.0]), 640),  # equal ones
+            lambda rng: (np.array([0.0, 1200.0]), 1280),  # a point on the seam itself
+            lambda rng: (np.array([630.0, 645.0, 650.0]), 1280),  # across the middle: no matter at all
+            lambda rng: (np.array([300.0, 700.0, 1000.0, 1250.0]), 1280),  # more than half a turn
+            lambda rng: (np.array([300.0, 310.0, 320.0, 330.0, 700.0, 1100.0]), 1280),  # most of them at one end
+        ),
         mistakes=(
             Mistake(
-                lambda columns, width: float(np.mean(columns)),
-                "That is the plain mean: across the seam it lands on the opposite side. Average on the circle.",
+                lambda columns, width: (float(columns.min()), float(columns.max())),
+                "Least and greatest column: across the seam that is the long way round, through the whole picture.",
+            ),
+            Mistake(_signed_start, "Your u_min is negative across the seam. Move both by a turn: 0 <= u_min < width."),
+            Mistake(
+                lambda columns, width: tuple(u % width for u in shortest_stretch(columns, width)),
+                "The remainder of u_max turns the stretch inside out: across the seam it must pass the width.",
             ),
             Mistake(
-                lambda columns, width: float(np.median(columns)),
-                "A median does not know the circle either: across the seam it lies on one edge.",
+                lambda columns, width: shortest_stretch(columns, width)[::-1],
+                "The right values, but u_max first. Give u_min, u_max.",
             ),
             Mistake(
-                _unrolled,
-                "Nearly: you unroll the columns and take a plain mean. Add up unit vectors: not quite the same.",
+                _split_in_the_middle,
+                "You cut at mid width: a stretch across the middle of the picture is torn. Look for the largest gap.",
             ),
             Mistake(
-                _signed,
-                "Some of yours are negative: columns lie in [0, width). A remainder mends it.",
+                _around_the_first,
+                "You unroll around the first point: a stretch of more than half a turn is torn on the other side.",
             ),
             Mistake(
-                _by_half_circle,
-                "The whole width is one turn, 2 pi. In yours the two edges are opposite directions.",
+                _around_the_mean,
+                "You unroll around a mean direction: for a stretch of more than half a turn it may be in the gap.",
+            ),
+            Mistake(_largest_gap_itself, "That is the empty part, the largest gap. The points are in all the rest."),
+            Mistake(
+                _gaps_without_the_last,
+                "One gap is missing: the one from the last point across the seam to the first.",
             ),
             Mistake(
-                _swapped_arctan2,
-                "np.arctan2 takes the sine first, then the cosine.",
+                lambda columns, width: (
+                    shortest_stretch(columns, width)[0],
+                    float(np.ptp(shortest_stretch(columns, width))),
+                ),
+                "The second number is the length of the stretch. Asked is u_max, where it ends.",
             ),
             Mistake(
-                _arctan_of_ratio,
-                "np.arctan cannot tell a direction from its opposite. np.arctan2, with two arguments, can.",
-            ),
-            Mistake(
-                _still_an_angle,
-                "That is an angle in radians. Turn it into a column.",
-            ),
-            Mistake(
-                lambda columns, width: float((columns.min() + columns.max()) / 2),
-                "The middle between the least and the greatest column: across the seam that is the opposite side.",
-            ),
-            Mistake(
-                lambda columns, width: mean_column(columns, 1280),
+                lambda columns, width: shortest_stretch(columns, 1280),
                 "Your image is always 1280 columns wide: use the argument.",
             ),
+        ),
+    ),
+    Exercise(
+        number="11.4",
+        level="challenge",
+        reference=knock,
+        inputs=_a_knock,
+        cases=(_no_knock, _points_behind),
+        others=(knock_linear, _from_angle_differences),
+        tolerance=0.05,
+        mistakes=(
             Mistake(
-                lambda columns, width: (width / 2 - mean_column(columns, width)) % width,
-                "You go to angles from the middle, leftwards: come back to columns the same way, not from the edge.",
+                lambda b, a, w, h: knock(a, b, w, h),
+                "Your signs are turned around. A camera that turns left sees everything move to the right.",
             ),
             Mistake(
-                lambda columns, width: -mean_column(columns, width) % width,
-                "Your mean is mirrored: come back from the angle to the column the same way as you went.",
+                lambda b, a, w, h: tuple(np.radians(knock(b, a, w, h)).tolist()),
+                "These are radians; the task asks for degrees.",
             ),
             Mistake(
-                lambda columns, width: float(np.angle(np.exp(1j * columns / width * 360).sum()) / 360 * width % width),
-                "np.sin and np.cos take radians: the whole width is 2 pi.",
+                lambda b, a, w, h: knock(b, a, w, h)[::-1],
+                "The right angles, but yaw first. The order is roll, pitch, yaw.",
             ),
             Mistake(
-                lambda columns, width: float(round(mean_column(columns, width))),
-                "Columns are edge coordinates here, with fractions: do not round.",
+                _yaw_alone,
+                "That is yaw alone, as if the axis stood upright. Look how a tilt moves points ahead, and at the left.",
+            ),
+            Mistake(
+                _rows_and_columns,
+                "Rows are not pitch: a pitch lifts what is ahead and sinks what is behind, and the mean hides both.",
+            ),
+            Mistake(
+                _not_across_the_seam,
+                "Points that crossed the seam seem to have moved by a whole turn. Compute with unit vectors, or wrap.",
+            ),
+            Mistake(
+                lambda b, a, w, h: (*np.multiply(knock(b, a, w, h), [1, -1, 1]).tolist(),),
+                "Roll and yaw are right, pitch has the wrong sign: a positive one lowers the nose (y is left).",
+            ),
+            Mistake(
+                lambda b, a, w, h: (knock(b, a, w, h)[1], knock(b, a, w, h)[0], knock(b, a, w, h)[2]),
+                "Roll and pitch are swapped: roll turns about x, the axis that points ahead.",
             ),
         ),
     ),

@@ -69,7 +69,7 @@ def circle_on_panorama(ring: np.ndarray, width: int, height: int) -> np.ndarray:
 def sphere_axes(axes: Axes, title: str) -> None:
     """Axes for a sphere: no ticks, room for the names of its axes. Units: the sphere's radius."""
     axes.grid(False)
-    axes.set(title=title, xlim=(-1.2, 1.2), ylim=(-1.2, 1.2), aspect="equal", xticks=[], yticks=[])
+    axes.set(title=title, xlim=(-1.35, 1.35), ylim=(-1.35, 1.35), aspect="equal", xticks=[], yticks=[])
     axes.set(xlabel="right [radii]", ylabel="up [radii]")
 
 
@@ -99,7 +99,7 @@ def move_lines(artists: list, view: SphereView) -> None:
     for k, axis in enumerate(np.eye(3)):
         end = view.on_screen(axis)
         artists[4 + 2 * k].set_data([0, end[0]], [0, end[1]])
-        artists[5 + 2 * k].set_position(1.12 * end)
+        artists[5 + 2 * k].set_position(end + 0.22 * end / max(np.linalg.norm(end), 1e-9))  # beside a marker there
 
 
 def point_artists(panorama: Axes, sphere: Axes) -> dict:

@@ -2,8 +2,10 @@
 
     python -m course_lib.lessons.lesson_11.write_sphere_scene
 
-writes notebooks/scenes/11_sphere.html: one file with its picture inside, which needs no network and no kernel. Its
-script computes with the same two formulas as `panorama.pixel_to_direction` and `panorama.direction_to_pixel`.
+writes notebooks/scenes/11_sphere.html: one file with its picture inside, which needs no network and no kernel. It is
+not made with PyVista as the other lessons' scenes are: those can be turned, but nothing in them can be dragged. Its
+script is the course's own, and computes with the same two formulas as `panorama.pixel_to_direction` and
+`panorama.direction_to_pixel`.
 """
 
 from __future__ import annotations

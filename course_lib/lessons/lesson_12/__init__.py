@@ -2,6 +2,7 @@
 
 from course_lib.lessons.kit.room_photographs import the_image
 from course_lib.lessons.lesson_12.figures import crops_figure, hues_and_saturations, idea_figure, threshold_figure
+from course_lib.lessons.lesson_12.learning import anchors, training_figure, training_picture
 from course_lib.lessons.lesson_12.panel import PANELS
 from course_lib.lessons.lesson_12.scores import colours_against_map, precision_and_recall
 from course_lib.lessons.lesson_12.seam_cuts import (
@@ -11,11 +12,13 @@ from course_lib.lessons.lesson_12.seam_cuts import (
     cut_sofas,
     cut_table,
     detector,
+    said_of_the_sofa,
     true_object,
 )
 
 __all__ = [
     "PANELS",
+    "anchors",
     "chosen_threshold",
     "colours_against_map",
     "crops_figure",
@@ -27,7 +30,10 @@ __all__ = [
     "hues_and_saturations",
     "idea_figure",
     "precision_and_recall",
+    "said_of_the_sofa",
     "the_image",
     "threshold_figure",
+    "training_figure",
+    "training_picture",
     "true_object",
 ]

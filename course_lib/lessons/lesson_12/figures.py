@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import cv2
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
+from course_lib.experiments.rooms_summary import wilson_percent
+from course_lib.lessons.lesson_12.scores import ThresholdScore
 from course_lib.plots import figures
 from course_lib.plots.figures import BLACK, VERMILION
-from course_lib.plots.panorama_drawing import class_style
+from course_lib.plots.panorama_drawing import CLASS_STYLES, class_style
 from course_lib.spherical_stereo.detection.seam import appended_columns, extend_seam, valid_range
 
 CROP = 160  # pixels of the square in which a box is shown
+GAMMA = 0.65  # of pictures as they are drawn: the rooms are dim
+
+
+def brighter(image_bgr: np.ndarray) -> np.ndarray:
+    """The picture as it is drawn, its dark parts lifted; the network gets it as it is."""
+    return cv2.LUT(image_bgr, np.round(255 * (np.arange(256) / 255) ** GAMMA).astype(np.uint8))
+
+
+def class_legend(figure: Figure, labels: Iterable[str] = CLASS_STYLES) -> None:
+    """Which colour a box of a class has, below everything else."""
+    shown = [label for label in CLASS_STYLES if label in set(labels)]
+    handles = [Line2D([], [], color=class_style(label)[0], linewidth=2.4) for label in shown]
+    figure.legend(handles, shown, loc="outside lower center", ncols=len(shown), frameon=False, fontsize=8)
 
 
 def outline(box: Sequence[float]) -> np.ndarray:
@@ -32,7 +48,9 @@ def extended_axes(axes: Axes, image_bgr: np.ndarray, title: str) -> list[Artist]
     """
     height, width = image_bgr.shape[:2]
     end = width + appended_columns(width)
-    shown = axes.imshow(extend_seam(image_bgr)[..., ::-1], extent=(0, end, height, 0), interpolation="nearest")
+    shown = axes.imshow(
+        extend_seam(brighter(image_bgr))[..., ::-1], extent=(0, end, height, 0), interpolation="nearest"
+    )
     pale = axes.add_patch(Rectangle((width, 0), end - width, height, color="white", alpha=0.35, linewidth=0))
     seam = axes.axvline(width, color=VERMILION, linewidth=2.0)
     edges = [axes.axvline(edge, color=BLACK, linewidth=1.6, linestyle="--") for edge in valid_range(width)]
@@ -51,17 +69,22 @@ def idea_figure(image_bgr: np.ndarray, boxes: np.ndarray, labels: Sequence[str],
         style = {"linewidth": 2.2, "linestyle": "-"} if counts else {"linewidth": 1.6, "linestyle": ":"}
         axes.plot(*outline(box).T, color=colour, **style)
         axes.plot((box[0] + box[2]) / 2, (box[1] + box[3]) / 2, ".", color=colour, markersize=6)
+    class_legend(figure, labels)
     return figure
 
 
-def threshold_figure(scores: dict[float, tuple[float, float]], chosen: float) -> Figure:
-    """Precision and recall over the score threshold."""
+def threshold_figure(scores: dict[float, ThresholdScore], chosen: float) -> Figure:
+    """Precision and recall over the score threshold, with Wilson's 95 % intervals."""
     figure, axes = figures.new_figure(size=(6.4, 3.2))
-    values = np.array([scores[t] for t in scores])
-    for index, name in enumerate(("precision", "recall")):
-        axes.plot(list(scores), values[:, index], **figures.line_style(index), label=name)
+    for index, (name, total) in enumerate((("precision", "made"), ("recall", "wanted"))):
+        shares = np.array([getattr(one, name) for one in scores.values()])
+        ends = [wilson_percent(one.right, getattr(one, total)) for one in scores.values()]
+        bars = np.abs(np.array(ends).T / 100 - shares)
+        axes.errorbar(
+            np.add(list(scores), 0.006 * index), shares, bars, **figures.line_style(index), label=name, capsize=3
+        )
     axes.axvline(chosen, color=BLACK, linewidth=1.2, linestyle="--", label="chosen in training")
-    axes.set(title="A threshold is a bargain", xlabel="score threshold [-]", ylabel="share [-]", ylim=(0, 1.04))
+    axes.set(title="A threshold is a bargain", xlabel="score threshold [-]", ylabel="share [-]", ylim=(0.4, 1.02))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     return figure
 

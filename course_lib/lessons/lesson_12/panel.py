@@ -13,7 +13,16 @@ from matplotlib.patches import Rectangle
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.kit.room_photographs import the_image, the_pair
-from course_lib.lessons.lesson_12.figures import CROP, crop_of, extended_axes, hues_and_saturations, outline, part_of
+from course_lib.lessons.lesson_12.figures import (
+    CROP,
+    brighter,
+    class_legend,
+    crop_of,
+    extended_axes,
+    hues_and_saturations,
+    outline,
+    part_of,
+)
 from course_lib.lessons.lesson_12.seam_cuts import CUTS, best_overlap, cut_sofa, pieces_of_sofa
 from course_lib.plots import figures
 from course_lib.plots.figures import BLACK, BLUE, ORANGE
@@ -38,7 +47,9 @@ def seam_panel(percents: Sequence[int] = CUTS) -> Panel:
     figure, axes = figures.new_figure(size=(9.2, 4.1))
     title = "Dotted: the sofa's exact box. Thick: objects in the end. Thin: seen, but not counted"
     shown, pale, seam, *edges = extended_axes(axes, first.image, title)
-    small = {p: cv2.resize(extend_seam(cut.image), None, fx=0.5, fy=0.5)[..., ::-1] for p, cut in cuts.items()}
+    small = {
+        p: cv2.resize(extend_seam(brighter(cut.image)), None, fx=0.5, fy=0.5)[..., ::-1] for p, cut in cuts.items()
+    }
     hidden = axes.add_patch(Rectangle((width, 0), end - width, height, color="0.9", linewidth=0))
     exact = axes.add_collection(LineCollection([], colors=BLACK, linewidths=1.4, linestyles=":"))
     dropped = axes.add_collection(LineCollection([], linewidths=1.2, linestyles=(0, (3, 2))))
@@ -47,6 +58,7 @@ def seam_panel(percents: Sequence[int] = CUTS) -> Panel:
         axes.text(0, 0, "", fontsize=8, color="white", va="bottom", bbox={"facecolor": BLACK, "pad": 1.0})
         for _ in range(4)
     ]
+    class_legend(figure)
     live = LiveFigure(figure, [shown, pale, hidden, seam, *edges, exact, dropped, kept, *names])
 
     def draw(cut: float, extension: bool, threshold: float) -> Drawing:
@@ -74,14 +86,14 @@ def seam_panel(percents: Sequence[int] = CUTS) -> Panel:
         lines = [
             f"seam at {cut:.0f} % of the sofa, {'with' if extension else 'without'} the extension, threshold "
             f"{threshold:.2f}",
-            f"boxes on this sofa: {len(pieces)}; best overlap with its exact box (IoU) {overlap:.1f}; "
+            f"boxes on this sofa: {len(pieces)}; best overlap with its exact box (IoU) {overlap:.2f}; "
             f"in the image: {len(seen.boxes)} boxes, {len(objects.boxes)} objects in the end",
         ]
         return Drawing(live.png(), f"A panorama with the boxes of detected objects. {lines[0]}", "\n".join(lines))
 
     controls = [
         Slider("cut", "seam at [% of the sofa]", 0, 100, 50, 10),
-        Switch("extension", "append the left quarter (extension)"),
+        Switch("extension", "append the left quarter (extension)", True),
         Slider("threshold", "score threshold [-]", 0.1, 0.9, 0.5, 0.05),
     ]
     return Panel("12 slide the seam", controls, draw)

@@ -18,8 +18,26 @@ from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 SCORED_PAIRS = (0, 3, 9, 15)  # of experiment 1, spread over the room (chosen)
 
 
-def precision_and_recall(thresholds: Sequence[float]) -> dict[float, tuple[float, float]]:
-    """Precision and recall at IoU 0.5 over SCORED_PAIRS' upper images, for each score threshold.
+class ThresholdScore(NamedTuple):
+    """What a score threshold gives: boxes that are right, boxes made, objects that there are."""
+
+    right: int
+    made: int
+    wanted: int
+
+    @property
+    def precision(self) -> float:
+        """Share of the boxes that are right; NaN where there are none."""
+        return self.right / self.made if self.made else float("nan")
+
+    @property
+    def recall(self) -> float:
+        """Share of the objects that are found."""
+        return self.right / self.wanted
+
+
+def precision_and_recall(thresholds: Sequence[float]) -> dict[float, ThresholdScore]:
+    """Scores at IoU 0.5 over SCORED_PAIRS' upper images, for each score threshold.
 
     The network runs once an image; objects that hardly show are neither right nor wrong.
     """
@@ -32,10 +50,9 @@ def precision_and_recall(thresholds: Sequence[float]) -> dict[float, tuple[float
             for pair, found in zip(pairs, seen, strict=True)
         ]
         right, made = (
-            sum(count) for count in zip(*((m.correct.sum(), len(m.correct)) for m in matchings), strict=True)
+            int(sum(part)) for part in zip(*((m.correct.sum(), len(m.correct)) for m in matchings), strict=True)
         )
-        wanted = sum(matching.n_objects for matching in matchings)
-        scores[threshold] = (right / made if made else float("nan"), right / wanted)
+        scores[threshold] = ThresholdScore(right, made, sum(matching.n_objects for matching in matchings))
     return scores
 
 

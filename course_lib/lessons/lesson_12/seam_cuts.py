@@ -115,6 +115,27 @@ def best_overlap(found: Found, sofa: np.ndarray, width: int) -> float:
     return float((shared / (box_area(boxes) + box_area(sofa) - shared)).max())
 
 
+class OnSofa(NamedTuple):
+    """What the network says of a place on the sofa, whatever it takes it for."""
+
+    label: str
+    score: float
+    columns: tuple[float, float]
+    overlap: float
+    """IoU with the sofa's exact box."""
+
+
+def said_of_the_sofa(cut: Cut, extension: bool, threshold: float) -> list[OnSofa]:
+    """Every box of which at least half lies inside the sofa's exact box, the surest first."""
+    found, width = cut.objects(extension, threshold), cut.image.shape[1]
+    boxes = wrapped_box(found.boxes, width)
+    shared = shared_area(boxes, cut.sofa[None], width)[:, 0]
+    overlap = shared / (box_area(boxes) + box_area(cut.sofa) - shared)
+    rows = zip(found.labels, found.scores.tolist(), boxes[:, [0, 2]].tolist(), overlap.tolist(), strict=True)
+    on = [OnSofa(label, score, tuple(ends), iou) for label, score, ends, iou in rows]
+    return [on[i] for i in np.argsort(-found.scores) if shared[i] >= 0.5 * box_area(boxes)[i]]
+
+
 def cut_table(cuts: dict[int, Cut], threshold: float) -> str:
     """For each place of the seam: boxes on the sofa and the best overlap, without and with the extension."""
     lines = ["seam at [% of the sofa]   without: boxes, best IoU   with: boxes, best IoU"]
@@ -123,7 +144,7 @@ def cut_table(cuts: dict[int, Cut], threshold: float) -> str:
         for extension in (False, True):
             found, width = cut.objects(extension, threshold), cut.image.shape[1]
             count, overlap = len(pieces_of_sofa(found, cut.sofa, width)), best_overlap(found, cut.sofa, width)
-            row += f"{count:>10}{overlap:>11.1f}" + " " * 6
+            row += f"{count:>10}{overlap:>11.2f}" + " " * 6
         lines.append(row.rstrip())
     return "\n".join(lines)
 

@@ -19,7 +19,7 @@ from course_lib.spherical_stereo.matching.epipolar import (
     epipolar_pairs,
 )
 from course_lib.spherical_stereo.matching.feature_matching import RATIO
-from course_lib.spherical_stereo.matching.features import PanoramaFeatures, inside_box
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, inside_box
 from course_lib.spherical_stereo.matching.object_matching import pair_by_most_matches
 from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel
 
@@ -115,6 +115,12 @@ def turned_scene(one: Scene, columns: float) -> Scene:
         features=turned(lower.features, columns),
     )
     return one._replace(lower=moved)
+
+
+def negative_scene(one: Scene) -> Scene:
+    """The same place with its lower photograph as a negative: everything where it was, and nothing looks the same."""
+    image = 255 - one.lower.image
+    return one._replace(lower=one.lower._replace(image=image, features=detect_features(image)))
 
 
 def matches_when_turned(one: Scene, columns: float) -> tuple[int, int]:

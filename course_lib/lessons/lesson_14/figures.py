@@ -1,4 +1,4 @@
-"""Figures of lesson 14: the triangle of two cameras and a point, objects from above, errors over the range."""
+"""Figures of lesson 14: the triangle of two cameras and a point, objects from above, the ellipse, errors over range."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc
 
+from course_lib.lessons.lesson_14.noise import ellipse
 from course_lib.plots.figures import BLUE, ORANGE, VERMILION, line_style, new_figure
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
@@ -98,3 +99,41 @@ def _logarithmic(axes: Axes, x_ticks: Sequence[float], y_ticks: Sequence[float])
     axes.set_xticks(x_ticks, [f"{tick:g}" for tick in x_ticks])
     axes.set_yticks(y_ticks, [f"{tick:g}" for tick in y_ticks])
     axes.minorticks_off()
+
+
+def ellipse_figure(
+    place: np.ndarray, covariance: np.ndarray, samples: np.ndarray, ways: np.ndarray, sigmas: np.ndarray
+) -> Figure:
+    """The error ellipse from above, in the room and drawn large, with its two axes.
+
+    place: `(3,)`, covariance: `(3, 3)` of it, samples: `(n, 3)` noisy measurements, metres in the upper camera's frame.
+    ways: `(2, 2)`, the axes' unit vectors in its columns, sigmas: `(2,)` metres along them, the smaller first.
+    """
+    figure, (room, large) = new_figure(1, 2, size=(9.4, 4.4))
+    room.plot([0, 1.25 * place[0]], [0, 1.25 * place[1]], color="0.6", linewidth=0.9, label="ray")
+    room.plot(0, 0, "o", color="black", label="rig")
+    room.plot(*ellipse(covariance[:2, :2], place[:2]).T, color=BLUE, linewidth=1.6, label="two sigma")
+    room.set(title="From above", xlabel="x, forward [m]", ylabel="y, left [m]", aspect="equal")
+    room.legend(fontsize=8)
+    along, across = (way * np.sign(way @ side) for way, side in zip(ways.T[::-1], _ray_and_left(place), strict=True))
+    turn = np.stack([along, across])
+    q = 100 * (samples[:, :2] - place[:2]) @ turn.T
+    large.plot(*q.T, ".", color="0.6", markersize=2.5, label=f"{len(samples)} noisy measurements")
+    for n_sigma, line in ((1, "-"), (2, "--")):
+        outline = ellipse(1e4 * turn @ covariance[:2, :2] @ turn.T, np.zeros(2), n_sigma)
+        large.plot(*outline.T, line, color=BLUE, linewidth=1.6, label=f"{n_sigma} sigma")
+    ends = 100 * np.diag(sigmas[::-1])
+    for end, colour, name in zip(ends, (VERMILION, ORANGE), ("along", "across"), strict=True):
+        large.annotate("", end, (0, 0), arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 2})
+        large.plot([], [], color=colour, linewidth=2, label=f"{name}: {end.max():.1f} cm")
+    large.set(title="Turned, and stretched across the ray", xlabel="along the ray, away from the rig [cm]")
+    large.set(ylabel="across it, left [cm]", xlim=(-330 * sigmas[1], 330 * sigmas[1]))
+    large.set(ylim=(-400 * sigmas[0], 550 * sigmas[0]))
+    large.legend(loc="upper center", fontsize=8, ncols=2)
+    return figure
+
+
+def _ray_and_left(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """From above: the direction away from the rig, and the one to the left of it."""
+    ray = place[:2] / np.linalg.norm(place[:2])
+    return ray, np.array([-ray[1], ray[0]])

@@ -8,17 +8,25 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.experiments.room import counts_as_object
+from course_lib.lessons.kit.intervals import median_text
 from course_lib.lessons.kit.panorama_features import scene
 from course_lib.lessons.kit.room_photographs import pair_of, room_map, room_recording
 from course_lib.spherical_stereo.detection.boxes import box_centre, wrapped_box
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.matching.object_matching import match_views
 from course_lib.spherical_stereo.panorama import direction_from_angles, pixel_to_direction
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.ranging.triangulation import OK, object_position, triangulation_outcome
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
+from course_lib.spherical_stereo.ranging.triangulation import (
+    OK,
+    object_position,
+    triangulation_covariance,
+    triangulation_outcome,
+)
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
-from course_lib.spherical_stereo.recording import StereoRecording
+from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject
 
+NO_DISTANCE = 100.0
+"""Metres that a missing distance counts as where errors are ranked."""
 PLACES = ("02_a", "06_b", "08_a", "09_a")  # of experiment_2, where features are matched: all over the room
 
 
@@ -49,13 +57,11 @@ def exact_box_ranges(recording: StereoRecording, sigma_pixels: float = 0.0, seed
     rng, landmarks, size = np.random.default_rng(seed), room_map(), (recording.width, recording.height)
     true, measured = [], []
     for pair in recording.pairs:
-        upper, lower = (
-            {thing.number: thing.visible_box for thing in things if counts_as_object(thing, recording.width)}
-            for things in (pair.upper_objects, pair.lower_objects)
-        )
+        upper, lower = _counting(pair, recording.width)
         for number in sorted(set(upper) & set(lower)):
+            exact = upper[number].visible_box, lower[number].visible_box
             shifts = sigma_pixels * rng.standard_normal(2)
-            boxes = [np.add(box, [0, s, 0, s]) for box, s in zip((upper[number], lower[number]), shifts, strict=True)]
+            boxes = [np.add(box, [0, s, 0, s]) for box, s in zip(exact, shifts, strict=True)]
             true.append(np.linalg.norm(landmarks.positions[number] - pair.pose[:2]))
             measured.append(box_range(*boxes, recording.rig.baseline, size))
     return Distances(np.array(true), np.array(measured), np.full(len(true), np.nan))
@@ -135,7 +141,63 @@ def ranges_of_one_object(name: str, number: int) -> dict[str, float]:
     }
 
 
-def typical_error(measured: np.ndarray, true: np.ndarray, bins: Sequence[tuple[float, float]]) -> list[float]:
-    """Median of |measured - true| [m] of the objects whose true range lies in each bin (least, greatest) [m]."""
-    error = np.abs(measured - true)
-    return [float(np.nanmedian(error[(true >= low) & (true < high)])) for low, high in bins]
+def azimuth_gaps(recording: StereoRecording) -> np.ndarray:
+    """By how many columns the centres of two exact boxes of one object differ `(n,)`, all objects of a recording."""
+    width, gaps = recording.width, []
+    for pair in recording.pairs:
+        upper, lower = _counting(pair, width)
+        for number in set(upper) & set(lower):
+            apart = box_centre(upper[number].visible_box)[0] - box_centre(lower[number].visible_box)[0]
+            gaps.append(abs((apart + width / 2) % width - width / 2))
+    return np.array(gaps)
+
+
+def _counting(pair: StereoPair, width: float) -> list[dict[int, TrueObject]]:
+    """The objects of a pair that count, upper and lower, by their number in the room."""
+    return [
+        {thing.number: thing for thing in things if counts_as_object(thing, width)}
+        for things in (pair.upper_objects, pair.lower_objects)
+    ]
+
+
+class PlacesInSpace(NamedTuple):
+    """Objects of one pair of photographs in the room: z up, the floor at 0, metres."""
+
+    labels: tuple[str, ...]
+    places: np.ndarray
+    """`(n, 3)`, from the centres of exact boxes."""
+    covariances: np.ndarray
+    """`(n, 3, 3)` of these places."""
+    true: np.ndarray
+    """`(n, 3)`: the map's x and y. A map knows no height: z is the measured one."""
+    cameras: np.ndarray
+    """`(2, 3)`, upper and lower."""
+
+
+def places_in_space(recording: StereoRecording, name: str, sigma: float) -> PlacesInSpace:
+    """Places of the objects of one pair, with their covariances for noise of sigma radians on every angle."""
+    pair, size, rig = pair_of(recording, name), (recording.width, recording.height), recording.rig
+    upper, lower = _counting(pair, recording.width)
+    numbers = sorted(set(upper) & set(lower))
+    rays = [
+        pixel_to_direction(np.array([box_centre(seen[k].visible_box) for k in numbers]), *size)
+        for seen in (upper, lower)
+    ]
+    x, y, heading = pair.pose
+    turn = np.eye(3)
+    turn[:2, :2] = rotation_2d(heading)
+    above = np.array([x, y, rig.upper_height])
+    places = object_position(*rays, rig.baseline) @ turn.T + above
+    covariances = turn @ triangulation_covariance(*rays, rig.baseline, sigma, sigma) @ turn.T
+    true = np.column_stack([room_map().positions[numbers], places[:, 2]])
+    cameras = np.array([above, above - [0, 0, rig.baseline]])
+    return PlacesInSpace(tuple(upper[k].label for k in numbers), places, covariances, true, cameras)
+
+
+def error_texts(errors: np.ndarray, true: np.ndarray, bins: Sequence[tuple[float, float]]) -> str:
+    """Median error [m] with its bootstrap interval, of the objects whose true range lies in each bin [m].
+
+    No distance (NaN) counts as an error of `NO_DISTANCE`: greater than any other, or the worst boxes would not count.
+    """
+    errors = np.where(np.isnan(errors), NO_DISTANCE, errors)
+    return ", ".join(median_text(errors[(true >= low) & (true < high)], 2) for low, high in bins)

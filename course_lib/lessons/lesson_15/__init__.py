@@ -4,7 +4,7 @@ from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.lessons.lesson_15.figures import centroids_figure, sofas_figure, terms_figure
 from course_lib.lessons.lesson_15.panel import PANELS, weights_panel
-from course_lib.lessons.lesson_15.scores import PAIR, SOFAS, hidden_score, score
+from course_lib.lessons.lesson_15.scores import PAIR, SOFAS, hidden_score, score, two_searches
 
 __all__ = [
     "PAIR",
@@ -17,5 +17,6 @@ __all__ = [
     "score",
     "sofas_figure",
     "terms_figure",
+    "two_searches",
     "weights_panel",
 ]

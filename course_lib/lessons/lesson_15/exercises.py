@@ -1,4 +1,4 @@
-"""Exercises of lesson 15: the hue term on the circle, the distance term as a table, the repeated minimum."""
+"""Exercises of lesson 15: the hue term, the distance term, the repeated minimum with its margins, the centroid."""
 
 from __future__ import annotations
 
@@ -34,6 +34,12 @@ def _hues(rng: np.random.Generator) -> tuple:
     return seen, on_map, rng.uniform(0.5, 3)
 
 
+def _ends_of_the_circle(rng: np.random.Generator) -> tuple:
+    """Equal hues, opposite ones, 0 against 360, and grey on both sides."""
+    seen = np.array([0.0, 360.0, 0.0, 180.0, 90.0, 270.0, np.nan])
+    return seen, np.array([0.0, 0.0, 360.0, 0.0, 270.0, 90.0, np.nan]), rng.uniform(0.5, 3)
+
+
 # 15.2: the distance term
 
 
@@ -54,6 +60,17 @@ def _points(rng: np.random.Generator) -> tuple:
     if rng.random() < 0.5:
         x_m[-1] = x_m[:-1].mean(axis=0) + rng.uniform(-0.02, 0.02, 2)
     return rng.uniform(-3, 3, (n, 2)), x_m, rng.uniform(0.5, 3)
+
+
+def _landmark_at_the_centroid(rng: np.random.Generator) -> tuple:
+    """Four landmarks around one in the very middle, three of them, and the middle one, less than a metre away."""
+    x_m = np.array([[0.0, 0.0], [0.5, 0.0], [-0.5, 0.0], [0.0, 3.0], [0.0, -3.0]]) + rng.uniform(0, 5, 2)
+    return rng.uniform(-3, 3, (4, 2)), x_m, 1.5
+
+
+def _one_place(rng: np.random.Generator) -> tuple:
+    """All that is observed stands in one place: every observed distance is 0."""
+    return np.tile(rng.uniform(-3, 3, 2), (3, 1)), rng.uniform(0, 6, (5, 2)), 1.0
 
 
 def _distance(change: Callable) -> Callable:
@@ -87,17 +104,65 @@ def _from_lengths(far: Callable) -> Callable:
     return lambda x_c, x_m, p_d: p_d * np.abs(far(x_c)[:, None] - far(x_m)) / np.maximum(far(x_m), 0.1)
 
 
-# 15.3: the repeated minimum
+# 15.3: the repeated minimum, and how close each choice was
 
 
-def match_greedily(cost: np.ndarray) -> np.ndarray:
-    """For every row of cost (n, m) the column it is matched to (n,), -1 for none: cheapest first, one-to-one."""
-    open_cost, columns = cost.copy(), np.full(len(cost), -1)
-    for _ in range(min(cost.shape)):
-        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
-        columns[i] = j
-        open_cost[i], open_cost[:, j] = np.inf, np.inf
-    return columns
+def match_with_margins(cost: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For every row of cost (n, m) its column (n,), -1 for none, and its margin (n,): cheapest first, one-to-one.
+
+    The margin is by how much the row's next best open column was dearer, in the round in which it was matched: inf
+    where no other was open, NaN for a row that got none.
+    """
+    return _matched(cost)
+
+
+def _matched(
+    cost: np.ndarray,
+    rounds: int | None = None,
+    struck: float = np.inf,
+    choose: Callable = np.argmin,
+    rows: bool = True,
+    columns: bool = True,
+    margin: Callable | None = None,
+    nothing: tuple[float, float] = (-1, np.nan),
+) -> tuple[np.ndarray, np.ndarray]:
+    """The repeated minimum, right by default; every argument is a mistake that is made.
+
+    rounds: how many; struck: what strikes out; choose: the flat index of a table; rows, columns: which of the two are
+    struck out; margin: of `(table as it is open, row, column, the whole cost)`; nothing: for rows without a column.
+    """
+    table, margin = np.array(cost, dtype=float), margin or _to_next_best
+    found, margins = np.full(len(cost), nothing[0]), np.full(len(cost), nothing[1])
+    for _ in range(min(cost.shape) if rounds is None else rounds):
+        i, j = np.unravel_index(choose(table), table.shape)
+        with np.errstate(invalid="ignore"):
+            found[i], margins[i] = j, margin(table, i, j, cost)
+        if rows:
+            table[i] = struck
+        if columns:
+            table[:, j] = struck
+    return found, margins
+
+
+def _to_next_best(table: np.ndarray, i: int, j: int, cost: np.ndarray) -> float:
+    others = np.delete(table[i], j)
+    return float(others.min() - table[i, j]) if others.size else np.inf
+
+
+def _to_next_best_of_all(table: np.ndarray, i: int, j: int, cost: np.ndarray) -> float:
+    return _to_next_best(cost, i, j, cost)
+
+
+def _to_next_best_row(table: np.ndarray, i: int, j: int, cost: np.ndarray) -> float:
+    return _to_next_best(table.T, j, i, cost.T)
+
+
+def _next_best_itself(table: np.ndarray, i: int, j: int, cost: np.ndarray) -> float:
+    return _to_next_best(table, i, j, cost) + table[i, j]
+
+
+def _to_second_of_the_table(table: np.ndarray, i: int, j: int, cost: np.ndarray) -> float:
+    return float(np.partition(table, 1, axis=None)[1] - table[i, j]) if table.size > 1 else np.inf
 
 
 def _costs(rng: np.random.Generator) -> tuple:
@@ -106,96 +171,66 @@ def _costs(rng: np.random.Generator) -> tuple:
     return (rng.uniform(-0.2, 1, (n, 1)) + rng.uniform(0, 1, (1, m)) + 0.6 * rng.uniform(-1, 1, (n, m)),)
 
 
+def _unlike_classes(rng: np.random.Generator) -> tuple:
+    """A table as the lesson has it: 100 and more between classes, of which a column too few is left for the last."""
+    (cost,) = _costs(rng)
+    cost = np.vstack([cost, cost[:1] + 0.05])
+    unlike = rng.random((len(cost), 1)) < 0.5
+    unlike[:2] = [[True], [False]]
+    return (cost + 1000 * (unlike != (rng.random((1, cost.shape[1])) < 0.5)),)
+
+
 def _row_by_row(cost):
-    open_cost, columns = cost.copy(), np.full(len(cost), -1)
+    table, found, margins = cost.copy(), np.full(len(cost), -1), np.full(len(cost), np.nan)
     for i in range(min(cost.shape)):
-        columns[i] = np.argmin(open_cost[i])
-        open_cost[:, columns[i]] = np.inf
-    return columns
+        found[i] = np.argmin(table[i])
+        margins[i] = _to_next_best(table, i, found[i], cost)
+        table[:, found[i]] = np.inf
+    return found, margins
 
 
 def _best_sum(cost):
-    columns = np.full(len(cost), -1)
+    found, margins = np.full(len(cost), -1), np.full(len(cost), np.nan)
     rows, chosen = linear_sum_assignment(cost)
-    columns[rows] = chosen
-    return columns
+    found[rows] = chosen
+    margins[rows] = [_to_next_best(cost, i, j, cost) for i, j in zip(rows, chosen, strict=True)]
+    return found, margins
 
 
-def _rows_stay_open(cost):
-    open_cost, columns = cost.copy(), np.full(len(cost), -1)
-    for _ in range(min(cost.shape)):
-        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
-        columns[i] = j
-        open_cost[:, j] = np.inf
-    return columns
+def _each_row_its_own(cost):
+    found = np.argmin(cost, axis=1)
+    return found, np.array([_to_next_best(cost, i, j, cost) for i, j in enumerate(found)])
 
 
-def _columns_stay_open(cost):
-    open_cost, columns = cost.copy(), np.full(len(cost), -1)
-    for _ in range(min(cost.shape)):
-        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
-        columns[i] = j
-        open_cost[i] = np.inf
-    return columns
+# 15.4: how far the centroid moves
 
 
-def _too_many_rounds(cost):
-    open_cost, columns = cost.copy(), np.full(len(cost), -1)
-    for _ in range(len(cost)):
-        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
-        columns[i] = j
-        open_cost[i], open_cost[:, j] = np.inf, np.inf
-    return columns
+def centroid_shift(places: np.ndarray, n_hidden: int) -> float:
+    """Root mean square distance [m] from the centroid of all places (n, 2) to that of those seen, n_hidden not seen.
+
+    sqrt(k / (n (n - k)) sum |x_i - x_G|^2 / (n - 1)), each choice of k hidden ones as likely as any other.
+    """
+    n = len(places)
+    return float(np.sqrt(n_hidden / (n * (n - n_hidden)) * _spread(places) / (n - 1)))
 
 
-def _struck_with_zero(cost):
-    open_cost, columns = cost.copy(), np.full(len(cost), -1)
-    for _ in range(min(cost.shape)):
-        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
-        columns[i] = j
-        open_cost[i], open_cost[:, j] = 0, 0
-    return columns
+def _spread(places: np.ndarray) -> float:
+    return float(np.sum((places - places.mean(axis=0)) ** 2))
 
 
-def _rounds(cost, rounds: int, struck: float = np.inf):
-    open_cost, columns = cost.copy(), np.full(len(cost), -1)
-    for _ in range(rounds):
-        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
-        columns[i] = j
-        open_cost[i], open_cost[:, j] = struck, struck
-    return columns
+def _places(rng: np.random.Generator) -> tuple:
+    n = int(rng.integers(4, 12))
+    return rng.uniform(0, 6, (n, 2)), int(rng.integers(1, n - 1))
 
 
-def _while_positive(cost):
-    open_cost, columns = cost.copy(), np.full(len(cost), -1)
-    while 0 < open_cost.min() < np.inf:
-        i, j = np.unravel_index(np.argmin(open_cost), cost.shape)
-        columns[i] = j
-        open_cost[i], open_cost[:, j] = np.inf, np.inf
-    return columns
+def _shift(formula: Callable) -> Callable:
+    """A mistake: the root of `formula(n, k, sum of squares about the centroid)`."""
 
+    def mistaken(places, n_hidden):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return float(np.sqrt(np.float64(formula(len(places), n_hidden, _spread(places)))))
 
-def _numbers_move_up(cost):
-    open_cost, columns = cost, np.full(len(cost), -1)
-    for _ in range(min(cost.shape)):
-        i, j = np.unravel_index(np.argmin(open_cost), open_cost.shape)
-        columns[i] = j
-        open_cost = np.delete(np.delete(open_cost, i, axis=0), j, axis=1)
-    return columns
-
-
-def _column_by_column(cost):
-    open_cost, columns = cost.copy(), np.full(len(cost), -1)
-    for j in range(min(cost.shape)):
-        i = np.argmin(open_cost[:, j])
-        columns[i] = j
-        open_cost[i] = np.inf
-    return columns
-
-
-def _each_other_s_best(cost):
-    best = np.argmin(cost, axis=1)
-    return np.where(np.argmin(cost, axis=0)[best] == np.arange(len(cost)), best, -1)
+    return mistaken
 
 
 EXERCISES = [
@@ -203,6 +238,8 @@ EXERCISES = [
         number="15.1",
         reference=hue_term,
         inputs=_hues,
+        level="warm-up",
+        cases=(_ends_of_the_circle,),
         mistakes=(
             Mistake(
                 lambda seen, on_map, p_h: np.nan_to_num(p_h * np.abs(seen - on_map) / 360),
@@ -282,6 +319,7 @@ EXERCISES = [
         number="15.2",
         reference=distance_term,
         inputs=_points,
+        cases=(_landmark_at_the_centroid, _one_place),
         mistakes=(
             Mistake(
                 _distance(lambda far_c, far_m: (far_c - far_m) / np.maximum(far_m, 0.1)),
@@ -294,6 +332,14 @@ EXERCISES = [
             Mistake(
                 _distance(lambda far_c, far_m: (far_c - far_m) / far_m),
                 "Two things are missing: the absolute value, and the least divisor of 0.1 m.",
+            ),
+            Mistake(
+                _distance(lambda far_c, far_m: np.abs(far_c - far_m) / np.maximum(far_m, 1.0)),
+                "Your divisor is at least 1 m. The task says 0.1 m.",
+            ),
+            Mistake(
+                _distance(lambda far_c, far_m: np.abs(far_c - far_m) / np.maximum(far_m, 0.01)),
+                "Your divisor is at least 0.01 m. The task says 0.1 m.",
             ),
             Mistake(
                 _distance(lambda far_c, far_m: np.abs(far_c - far_m) / np.minimum(far_m, 0.1)),
@@ -362,11 +408,12 @@ EXERCISES = [
     ),
     Exercise(
         number="15.3",
-        reference=match_greedily,
+        reference=match_with_margins,
         inputs=_costs,
+        cases=(_unlike_classes, lambda rng: (np.array([[0.3]]),), lambda rng: (np.array([[0.2, 0.5, 0.4]]),)),
         mistakes=(
             Mistake(
-                lambda cost: np.argmin(cost, axis=1),
+                _each_row_its_own,
                 "Each row takes its own cheapest column, so one column may be taken twice. It must be one-to-one.",
             ),
             Mistake(
@@ -377,63 +424,121 @@ EXERCISES = [
                 _best_sum,
                 "That is the assignment with the least sum. The paper's search takes the cheapest and never goes back.",
             ),
-            Mistake(_rows_stay_open, "You strike out the column only: a row that is matched may be chosen again."),
-            Mistake(_columns_stay_open, "You strike out the row only: a column may be taken twice."),
             Mistake(
-                _too_many_rounds,
-                "When all is struck out, argmin says 0: a row is matched once more. Stop when one side is used up.",
+                lambda cost: _matched(cost, margin=_to_next_best_of_all),
+                "A column that was struck out before is no choice any more: your margins count columns already taken.",
             ),
             Mistake(
-                _struck_with_zero,
-                "You strike out with 0, which the next search may find the cheapest. What is never the least?",
+                lambda cost: _matched(cost, margin=_to_next_best_row),
+                "You compare with other rows for the same column. Asked is the same row's next best column.",
             ),
             Mistake(
-                lambda cost: match_greedily(-cost),
-                "You take the dearest combination first.",
+                lambda cost: _matched(cost, margin=_next_best_itself),
+                "That is the next best cost itself. By how much is it dearer than the one taken?",
             ),
             Mistake(
-                lambda cost: np.maximum(match_greedily(cost), 0),
+                lambda cost: _matched(cost, margin=_to_second_of_the_table),
+                "You take the second cheapest of the whole table. Asked is the next best column of the *same row*.",
+            ),
+            Mistake(
+                lambda cost: _matched(cost, nothing=(-1, np.inf)),
+                "A row that got no column has no margin: NaN, not inf.",
+            ),
+            Mistake(
+                lambda cost: _matched(cost, nothing=(-1, 0.0)),
+                "A row that got no column has no margin: NaN. A margin of 0 would mean that two columns cost the same.",
+            ),
+            Mistake(
+                lambda cost: _matched(cost, nothing=(0, np.nan)),
                 "Rows that get no column must hold -1; yours hold 0, which is a column.",
             ),
             Mistake(
-                lambda cost: match_greedily(cost.T),
-                "Yours tells for every column its row. Asked is, for every row, its column.",
+                lambda cost: _matched(cost, columns=True, rows=False),
+                "You strike out the column only: a row that is matched may be chosen again.",
             ),
             Mistake(
-                lambda cost: _rounds(cost, cost.shape[1]),
+                lambda cost: _matched(cost, columns=False), "You strike out the row only: a column may be taken twice."
+            ),
+            Mistake(
+                lambda cost: _matched(cost, rounds=len(cost)),
+                "When all is struck out, argmin says 0: a row is matched once more. Stop when one side is used up.",
+            ),
+            Mistake(
+                lambda cost: _matched(cost, rounds=cost.shape[1]),
                 "One round for each column is too many where rows run out first. Stop when one side is used up.",
             ),
             Mistake(
-                lambda cost: _rounds(cost, min(cost.shape) - 1),
+                lambda cost: _matched(cost, rounds=min(cost.shape) - 1),
                 "You stop one round too early: the last open row and column belong together, too.",
             ),
             Mistake(
-                lambda cost: _rounds(cost, min(cost.shape), struck=1.0),
-                "You strike out with 1, and costs can be larger. What is never the least?",
+                lambda cost: _matched(cost, struck=0.0),
+                "You strike out with 0, which the next search may find the cheapest. What is never the least?",
+            ),
+            *(
+                Mistake(
+                    lambda cost, struck=struck: _matched(cost, struck=struck),
+                    f"You strike out with {struck:g}, but a cost can be larger. What is never the least?",
+                )
+                for struck in (1.0, 2.0, 3.0, 5.0, 10.0, 99.0, 100.0, 999.0, 1000.0)
             ),
             Mistake(
-                lambda cost: _rounds(cost, min(cost.shape), struck=np.nan),
+                lambda cost: _matched(cost, struck=np.nan),
                 "You strike out with NaN, and argmin takes a NaN for the least. np.inf is never the least.",
             ),
             Mistake(
-                _while_positive,
-                "You stop at costs below 0. A cost may be negative: ask whether anything is left, not whether it is 0.",
+                lambda cost: _matched(cost, choose=lambda table: np.argmax(np.where(np.isinf(table), -np.inf, table))),
+                "You take the dearest combination first.",
             ),
             Mistake(
-                _numbers_move_up,
-                "You delete rows and columns, so those behind them get other numbers. Strike out with np.inf instead.",
+                lambda cost: _matched(cost.T),
+                "Yours tells for every column its row. Asked is, for every row, its column.",
+            ),
+        ),
+    ),
+    Exercise(
+        number="15.4",
+        reference=centroid_shift,
+        inputs=_places,
+        level="challenge",
+        cases=(
+            lambda rng: (rng.uniform(0, 6, (14, 2)), 2),
+            lambda rng: (rng.uniform(0, 6, (5, 2)), 0),
+            lambda rng: (rng.uniform(0, 6, (5, 2)), 4),
+            lambda rng: (np.ones((6, 2)), 3),
+        ),
+        mistakes=(
+            Mistake(
+                _shift(lambda n, k, squares: squares / n / (n - k)),
+                "You draw as if with replacement. With nobody hidden yours still moves: no object is seen twice.",
             ),
             Mistake(
-                _column_by_column,
-                "You serve the columns in their order. The cheapest of *all* open combinations comes first.",
+                _shift(lambda n, k, squares: squares / (n - 1) / (n - k)),
+                "The factor for drawing without replacement is missing: with nobody hidden the centroid stays.",
             ),
             Mistake(
-                _each_other_s_best,
-                "You match only rows and columns that are each other's cheapest. Go on with those that are left.",
+                _shift(lambda n, k, squares: k / (n * (n - k)) * squares / n),
+                "Nearly. Two of the objects seen are never the same one, so their places are not independent.",
             ),
             Mistake(
-                lambda cost: np.where(match_greedily(cost) < 0, -1, match_greedily(cost) + 1),
-                "You count columns from 1. Python counts from 0.",
+                _shift(lambda n, k, squares: k / (n * (n - k)) * squares / (n - 1) / 2),
+                "That is the spread along one axis. A distance takes x and y together.",
+            ),
+            Mistake(
+                lambda places, n_hidden: centroid_shift(places, n_hidden) ** 2,
+                "That is the mean of the squares: the root is missing.",
+            ),
+            Mistake(
+                _shift(lambda n, k, squares: (n - k) / (n * max(k, 0.0)) * squares / (n - 1) if k else 0.0),
+                "You exchanged the seen and the hidden: with most objects seen the centroid hardly moves.",
+            ),
+            Mistake(
+                _shift(lambda n, k, squares: k / n**2 * squares / n),
+                "You take the hidden ones away but divide by all n. The centroid of the seen is a mean over n - k.",
+            ),
+            Mistake(
+                _shift(lambda n, k, squares: squares / n),
+                "That is how far the objects are from their centroid, not how far a mean of many of them is.",
             ),
         ),
     ),

@@ -40,20 +40,19 @@ def _spokes(axes, places: np.ndarray, name: str) -> None:
 
 
 def terms_figure(scene: MatchingScene, terms: dict[str, np.ndarray]) -> Figure:
-    """Tables `(n_observations, n_landmarks)` side by side; the right landmark of every observation has a dot."""
-    figure, axes = figures.new_figure(1, len(terms), size=(10.4, 3.5))
+    """Four tables `(n_observations, n_landmarks)`; the right landmark of every observation has a dot."""
+    figure, axes = figures.new_figure(2, 2, size=(9.6, 8.2))
     names = [short_name(label, j) for j, label in enumerate(room_map().labels)]
     order = np.argsort(scene.true_landmarks)  # so that the right combinations lie near the diagonal
     shows = [scene.true_landmarks[i] for i in order]
-    for k, (a, (title, table)) in enumerate(zip(axes, terms.items(), strict=True)):
+    for k, (a, (title, table)) in enumerate(zip(axes.flat, terms.items(), strict=True)):
         image = a.imshow(table[order], cmap="cividis", vmin=0, vmax=1, interpolation="nearest", aspect="auto")
         a.plot(shows, np.arange(len(table)), ".", color=figures.VERMILION, markersize=5)
         a.grid(False)
-        a.set(title=title, xlabel="landmark [-]", ylabel="observation [-]" if k == 0 else "")
-        a.set_xticks(range(len(names)), names, rotation=90, fontsize=6)
-        rows = [names[j] for j in shows] if k == 0 else []
-        a.set_yticks(range(len(rows)), rows, fontsize=6)
-    figure.supylabel(" [-]", fontsize=1, color="white")  # the rows are named once, at the left
+        a.set(title=title, xlabel="landmark [-]", ylabel="observation [-]")
+        columns, rows = (names if k >= 2 else [], [names[j] for j in shows] if k % 2 == 0 else [])
+        a.set_xticks(range(len(columns)), columns, rotation=90, fontsize=9)
+        a.set_yticks(range(len(rows)), rows, fontsize=9)
     figure.colorbar(image, ax=axes, label="penalty [-], 1 and more: yellow", shrink=0.9)
     return figure
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
+from course_lib.experiments.rooms_summary import bootstrap_percent
 from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_rigid_2d
@@ -32,8 +34,10 @@ class Score(NamedTuple):
 class HiddenScore(NamedTuple):
     """How the matcher did with some of the objects hidden at random."""
 
-    share_right: float
-    """Share of trials in which every observation got its landmark."""
+    percent_right: float
+    """Percent of the trials in which every observation got its landmark."""
+    interval_percent: list[float]
+    """95 % interval of it, by the bootstrap over the pairs of photographs: trials with one of them are no new ones."""
     wrong: int
     """Wrong pairs in all trials."""
     wrong_sofas: int
@@ -61,22 +65,52 @@ def score(weights: PenaltyWeights, distance_term: str = "absolute") -> Score:
 
 def hidden_score(n_hidden: int, n_trials: int, rng: np.random.Generator) -> HiddenScore:
     """The matcher where `n_hidden` of the objects in view, drawn at random, stay unseen; n_trials a photograph pair."""
-    right_trials, wrong_pairs, wrong_sofas = [], 0, 0
+    right_trials, wrong_pairs, wrong_sofas = np.zeros((len(room_scenes()), n_trials)), 0, 0
     errors: dict[bool, list[float]] = {True: [], False: []}
-    for scene in room_scenes().values():
-        for _ in range(n_trials):
+    for number, scene in enumerate(room_scenes().values()):
+        for trial in range(n_trials):
             kept = np.sort(rng.permutation(len(scene.observations))[n_hidden:])
             seen = [scene.observations[k] for k in kept]
             pairs = associate_greedy(seen, room_map()).usable_pairs
             wrong = [j for i, j in pairs if scene.true_landmarks[kept[i]] != j]
-            right_trials.append(not wrong)
+            right_trials[number, trial] = not wrong
             wrong_pairs += len(wrong)
             wrong_sofas += sum(j in SOFAS for j in wrong)
             pose = fitted_pose(seen, pairs)
             if pose is not None:
                 errors[not wrong].append(float(np.hypot(pose.x - scene.pose.x, pose.y - scene.pose.y)))
     medians = (float(np.median(errors[kind])) if errors[kind] else np.nan for kind in (True, False))
-    return HiddenScore(float(np.mean(right_trials)), wrong_pairs, wrong_sofas, *medians)
+    interval = bootstrap_percent(right_trials.mean(axis=1))
+    return HiddenScore(100 * float(right_trials.mean()), interval, wrong_pairs, wrong_sofas, *medians)
+
+
+class TwoSearches(NamedTuple):
+    """The repeated minimum and the least sum of penalties on the same observations."""
+
+    greedy_percent: float
+    """Percent of the trials in which the repeated minimum got every pair right."""
+    least_sum_percent: float
+    gain_percent: list[float]
+    """95 % interval of the second minus the first, by the bootstrap over the pairs of photographs."""
+    same_percent: float
+    """Percent of the trials in which both searches gave the same pairs."""
+
+
+def two_searches(n_hidden: int, n_trials: int, rng: np.random.Generator) -> TwoSearches:
+    """Both searches where `n_hidden` objects in view, drawn at random, stay unseen; n_trials a pair of photographs."""
+    right = np.zeros((2, len(room_scenes()), n_trials))
+    same = 0
+    for number, scene in enumerate(room_scenes().values()):
+        for trial in range(n_trials):
+            kept = np.sort(rng.permutation(len(scene.observations))[n_hidden:])
+            found = associate_greedy([scene.observations[k] for k in kept], room_map())
+            rows, columns = linear_sum_assignment(found.table.total)
+            answers = set(found.pairs), set(zip(rows.tolist(), columns.tolist(), strict=True))
+            true = {(row, scene.true_landmarks[k]) for row, k in enumerate(kept)}
+            right[:, number, trial] = [answer == true for answer in answers]
+            same += answers[0] == answers[1]
+    gain = bootstrap_percent(np.diff(right.mean(axis=2), axis=0)[0])
+    return TwoSearches(*(100 * right.mean(axis=(1, 2))), gain, 100 * same / right[0].size)
 
 
 def fitted_pose(observations: list[Observation], pairs: tuple) -> Pose2D | None:

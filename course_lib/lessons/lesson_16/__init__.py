@@ -13,6 +13,7 @@ from course_lib.lessons.lesson_16.fits import (
     noisy_fits,
     pose_error,
     ring_of_landmarks,
+    weighted_fits,
 )
 from course_lib.lessons.lesson_16.panel import PANELS, fit_panel
 
@@ -33,4 +34,5 @@ __all__ = [
     "pose_error",
     "ring_of_landmarks",
     "room_scenes",
+    "weighted_fits",
 ]

@@ -8,7 +8,7 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.room_observations import in_body_frame, room_scenes
-from course_lib.lessons.kit.room_photographs import room_map
+from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, fit_rigid_2d
 
 PAIR = "03_b"  # the same photographs as in lesson 15
@@ -72,21 +72,58 @@ def expected_sigmas(target: np.ndarray, pose: Pose2D, sigma: float) -> tuple[flo
     return float(of_heading), float(np.sqrt(2 * sigma**2 / len(target) + (arm * of_heading) ** 2))
 
 
+def weighted_fits(sigma_pixels: float, n_trials: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
+    """Errors of the fit `(n, 2)`, metres and degrees, of the room's poses: pairs alike, with weights, with covariances.
+
+    Every measured place of every pair of photographs is moved n_trials times along its ray, as noise of sigma_pixels on
+    both elevations moves it (lesson 14, nearly level rays), and a new one is fitted each time. A covariance is that
+    noise, of one pixel at least, plus `SIGMA` each way, since a box centre is no point of the object; the weight is one
+    over the variance along the ray.
+    """
+    baseline, pixel = room_recording(1).rig.baseline, 2 * np.pi / room_recording(1).width
+    errors: dict[str, list] = {"all alike": [], "weights": [], "covariances": []}
+    for name in room_scenes():
+        points = matched_points(name)
+        ranges = np.linalg.norm(points.source, axis=1)
+        for _ in range(n_trials):
+            off = np.sqrt(2) * ranges**2 / baseline * sigma_pixels * pixel * rng.standard_normal(len(ranges))
+            source = points.source * (1 + off / ranges)[:, None]
+            covariances, along = _needles(source, baseline, max(sigma_pixels, 1.0) * pixel)
+            fits = (
+                fit_rigid_2d(source, points.target),
+                fit_rigid_2d(source, points.target, weights=1 / along**2),
+                fit_rigid_2d(source, points.target, covariances=covariances),
+            )
+            for way, fit in zip(errors, fits, strict=True):
+                errors[way].append(pose_error(fit, points.pose))
+    return {way: np.array(found) for way, found in errors.items()}
+
+
+def _needles(source: np.ndarray, baseline: float, sigma: float) -> tuple[np.ndarray, np.ndarray]:
+    """Covariances `(n, 2, 2)` of places whose rays are off by sigma radians, and deviations `(n,)` along the ray."""
+    ranges = np.linalg.norm(source, axis=1)
+    ray = source / ranges[:, None]
+    left = np.column_stack([-ray[:, 1], ray[:, 0]])
+    along, across = np.hypot(np.sqrt(2) * ranges**2 / baseline * sigma, SIGMA), np.hypot(ranges * sigma, SIGMA)
+    parts = [np.einsum("n,ni,nj->nij", size**2, way, way) for size, way in ((along, ray), (across, left))]
+    return parts[0] + parts[1], along
+
+
 def ring_of_landmarks(n: int) -> np.ndarray:
     """Landmarks `(n, 2)`, evenly on a circle of 2.5 m about (3, 3)."""
     turn = 2 * np.pi * np.arange(n) / n
     return 3.0 + 2.5 * np.column_stack([np.cos(turn), np.sin(turn)])
 
 
-def mirrored_by_plain_svd(target: np.ndarray, sigma: float, n_trials: int, rng: np.random.Generator) -> float:
-    """Share of noisy trials in which U V^T, without the sign, is a reflection and no rotation."""
+def mirrored_by_plain_svd(target: np.ndarray, sigma: float, n_trials: int, rng: np.random.Generator) -> int:
+    """In how many of the noisy trials U V^T, without the sign, is a reflection and no rotation."""
     exact = target - target.mean(axis=0)
     count = 0
     for _ in range(n_trials):
         source, noisy_map = (exact + rng.normal(0.0, sigma, exact.shape) for _ in range(2))
         u, _, vt = np.linalg.svd((noisy_map - noisy_map.mean(axis=0)).T @ (source - source.mean(axis=0)))
-        count += np.linalg.det(u @ vt) < 0
-    return count / n_trials
+        count += int(np.linalg.det(u @ vt) < 0)
+    return count
 
 
 def landmarks_of(arrangement: str) -> np.ndarray:

@@ -6,12 +6,19 @@ from course_lib.lessons.lesson_17.experiments import (
     exact_results,
     failing_places,
     live_places,
-    nearest_5,
     table_1,
 )
 from course_lib.lessons.lesson_17.figures import outcomes_figure, places_figure, rates_figure
 from course_lib.lessons.lesson_17.panel import PANELS, judge_panel
-from course_lib.lessons.lesson_17.room_runs import errors, rates, stored_rooms, table_3_or_4, table_5, used_pairs
+from course_lib.lessons.lesson_17.room_runs import (
+    errors,
+    rates,
+    stored_rooms,
+    table_3_or_4,
+    table_5,
+    two_heights,
+    used_pairs,
+)
 
 __all__ = [
     "KINDS",
@@ -21,7 +28,6 @@ __all__ = [
     "failing_places",
     "judge_panel",
     "live_places",
-    "nearest_5",
     "outcomes_figure",
     "places_figure",
     "rates",
@@ -32,5 +38,6 @@ __all__ = [
     "table_1",
     "table_3_or_4",
     "table_5",
+    "two_heights",
     "used_pairs",
 ]

@@ -1,11 +1,13 @@
-"""Exercises of lesson 17: table 2 as a rule, the row "All" from its two parts, how likely a pose is unable."""
+"""Exercises of lesson 17: table 2 as a rule, the row "All", how likely a pose is unable, and a flattering table."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
+from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
 
 # 17.1: table 2
@@ -33,6 +35,13 @@ def _poses(rng: np.random.Generator) -> tuple:
     n_used[7:9] = 9, 2
     order = rng.permutation(10)
     return dx[order], dy[order], n_used[order], n_wrong[order]
+
+
+def _close_calls(rng: np.random.Generator) -> tuple:
+    """Wrong *and* unable; all pairs wrong, one, most of them; both errors large; one of them, with a wrong pair."""
+    dx = np.array([np.nan, np.nan, 0.1, 0.1, 0.1, 3.0, 3.0, 0.1, 2.0])
+    dy = np.array([np.nan, np.nan, 0.1, 0.1, 0.1, 3.0, 0.1, 3.0, 2.0])
+    return dx, dy, np.array([1, 0, 4, 9, 9, 9, 9, 9, 2]), np.array([1, 0, 4, 1, 6, 0, 1, 0, 0])
 
 
 # 17.2: "All" from "correct" and "incorrect"
@@ -81,16 +90,111 @@ def _about_zero(n_a, mean_a, std_a, n_b, mean_b, std_b):
     return mean, math.sqrt(_weighted(n_a, std_a**2 + mean_a**2, n_b, std_b**2 + mean_b**2))
 
 
+def _only_between(n_a, mean_a, std_a, n_b, mean_b, std_b):
+    return combined(n_a, mean_a, 0.0, n_b, mean_b, 0.0)
+
+
+def _between_not_weighed(n_a, mean_a, std_a, n_b, mean_b, std_b):
+    mean, within = _weighted(n_a, mean_a, n_b, mean_b), _weighted(n_a, std_a**2, n_b, std_b**2)
+    return mean, math.sqrt(within + (mean_a - mean) ** 2 + (mean_b - mean) ** 2)
+
+
+def _divisors_less_one(n_a, mean_a, std_a, n_b, mean_b, std_b):
+    mean = _weighted(n_a, mean_a, n_b, mean_b)
+    within = (n_a - 1) * std_a**2 + (n_b - 1) * std_b**2
+    between = n_a * (mean_a - mean) ** 2 + n_b * (mean_b - mean) ** 2
+    return mean, math.sqrt((within + between) / (n_a + n_b - 1))
+
+
 # 17.3: how likely is "unable"?
 
 
-def unable_probability(n: int, q: float) -> float:
-    """Probability that of n objects, each seen with probability q by itself, at most one is seen."""
-    return (1 - q) ** n + n * q * (1 - q) ** (n - 1)
+def unable_probability(q: np.ndarray) -> float:
+    """Probability that at most one object is seen, of which each is with its own probability q `(n,)`, by itself."""
+    return _none(q) + _exactly_one(q)
 
 
-def _objects_and_share(rng: np.random.Generator) -> tuple:
-    return int(rng.integers(3, 15)), float(rng.uniform(0.1, 0.8))
+def _none(q: np.ndarray) -> float:
+    return float(np.prod(1 - np.asarray(q)))
+
+
+def _exactly_one(q: np.ndarray) -> float:
+    return float(sum(q[k] * np.prod(1 - np.delete(q, k)) for k in range(len(q))))
+
+
+def _shares(rng: np.random.Generator) -> tuple:
+    return (rng.uniform(0.05, 0.8, int(rng.integers(3, 15))),)
+
+
+def _by_division(q: np.ndarray) -> float:
+    """Right but for an object that is always seen, which divides by zero."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.prod(1 - q) * (1 + np.sum(q / (1 - q))))
+
+
+def _equal(q: np.ndarray, share: float) -> float:
+    n = len(q)
+    return (1 - share) ** n + n * share * (1 - share) ** (n - 1) if n else 1.0
+
+
+def _from_mean(q: np.ndarray) -> float:
+    return _equal(q, float(np.mean(q)) if len(q) else 0.0)
+
+
+# 17.4: a table that is too good
+
+
+def row_of_table(found: np.ndarray, true: np.ndarray) -> np.ndarray:
+    """Mean and standard deviation `(6,)` of |dx|, |dy| [m] and |dtheta| [deg] of poses `(n, 3)`; NaN rows: unable.
+
+    found, true: [x, y, theta], metres and radians. What table 3 holds in one row.
+    """
+    return _row(found, true)
+
+
+def _on_the_circle(radians: np.ndarray) -> np.ndarray:
+    return np.degrees(np.abs(wrap_angle(radians)))
+
+
+def _by_remainder(radians: np.ndarray) -> np.ndarray:
+    return np.degrees(radians) % 180
+
+
+def _row(
+    found: np.ndarray,
+    true: np.ndarray,
+    turned: Callable = _on_the_circle,
+    unable_count: bool = False,
+    signed: bool = False,
+    divisor_less: int = 0,
+) -> np.ndarray:
+    """The row, right by default; every argument is a fault of the code that the task shows, or of a repair."""
+    able = ~np.isnan(found).any(axis=1)
+    difference = np.nan_to_num(found - true) if unable_count else (found - true)[able]
+    difference[:, 2] = turned(difference[:, 2])
+    mean = np.abs(difference.mean(axis=0)) if signed else np.abs(difference).mean(axis=0)
+    return np.concatenate([mean, np.abs(difference).std(axis=0, ddof=divisor_less)])
+
+
+def _poses_found(rng: np.random.Generator) -> tuple:
+    """Poses with their errors, some of them unable, one turned round, one near half a turn."""
+    n = int(rng.integers(8, 20))
+    true = np.column_stack([rng.uniform(0, 6, (n, 2)), np.radians(90.0 * rng.integers(-1, 3, n))])
+    found = true + rng.normal(0, [0.4, 0.4, 0.3], (n, 3))
+    found[0, 2] = true[0, 2] + np.pi + 0.1
+    found[:, 2] = wrap_angle(found[:, 2])
+    found[rng.permutation(n)[: int(rng.integers(0, 4))]] = np.nan
+    return found, true
+
+
+def _round_the_wrap(rng: np.random.Generator) -> tuple:
+    """Headings of half a turn, found a little to the other side of it: errors of two degrees, not of 358."""
+    true = np.array([[1.0, 1.0, np.pi], [2.0, 1.0, np.pi], [3.0, 4.0, 0.0]])
+    return true + np.array([[0.1, -0.1, 0.0], [-0.1, 0.1, -2 * np.pi + 0.03], [0.2, 0.2, -0.02]]), true
+
+
+def _fault(**left: object) -> Callable:
+    return lambda found, true: _row(found, true, **left)
 
 
 EXERCISES = [
@@ -98,7 +202,31 @@ EXERCISES = [
         number="17.1",
         reference=judge_poses,
         inputs=_poses,
+        level="warm-up",
+        cases=(_close_calls,),
         mistakes=(
+            Mistake(
+                lambda dx, dy, n_used, n_wrong: np.where(n_wrong > 0, 0, judge_poses(dx, dy, n_used, n_wrong)),
+                "One used pair, and wrong: unable all the same. Ask for unable before you ask for wrong pairs.",
+            ),
+            Mistake(
+                lambda dx, dy, n_used, n_wrong: np.where(n_used < 2, -1, (n_wrong == 0) & ((dx <= 2) | (dy <= 2))),
+                "Both errors must be within 2 m; with your | one of them is enough.",
+            ),
+            Mistake(
+                lambda dx, dy, n_used, n_wrong: np.where(n_used < 2, -1, (n_wrong == 0) | (dx <= 2) | (dy <= 2)),
+                "Correct needs three things at once: no wrong pair, x *and* y. Your | lets any one of them suffice.",
+            ),
+            Mistake(
+                lambda dx, dy, n_used, n_wrong: np.where(
+                    n_used < 2, -1, (n_wrong < n_used / 2) & (dx <= 2) & (dy <= 2)
+                ),
+                "You allow a minority of wrong pairs. A single one makes a pose incorrect.",
+            ),
+            Mistake(
+                lambda dx, dy, n_used, n_wrong: np.where(n_used < 2, -1, (n_wrong < n_used) & (dx <= 2) & (dy <= 2)),
+                "You call it incorrect only where all pairs are wrong. A single one is enough.",
+            ),
             Mistake(
                 lambda dx, dy, n_used, n_wrong: _judged(dx, dy, n_used, n_wrong, fewest=0),
                 "Yours never says unable. With one pair or fewer there is no pose to judge: ask that first.",
@@ -159,7 +287,20 @@ EXERCISES = [
         number="17.2",
         reference=combined,
         inputs=_two_groups,
+        cases=(
+            lambda rng: (13, 11.94, 25.42, 5, 69.70, 47.09),
+            lambda rng: (8, 0.5, 0.2, 8, 0.5, 0.4),
+            lambda rng: (1, 0.2, 0.0, 1, 0.6, 0.0),
+        ),
         mistakes=(
+            Mistake(
+                _only_between,
+                "Only the distance of the two means is in your deviation; each group's own scatter is missing.",
+            ),
+            Mistake(
+                _between_not_weighed,
+                "How far each mean lies from the common one counts for all poses of its group: average that, too.",
+            ),
             Mistake(_plain_mean, "Your mean counts both groups alike. The larger group must count for more: use n."),
             Mistake(
                 _plain_mean_everywhere, "You count both groups alike, in the mean and in the deviation: weigh with n."
@@ -191,7 +332,7 @@ EXERCISES = [
             Mistake(
                 lambda n_a, mean_a, std_a, n_b, mean_b, std_b: (
                     _weighted(n_a, mean_a, n_b, mean_b),
-                    math.sqrt(((n_a - 1) * std_a**2 + (n_b - 1) * std_b**2) / (n_a + n_b - 2)),
+                    math.sqrt(((n_a - 1) * std_a**2 + (n_b - 1) * std_b**2) / max(n_a + n_b - 2, 1)),
                 ),
                 "That is the pooled deviation about each group's own mean. All together scatter about the common mean.",
             ),
@@ -219,54 +360,98 @@ EXERCISES = [
     Exercise(
         number="17.3",
         reference=unable_probability,
-        inputs=_objects_and_share,
+        inputs=_shares,
+        cases=(
+            lambda rng: (np.array([1.0, 0.3, 0.5]),),
+            lambda rng: (np.array([0.0, 0.0, 0.4]),),
+            lambda rng: (np.array([0.7]),),
+            lambda rng: (np.empty(0),),
+            lambda rng: (np.full(14, 0.25),),
+        ),
         mistakes=(
             Mistake(
-                lambda n, q: (1 - q) ** n,
-                "That is the probability of seeing none. Seeing exactly one is unable, too: add it.",
+                _by_division,
+                "Right, until an object is always seen: then you divide by 1 - q = 0. Multiply the others instead.",
             ),
             Mistake(
-                lambda n, q: n * q * (1 - q) ** (n - 1),
-                "That is the probability of exactly one. Seeing none is unable, too: add it.",
+                _from_mean,
+                "The mean of q is not enough: one object that is always seen and one never are not two of 50 %.",
+            ),
+            Mistake(_none, "That is the probability of seeing none. Seeing exactly one is unable, too: add it."),
+            Mistake(_exactly_one, "That is the probability of exactly one. Seeing none is unable, too: add it."),
+            Mistake(
+                lambda q: _none(q) + float(np.sum(q)),
+                "Exactly one means that all the others are not seen: multiply by their probabilities.",
             ),
             Mistake(
-                lambda n, q: unable_probability(n, q) + math.comb(n, 2) * q**2 * (1 - q) ** (n - 2),
-                "Two objects give a pose. Count only none and exactly one.",
+                lambda q: _none(q) * (1 + float(np.sum(q))),
+                "Beside the one that is seen stand the others alone: leave its own 1 - q out of the product.",
             ),
+            Mistake(lambda q: 1 - unable_probability(q), "Yours is the probability that a pose is *not* unable."),
             Mistake(
-                lambda n, q: (1 - q) ** n + q * (1 - q) ** (n - 1),
-                "The one that is seen may be any of the n objects: count all n ways.",
-            ),
-            Mistake(
-                lambda n, q: (1 - q) ** n + n * q,
-                "Exactly one means that the other n - 1 are not seen: multiply by their probability.",
-            ),
-            Mistake(
-                lambda n, q: (1 - q) ** n + n * q * (1 - q) ** n,
-                "Beside the one that is seen, n - 1 are left, not n.",
-            ),
-            Mistake(
-                lambda n, q: 1 - unable_probability(n, q),
-                "Yours is the probability that a pose is *not* unable.",
-            ),
-            Mistake(
-                lambda n, q: unable_probability(n, 1 - q),
+                lambda q: unable_probability(1 - q),
                 "You took q for the probability of missing an object; it is that of seeing it.",
             ),
-            Mistake(lambda n, q: 100 * unable_probability(n, q), "Yours is in percent; a probability is 0 to 1."),
+            Mistake(lambda q: 100 * unable_probability(q), "Yours is in percent; a probability is 0 to 1."),
             Mistake(
-                lambda n, q: (1 - q) ** n + (1 - q) ** (n - 1),
-                "Exactly one is seen: its own probability q belongs there, and any of the n may be the one.",
-            ),
-            Mistake(
-                lambda n, q: 1 - (1 - q) ** n,
+                lambda q: 1 - _none(q),
                 "That is the probability that at least one is seen. At most one: add none and exactly one.",
             ),
             Mistake(
-                lambda n, q: (1 - q) ** n * n * q * (1 - q) ** (n - 1),
+                lambda q: _none(q) * _exactly_one(q),
                 "None and exactly one exclude each other: add their probabilities, do not multiply.",
+            ),
+            Mistake(
+                lambda q: float(np.exp(-np.sum(q)) * (1 + np.sum(q))),
+                "Poisson's formula holds for many objects that are rarely seen. These are few, and q is not small.",
             ),
         ),
         tolerance=1e-9,
+    ),
+    Exercise(
+        number="17.4",
+        reference=row_of_table,
+        inputs=_poses_found,
+        level="challenge",
+        cases=(_round_the_wrap,),
+        mistakes=(
+            Mistake(
+                _fault(turned=_by_remainder, unable_count=True, signed=True),
+                "That is the code as it was given. What does it say of a robot that looks exactly backwards?",
+            ),
+            Mistake(
+                _fault(turned=_by_remainder, unable_count=True),
+                "The means are mended. Two faults are left: who is averaged, and what becomes of a robot turned round?",
+            ),
+            Mistake(
+                _fault(turned=_by_remainder, signed=True),
+                "Unable poses are out. Two faults are left: errors of +1 m and -1 m, and a robot turned round.",
+            ),
+            Mistake(
+                _fault(unable_count=True, signed=True),
+                "Headings are mended. Two faults are left: errors of +1 m and -1 m, and what an unable pose counts.",
+            ),
+            Mistake(
+                _fault(turned=_by_remainder),
+                "One fault is left: a robot that looks exactly backwards has no error of 0 degrees.",
+            ),
+            Mistake(
+                _fault(unable_count=True),
+                "One fault is left: an unable pose has no error, and so none of 0 m either.",
+            ),
+            Mistake(
+                _fault(signed=True),
+                "One fault is left: errors of +1 m and -1 m are no mean error of 0 m.",
+            ),
+            Mistake(
+                _fault(turned=lambda radians: np.degrees(np.abs(radians))),
+                "Headings of +179 and -179 degrees are 2 degrees apart: take the difference on the circle.",
+            ),
+            Mistake(
+                _fault(turned=lambda radians: np.abs(wrap_angle(radians))),
+                "Your heading errors are radians; the table has degrees.",
+            ),
+            Mistake(_fault(divisor_less=1), "The divisor n was no fault: the paper's rows fit it (see 17.2)."),
+        ),
     ),
 ]

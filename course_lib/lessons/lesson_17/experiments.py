@@ -48,8 +48,3 @@ def live_places(runs: Sequence[StoredRoom], experiment: int, most: int = 2) -> l
     failing = failing_places(shipped, experiment, "images")
     others = [pair.name for pair in room_recording(experiment).pairs if pair.name not in failing]
     return [*failing, *others][:most]
-
-
-def nearest_5(percent: float) -> str:
-    """A percentage to the nearest five, so that one pose more or less does not change what is printed."""
-    return f"{5 * round(percent / 5)} %"

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
+from course_lib.experiments.room_evaluation import CORRECT
 from course_lib.paths import data_path
 
 METHODS = {"images": "greedy", "exact_boxes": "greedy_exact_boxes"}
@@ -58,6 +59,33 @@ def rates(runs: Sequence[StoredRoom], experiment: int, source: str) -> np.ndarra
     """Correct, incorrect and unable of every seed, percent `(S, 3)`."""
     found = [run.summary[f"experiment_{experiment}"][METHODS[source]] for run in runs]
     return np.array([[one[key] for key in RATES] for one in found])
+
+
+class TwoHeights(NamedTuple):
+    """The same poses with the lower rig (experiment 1) and the higher one (experiment 2), over all seeds."""
+
+    poses: int
+    lower: int
+    """Correct with the lower rig."""
+    higher: int
+    lost: int
+    """Correct with the lower rig alone."""
+    gained: int
+    """Correct with the higher rig alone."""
+
+
+def two_heights(runs: Sequence[StoredRoom], source: str) -> TwoHeights:
+    """How many poses are correct at either height, and how many change."""
+    correct = np.array(
+        [
+            [found == CORRECT for found in (run.outcomes(1, source)[place], run.outcomes(2, source)[place])]
+            for run in runs
+            for place in run.outcomes(1, source)
+        ]
+    )
+    lower, higher = correct.T
+    lost, gained = int((lower & ~higher).sum()), int((higher & ~lower).sum())
+    return TwoHeights(len(correct), int(lower.sum()), int(higher.sum()), lost, gained)
 
 
 def errors(runs: Sequence[StoredRoom], experiment: int, source: str, kind: str) -> np.ndarray:

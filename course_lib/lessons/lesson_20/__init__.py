@@ -3,12 +3,11 @@
 from course_lib.lessons.lesson_20.figures import check_figure, track_figure
 from course_lib.lessons.lesson_20.own_panoramas import disparity_picture, panorama_pair
 from course_lib.lessons.lesson_20.panel import PANELS, reading_panel
-from course_lib.lessons.lesson_20.readings import Checker, at_most, misread_run, readings_table, recording
+from course_lib.lessons.lesson_20.readings import Checker, misread_run, readings_table, recording
 
 __all__ = [
     "PANELS",
     "Checker",
-    "at_most",
     "check_figure",
     "disparity_picture",
     "misread_run",

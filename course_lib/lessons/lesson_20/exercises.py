@@ -1,4 +1,4 @@
-"""Exercises of lesson 20: raw depth to metres, K of a smaller image, a baseline from marks at a known distance."""
+"""Exercises of lesson 20: raw depth to metres, K of a smaller image, a baseline measured, a baseline chosen."""
 
 from __future__ import annotations
 
@@ -24,6 +24,14 @@ def _raw_images(rng: np.random.Generator) -> tuple:
     return raw, float(rng.choice([1000, 5000, 4000])), invalid
 
 
+def _nothing_measured(rng: np.random.Generator) -> tuple:
+    return np.zeros((2, 3), dtype=np.uint16), 1000.0, 0
+
+
+def _all_measured(rng: np.random.Generator) -> tuple:
+    return rng.integers(1, 60_000, size=(2, 4)).astype(np.uint16), 5000.0, 0
+
+
 def _filled(raw: np.ndarray, metres: np.ndarray, invalid: int, value: float) -> np.ndarray:
     return np.where(raw == invalid, value, metres)
 
@@ -41,6 +49,25 @@ def _intrinsics(rng: np.random.Generator) -> tuple:
     fx, cx, cy = rng.uniform(400, 700), rng.uniform(300, 340), rng.uniform(220, 260)
     k = np.array([[fx, 0, cx], [0, fx * rng.uniform(0.9, 1.1), cy], [0, 0, 1.0]])
     return k, float(rng.choice([0.25, 0.5, 0.125, 2.0]))
+
+
+def _unchanged(rng: np.random.Generator) -> tuple:
+    return _intrinsics(rng)[0], 1.0
+
+
+def _the_papers_camera(rng: np.random.Generator) -> tuple:
+    """The SR4000 of paper 1 as the course simulates it, at a quarter of its width."""
+    return np.array([[217.0, 0, 87.5], [0, 217.0, 71.5], [0, 0, 1]]), 0.25
+
+
+def _columns_only(k: np.ndarray, scale: float) -> np.ndarray:
+    return np.vstack([resized_intrinsics(k, scale)[:1], k[1:]])
+
+
+def _half_a_pixel_on_the_focal_length(k: np.ndarray, scale: float) -> np.ndarray:
+    resized = resized_intrinsics(k, scale)
+    resized[[0, 1], [0, 1]] = scale * (k[[0, 1], [0, 1]] + 0.5) - 0.5
+    return resized
 
 
 def _with(k: np.ndarray, focal: float, centre) -> np.ndarray:
@@ -74,6 +101,32 @@ def _marks(rng: np.random.Generator) -> tuple:
     v_lower = height * (0.5 + np.arctan((drop - baseline) / distance) / np.pi) + rng.normal(0, 0.4, size=n)
     v_lower[0] += 25.0  # a row that was misread: the mean would follow it, and the middle one does not
     return v_upper, v_lower, height, distance
+
+
+def _exchanged(rng: np.random.Generator) -> tuple:
+    """The two panoramas exchanged: the baseline is negative, and says so."""
+    v_upper, v_lower, height, distance = _marks(rng)
+    return v_lower, v_upper, height, distance
+
+
+def _even_number_of_marks(rng: np.random.Generator) -> tuple:
+    """Four marks that disagree: the median lies between the middle two."""
+    v_upper, v_lower, height, distance = _marks(rng)
+    return v_upper[:4], v_lower[:4] - [0.0, 6.0, 14.0, 25.0], height, distance[:4]
+
+
+def _signs_that_differ(rng: np.random.Generator) -> tuple:
+    """Two of five marks were misread so far that they give a negative baseline."""
+    v_upper, v_lower, height, distance = _marks(rng)
+    return v_upper[2:], v_lower[2:] + np.array([200.0, 200.0, 0.0, 0.0, 0.0]), height, distance[2:]
+
+
+def _one_mark(rng: np.random.Generator) -> tuple:
+    return tuple(v[3:4] if isinstance(v, np.ndarray) else v for v in _marks(rng))
+
+
+def _middle(values: np.ndarray, position: int) -> float:
+    return float(np.sort(values)[position])
 
 
 def _elevations(v_upper: np.ndarray, v_lower: np.ndarray, height: int, span: float = np.pi) -> tuple:
@@ -119,12 +172,70 @@ def _from_the_top(v_upper: np.ndarray, v_lower: np.ndarray, height: int, distanc
     return float(np.median(distance * (np.tan(np.pi * v_lower / height) - np.tan(np.pi * v_upper / height))))
 
 
+# 20.4: how far apart must the cameras stand?
+
+
+def baseline_needed(distance: float, row_error: float, height: int, limit: float) -> float:
+    """Least baseline [m] at which a distance's error (one sigma) is at most `limit` [m]; NaN where there is none.
+
+    With the mark at half the rig's height, tan e = +-B / (2 rho), and rows that are wrong by `row_error` (one sigma,
+    each on its own) of `height`: sigma_rho = sqrt(2) sigma_e (rho^2 / B + B / 4), sigma_e = pi row_error / height.
+    """
+    reach = _reach(row_error, height, limit)
+    return float(2 * (reach - np.sqrt(reach**2 - distance**2))) if reach >= distance else float("nan")
+
+
+def _reach(row_error: float, height: int, limit: float, span: float = np.pi, factor: float = np.sqrt(2)) -> float:
+    """limit / (factor sigma_e) [m]: the farthest distance that any baseline measures well enough."""
+    return limit / (factor * span * row_error / height)
+
+
+def _solved(distance: float, reach: float, larger: bool = False) -> float:
+    if reach < distance:
+        return float("nan")
+    return float(2 * (reach + (1 if larger else -1) * np.sqrt(reach**2 - distance**2)))
+
+
+def _small_angles(distance: float, row_error: float, height: int, limit: float) -> float:
+    return distance**2 / _reach(row_error, height, limit)
+
+
+def _one_cosine(distance: float, row_error: float, height: int, limit: float) -> float:
+    rest = _reach(row_error, height, limit) ** 2 - distance**2 / 4
+    return float(distance**2 / np.sqrt(rest)) if rest > 0 else float("nan")
+
+
+def _rig_and_limit(rng: np.random.Generator) -> tuple:
+    """From a far mark and a small angle to a near one and a large angle; sometimes no baseline is good enough."""
+    distance, height, row_error = rng.uniform(1, 6), int(rng.choice([512, 640, 960, 1024])), rng.uniform(0.2, 1.5)
+    reach = distance * rng.uniform(0.9, 8)
+    return float(distance), float(row_error), height, float(reach * np.sqrt(2) * np.pi * row_error / height)
+
+
+def _of_the_task(rng: np.random.Generator) -> tuple:
+    return 4.0, 0.5, 960, 0.10
+
+
+def _none_is_enough(rng: np.random.Generator) -> tuple:
+    return 8.0, 2.0, 512, 0.05
+
+
 EXERCISES = [
     Exercise(
         number="20.1",
         reference=to_metres,
         inputs=_raw_images,
+        level="warm-up",
+        cases=(_nothing_measured, _all_measured),
         mistakes=(
+            Mistake(
+                lambda raw, units_per_metre, invalid: np.where(raw == 65535, np.nan, raw / units_per_metre),
+                "You take 65535 for no measurement in every file. This file may use another number: use `invalid`.",
+            ),
+            Mistake(
+                lambda raw, units_per_metre, invalid: np.round(to_metres(raw, units_per_metre, invalid), 3),
+                "You round to millimetres. With 5000 units a metre the file knows a fifth of one: do not round.",
+            ),
             Mistake(
                 lambda raw, units_per_metre, invalid: raw / units_per_metre,
                 "Pixels without a measurement have become depths. They must be NaN: compare the raw numbers with "
@@ -193,7 +304,20 @@ EXERCISES = [
         number="20.2",
         reference=resized_intrinsics,
         inputs=_intrinsics,
+        cases=(_unchanged, _the_papers_camera),
         mistakes=(
+            Mistake(
+                _columns_only,
+                "Your rows keep their size. The image shrinks in both directions: fy and cy, too.",
+            ),
+            Mistake(
+                _half_a_pixel_on_the_focal_length,
+                "The half pixel belongs to positions, cx and cy. A focal length is a length: it has no origin.",
+            ),
+            Mistake(
+                lambda k, scale: np.round(resized_intrinsics(k, scale)),
+                "You round to whole pixels. A principal point may lie anywhere between them.",
+            ),
             Mistake(
                 lambda k, scale: k * scale,
                 "You multiply the whole matrix, and its last 1 with it. A pinhole's K ends in [0, 0, 1].",
@@ -244,7 +368,30 @@ EXERCISES = [
         number="20.3",
         reference=baseline_from_marks,
         inputs=_marks,
+        cases=(_exchanged, _even_number_of_marks, _signs_that_differ, _one_mark),
         mistakes=(
+            Mistake(
+                lambda u, v, height, distance: abs(baseline_from_marks(u, v, height, distance)),
+                "You drop the sign. A negative baseline says that the images are exchanged: leave it as it comes.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: float(np.median(np.abs(_all_marks(u, v, height, distance)))),
+                "You drop the signs, mark by mark: images that were exchanged would then pass for good ones.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: _middle(_all_marks(u, v, height, distance), len(u) // 2),
+                "For an even number of marks yours is the upper of the middle two; a median lies halfway between.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: _middle(_all_marks(u, v, height, distance), (len(u) - 1) // 2),
+                "For an even number of marks yours is the lower of the middle two; a median lies halfway between.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: float(
+                    np.median(distance) * np.median(np.tan(np.pi * (np.asarray(u) - v) / height))
+                ),
+                "The tangent of a difference is not the difference of the tangents; and go mark by mark, one median.",
+            ),
             Mistake(
                 lambda u, v, height, distance: -baseline_from_marks(u, v, height, distance),
                 "Yours is negative. The lower camera sees a mark at the greater elevation: lower minus upper.",
@@ -290,6 +437,68 @@ EXERCISES = [
             Mistake(
                 lambda u, v, height, distance: baseline_from_marks(u, v, 512, distance),
                 "Your panorama is always 512 rows high: use the argument.",
+            ),
+        ),
+    ),
+    Exercise(
+        number="20.4",
+        reference=baseline_needed,
+        inputs=_rig_and_limit,
+        level="challenge",
+        cases=(_of_the_task, _none_is_enough),
+        tolerance=1e-5,
+        mistakes=(
+            Mistake(
+                _small_angles,
+                "Close: that is for far marks. Near the rig the angles are not small: keep 1 / cos(e)^2.",
+            ),
+            Mistake(
+                _one_cosine,
+                "The derivative of tan(e) is 1 / cos(e)^2: yours has one cosine only.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: _solved(
+                    distance, _reach(row_error, height, limit, factor=1)
+                ),
+                "Two rows are read, one on each image, and each is wrong on its own: their variances add.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: _solved(
+                    distance, _reach(row_error, height, limit, factor=2)
+                ),
+                "You add the two rows' errors. They are independent: add their variances, then take the root.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: _solved(
+                    distance, _reach(row_error, height, limit, span=2 * np.pi)
+                ),
+                "Rows run from straight up to straight down: `height` of them span pi radians, not 2 pi.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: _solved(
+                    distance, _reach(row_error, height, limit, span=180.0)
+                ),
+                "The error of an elevation must be in radians: the derivative of tan(e) holds for those only.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: _solved(
+                    distance, _reach(row_error, height, limit), larger=True
+                ),
+                "Two baselines give just that error. The *least* is asked for: the other root.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: (
+                    found if np.isfinite(found := baseline_needed(distance, row_error, height, limit)) else 2 * distance
+                ),
+                "Where even the best baseline is not good enough the task asks for NaN.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: 1000 * baseline_needed(distance, row_error, height, limit),
+                "Yours is in millimetres; metres are asked for.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: baseline_needed(distance, row_error, height, limit) / 2,
+                "That is half of it: from the rig's middle to one camera. The baseline goes from camera to camera.",
             ),
         ),
     ),

@@ -129,10 +129,10 @@ def distances_table(objects: Sequence[MeasuredObject], most: int = 8) -> str:
     lines = [f"{'object':14} {'features':>8} {'from box centres [m]':>21} {'from disparities [m]':>21}"]
     for one in list(objects)[:most]:
         cells = [
-            f"{way.horizontal_range_m:21.1f}" if way.outcome == "ok" else f"{way.outcome:>21}"
+            f"{way.horizontal_range_m:21.2f}" if way.outcome == "ok" else f"{way.outcome:>21}"
             for way in (one.box_centre, one.disparity)
         ]
-        lines.append(f"{one.label:14} {'10 or more' if one.n_matches >= 10 else 'fewer':>8} {''.join(cells)}")
+        lines.append(f"{one.label:14} {one.n_matches:>8} {''.join(cells)}")
     return "\n".join(lines)
 
 
@@ -141,7 +141,7 @@ def fit_text(found: Localization, true_pose: np.ndarray | None) -> str:
     if found.pose is None:
         return f"unable: {found.reason}"
     residual = np.median(np.linalg.norm(found.residuals, axis=1))
-    text = f"{len(found.used_pairs)} pairs, median residual {residual:.1f} m"
+    text = f"{len(found.used_pairs)} pairs, median residual {residual:.2f} m"
     if true_pose is None:
-        return f"{text}, pose ({found.pose.x:.1f}, {found.pose.y:.1f}) m"
-    return f"{text}, position wrong by {np.hypot(*(np.array(found.pose[:2]) - true_pose[:2])):.1f} m"
+        return f"{text}, pose ({found.pose.x:.2f}, {found.pose.y:.2f}) m"
+    return f"{text}, position wrong by {np.hypot(*(np.array(found.pose[:2]) - true_pose[:2])):.2f} m"

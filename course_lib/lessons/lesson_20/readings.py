@@ -20,7 +20,6 @@ from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.paths import data_path
 
 STAND_IN_FRAMES = 24  # of the corridor run that was carried by hand: as many as the panel steps through (chosen)
-BOUNDS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)  # that numbers are printed against
 _OPENGL_TO_OPTICAL = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
@@ -131,14 +130,6 @@ class Checker:
         return self._renderers[focal_scale]
 
 
-def at_most(value: float, unit: str = "m") -> str:
-    """A number as the least of `BOUNDS` that it does not pass, so that it prints alike on every machine."""
-    if not np.isfinite(value):
-        return "no number"
-    bound = next((bound for bound in BOUNDS if value <= bound), None)
-    return f"above {BOUNDS[-1]:g} {unit}" if bound is None else f"at most {bound:g} {unit}"
-
-
 def misread_run(given: Recording, reading: str, frames: int, **options: object) -> Run:
     """The filter on the first frames of a recording whose files say what `reading` makes of them: `run_sequence`.
 
@@ -154,13 +145,14 @@ def misread_run(given: Recording, reading: str, frames: int, **options: object) 
 
 
 def readings_table(checker: Checker, frames: Sequence[int]) -> str:
-    """Every reading: the median of |z - z_map| over some frames, and whether most pixels hit the map."""
-    lines = [f"{'read with':34} {'median |z - z_map|':20} pixels on the map"]
+    """Every reading over some frames: the median of |z - z_map|, least and greatest of a frame, and the hits."""
+    lines = [f"{'read with':34} {'median |z - z_map|, over the frames':37} pixels on the map"]
     for name in READINGS:
         compared = [checker(frame, name) for frame in frames]
-        together = np.concatenate([one.difference.ravel() for one in compared])
-        together = together[np.isfinite(together)]
-        median = float(np.median(together)) if len(together) else float("nan")
-        hits = float(np.mean([one.hits for one in compared]))
-        lines.append(f"{name:34} {at_most(median):20} {'most' if hits >= 0.5 else 'less than half'}")
+        medians = np.array([one.median for one in compared])
+        told = "no number"
+        if np.isfinite(medians).any():
+            low, middle, high = np.nanmin(medians), np.nanmedian(medians), np.nanmax(medians)
+            told = f"{middle:.3f} m ({low:.3f} to {high:.3f})"
+        lines.append(f"{name:34} {told:37} {np.mean([one.hits for one in compared]):.0%}")
     return "\n".join(lines)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import re
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from course_lib.lessons.kit.display import FigureError, Picture, require_labels, show
 from course_lib.plots import figures
@@ -41,6 +43,25 @@ def test_a_colour_bar_needs_a_unit_too():
     figures.colour_bar(figure, image, axes, "depth")
     with pytest.raises(FigureError, match="colour bar"):
         require_labels(figure)
+
+
+def test_a_photograph_keeps_its_colours(monkeypatch):
+    """A smooth ramp of colours, a thousand of them: a palette makes patches of it, a JPEG does not."""
+    ramp = np.stack(np.meshgrid(np.linspace(0, 1, 200), np.linspace(0, 1, 100)), axis=-1)
+    figure, axes = figures.new_figure()
+    axes.imshow(np.dstack([ramp, 1 - ramp[..., :1]]))
+    axes.set(title="A ramp", xlabel="u [pixels]", ylabel="v [pixels]")
+    shown = []
+    monkeypatch.setattr("course_lib.lessons.kit.display.display", shown.append)
+    show(figure, alt="Colours that change smoothly across the picture.")
+    show(figure, alt="Colours that change smoothly across the picture.", photograph=True)
+    colours = [
+        len(np.unique(np.asarray(Image.open(io.BytesIO(one.data)).convert("RGB")).reshape(-1, 3), axis=0))
+        for one in shown
+    ]
+    assert colours[0] <= 128
+    assert colours[1] > 1000
+    assert "data:image/jpeg;base64," in shown[1].html()
 
 
 @pytest.mark.parametrize("alt", ["", "a plot", "figure 1"])

@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-import math
+import importlib
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
-from tests.lessons.kit import (
-    answers_00_to_03,
-    answers_01_to_07,
-    answers_09,
-    answers_10,
-    answers_11_to_17,
-    answers_18,
-    answers_19,
-)
 
 # Seed 0 is that of `check`; the others show that nothing hangs on one set of inputs.
 SEEDS = range(4)
@@ -78,13 +70,6 @@ def segments(estimated, path):
     return np.array(result)
 
 
-def all_of_two(n_a, mean_a, std_a, n_b, mean_b, std_b):
-    """Mean and deviation of two groups by their moments about zero."""
-    first = (n_a * mean_a + n_b * mean_b) / (n_a + n_b)
-    second = (n_a * (std_a**2 + mean_a**2) + n_b * (std_b**2 + mean_b**2)) / (n_a + n_b)
-    return first, math.sqrt(second - first**2)
-
-
 WRONG = [
     ("08.1", segments, "lines between the points"),
     ("08.1", lambda e, p: np.array([np.abs(p[:, :2] - q).sum(axis=1).min() for q in e[:, :2]]), "add the ways"),
@@ -102,19 +87,6 @@ WRONG = [
     ("08.3", counted_from_one, "count frames from 1"),
     ("08.3", minus_one_in_the_loop, "inside the loop"),
     ("08.3", moving_average, "mean of a row"),
-    (
-        "17.1",
-        lambda dx, dy, used, wrong: [int(w == 0 and x <= 2 and y <= 2) for x, y, w in zip(dx, dy, wrong, strict=True)],
-        "unable",
-    ),
-    ("17.2", lambda n, m, s, k, p, t: ((n * m + k * p) / (n + k), (n * s + k * t) / (n + k)), "cannot be averaged"),
-    ("17.2", lambda n, m, s, k, p, t: ((n * m + k * p) / (n + k), np.hypot(s, t)), "one beside the other"),
-    (
-        "17.3",
-        lambda n, q: sum(math.comb(n, k) * q**k * (1 - q) ** (n - k) for k in range(3)),
-        "Two objects give a pose",
-    ),
-    ("17.3", lambda n, q: q**n + n * (1 - q) * q ** (n - 1), "took q for the probability of missing"),
     ("20.1", lambda raw, units, invalid: [[v / units if v else np.nan for v in row] for row in raw], "You take 0"),
     ("20.2", lambda k, s: np.diag([s, s, 1]) @ k, "half a pixel off"),
     (
@@ -130,21 +102,14 @@ RIGHT = [
     ("08.2", lambda e: np.array(table(e))),
     ("08.2", lambda e: list(table(e))),
     ("08.3", lambda s, limit, patience: first_row(s < limit, patience)),
-    (
-        "17.1",
-        lambda dx, dy, used, wrong: [
-            -1 if u < 2 else int(not w and max(x, y) <= 2) for x, y, u, w in zip(dx, dy, used, wrong, strict=True)
-        ],
-    ),
-    ("17.2", lambda n, m, s, k, p, t: all_of_two(n, m, s, k, p, t)),
-    ("17.3", lambda n, q: sum(math.comb(n, k) * q**k * (1 - q) ** (n - k) for k in range(2))),
     ("20.1", lambda raw, units, invalid: [[np.nan if v == invalid else v / units for v in row] for row in raw]),
     ("20.2", lambda k, s: np.array([[s, 0, s / 2 - 0.5], [0, s, s / 2 - 0.5], [0, 0, 1]]) @ k),
     ("20.3", lambda u, v, h, d: np.median(d * (1 / np.tan(np.pi * v / h) - 1 / np.tan(np.pi * u / h)))),
 ]
 
 
-OTHERS = (answers_00_to_03, answers_01_to_07, answers_09, answers_10, answers_11_to_17, answers_18, answers_19)
+FILES = sorted(Path(__file__).parent.glob("answers_*.py"))
+OTHERS = [importlib.import_module(f"{__package__}.{path.stem}") for path in FILES]
 WRONG_ANSWERS = [*WRONG, *(answer for module in OTHERS for answer in module.WRONG)]
 RIGHT_ANSWERS = [*RIGHT, *(answer for module in OTHERS for answer in module.RIGHT)]
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from course_lib.depth_mcl import depth_image_from_points
 from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.lessons.lesson_04.panel import faults_panel
-from course_lib.lessons.lesson_04.recorded import KINDS, sort_errors
+from course_lib.lessons.lesson_04.exercises import nearest_of
+from course_lib.lessons.lesson_04.figures import counts
+from course_lib.lessons.lesson_04.panel import DEPTHS, faults_panel
+from course_lib.lessons.lesson_04.recorded import KINDS, kinds_of, sort_errors
 from course_lib.lessons.lesson_04.time_of_flight import FAULTS, MODEL, capture, frames_of, model, returns, wall
 
 SMALL = DepthCamera.sr4000().resized(88, 72)
@@ -99,6 +102,7 @@ def test_every_pixel_is_of_exactly_one_kind():
     assert sum(shares.values()) == pytest.approx(1.0)
     expected = ("no measurement", 1), ("within 5 cm", 1), ("5 to 30 cm off", 1), ("wrapped", 1), (KINDS[-1], 2)
     assert shares == {kind: pytest.approx(n / 6) for kind, n in expected}
+    assert (np.sum(list(kinds_of(measured, true).values()), axis=0) == 1).all()
 
 
 def test_the_panel_counts_what_it_shows_and_its_button_switches_all_faults_on():
@@ -107,3 +111,19 @@ def test_the_panel_counts_what_it_shows_and_its_button_switches_all_faults_on():
     panel.press("All faults")
     assert all(panel.values()[fault] for fault in FAULTS)
     assert panel.values()["x"] == panel.defaults()["x"]
+
+
+def test_without_faults_the_histograms_of_measured_and_true_depths_agree_wherever_the_camera_stands():
+    for x in (0.0, 1.3, 2.0, 4.5):
+        shot = capture(x, set(), SMALL)
+        there = np.isfinite(shot.true)
+        assert np.array_equal(counts(shot.depth[there], DEPTHS), counts(shot.true[there], DEPTHS))
+
+
+def test_the_least_of_sixteen_noisy_points_is_as_far_off_as_exercise_04_4_predicts():
+    camera = DepthCamera.sr4000()
+    frame = frames_of([wall(6.0)], 1, camera)[0]
+    nearest = depth_image_from_points(camera.points(frame), camera.resized(44, 36))
+    assert nearest_of(2) == pytest.approx((-1 / np.sqrt(np.pi), np.sqrt(1 - 1 / np.pi)), abs=1e-6)
+    mean, _ = nearest_of(16)
+    assert np.nanmean(nearest) - np.nanmean(frame) == pytest.approx(mean * np.nanstd(frame), abs=0.002)

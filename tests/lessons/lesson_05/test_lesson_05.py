@@ -8,6 +8,8 @@ import pytest
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import find_exercise, judge
 from course_lib.lessons.lesson_05.clouds import corner_states, nearest_expected, wagon_states, walk
+from course_lib.lessons.lesson_05.exercises import bayes_step, least_sigma
+from course_lib.lessons.lesson_05.figures import beliefs_figure
 
 SIGMA = np.array([0.15, 0.04, 0, 0, 0, np.deg2rad(1.5)])
 
@@ -85,3 +87,35 @@ def test_yaw_left_unjudged_by_the_oracle_does_a_random_walk():
     ends = [walk(wagon_states()[:26], SIGMA, 50, seed, True).clouds[-1, 0, 5] for seed in range(60)]
     spread = np.std(wrap_angle(np.array(ends) - wagon_states()[0, 5]))
     assert spread == pytest.approx(5 * np.deg2rad(1.5), rel=0.35)
+
+
+def test_particles_that_move_one_by_one_come_to_the_exact_prediction_of_the_bayes_filter():
+    belief, moves = np.array([0.5, 0.2, 0.1, 0.1, 0.1]), np.array([0.1, 0.8, 0.1])
+    nothing_seen = (np.zeros(5, bool), False, 0.0, 0.0)
+    exact = bayes_step(belief, moves, *nothing_seen)
+    rng = np.random.default_rng(0)
+    cells = np.minimum(rng.choice(5, 200_000, p=belief) + rng.choice(3, 200_000, p=moves), 4)
+    assert np.bincount(cells, minlength=5) / 200_000 == pytest.approx(exact, abs=0.004)
+
+
+def test_the_least_sigma_of_exercise_05_5_keeps_up_in_just_that_share_of_runs():
+    sigma = least_sigma(0.1, 50, 30, 0.8)
+    rng = np.random.default_rng(1)
+    runs = [(sigma * rng.standard_normal((30, 50))).max(axis=1).min() >= 0.1 for _ in range(4000)]
+    assert np.mean(runs) == pytest.approx(0.8, abs=0.02)
+
+
+def test_the_figure_of_beliefs_has_a_bar_for_each_cell_and_the_shares_as_dots():
+    beliefs = {name: np.arange(4) / 6 for name in "abcd"}
+    figure = beliefs_figure(beliefs, [1, 3], {"b": np.full(4, 0.25)})
+    assert [len(axes.patches) for axes in figure.axes] == [4] * 4
+    assert [bar.get_height() for bar in figure.axes[1].patches] == pytest.approx(beliefs["b"])
+    assert [len(axes.lines) for axes in figure.axes] == [1, 2, 1, 1]
+
+
+def test_less_than_is_not_at_most_and_is_found_out():
+    def less_than(particles, state, radius, angle):
+        near = np.hypot(particles[:, 0] - state[0], particles[:, 1] - state[1]) <= radius
+        return np.mean(near & (np.abs(wrap_angle(particles[:, 5] - state[5])) < angle))
+
+    assert all(judge(find_exercise("05.3"), less_than, seed).status == "wrong" for seed in range(3))

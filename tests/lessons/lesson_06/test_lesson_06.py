@@ -7,6 +7,8 @@ import pytest
 
 from course_lib.depth_mcl.fallon import depth_log_likelihood
 from course_lib.depth_mcl.likelihood import likelihood, normalize_likelihood, valid_pixels, weights
+from course_lib.lessons.kit.exercises import find_exercise, judge
+from course_lib.lessons.lesson_06.exercises import importance_mean
 from course_lib.lessons.lesson_06.panel import likelihood_panel
 from course_lib.lessons.lesson_06.profiles import (
     AXES,
@@ -88,3 +90,45 @@ def test_the_table_has_a_row_for_each_form_and_a_column_for_each_axis():
     head, *rows = table.splitlines()
     assert head.split() == ["off", "/", "width", "x", "[m]", "yaw", "[degrees]"]
     assert [row.strip().split("  ")[0] for row in rows] == list(FORMS)
+
+
+def carried(share):
+    """How many particles carry the weight."""
+    return 1 / np.sum(share**2)
+
+
+def test_more_pixels_narrow_a_product_over_them_and_leave_the_papers_weights_as_they_are():
+    states = small_scene().truth + np.random.default_rng(0).normal(0, [0.15, 0.04, 0, 0, 0, 0.026], (150, 6))
+    paper, product = [], []
+    for width, height in ((22, 18), (44, 36), (88, 72)):
+        scene = small_scene(width, height)
+        assert scene.measured.shape == (height, width)
+        views = scene.renderer.render(states)
+        paper.append(carried(weights(normalize_likelihood(likelihood(scene.measured, views)), 0.3)))
+        log_p = depth_log_likelihood(scene.measured, views)
+        odds = np.exp(log_p - log_p.max())
+        product.append(carried(odds / odds.sum()))
+    assert max(paper) < 1.3 * min(paper)
+    assert product[0] > 2 * product[1] > 4 * product[2]
+
+
+def test_the_error_bar_of_exercise_06_4_is_the_scatter_of_the_weighted_means():
+    rng, found = np.random.default_rng(2), []
+    for _ in range(1500):
+        x = rng.normal(0, 1, 200)
+        proposal = np.exp(-(x**2) / 2)
+        found.append(importance_mean(x, proposal * np.exp(-((x - 1) ** 2) / (2 * 0.5**2)), proposal))
+    means, errors = np.array(found).T
+    assert means.mean() == pytest.approx(0.8, abs=0.005)
+    assert errors.mean() == pytest.approx(means.std(), rel=0.06)
+
+
+def test_a_small_number_below_the_fraction_line_of_9_does_not_pass_for_a_guard():
+    def almost_guarded(measured, images, alpha, beta):
+        values = np.nansum(alpha / (alpha + np.abs(measured - images)), axis=(1, 2))
+        normalized = (values - values.min()) / (np.ptp(values) + 1e-12)
+        w = np.exp(-((normalized - 1) ** 2) / beta**2)
+        return w / w.sum()
+
+    with np.errstate(invalid="ignore"):
+        assert all(judge(find_exercise("06.2"), almost_guarded, seed).status == "wrong" for seed in range(3))

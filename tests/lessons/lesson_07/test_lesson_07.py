@@ -4,9 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from filterpy.kalman import predict, update
 from filterpy.monte_carlo import residual_resample
 
 from course_lib.depth_mcl.particle_filter import resample
+from course_lib.lessons.lesson_07.beside_kalman import (
+    DOORS,
+    LASER,
+    ROLLING,
+    START,
+    STEP,
+    beside_kalman,
+    best_bells,
+    door_likelihood,
+    kalman_means,
+    wagon_and_laser,
+)
+from course_lib.lessons.lesson_07.exercises import stratified_error
 from course_lib.lessons.lesson_07.filter_stepper import (
     ALLOWED_AFTER,
     FRAMES,
@@ -21,7 +35,7 @@ from course_lib.lessons.lesson_07.filter_stepper import (
 )
 from course_lib.lessons.lesson_07.panel import StepperSession, stepper_panel
 from course_lib.lessons.lesson_07.resampling import (
-    copies_of,
+    copies,
     different_over_rounds,
     follow,
     mean_copies,
@@ -131,8 +145,40 @@ def test_equal_weights_lose_particles_only_to_independent_draws():
 
 
 def test_systematic_resampling_gives_two_or_three_copies_for_two_point_two():
-    copies = copies_of("systematic", TEN, particle=1, repeats=500, seed=0)
-    assert set(copies.tolist()) == {2, 3}
+    drawn = copies("systematic", TEN, repeats=500, seed=0)
+    assert set(drawn[:, 1].tolist()) == {2, 3}
+    assert (drawn.sum(axis=1) == 10).all()
+
+
+def test_the_kalman_filter_is_filterpys():
+    _, measured = wagon_and_laser(seed=3)
+    mean, variance, means = START, 0.0, []
+    for z in measured:
+        mean, variance = update(*predict(mean, variance, u=STEP, Q=ROLLING**2), z, LASER**2)
+        means.append(mean)
+    assert kalman_means(measured) == pytest.approx(means)
+
+
+def test_sixteen_times_the_particles_come_four_times_as_near_to_the_kalman_filter():
+    few, many = (np.median(beside_kalman(n).from_kalman) for n in (25, 400))
+    assert 3 < few / many < 5.5
+
+
+def test_particles_tell_doors_apart_and_one_bell_does_not():
+    first, second = best_bells((0.0, 2.0))
+    assert first.mean == pytest.approx(np.mean(DOORS), abs=1e-3)
+    assert np.trapezoid(second.density(np.linspace(-30, 40, 7001)), dx=0.01) == pytest.approx(1)
+    assert second.share_within(4.0, 0.5) < 0.2
+    assert abs(second.mean - np.array(DOORS)).min() > 1
+    assert door_likelihood(np.array([4.0, 6.0])) == pytest.approx([1, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_error_bar_of_stratified_resampling_is_that_of_the_simulation(seed):
+    rng = np.random.default_rng(seed)
+    w, x = TEN if seed == 1 else rng.dirichlet(np.ones(8)), rng.normal(size=10 if seed == 1 else 8)
+    moved = copies("stratified", w, repeats=6000, seed=seed) @ x / len(w)
+    assert moved.std() == pytest.approx(stratified_error(w, x), rel=0.04)
 
 
 def test_filterpy_loses_the_light_particles_and_ours_does_not():

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.lesson_08.along import OFFSETS, AgreementTable, localize_along, row
-from course_lib.lessons.lesson_08.figures import two_errors_figure
+from course_lib.lessons.lesson_08.exercises import effective_frames
+from course_lib.lessons.lesson_08.figures import as_in_the_paper_figure, two_errors_figure
+from course_lib.lessons.lesson_08.stored_runs import neighbours_correlation, spread_over_seeds, stored_runs
 
 
 @pytest.fixture(scope="module")
@@ -57,3 +59,25 @@ def test_a_row_tells_nothing_finer_than_the_table_is_spaced(table):
 def test_the_picture_of_two_errors_draws_what_it_says():
     _, errors = two_errors_figure()
     assert errors["timed error"] > 10 * errors["nearest-path error"]
+
+
+@pytest.mark.parametrize("a", [0.9, -0.4])
+def test_what_frames_are_worth_is_what_a_simulation_of_their_mean_says(a):
+    rng, runs, n = np.random.default_rng(1), 3000, 40
+    errors = [rng.normal(size=runs)]
+    for _ in range(n - 1):
+        errors.append(a * errors[-1] + np.sqrt(1 - a**2) * rng.normal(size=runs))
+    assert 1 / np.var(np.mean(errors, axis=0)) == pytest.approx(effective_frames(n, a), rel=0.08)
+    assert neighbours_correlation(np.ravel(np.array(errors).T)) == pytest.approx(a, abs=0.05)
+
+
+def test_the_figures_as_in_the_paper_hold_the_stored_run():
+    run = stored_runs()[0]
+    place, error = as_in_the_paper_figure(run, np.zeros((2, 3))).axes
+    assert len(place.lines[1].get_xdata()) == len(error.lines[0].get_ydata()) == 304
+    assert error.get_yscale() == "linear"
+    assert max(error.lines[0].get_ydata()) == run.columns["proposed_nearest_m"].max()
+
+
+def test_a_number_is_told_with_its_least_and_greatest_over_the_seeds():
+    assert spread_over_seeds(stored_runs(), "proposed", "median_m") == "0.017 (0.014 to 0.017)"

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.exercises import find_exercise, judge
 from course_lib.lessons.kit.room_photographs import the_image
 from course_lib.lessons.lesson_12.figures import crop_of, hues_and_saturations, outline, part_of
+from course_lib.lessons.lesson_12.learning import anchors, answering_cells, shape_overlap, training_picture
 from course_lib.lessons.lesson_12.panel import seam_panel, where_they_count
-from course_lib.lessons.lesson_12.scores import colours_against_map
+from course_lib.lessons.lesson_12.scores import ThresholdScore, colours_against_map
 from course_lib.lessons.lesson_12.seam_cuts import (
     CUTS,
     SOFA,
@@ -21,9 +21,9 @@ from course_lib.lessons.lesson_12.seam_cuts import (
     cut_table,
     detector,
     pieces_of_sofa,
+    said_of_the_sofa,
     true_object,
 )
-from course_lib.spherical_stereo.detection.boxes import box_iou
 from course_lib.spherical_stereo.detection.colour import central_half, mean_hue_saturation
 from course_lib.spherical_stereo.detection.seam import centres_in_range
 
@@ -136,25 +136,41 @@ def test_the_panel_draws_a_counted_box_where_its_centre_counts(percent):
     assert not centres_in_range(boxes, WIDTH).all(), "some box of this image needs the turn"
 
 
-def by_one_turn(a, b, width):
-    """Move the box that lies left by a turn where the two are far apart."""
-    if b[0] - a[0] > width / 2:
-        a = a + np.array([width, 0, width, 0])
-    elif a[0] - b[0] > width / 2:
-        b = b + np.array([width, 0, width, 0])
-    return box_iou(a[None], b[None], 100 * width)[0, 0]
+def test_the_network_says_sofa_and_something_else_of_the_cut_sofa_and_sofa_of_the_whole_one():
+    halves, whole = (said_of_the_sofa(cut_sofa(50), extension, 0.5) for extension in (False, True))
+    assert halves[0].label == "sofa"
+    assert all(said.overlap < 0.6 for said in halves)
+    assert len(halves) == 2
+    assert [said.label for said in whole] == ["sofa"]
+    assert whole[0].overlap == pytest.approx(best_overlap(cut_sofa(50).objects(True, 0.5), cut_sofa(50).sofa, WIDTH))
 
 
-@pytest.mark.parametrize(
-    ("number", "answer"),
-    [
-        ("12.1", by_one_turn),
-        ("12.1", lambda a, b, w: box_iou(a[None], b[None], w).item()),
-        ("12.2", lambda boxes, w: np.floor((boxes[:, [0, 2]].mean(axis=1) - w / 8) / w) == 0),
-        ("12.3", lambda h, s: np.degrees(np.angle((s * np.exp(1j * np.radians(h))).sum())) % 360),
-        ("12.3", lambda h, s: np.degrees(np.arctan2(-s @ np.sin(h / 180 * np.pi), -s @ np.cos(h / 180 * np.pi))) + 180),
-    ],
-    ids=lambda given: given if isinstance(given, str) else "",
-)
-def test_another_way_to_the_right_values_passes(number, answer):
-    assert {judge(find_exercise(number), answer, seed).status for seed in range(8)} == {"right"}
+def test_scores_of_a_threshold():
+    score = ThresholdScore(right=51, made=53, wanted=54)
+    assert (score.precision, score.recall) == (51 / 53, 51 / 54)
+    assert np.isnan(ThresholdScore(0, 0, 54).precision)
+
+
+def test_the_shapes_are_those_of_the_networks_file_and_their_grids_grow_with_them():
+    shapes, strides = anchors()
+    assert shapes[0].tolist() == [23, 32]
+    assert shapes[-1].tolist() == [210, 160]
+    assert strides.tolist() == [8] * 3 + [16] * 3 + [32] * 3
+
+
+def test_the_training_picture_shows_its_objects_inside_it():
+    taught = training_picture()
+    assert taught.image.shape == (640, 1280, 3)
+    assert len(taught.labels) == len(taught.boxes) == 10
+    areas = (taught.boxes[:, 2:] - taught.boxes[:, :2]).prod(axis=1)
+    assert (np.diff(areas) <= 0).all()
+
+
+def test_shapes_overlap_as_the_training_has_it():
+    found = shape_overlap(np.array([[40.0, 60.0], [20.0, 30.0]]), np.array([[40, 60], [80, 30]]))
+    assert found == pytest.approx(np.array([[1.0, 1200 / 3600], [0.25, 600 / 2400]]))
+
+
+def test_three_cells_answer_for_a_centre():
+    assert answering_cells(np.array([49.9, 17.4])).tolist() == [[49, 17], [50, 17], [49, 16]]
+    assert answering_cells(np.array([3.2, 5.6])).tolist() == [[3, 5], [2, 5], [3, 6]]

@@ -12,6 +12,7 @@ from course_lib.lessons.lesson_13.matching import (
     count_table,
     matches_in_boxes,
     matches_when_turned,
+    negative_scene,
     object_names,
     part_of,
     plain_object,
@@ -21,6 +22,7 @@ from course_lib.lessons.lesson_13.matching import (
     turned_scene,
 )
 from course_lib.lessons.lesson_13.panel import band, matching_panel
+from course_lib.lessons.lesson_13.sphere_scene import half_circle, upright_plane
 from course_lib.spherical_stereo.matching.epipolar import epipolar_pairs, epipolar_residual
 from course_lib.spherical_stereo.matching.features import inside_box
 from course_lib.spherical_stereo.matching.object_matching import NO_MATCHES, match_views
@@ -152,3 +154,30 @@ def test_the_panel_says_which_objects_a_turned_camera_leaves_without_partner(pan
     names = panel.controls["chosen"].options
     summaries = [panel.draw(**(panel.defaults() | {"chosen": name, "turn": 5.0})).summary for name in names]
     assert 1 <= sum("no partner" in summary for summary in summaries) <= 4
+
+
+def test_a_negative_breaks_the_look_and_a_far_turn_the_place(one):
+    assert score([negative_scene(one)], "geometry alone").right == 12
+    assert score([negative_scene(one)], "AKAZE alone").right < 10
+    assert score([turned_scene(one, columns(20.0))], "geometry alone").right < 10
+    assert score([turned_scene(one, columns(20.0))], "AKAZE alone").right == 12
+
+
+def test_the_half_circle_is_where_the_residual_is_zero():
+    towards = np.array([2.2, 1.4, -1.5])
+    circle = half_circle(towards)
+    azimuth, elevation = np.arctan2(circle[1:-1, 1], circle[1:-1, 0]), np.arcsin(circle[1:-1, 2])
+    assert np.linalg.norm(circle, axis=1) == pytest.approx(1)
+    residual = epipolar_residual(np.arctan2(1.4, 2.2), -0.5, azimuth, elevation)
+    assert residual == pytest.approx(0, abs=1e-9)
+    assert circle[0] == pytest.approx([0, 0, 1], abs=1e-9)
+    assert circle[-1] == pytest.approx([0, 0, -1], abs=1e-9)
+
+
+def test_the_plane_holds_the_axis_and_the_point_and_stands_upright():
+    point = np.array([2.2, 1.4, -1.5])
+    plane = upright_plane(point, low=-3.6, high=1.2)
+    normal = np.cross(point, [0, 0, 1])
+    assert np.abs(np.asarray(plane.points) @ normal).max() < 1e-6
+    assert plane.bounds[4:] == pytest.approx((-3.6, 1.2))
+    assert plane.bounds[0] < 0 < point[0] < plane.bounds[1]

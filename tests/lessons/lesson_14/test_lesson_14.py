@@ -6,17 +6,20 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
+from course_lib.lessons.lesson_14.exercises import mean_error
 from course_lib.lessons.lesson_14.noise import PIXEL, directions_to, ellipse, noisy_directions, sampled_places
 from course_lib.lessons.lesson_14.panel import triangulation_panel
 from course_lib.lessons.lesson_14.ranges import (
     PLACES,
+    azimuth_gaps,
     both_ranges,
     box_range,
     cuboid_range,
+    error_texts,
     exact_box_ranges,
     places_in_room,
+    places_in_space,
     ranges_of_one_object,
-    typical_error,
 )
 from course_lib.spherical_stereo.ranging.triangulation import DIVERGING, OK, object_position, triangulation_covariance
 
@@ -83,6 +86,10 @@ def test_the_ellipse_is_two_sigma_away_everywhere():
     assert distances == pytest.approx(np.full(len(offsets), 2.0))
 
 
+def typical_error(measured, true, bins):
+    return [np.nanmedian(np.abs(measured - true)[(true >= low) & (true < high)]) for low, high in bins]
+
+
 def test_exact_boxes_err_most_when_near_and_noisy_ones_when_far(recording):
     bins = ((0, 2), (2, 4), (4, 7))
     exact, noisy = (exact_box_ranges(recording, sigma) for sigma in (0.0, 2.0))
@@ -145,3 +152,44 @@ def test_the_panel_tells_how_often_there_is_no_distance(panel):
     drawing = panel.draw(**(panel.defaults() | {"x": 9.0, "sigma": 4.0}))
     share = int(drawing.summary.split("diverging): ")[1].split("%")[0])
     assert 5 <= share <= 25
+
+
+def test_the_ellipse_has_the_range_s_error_along_the_ray_and_the_azimuth_s_across_it():
+    point = np.array([2.0, 1.0, -0.8])
+    upper, lower = directions_to(point, BASELINE)
+    covariance = triangulation_covariance(upper, lower, BASELINE, PIXEL, PIXEL)[:2, :2]
+    variances, ways = np.linalg.eigh(covariance)
+    rho, ray = np.hypot(2, 1), point[:2] / np.hypot(2, 1)
+    slopes = [1 + (z / rho) ** 2 for z in (-0.8, -0.5)]
+    assert np.sqrt(variances) == pytest.approx([rho * PIXEL, rho**2 / BASELINE * PIXEL * np.hypot(*slopes)])
+    assert abs(ways[:, 1] @ ray) == pytest.approx(1)
+
+
+def test_the_places_in_space_are_those_on_the_map_and_their_needles_point_at_the_rig(recording):
+    seen = places_in_space(recording, "09_a", PIXEL)
+    assert len(seen.labels) == len(seen.places) == 12
+    assert np.median(np.linalg.norm((seen.places - seen.true)[:, :2], axis=1)) < 0.2
+    assert seen.cameras[0, 2] - seen.cameras[1, 2] == pytest.approx(recording.rig.baseline)
+    for place, covariance in zip(seen.places, seen.covariances, strict=True):
+        ray = (place - seen.cameras[0])[:2] / np.linalg.norm((place - seen.cameras[0])[:2])
+        assert abs(np.linalg.eigh(covariance[:2, :2])[1][:, 1] @ ray) == pytest.approx(1, abs=1e-6)
+
+
+def test_exact_boxes_of_one_object_lie_in_nearly_one_column(recording):
+    gaps = azimuth_gaps(recording)
+    assert len(gaps) == 258
+    assert gaps.max() <= 0.5
+
+
+def test_no_distance_is_an_error_greater_than_any_other():
+    true = np.array([1.0, 1.1, 1.2, 3.0, 3.1, 3.2])
+    errors = np.array([0.1, 0.1, 0.1, np.nan, np.nan, 0.2])
+    assert error_texts(errors, true, ((0, 2), (2, 4))) == "0.10 m (0.10 to 0.10), 100.00 m (0.20 to 100.00)"
+
+
+@pytest.mark.parametrize("rho", [2.0, 4.0])
+def test_the_challenge_s_mean_error_is_what_a_simulation_says(rho):
+    e_u, e_l = np.arctan2(-0.9, rho), np.arctan2(-0.6, rho)
+    noise = np.random.default_rng(14).normal(0, 0.003, (2, 400_000))
+    ranges = BASELINE / (np.tan(e_l + noise[1]) - np.tan(e_u + noise[0]))
+    assert ranges.mean() - rho == pytest.approx(mean_error(rho, e_u, e_l, BASELINE, 0.003), rel=0.15)

@@ -7,6 +7,7 @@ import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge
 from course_lib.lessons.kit.room_observations import room_scenes
+from course_lib.lessons.lesson_16.exercises import pose_sigmas
 from course_lib.lessons.lesson_16.fits import (
     CORNER,
     LINE,
@@ -23,6 +24,7 @@ from course_lib.lessons.lesson_16.fits import (
     residual_over_heading,
     ring_of_landmarks,
     scene_of,
+    weighted_fits,
 )
 from course_lib.lessons.lesson_16.panel import fit_panel
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_rigid_2d
@@ -68,7 +70,7 @@ def test_four_times_as_many_objects_halve_the_heading_error():
 def test_without_the_sign_half_of_the_lines_become_mirrors_and_no_room():
     rng = np.random.default_rng(0)
     assert mirrored_by_plain_svd(landmarks_of(ROOM), 0.05, 200, rng) == 0
-    assert 0.35 < mirrored_by_plain_svd(landmarks_of(LINE), 0.05, 400, rng) < 0.65
+    assert 140 < mirrored_by_plain_svd(landmarks_of(LINE), 0.05, 400, rng) < 260
 
 
 def test_a_swap_among_many_leaves_the_heading_and_a_ring_of_three_does_not():
@@ -150,8 +152,31 @@ def odd_by_mean_residual(source, target):
     return left.index(min(left))
 
 
-@pytest.mark.parametrize(
-    ("number", "answer"), [("16.1", by_svd), ("16.2", scale_by_search), ("16.3", odd_by_mean_residual)]
-)
+@pytest.mark.parametrize(("number", "answer"), [("16.2", scale_by_search), ("16.3", odd_by_mean_residual)])
 def test_another_way_to_the_right_values_passes(number, answer):
     assert all(judge(find_exercise(number), answer, seed).status == "right" for seed in range(8))
+
+
+def test_with_noise_weights_help_and_covariances_help_more():
+    errors = weighted_fits(2.0, 3, np.random.default_rng(5))
+    alike, weights, covariances = (np.median(errors[way][:, 0]) for way in ("all alike", "weights", "covariances"))
+    assert covariances < weights < alike
+    exact = weighted_fits(0.0, 1, np.random.default_rng(5))
+    assert np.median(exact["all alike"][:, 1]) < np.median(exact["weights"][:, 1])
+
+
+def test_the_challenge_s_error_bars_are_those_of_simulated_fits():
+    theta = np.pi / 2
+    source = np.array([[2.0, 0.0], [0.0, 3.0], [-1.0, -1.0]])
+    covariances = np.array([np.diag(v) for v in ([0.04, 0.0001], [0.0004, 0.16], [0.01, 0.01])]) / 16
+    target, rng = Pose2D(0.0, 0.0, theta).apply(source), np.random.default_rng(6)
+    noise = rng.standard_normal((3000, 3, 2)) * np.sqrt(np.diagonal(covariances, axis1=1, axis2=2))
+    fits = np.array([fit_rigid_2d(source + off, target) for off in noise])
+    assert fits.std(axis=0) == pytest.approx(pose_sigmas(source, theta, covariances), rel=0.06)
+
+
+def test_a_wall_that_is_paired_so_that_both_sums_vanish_is_refused_by_name():
+    wall = np.array([[-3.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [3.0, 0.0]])
+    with pytest.raises(RigidFitError) as refused:
+        fit_rigid_2d(wall, wall[[2, 0, 3, 1]])
+    assert refused.value.reason == "undetermined rotation"

@@ -11,7 +11,7 @@ import pytest
 from course_lib.experiments.room_evaluation import CORRECT, INCORRECT, UNABLE, wrong_pairs
 from course_lib.lessons.kit.room_observations import in_body_frame
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
-from course_lib.lessons.lesson_17.experiments import exact_results, failing_places, live_places, nearest_5, table_1
+from course_lib.lessons.lesson_17.experiments import exact_results, failing_places, live_places, table_1
 from course_lib.lessons.lesson_17.figures import outcomes_figure
 from course_lib.lessons.lesson_17.room_causes import (
     CURES,
@@ -30,6 +30,7 @@ from course_lib.lessons.lesson_17.room_runs import (
     stored_rooms,
     table_3_or_4,
     table_5,
+    two_heights,
     used_pairs,
 )
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -206,5 +207,12 @@ def test_cures_are_counted_over_failing_poses(results, localizer, room):
     assert cured_by([], room) == dict.fromkeys(CURES, 0)
 
 
-def test_percentages_are_printed_to_the_nearest_five():
-    assert [nearest_5(value) for value in (0, 2.4, 2.6, 97.4, 100)] == ["0 %", "0 %", "5 %", "95 %", "100 %"]
+def test_the_higher_rig_loses_poses_from_exact_boxes_in_every_seed():
+    runs = stored_rooms()
+    counted = two_heights(runs, "exact_boxes")
+    assert (counted.poses, counted.lower, counted.higher) == (100, 95, 83)
+    assert (counted.lost, counted.gained) == (15, 3)
+    for run in runs:
+        alone = two_heights([run], "exact_boxes")
+        assert alone.higher < alone.lower
+        assert alone.lower - alone.lost + alone.gained == alone.higher

@@ -12,6 +12,7 @@ import pytest
 
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
+from course_lib.lessons.lesson_20.exercises import baseline_needed
 from course_lib.lessons.lesson_20.own_panoramas import (
     MissingBaselineError,
     MissingPanoramaError,
@@ -25,8 +26,8 @@ from course_lib.lessons.lesson_20.readings import (
     Checker,
     MissingMapError,
     Recording,
-    at_most,
     misread_run,
+    readings_table,
     recording,
 )
 from course_lib.paths import REPOSITORY
@@ -105,11 +106,12 @@ def test_a_wrong_unit_gives_poses_and_a_low_score(stand_in):
     assert wrong.scores.max() < 0.5 * right.scores.min()
 
 
-def test_numbers_are_printed_against_round_bounds():
-    assert at_most(0.0131) == "at most 0.02 m"
-    assert at_most(0.02) == "at most 0.02 m"
-    assert at_most(77.0, "pixels") == "above 10 pixels"
-    assert at_most(np.nan) == "no number"
+def test_the_table_of_readings_tells_numbers_with_their_spread(checker):
+    lines = readings_table(checker, [0, 8]).splitlines()
+    assert len(lines) == 1 + len(READINGS)
+    both = sorted(checker(frame).median for frame in (0, 8))
+    assert f"{np.median(both):.3f} m ({both[0]:.3f} to {both[1]:.3f})" in lines[1]
+    assert "no number" in next(line for line in lines if line.startswith("poses: world to camera"))
 
 
 def test_a_readers_pair_is_read_and_what_is_missing_is_named(pair, tmp_path):
@@ -145,6 +147,19 @@ def test_a_wrong_baseline_shows_in_the_residuals_and_nowhere_else(pair):
     assert residuals[0.2] > 3 * residuals[0.3]
     assert "position wrong by" in fit_text(found[0.2], pair.true_pose)
     assert "pose (" in fit_text(found[0.3], None)
+
+
+@pytest.mark.parametrize(("distance", "row_error", "height", "limit"), [(4.0, 0.5, 960, 0.1), (2.0, 1.5, 512, 0.03)])
+def test_the_chosen_baseline_has_just_the_error_that_a_simulation_finds(distance, row_error, height, limit):
+    baseline = baseline_needed(distance, row_error, height, limit)
+    e = np.arctan(baseline / (2 * distance))
+    rows = np.random.default_rng(1).normal(0, row_error, (2, 20_000))
+    found = baseline / (np.tan(e + np.pi * rows[0] / height) - np.tan(-e + np.pi * rows[1] / height))
+    assert found.std() == pytest.approx(limit, rel=0.03)
+
+
+def test_no_baseline_is_chosen_where_none_is_good_enough():
+    assert np.isnan(baseline_needed(8.0, 2.0, 512, 0.05))
 
 
 def test_no_boxes_give_no_distances_but_a_sentence(pair):

@@ -1,0 +1,53 @@
+"""Make data/projects from its seeds: what two spherical cameras saw in the rooms of projects P2 and P3.
+
+It takes half an hour on two cores. A run that is stopped goes on where it was when the same command is given again.
+"""
+
+from __future__ import annotations
+
+import argparse
+from functools import partial
+from pathlib import Path
+
+from course_lib.commands.arguments import require_output_folder
+from course_lib.commands.detector_options import chosen_detector
+from course_lib.processors import processors
+
+FOLDER = Path(__file__).resolve().parents[2] / "data" / "projects"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds this command's options to its parser."""
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="where the data go (default: data/projects)")
+    parser.add_argument(
+        "--work",
+        type=Path,
+        default=Path("results/project_rooms"),
+        metavar="FOLDER",
+        help="where finished rooms are kept, and looked for (default: results/project_rooms)",
+    )
+    parser.add_argument("--processes", type=int, metavar="N", help="rooms made at a time (default: one for each core)")
+    parser.set_defaults(detector=None, input_size=None, score_threshold=None)  # the course's own
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Makes the data; returns the exit code."""
+    out = arguments.out or FOLDER
+    for folder in (out, arguments.work):
+        require_output_folder(folder)
+    from course_lib.commands.progress import progress_bar
+    from course_lib.experiments.project_rooms import make_project_rooms
+    from course_lib.simulation.data_folder import checksums
+
+    out.mkdir(parents=True, exist_ok=True)
+    counts = make_project_rooms(
+        out,
+        partial(chosen_detector, arguments),
+        arguments.work,
+        arguments.processes or processors(),
+        progress_bar("rooms", "room"),
+    )
+    files = [f"rooms_{name}.json" for name in counts]
+    (out / "SHA256SUMS").write_text(checksums(out, files))
+    print(f"wrote {' and '.join(f'{n} views ({name})' for name, n in counts.items())} to {out}")
+    return 0

@@ -1,0 +1,25 @@
+"""The figure of project P2: the boxes of both images, and the map on which they were seen."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from course_lib.experiments.project_rooms import ProjectRoom, ProjectView
+from course_lib.plots.figures import new_figure
+from course_lib.plots.panorama_drawing import draw_box
+from course_lib.plots.room_figures import draw_pose, map_axes
+
+
+def boxes_figure(room: ProjectRoom, view: ProjectView) -> Figure:
+    """What a view is: boxes of the upper and of the lower image; and the room, with the pose that is wanted."""
+    figure, (upper, lower, plan) = new_figure(1, 3, size=(12.0, 3.4))
+    width, height = view.size
+    for axes, name, detections in ((upper, "upper", view.upper), (lower, "lower", view.lower)):
+        axes.set(xlim=(0, width), ylim=(0.75 * height, 0.35 * height), title=f"Boxes of the {name} image")
+        axes.set(xlabel="column u [pixels]", ylabel="row v [pixels]")
+        for one in detections:
+            draw_box(axes, one.box, width, one.label)
+    map_axes(plan, room.semantic_map, "The map, and the pose that is wanted")
+    draw_pose(plan, *view.pose, "black")
+    plan.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
+    return figure

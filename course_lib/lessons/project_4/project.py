@@ -1,0 +1,58 @@
+"""Project P4: what a submission is given, how it is measured, and what stands beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
+from course_lib.lessons.project_4.rivals import as_told, calibrated, pinhole_alone
+from course_lib.lessons.project_4.sessions import FARTHEST, session
+
+WORST, REFUSED = 0.200, 0.050  # m: what a pixel costs at most, and one that is refused
+
+
+def prepare(seed: int) -> Task:
+    """The session's arrays; the truth is the room's, with what the camera measured at all."""
+    given, secrets = session(seed)
+    measured = (given.frames != secrets.invalid).any(axis=1)
+    return Task(tuple(array.copy() for array in given), (secrets.depth, measured))
+
+
+def measure(task: Task, answer: object) -> Result:
+    """Mean over the pixels that were measured of the depth's error, at most 200 mm, 50 mm where it is refused."""
+    true, measured = task.truth
+    try:
+        found = np.asarray(answer, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise AnswerError("returns no array of numbers; return depths in metres") from None
+    if found.shape != true.shape:
+        raise AnswerError(f"returns shape {found.shape}; return one depth a pixel for each place, {true.shape}")
+    if np.isinf(found).any():
+        raise AnswerError("returns infinity; refuse a pixel with NaN")
+    refused = np.isnan(found)
+    with np.errstate(invalid="ignore"):
+        cost = np.where(refused, REFUSED, np.minimum(np.abs(found - true), WORST))
+    scored = (true < FARTHEST) & (measured | ~refused)  # a depth where nothing was measured is invented
+    cost = np.where(measured, cost, WORST)[scored]
+    share = (refused & measured & (true < FARTHEST)).sum() / (measured & (true < FARTHEST)).sum()
+    errors = np.abs(found - true)[scored & ~refused & measured]
+    median = f"median error {1000 * np.median(errors):.1f} mm" if len(errors) else "no depth at all"
+    return Result(1000 * float(cost.mean()), f"{median}; {100 * share:.1f} % refused")
+
+
+PROJECT = Project(
+    name="P4",
+    title="mean error of the depth, at most 200 mm a pixel, 50 mm for one that is refused",
+    unit="mm",
+    better="lower",
+    digits=1,
+    function="calibrated_depth",
+    seeds=(5401, 5402, 5403, 5404, 5405, 5406, 5407, 5408),
+    prepare=prepare,
+    measure=measure,
+    rivals=(
+        Rival("none", "no correction", as_told),
+        Rival("paper", "the paper's assumption", pinhole_alone),
+        Rival("ours", "ours", calibrated),
+    ),
+)

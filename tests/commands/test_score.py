@@ -1,0 +1,67 @@
+"""`course.py score`: a file that was handed in, scored without its notebook; what does not fit is named."""
+
+from __future__ import annotations
+
+import pytest
+
+from course_lib.commands import score as command
+from course_lib.lessons.kit import score as scoring
+from course_lib.lessons.kit.projects import find_project
+
+
+@pytest.fixture
+def scored(monkeypatch):
+    """What the score would be of: (project, function, seeds)."""
+    calls = []
+    monkeypatch.setattr(scoring, "score", lambda *given: calls.append(given))
+    return calls
+
+
+def handed_in(tmp_path, text: str) -> str:
+    path = tmp_path / "P1.py"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def test_the_files_function_is_scored(scored, tmp_path):
+    path = handed_in(tmp_path, "def localize(*given):\n    return 42\n")
+    assert scoring.main(["P1", path, "--seeds", "10001", "10002"]) == 0
+    ((name, function, seeds),) = scored
+    assert (name, function(), seeds) == ("P1", 42, [10_001, 10_002])
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("def locate(): ...\n", "no function localize()"),
+        ("localize = 3\n", "no function localize()"),
+        ("import no_such_package\n", "ModuleNotFoundError"),
+        ("raise SystemExit\n", "SystemExit"),
+        ("def localize(:\n", "SyntaxError"),
+    ],
+)
+def test_a_file_that_does_not_fit_is_named(scored, tmp_path, capsys, text, words):
+    assert scoring.main(["P1", handed_in(tmp_path, text)]) == 2
+    assert words in capsys.readouterr().err
+    assert not scored
+
+
+def test_a_missing_file_and_an_unknown_project_are_named(capsys):
+    assert scoring.main(["P1", "nowhere.py"]) == 2
+    assert "nowhere.py is no Python file" in capsys.readouterr().err
+    assert scoring.main(["P9", "nowhere.py"]) == 2
+    assert "no project 'P9'" in capsys.readouterr().err
+    assert scoring.main(["P1"]) == 2
+    assert find_project("P1").function in capsys.readouterr().err
+
+
+def test_the_command_runs_it_in_a_process_of_its_own(monkeypatch):
+    ran = []
+
+    class Done:
+        returncode = 7
+
+    monkeypatch.setattr(command.subprocess, "run", lambda words: ran.append(words) or Done)
+    arguments = type("Arguments", (), {"project": "P1", "file": "a.py", "passed_on": ["--seeds", "10001"]})
+    assert command.run(arguments) == 7
+    assert ran[0][1:] == ["-m", "course_lib.lessons.kit.score", "P1", "a.py", "--seeds", "10001"]

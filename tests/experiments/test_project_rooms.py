@@ -1,0 +1,68 @@
+"""The rooms of projects P2 and P3: what is stored of them is what the method saw, and reads back."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from course_lib.experiments import project_rooms
+from course_lib.experiments.project_rooms import SEEDS, make_project_rooms, record_room
+from course_lib.experiments.project_rooms import project_rooms as read_rooms
+from course_lib.experiments.rooms import RoomsOptions
+from course_lib.simulation.room.look_alike_recording import RecordingModels
+from course_lib.spherical_stereo.detection.detected_object import Detection
+
+DETECTED = Detection("chair", 0.987654, (250.123456, 60.0, 262.0, 80.0), 359.99999, 40.0)
+GREY = Detection("sofa", 0.9, (10.0, 60.0, 60.0, 80.0), np.nan, 4.0)
+
+
+class SameEverywhere:
+    """A detector that reports the same two objects on whatever image."""
+
+    def detect(self, image_bgr):
+        return [DETECTED, GREY]
+
+
+@pytest.fixture(scope="module")
+def record():
+    options = RoomsOptions(1, replace(RecordingModels(), width=256))
+    return record_room(10_690, options, SameEverywhere())
+
+
+def test_practice_rooms_are_for_tuning_and_hidden_ones_for_nothing_else():
+    assert min(SEEDS["practice"]) >= 10_000
+    assert all(1000 <= seed < 10_000 for seed in SEEDS["hidden"]), "four digits: no stored picture holds them by chance"
+
+
+@pytest.mark.slow
+def test_a_room_is_seen_from_both_heights_and_reads_back(record, tmp_path):
+    (tmp_path / "rooms.json").write_text(json.dumps({"version": 1, "rooms": [record]}))
+    (room,) = read_rooms(tmp_path / "rooms.json")
+    assert room.seed == 10_690
+    assert room.look_alike == room.semantic_map.labels[0]
+    assert len(room.views) == 2
+    assert room.views[0].pose == pytest.approx(room.views[1].pose, abs=0.05)
+    view = room.views[0]
+    assert view.size == (256, 128)
+    assert view.rig.baseline == pytest.approx(0.3)
+    chair, sofa = view.upper
+    assert chair.box[0] == pytest.approx(DETECTED.box[0], abs=1e-4)
+    assert chair.hue == 0.0, "359.99999 is rounded on the circle"
+    assert sofa.is_grey
+    assert len(view.observations) == len(view.shows)
+
+
+def test_a_run_writes_both_files_and_goes_on_where_it_was(monkeypatch, tmp_path):
+    made = []
+
+    def tell(seeds, options, load_detector, work, processes, progress, observe):
+        made.append((tuple(seeds), options.poses, observe))
+        return [{"seed": seed, "options": {}, "views": [{}, {}]} for seed in seeds]
+
+    monkeypatch.setattr(project_rooms, "observe_rooms", tell)
+    counts = make_project_rooms(tmp_path, None, tmp_path / "work")
+    assert counts == {"practice": 2 * len(SEEDS["practice"]), "hidden": 2 * len(SEEDS["hidden"])}
+    assert made == [(seeds, project_rooms.POSES, record_room) for seeds in SEEDS.values()]
+    stored = json.loads((tmp_path / "rooms_hidden.json").read_text())
+    assert stored["rooms"][0] == {"seed": SEEDS["hidden"][0], "views": [{}, {}]}

@@ -1,0 +1,110 @@
+"""Projects: stages that are exercises, a score at the end, a rubric, hours, and a model solution apart that does it."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import re
+
+import pytest
+
+from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises
+from course_lib.lessons.kit.projects import find_project, is_better, one_outcome, project_names, stored_rivals
+from course_lib.paths import REPOSITORY, project_paths
+from tests.notebooks.test_exercise_cells import functions_of, only, stub_of
+
+SOLUTIONS = REPOSITORY / "notebooks" / "projects" / "solutions"
+SEEDS = (0, 1, 2)
+
+
+def model_solution(project):
+    """The module notebooks/projects/solutions/P1_model_solution.py."""
+    path = SOLUTIONS / f"{project.number}_model_solution.py"
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_project_has_a_notebook_and_a_model_solution():
+    names = [path.name[:2] for path in project_paths()]
+    assert names == project_names()
+    assert sorted(path.name[:2] for path in SOLUTIONS.glob("*_model_solution.py")) == names
+
+
+def test_the_title_promises_and_says_how_long_and_how_it_is_marked(project):
+    title = project.cells[0].source
+    assert re.match(rf"# {project.number} · \S", title)
+    hours = re.search(r"\*\*(\d(?:\.5)?) hours", title)
+    assert hours, "the title cell says how many **hours** the project takes"
+    assert 2 <= float(hours.group(1)) <= 4
+    rubric = project.markdown.split("## Rubric")[1]
+    points = [int(p) for p in re.findall(r"\|\s*(\d+)\s*\|$", rubric, re.M)]
+    assert len(points) >= 4
+    assert re.search(rf"\*\*{sum(points)} points\*\*", rubric), "the rubric says the sum of its points"
+
+
+def test_the_stages_are_complete_and_the_library_knows_them(project):
+    numbers = project.exercise_numbers()
+    assert len(numbers) >= 4
+    assert numbers == [exercise.number for exercise in lesson_exercises(project.number)]
+    for number in numbers:
+        assert only(project.exercise_cells(number, "task")).source.startswith(f"### {number} ")
+        hints = "".join(cell.source for cell in project.exercise_cells(number, "hint"))
+        assert 2 <= hints.count("<details>") == hints.count("</details>") <= 3
+        assert "?" in hints.split("</details>")[0], "the first hint is a question"
+        assert "```" not in hints, "a hint is not the code"
+        assert not project.exercise_cells(number, "solution"), "the model solution stands apart"
+
+
+def test_each_check_calls_the_stub_above_and_says_not_attempted(project):
+    for number in project.exercise_numbers():
+        ((name, stub),) = stub_of(project, number).items()
+        assert stub.__doc__
+        assert judge(find_exercise(number), stub).status == "not attempted"
+        cell = only(project.exercise_cells(number, "check"))
+        assert ast.unparse(ast.parse(cell.source)) == f"check('{number}', {name})"
+        assert "".join(o.text for o in cell.outputs).startswith(f"{number}: not attempted")
+
+
+def test_the_score_cell_says_not_attempted(project):
+    (cell,) = [cell for cell in project.code_cells if "score" in cell.metadata.get("tags", [])]
+    ((name, stub),) = functions_of(
+        project, only([cell for cell in project.code_cells if "submission" in cell.metadata.get("tags", [])])
+    ).items()
+    assert name == find_project(project.number).function
+    assert stub.__doc__
+    assert ast.unparse(ast.parse(cell.source)) == f"score('{project.number}', {name})"
+    assert "".join(o.text for o in cell.outputs).startswith(f"{project.number}: not attempted")
+
+
+def test_the_model_solution_passes_every_stage(project):
+    module = model_solution(project)
+    for number in project.exercise_numbers():
+        (name,) = stub_of(project, number)
+        for seed in SEEDS:
+            verdict = judge(find_exercise(number), getattr(module, name), seed)
+            assert verdict.status == "right", f"{number}: {verdict.message}"
+
+
+def test_no_hidden_seed_is_printed_in_the_notebook(project):
+    text = project.path.read_text(encoding="utf-8")
+    for seed in find_project(project.number).seeds:
+        assert not re.search(rf"(?<!\d){seed}(?!\d)", text)
+
+
+@pytest.mark.slow
+def test_the_model_solution_is_better_than_the_paper_on_a_hidden_seed(project):
+    found = find_project(project.number)
+    outcome = one_outcome(found, getattr(model_solution(project), found.function), found.seeds[0])
+    assert not outcome.failed, outcome.remark
+    assert is_better(found, outcome.value, stored_rivals(found)["paper"][1][0])
+
+
+@pytest.mark.slow
+def test_the_stored_numbers_of_the_rivals_are_those_of_a_recomputation(project):
+    found = find_project(project.number)
+    stored = stored_rivals(found)
+    for rival in found.rivals:
+        outcome = one_outcome(found, rival.function, found.seeds[0])
+        assert outcome.value == pytest.approx(stored[rival.key][1][0], rel=0.05)

@@ -1,0 +1,119 @@
+"""Every page of notebooks/scenes in a real browser, opened from the disk: no request, no error, and it can be turned.
+
+Beside the pages the lessons show, one that a cell just wrote is opened as JupyterLab opens it, in a sandboxed frame.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from course_lib.paths import REPOSITORY
+from tests.notebooks.driven_lab import chromium
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+PAGES = sorted((REPOSITORY / "notebooks" / "scenes").glob("*.html"))
+MADE_BY_HAND = ("11_sphere",)  # not with PyVista: its own test drags the point (tests/lessons/lesson_11)
+SIZE = {"width": 800, "height": 500}
+# WebGL without a graphics card.
+ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+HANGS_MS = 1_800_000  # only what hangs takes so long
+DRAWN = "() => { const canvas = document.querySelector('canvas'); return canvas && canvas.width > 300; }"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """A browser; without one the tests are skipped, and say so, but fail where CI=true."""
+    path = chromium()
+    if path is None:
+        message = "no Chromium or Chrome found (on Debian or Ubuntu: apt-get install chromium): no scene was turned"
+        if os.environ.get("CI", "").lower() == "true":
+            pytest.fail(message)
+        pytest.skip(message)
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=path, args=ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+def opened(browser, address: str):
+    """The page at an address with what went wrong (`page.errors`) and what it asked for (`page.requests`)."""
+    page = browser.new_page(viewport=SIZE)
+    page.set_default_timeout(HANGS_MS)
+    page.errors, page.requests = [], []
+    page.on("console", lambda message: page.errors.append(message.text) if message.type == "error" else None)
+    page.on("pageerror", lambda error: page.errors.append(str(error)))
+    page.on("request", lambda request: page.requests.append(request.url[:100]))
+    page.goto(address)
+    return page
+
+
+def settled_picture(page) -> np.ndarray:
+    """What the page shows `(H, W, 3)`, once two pictures in a row are the same and not empty."""
+    page.frames[-1].wait_for_function(DRAWN)
+    before = None
+    while True:
+        picture = np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+        coloured = (picture[:-60] < 245).any(axis=2).mean()  # above the line of help
+        if before is not None and coloured > 0.01 and np.array_equal(before, picture):
+            return picture
+        before = picture
+        page.wait_for_timeout(300)
+
+
+def turn(page) -> None:
+    """Drags the mouse from the middle to the right."""
+    page.mouse.move(SIZE["width"] / 2, SIZE["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(SIZE["width"] / 2 + 160, SIZE["height"] / 2 + 40, steps=8)
+    page.mouse.up()
+
+
+def share_changed(a: np.ndarray, b: np.ndarray) -> float:
+    """Share of the pixels that differ clearly."""
+    return float((np.abs(a - b).max(axis=2) > 30).mean())
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
+def test_a_page_opens_offline_draws_and_can_be_turned(browser, path):
+    page = opened(browser, path.as_uri())
+    before = settled_picture(page)
+    assert page.title()
+    if path.stem not in MADE_BY_HAND:
+        assert page.title() in page.locator("#help").inner_text()
+        turn(page)
+        assert share_changed(settled_picture(page), before) > 0.02
+    assert page.errors == []
+    assert [url for url in page.requests if not url.startswith(("data:", "blob:"))] == [path.as_uri()]
+    page.close()
+
+
+@pytest.mark.browser
+def test_a_page_works_in_a_sandboxed_frame_and_the_wheel_zooms(browser, tmp_path):
+    """As JupyterLab serves files: scripts run, but the page has no origin of its own."""
+    from course_lib.plots.scene_page import write_page
+    from course_lib.plots.scenes import body_axes, new_plotter
+
+    plotter = new_plotter(viewpoint=(1.5, 1.2, 1.0), focus=(0, 0, 0))
+    plotter.add_mesh(body_axes(np.zeros(6), 0.5), rgb=True)
+    write_page(plotter, tmp_path / "axes.html", "Three axes", "Three axes that meet at the origin")
+    frame = '<iframe sandbox="allow-scripts" src="axes.html" style="position: fixed; inset: 0; border: 0" '
+    (tmp_path / "index.html").write_text(f'<!doctype html>{frame} width="100%" height="100%"></iframe>')
+    page = opened(browser, (tmp_path / "index.html").as_uri())
+    before = settled_picture(page)
+    for k, colour in enumerate(((213, 40, 0), (0, 158, 60), (0, 80, 200))):
+        others = [one for one in range(3) if one != k]
+        seen = before[..., k] - before[..., others].max(axis=2) > 60
+        assert seen.sum() > 100, f"the axis of colour {colour} is drawn"
+    page.mouse.move(400, 250)
+    page.mouse.wheel(0, -400)
+    after = settled_picture(page)
+    assert (after < 245).any(axis=2).sum() > 1.1 * (before < 245).any(axis=2).sum()
+    assert page.errors == []
+    page.close()
