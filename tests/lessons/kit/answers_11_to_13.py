@@ -55,6 +55,11 @@ def least_and_greatest(columns, width):
     return min(columns), max(columns)
 
 
+def moved_if_wide(columns, width):
+    columns = np.where(columns < width / 2, columns + width, columns) if np.ptp(columns) > width / 2 else columns
+    return columns.min(), columns.max()
+
+
 def points_that_moved(before, after, width, height):
     return (pixel_to_direction(uv, width, height) for uv in (before, after))
 
@@ -172,6 +177,16 @@ def fixed_steps(scores, right, least):
     return min(good, default=np.inf)
 
 
+def uncut_product(a, b, width):
+    best = max((min(a[2], b[2] + t) - max(a[0], b[0] + t)) * down(a, b) for t in (-width, 0, width))
+    return iou(max(0, best), a, b)
+
+
+def of_the_short_list(boxes, scores, threshold, limit):
+    reach = scores.max(axis=1) >= threshold
+    return suppressed(boxes[reach], scores[reach], threshold, limit)
+
+
 def elevation(v, height):
     return (0.5 - v / height) * PI
 
@@ -203,6 +218,22 @@ def whole_plane(upper, lower, baseline):
     normal = np.cross(baseline, upper)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     return np.arcsin(np.clip(np.abs(np.sum(normal * lower, axis=1)), 0, 1))
+
+
+def past_the_right_angle(upper, lower, baseline):
+    ahead = upper - np.outer(upper @ baseline, baseline)
+    angle = whole_plane(upper, lower, baseline)
+    return np.where(np.sum(ahead * lower, axis=1) < 0, PI - angle, angle)
+
+
+def one_row_and_one_column(counts):
+    counts, result = counts.copy(), [-1] * len(counts)
+    while counts.max() > 0:
+        i, j = np.unravel_index(counts.argmax(), counts.shape)
+        tie = np.sum(counts[i] == counts[i, j]) > 1 or np.sum(counts[:, j] == counts[i, j]) > 1
+        result[i] = -1 if tie else int(j)
+        counts[i], counts[:, j] = 0, 0
+    return result
 
 
 def struck(table, rounds=None, start=-1):
@@ -281,7 +312,9 @@ WRONG = [
     ("11.2", lambda a, b, w: 180 - (180 - gap_deg(a, b, w)) % 360, "not +180"),
     ("11.2", lambda a, b, w: np.degrees(np.angle(np.exp(2j * PI * (a - b) / w))), "-180 alone"),
     ("11.2", lambda a, b, w: abs(gap_deg(a, b, w) + 180) % 360 - 180, "absolute value"),
+    ("11.2", lambda a, b, w: g if abs(g := gap_deg(a, b, w)) < 180 else 360 - g, "*taken away*"),
     ("11.3", least_and_greatest, "the long way round"),
+    ("11.3", moved_if_wide, "need not lie across the seam"),
     ("11.3", lambda c, w: tuple(u % w for u in stretch_by_trying(c, w)), "inside out"),
     ("11.3", lambda c, w: stretch_by_trying(c, w)[::-1], "u_max first"),
     ("11.3", lambda c, w: stretch_by_trying(c, w)[0], "Return 2 values"),
@@ -294,12 +327,16 @@ WRONG = [
     ("12.1", lambda boxes, w, s: np.abs(centre(boxes) - s - w / 2) <= w / 2, "twice in all"),
     ("12.1", lambda boxes, w, s: np.logical_or(centre(boxes) >= s, centre(boxes) < s + w), "both conditions"),
     ("12.1", lambda boxes, w, s: (centre(boxes) >= w / 8) & (centre(boxes) < 9 * w / 8), "begins at `start`"),
+    ("12.1", lambda boxes, w, s: centre(boxes) >= s, "does not end"),
+    ("12.1", lambda boxes, w, s: [box for box in boxes if s <= box[::2].mean() < s + w], "shape"),
+    ("12.2", uncut_product, "whose product is positive"),
     ("12.2", moved_if_across, "try all turns"),
     ("12.2", lambda a, b, w: iou(sum(turns(a, b, w)) * down(a, b), a, b), "cut the length down off at 0"),
     ("12.2", lambda a, b, w: sum(turns(a, b, w)) * max(0, down(a, b)) / max(area(a), area(b)), "larger box"),
     ("12.2", always_to_the_left, "try all three"),
     ("12.2", lambda a, b, w: in_the_plane(a, b), "Across the seam yours is 0"),
     ("12.3", lambda *g: suppressed(*g, within_class=False), "same class"),
+    ("12.3", of_the_short_list, "in the list as given"),
     ("12.3", unsorted, "class after class"),
     ("12.3", lambda boxes, scores, t, limit: np.flatnonzero(scores.max(axis=1) >= t), "shape"),
     ("12.3", lambda *g: suppressed(*g)[::-1], "least score first"),
@@ -318,9 +355,11 @@ WRONG = [
         "takes radians",
     ),
     ("13.2", whole_plane, "forbidden"),
+    ("13.2", past_the_right_angle, "beyond a right angle"),
     ("13.2", lambda u, x, b: by_angles(x, u, b), "the other way round"),
     ("13.2", lambda u, x, b: by_angles(u, x, np.array([0.0, 0.0, 1.0])), "always upright"),
     ("13.2", lambda u, x, b: np.degrees(by_angles(u, x, b)), "in degrees"),
+    ("13.3", one_row_and_one_column, "one row and one column"),
     ("13.3", struck, "comes first in the list"),
     ("13.3", lambda counts: struck(counts, rounds=min(counts.shape)), "stop at 0"),
     ("13.3", lambda counts: np.maximum(count_by_count(counts), 0), "must hold -1"),
