@@ -70,9 +70,10 @@ def fit_rigid_2d(
     U D V^T = svd(sum_i w_i (m_i - m_G)(s_i - s_G)^T),  R = U diag(1, det U det V) V^T,  t = m_G - R s_G
 
     source: `(n, 2)` body frame, target: `(n, 2)` world, metres. weights: `(n,)`, not negative; a pair of weight 0 is
-    left out. covariances: `(n, 2, 2)` of the source points in the body frame; then
-    sum_i r_i^T (R C_i R^T)^-1 r_i is made small by Gauss-Newton steps from the closed form. Each step holds R C_i R^T
-    as the last one left it, so they end where the steps, not the sum itself, stand still: close to its least. The paper uses neither: all pairs count the same.
+    left out. covariances: `(n, 2, 2)` of the source points in the body frame; then sum_i r_i^T (R C_i R^T)^-1 r_i is
+    made small by Gauss-Newton steps from the closed form. Each step holds R C_i R^T as the last one left it, so they
+    end where the steps, not the sum itself, stand still: close to its least. The paper uses neither: all pairs count
+    the same.
     Raises `RigidFitError`, whose reason is `TOO_FEW_PAIRS`, `COINCIDENT`, `MIRRORED` (three or more pairs that are no
     line, and the fit with a reflection clearly better), `UNDETERMINED`, or `NO_POINTS` for shapes that do not fit and
     for NaN. Source: paper 2, section 2.6.
