@@ -79,6 +79,15 @@ def share_changed(a: np.ndarray, b: np.ndarray) -> float:
     return float((np.abs(a - b).max(axis=2) > 30).mean())
 
 
+def turned_picture(page, before: np.ndarray, tries: int = 10) -> np.ndarray:
+    """What the page shows after a drag; on a busy machine a drag may be over before the page saw it begin: again."""
+    for _ in range(tries):
+        turn(page)
+        if share_changed(picture := settled_picture(page), before) > 0.02:
+            break
+    return picture
+
+
 @pytest.mark.browser
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
 def test_a_page_opens_offline_draws_and_can_be_turned(browser, path):
@@ -87,8 +96,7 @@ def test_a_page_opens_offline_draws_and_can_be_turned(browser, path):
     assert page.title()
     if path.stem not in MADE_BY_HAND:
         assert page.title() in page.locator("#help").inner_text()
-        turn(page)
-        assert share_changed(settled_picture(page), before) > 0.02
+        assert share_changed(turned_picture(page, before), before) > 0.02
     assert page.errors == []
     assert [url for url in page.requests if not url.startswith(("data:", "blob:"))] == [path.as_uri()]
     page.close()
