@@ -68,7 +68,7 @@ def settled_picture(page) -> np.ndarray:
 
 
 def picture_after(page, act, changed) -> np.ndarray:
-    """The settled picture after `act(page)`, which is done again while it has not `changed`: a busy page misses some."""
+    """The settled picture after `act(page)`, done again while the picture has not `changed`: a busy page misses some."""
     for _ in range(AGAIN):
         act(page)
         picture = settled_picture(page)
