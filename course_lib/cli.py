@@ -45,7 +45,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     ),
     "train-detector": ("train_detector", "train the room detector (needs PyTorch, which the course does not install)"),
     "score-detector": ("score_detector", "measure a detector's precision and recall on known rooms"),
-    "score": ("score", "score a file that was handed in for a project, on its hidden seeds"),
+    "score": ("score", "score a project that was handed in, on its hidden seeds"),
     "refresh": ("refresh", "run the lessons again and store their outputs"),
 }
 

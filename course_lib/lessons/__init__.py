@@ -1,10 +1,10 @@
 """What only the notebooks use: each lesson's figures, panel and exercises, and what several of them share.
 
-`kit/` holds what several lessons share: `exercises` judges answers, `panel`, `live_figure` and `progress_bar` are the
-moving parts, `display` shows a figure, `scene` a scene in three dimensions, and `room_photographs`,
-`panorama_features`, `room_observations` and `corridor_views` load what more than one lesson looks at. A lesson's
-methods are never here: they are in `course_lib.depth_mcl` and `course_lib.spherical_stereo`; figures and objects of
-scenes that commands draw too are in `course_lib.plots`.
+`kit/` holds what several lessons share: `exercises` judges answers, `projects` scores what a project ends in, `panel`,
+`live_figure` and `progress_bar` are the moving parts, `display` shows a figure, `scene` a scene in three dimensions,
+and `room_photographs`, `panorama_features`, `room_observations` and `corridor_views` load what more than one lesson
+looks at. A lesson's methods are never here: they are in `course_lib.depth_mcl` and `course_lib.spherical_stereo`;
+figures and objects of scenes that commands draw too are in `course_lib.plots`.
 
 A new lesson NN is a notebook and a folder:
 
@@ -20,6 +20,10 @@ A new lesson NN is a notebook and a folder:
   function of the controls' values that returns a `Drawing`.
   `exercises.py`: `EXERCISES`, each with a reference, an input generator and three mistakes or more with their hints.
   What the three share (scenes, data, what is measured) has modules of its own, named after what they hold.
+
+A project n is `notebooks/projects/Pn_title.ipynb` and `lessons/project_n/`: `exercises.py` as above, for its stages,
+and `project.py` with its `PROJECT` (`kit/projects.py`); tests/notebooks/test_projects.py checks its parts. Its model
+solution stands apart, in `notebooks/projects/solutions/`, and its rivals' numbers in data/projects/.
 
 Then `python3 course.py refresh NN` runs the notebook and stores its outputs. The tests find all of it by the names.
 """

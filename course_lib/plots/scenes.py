@@ -119,8 +119,8 @@ def body_axes(state: np.ndarray, length: float = 0.5) -> pyvista.PolyData:
     matrix, length = pose_matrix(_one_state(state)), _positive(length, "length")
     points, edges, colours = [], [], []
     for k, axis in enumerate(np.eye(3)):
-        # The letter stands upright beside the axis' end; z's stands where one who looks along x sees it.
-        across, up = (np.eye(3)[0], np.eye(3)[2]) if k == 0 else (np.eye(3)[1], np.eye(3)[2])
+        # The letter stands upright at the axis' end, for one who looks along x, to whose right -y lies.
+        across, up = (np.eye(3)[0] if k == 0 else -np.eye(3)[1]), np.eye(3)[2]
         strokes = [(0.16 * (a - 0.5) * across + 0.16 * b * up for a, b in stroke) for stroke in _LETTERS[k]]
         letter = [[1.1 * axis + point for point in stroke] for stroke in strokes]
         for start, end in [(np.zeros(3), axis), *letter]:

@@ -43,7 +43,7 @@ def track_scene(
     estimated = to_scene @ result.camera_to_world
     true = to_scene @ sequence.camera_to_world[: len(result.frames)] if sequence.has_poses else None
     paths = estimated[:, :3, 3] if true is None else np.concatenate([estimated[:, :3, 3], true[:, :3, 3]])
-    around = _around(simplified(scene_map).transformed(to_scene), paths)
+    around = _around(_fewer_triangles(scene_map, up, to_scene), paths)
     camera, worst = sequence.camera(near, far), worst_frames(result, sequence)
     measured = [_measured(sequence.depth(index), camera, estimated[index]) for index in worst]
     plotter = new_plotter(*_view(np.concatenate([paths, *measured])))
@@ -87,6 +87,12 @@ def _to_scene(scene_map: SceneMap, up: str | None, camera_to_world: np.ndarray) 
     origin = matrix[:3, :3] @ scene_map.origin
     matrix[:3, 3] = -_FAR_FROM_ZERO * np.round(origin / _FAR_FROM_ZERO)
     return matrix
+
+
+def _fewer_triangles(scene_map: SceneMap, up: str | None, to_scene: np.ndarray) -> SceneMap:
+    """The map in the scene, as the filter drew it: turned upright before it is simplified, it is found in the cache."""
+    upright = rotation_to_z_up(up or "z")
+    return simplified(scene_map.transformed(upright)).transformed(to_scene @ np.linalg.inv(upright))
 
 
 def _around(scene_map: SceneMap, paths: np.ndarray) -> SceneMap:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import nbformat
 import pytest
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from course_lib.commands import score as command
 from course_lib.lessons.kit import score as scoring
 from course_lib.lessons.kit.projects import find_project
+from course_lib.paths import REPOSITORY
 
 
 @pytest.fixture
@@ -30,6 +33,26 @@ def test_the_files_function_is_scored(scored, tmp_path):
     assert (name, function(), seeds) == ("P1", 42, [10_001, 10_002])
 
 
+def test_of_a_notebook_only_what_defines_is_run(scored, tmp_path):
+    sources = [
+        "%matplotlib inline\nimport math\nSIZE = 6",
+        "check('P1.1', 1 / 0)",
+        "def localize(*given):\n    return SIZE",
+    ]
+    notebook = new_notebook(cells=[new_markdown_cell("# P1"), *map(new_code_cell, sources)])
+    path = tmp_path / "P1.ipynb"
+    nbformat.write(notebook, path)
+    assert scoring.main(["P1", str(path)]) == 0
+    ((_, function, seeds),) = scored
+    assert (function(), seeds) == (6, None)
+
+
+def test_the_project_as_it_comes_is_not_attempted(capsys):
+    path = REPOSITORY / "notebooks" / "projects" / "P1_the_whole_filter.ipynb"
+    assert scoring.main(["P1", str(path)]) == 0
+    assert capsys.readouterr().out.startswith("P1: not attempted yet")
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -48,7 +71,7 @@ def test_a_file_that_does_not_fit_is_named(scored, tmp_path, capsys, text, words
 
 def test_a_missing_file_and_an_unknown_project_are_named(capsys):
     assert scoring.main(["P1", "nowhere.py"]) == 2
-    assert "nowhere.py is no Python file" in capsys.readouterr().err
+    assert "nowhere.py is no Python file and no notebook" in capsys.readouterr().err
     assert scoring.main(["P9", "nowhere.py"]) == 2
     assert "no project 'P9'" in capsys.readouterr().err
     assert scoring.main(["P1"]) == 2
@@ -62,6 +85,6 @@ def test_the_command_runs_it_in_a_process_of_its_own(monkeypatch):
         returncode = 7
 
     monkeypatch.setattr(command.subprocess, "run", lambda words: ran.append(words) or Done)
-    arguments = type("Arguments", (), {"project": "P1", "file": "a.py", "passed_on": ["--seeds", "10001"]})
+    arguments = type("Arguments", (), {"project": "P1", "file": "a.py", "seeds": ["10001"]})
     assert command.run(arguments) == 7
     assert ran[0][1:] == ["-m", "course_lib.lessons.kit.score", "P1", "a.py", "--seeds", "10001"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import importlib.util
 import re
 
@@ -85,6 +86,14 @@ def test_the_model_solution_passes_every_stage(project):
         for seed in SEEDS:
             verdict = judge(find_exercise(number), getattr(module, name), seed)
             assert verdict.status == "right", f"{number}: {verdict.message}"
+
+
+def test_the_package_hands_on_what_the_notebook_names(project):
+    package = importlib.import_module(f"course_lib.lessons.project_{project.number[1:]}")
+    cells = "\n".join(cell.source for cell in project.cells)
+    code = "\n".join(cell.source for cell in project.code_cells)
+    assert set(re.findall(rf"\bproject_{project.number[1:]}\.(\w+)", code)) <= set(package.__all__)
+    assert [name for name in package.__all__ if not re.search(rf"\b{name}\b", cells)] == []
 
 
 def test_no_hidden_seed_is_printed_in_the_notebook(project):

@@ -183,6 +183,7 @@ def test_what_fails_leaves_the_file_as_it_was(tmp_path, sources, timeout, words)
 
 def test_numbers_choose_lessons_and_unknown_ones_are_named():
     assert [path.name[:2] for path in refresh.select(["3"])] == ["03"]
+    assert [path.name[:2] for path in refresh.select(["P1", "07"])] == ["P1", "07"]
     assert len(refresh.select([])) >= 1
     with pytest.raises(ValueError, match=r"no lesson 77; there are: .*03"):
         refresh.select(["03", "77"])

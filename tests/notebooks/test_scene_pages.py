@@ -23,6 +23,7 @@ SIZE = {"width": 800, "height": 500}
 # WebGL without a graphics card.
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 HANGS_MS = 1_800_000  # only what hangs takes so long
+PICTURES = 300
 DRAWN = "() => { const canvas = document.querySelector('canvas'); return canvas && canvas.width > 300; }"
 
 
@@ -66,6 +67,15 @@ def settled_picture(page) -> np.ndarray:
         page.wait_for_timeout(300)
 
 
+def picture_once(page, changed) -> np.ndarray:
+    """The first settled picture of which `changed` holds, or the last of `PICTURES`: a busy machine draws late."""
+    for _ in range(PICTURES):
+        picture = settled_picture(page)
+        if changed(picture):
+            break
+    return picture
+
+
 def turn(page) -> None:
     """Drags the mouse from the middle to the right."""
     page.mouse.move(SIZE["width"] / 2, SIZE["height"] / 2)
@@ -88,7 +98,8 @@ def test_a_page_opens_offline_draws_and_can_be_turned(browser, path):
     if path.stem not in MADE_BY_HAND:
         assert page.title() in page.locator("#help").inner_text()
         turn(page)
-        assert share_changed(settled_picture(page), before) > 0.02
+        after = picture_once(page, lambda picture: share_changed(picture, before) > 0.02)
+        assert share_changed(after, before) > 0.02
     assert page.errors == []
     assert [url for url in page.requests if not url.startswith(("data:", "blob:"))] == [path.as_uri()]
     page.close()
@@ -113,7 +124,8 @@ def test_a_page_works_in_a_sandboxed_frame_and_the_wheel_zooms(browser, tmp_path
         assert seen.sum() > 100, f"the axis of colour {colour} is drawn"
     page.mouse.move(400, 250)
     page.mouse.wheel(0, -400)
-    after = settled_picture(page)
-    assert (after < 245).any(axis=2).sum() > 1.1 * (before < 245).any(axis=2).sum()
+    drawn = 1.1 * (before < 245).any(axis=2).sum()
+    after = picture_once(page, lambda picture: (picture < 245).any(axis=2).sum() > drawn)
+    assert (after < 245).any(axis=2).sum() > drawn
     assert page.errors == []
     page.close()

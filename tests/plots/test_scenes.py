@@ -71,6 +71,13 @@ def test_each_axis_has_its_colour_and_its_direction(axis):
     assert (mesh.point_data.active_scalars == mesh["colour"]).all()
 
 
+def test_the_letter_z_is_not_mirrored_for_who_looks_along_x():
+    mesh = scenes.body_axes(np.zeros(6), 1.0)
+    blue = np.asarray(mesh.points)[(mesh["colour"] == scenes.AXIS_COLOURS[2]).all(axis=1)]
+    rightwards, upwards = -blue[8:, 1], blue[8:, 2]  # the first eight corners are the axis itself
+    assert np.corrcoef(rightwards, upwards)[0, 1] > 0.3, "its long stroke rises to the right"
+
+
 def test_arrows_point_along_x_with_their_fin_up():
     states = np.array([STATE, np.zeros(6)])
     mesh = scenes.arrows(states, 0.4, weights=np.array([0.25, 0.75]))

@@ -31,7 +31,7 @@ import numpy as np
 from course_lib.experiments.corridor_seeds import median_interval
 from course_lib.experiments.results import write_results
 from course_lib.lessons.kit.attempt import Attempt, attempt
-from course_lib.lessons.kit.exercises import is_stub
+from course_lib.lessons.kit.exercises import SHOWN, is_stub
 from course_lib.lessons.kit.hints import kind_of
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.paths import REPOSITORY, data_path
@@ -112,6 +112,7 @@ class Outcome(NamedTuple):
     remark: str
     failed: bool = False
     out_of_time: bool = False
+    printed: str = ""
 
 
 def find_project(name: str) -> Project:
@@ -177,27 +178,28 @@ def one_outcome(project: Project, function: Callable, seed: int) -> Outcome:
     trial = answered(project, function, task)
     if trial.failure is not None:
         late = time.monotonic() - started >= project.seconds
-        return Outcome(project.worst, f"Your function {trial.failure}", True, late)
+        return Outcome(project.worst, f"Your function {trial.failure}", True, late, trial.printed)
     try:
         result = project.measure(task, trial.value)
     except AnswerError as error:
-        return Outcome(project.worst, f"Your function {error}.", True)
+        return Outcome(project.worst, f"Your function {error}.", True, printed=trial.printed)
     if not np.isfinite(result.value):
-        return Outcome(project.worst, f"failed: {result.remark or 'no number came of it'}", True)
-    return Outcome(float(result.value), result.remark)
+        return Outcome(project.worst, f"failed: {result.remark or 'no number came of it'}", True, printed=trial.printed)
+    return Outcome(float(result.value), result.remark, printed=trial.printed)
 
 
 def answered(project: Project, function: Callable, task: Task) -> Attempt:
     """What a function answers to a task: one value, or where the task asks for many calls the list of theirs."""
     if not project.many:
         return attempt(function, task.arguments, project.seconds)
-    answers = []
-    for arguments in task.arguments:
+    answers, printed = [], ""
+    for index, arguments in enumerate(task.arguments):
         trial = attempt(function, arguments, project.seconds)
+        printed = printed if index else trial.printed
         if trial.failure is not None:
             return trial
         answers.append(trial.value)
-    return Attempt(answers)
+    return Attempt(answers, None, printed)
 
 
 def report(
@@ -207,7 +209,12 @@ def report(
     hidden: bool = False,
     seeds: Sequence[int] = (),
 ) -> None:
-    """Print a line a seed, the median with its interval, the rivals' beside it, and what is still to beat."""
+    """Print a line a seed, the median with its interval, the rivals' beside it, and what is still to beat.
+
+    What the function itself printed on the first seed stands before it.
+    """
+    if found[0].printed:
+        print(f"(your function prints) {found[0].printed[:SHOWN].rstrip()}")
     print(f"{project.name}: {project.title}; {project.better} is better")
     names = [f"hidden seed {i + 1}" for i in range(len(found))] if hidden else [f"seed {seed}" for seed in seeds]
     for name, outcome in zip(names, found, strict=True):

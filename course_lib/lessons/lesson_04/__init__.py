@@ -8,7 +8,7 @@ from course_lib.lessons.lesson_04.figures import (
     two_surfaces_figure,
 )
 from course_lib.lessons.lesson_04.panel import PANELS, faults_panel
-from course_lib.lessons.lesson_04.recorded import kinds_of, sort_errors, true_depths
+from course_lib.lessons.lesson_04.recorded import kinds_of, on_a_surface, sort_errors, true_depths
 from course_lib.lessons.lesson_04.time_of_flight import capture, frames_of, returns, wall
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "idea_figure",
     "kinds_of",
     "noise_figure",
+    "on_a_surface",
     "phase_figure",
     "recorded_figure",
     "returns",

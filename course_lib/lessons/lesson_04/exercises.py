@@ -316,6 +316,7 @@ EXERCISES = [
         reference=pole_share,
         inputs=_pole_and_wall,
         cases=(_same_paint,),
+        tolerance=1e-3,  # so that a search on a fine grid passes as well
         mistakes=(
             Mistake(
                 lambda r, r1, rho1, r2, rho2, f: (r2 - r) / (r2 - r1),
@@ -324,6 +325,16 @@ EXERCISES = [
             Mistake(
                 _by_weighted_ranges,
                 "You weigh the ranges by the light. The pixel adds *phasors*; of their sum it reads the angle.",
+            ),
+            Mistake(
+                lambda r, r1, rho1, r2, rho2, f: rho2 / r2**2 / (rho1 / r1**2 + rho2 / r2**2),
+                "Your share makes both hands equally long, so the pixel reads the middle. Where is r?",
+            ),
+            Mistake(
+                lambda r, r1, rho1, r2, rho2, f: _share(
+                    r, r1, rho1 / r1**2, r2, rho2 / r2**2, SPEED_OF_LIGHT / 4 / np.pi
+                ),
+                "You take the sine of metres. The angle between two hands is 4 pi f / c times the difference in range.",
             ),
             Mistake(
                 lambda r, r1, rho1, r2, rho2, f: 1 - pole_share(r, r1, rho1, r2, rho2, f),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
@@ -45,3 +46,10 @@ def kinds_of(measured: np.ndarray, true: np.ndarray, repeats: float = MODEL.unam
 def sort_errors(measured: np.ndarray, true: np.ndarray, repeats: float = MODEL.unambiguous_range) -> dict[str, float]:
     """Share of all pixels in each of `KINDS`."""
     return {kind: float(mask.mean()) for kind, mask in kinds_of(measured, true, repeats).items()}
+
+
+def on_a_surface(points: np.ndarray, true: np.ndarray, camera: DepthCamera, within: float = 0.1) -> float:
+    """Share of measured points `(n, 3)` (optical frame, metres) within so many metres of a point that is truly seen."""
+    surface = camera.points(np.where(np.isfinite(true), true, np.nan)).reshape(-1, 3)
+    distances, _ = cKDTree(surface[np.isfinite(surface).all(axis=1)]).query(points)
+    return float(np.mean(distances <= within))

@@ -631,6 +631,14 @@ EXERCISES = [
                 "The sign is turned: Phi is the probability of being *below* the step.",
             ),
             Mistake(
+                lambda step, n, frames, p: step / norm.ppf((1 - p**frames) ** (1 / n)),
+                "You raise p to the power of the frames. p is the probability for all of them: undo that power.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / norm.ppf(1 - p ** (1 / frames)),
+                "That is a sigma for one particle, and negative. One minus q is Phi to the power of n.",
+            ),
+            Mistake(
                 lambda step, n, frames, p: least_sigma(step, n, frames, 1 - p),
                 "You took p for the probability of failing.",
             ),

@@ -89,6 +89,22 @@ def _a_lucky_pixel(rng: np.random.Generator) -> tuple:
     return np.full((1, 6), 2.0), images, 0.1, 0.3
 
 
+def _as_printed(measured, images, alpha, beta):
+    """Inf / inf at a miss and NaN where nothing was measured spoil whole sums."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        d = np.abs(measured - images)
+        values = np.sum(1 - d / (alpha + d), axis=(1, 2))
+        return _to_one(_exponential((values - values.min()) / np.ptp(values), beta, "of beta"))
+
+
+def _over_the_largest(measured, images, alpha, beta):
+    with np.errstate(invalid="ignore", divide="ignore"):
+        values = np.nansum(alpha / (alpha + np.abs(measured - images)), axis=(1, 2))
+        if np.ptp(values) == 0:
+            return np.full(len(values), 1 / len(values))
+        return _to_one(_exponential(values / values.max(), beta, "of beta"))
+
+
 def _misses_at(depth: float):
     return lambda measured, images, alpha, beta: weigh(measured, np.where(np.isinf(images), depth, images), alpha, beta)
 
@@ -240,6 +256,10 @@ EXERCISES = [
                 "You undo a square. Equation (8) has none.",
             ),
             Mistake(
+                lambda term, alpha: alpha / (alpha + term),
+                "You put the term in where the difference stands. It is the other way round: solve for the difference.",
+            ),
+            Mistake(
                 lambda term, alpha: alpha * (1 / term + 1),
                 "One sign: alpha / t is alpha *plus* the difference.",
             ),
@@ -252,6 +272,14 @@ EXERCISES = [
         cases=(_a_lucky_pixel, _all_alike, _nothing_measured),
         mistakes=(
             *(Mistake(_with_faults(**dict(faults)), hint) for faults, hint in FAULTS_LEFT),
+            Mistake(
+                _as_printed,
+                "NaN: inf / inf at a miss, or a pixel that was not measured in the sum. And (9) may be 0/0.",
+            ),
+            Mistake(
+                _over_the_largest,
+                "You divide by the largest likelihood. Equation (9) takes the least away first: the worst gets 0.",
+            ),
             Mistake(_misses_at(0.0), "You take a miss for a depth of 0 m. Its difference is infinite: it counts 0."),
             Mistake(
                 _misses_at(11.0),
@@ -409,6 +437,21 @@ EXERCISES = [
             Mistake(
                 lambda x, target, proposal: (importance_mean(x, target, proposal)[0], x.std() / np.sqrt(len(x))),
                 "Your mean is right. Your error is that of the unweighed samples, a mean over the proposal.",
+            ),
+            Mistake(
+                lambda x, target, proposal: (
+                    importance_mean(x, target, proposal)[0],
+                    np.std(target / proposal * x) / np.sqrt(len(x)) / np.mean(target / proposal),
+                ),
+                "Your mean is right. But its denominator scatters too: take deviations from the mean, then weigh them.",
+            ),
+            Mistake(
+                lambda x, target, proposal: (
+                    importance_mean(x, target, proposal)[0],
+                    np.sqrt(np.sum(target / proposal * (x - importance_mean(x, target, proposal)[0]) ** 2))
+                    / np.sum(target / proposal),
+                ),
+                "Your mean is right. Your error changes with the target's unknown factor: a weight enters squared.",
             ),
             Mistake(
                 _mean_with(lambda w, d: np.sum((w * d) ** 2)),

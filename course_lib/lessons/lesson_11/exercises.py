@@ -151,6 +151,27 @@ def _gaps_without_the_last(columns: np.ndarray, width: int) -> tuple[float, floa
     return float(around[k]), float(around[k - 1] + width)
 
 
+def _moved_if_wide(columns: np.ndarray, width: int) -> tuple[float, float]:
+    """Where the columns span more than half the picture, those of its left half are moved by a turn."""
+    wide = np.ptp(columns) > width / 2
+    moved = columns + width * (wide & (columns < width / 2))
+    return float(moved.min()), float(moved.max())
+
+
+def _gaps_of_half_a_turn(columns: np.ndarray, width: int) -> tuple[float, float]:
+    """The seam is looked for only where two neighbours are half the picture apart."""
+    around = np.sort(columns)
+    k = int(np.diff(around, append=around[-1]).argmax())
+    if np.ptp(around[k : k + 2]) < width / 2:
+        return float(around[0]), float(around[-1])
+    return float(around[k + 1]), float(around[k] + width)
+
+
+def _from_where_the_gap_begins(columns: np.ndarray, width: int) -> tuple[float, float]:
+    low, high = shortest_stretch(columns, width)
+    return high % width, high % width + high - low
+
+
 # 11.4: a knock against the tripod
 
 
@@ -307,6 +328,10 @@ EXERCISES = [
                 lambda c, r, w, h: direction_of(c, r, w, h)[[1, 0, 2]],
                 "x and y are swapped: x (ahead) takes the cosine of the azimuth, y (left) the sine.",
             ),
+            Mistake(
+                lambda c, r, w, h: _from_angles(-(c + 0.5) / (w - 1) * 2 * np.pi, (0.5 - (r + 0.5) / (h - 1)) * np.pi),
+                "You divide by the width less one. The image is `width` pixels wide, edge to edge.",
+            ),
             Mistake(_clamped, "A column beyond the edge is a direction, too: do not cut it off there."),
             Mistake(
                 lambda c, r, w, h: direction_of(c, r, 1280, 640),
@@ -376,6 +401,10 @@ EXERCISES = [
                 "The sign is lost, and beyond a whole turn yours is negative. Wrap the signed gap instead.",
             ),
             Mistake(
+                lambda a, b, w: g if abs(g := _plain_gap(a, b, w)) < 180 else 360 - g,
+                "360 minus the gap turns its sign around. A whole turn is *taken away* from the gap, or added.",
+            ),
+            Mistake(
                 _one_side_only,
                 "You mend differences of 180 and more only. Those below -180 need it as well.",
             ),
@@ -417,7 +446,7 @@ EXERCISES = [
             ),
             Mistake(
                 lambda a, b, w: float(_plain_gap(a, b, w) % 180),
-                "The remainder by 180 makes opposite directions alike. `(d + 180) % 360 - 180` keeps them apart.",
+                "The remainder by 180 makes opposite directions alike. Only whole turns may be taken away.",
             ),
         ),
     ),
@@ -459,6 +488,18 @@ EXERCISES = [
             Mistake(
                 _around_the_mean,
                 "You unroll around a mean direction: for a stretch of more than half a turn it may be in the gap.",
+            ),
+            Mistake(
+                _moved_if_wide,
+                "Points that span half the picture need not lie across the seam. Look for the largest gap, all around.",
+            ),
+            Mistake(
+                _gaps_of_half_a_turn,
+                "The largest gap may be less than half a turn, and still be the one to leave out.",
+            ),
+            Mistake(
+                _from_where_the_gap_begins,
+                "Your stretch begins where the largest gap begins. It begins where that gap ends.",
             ),
             Mistake(_largest_gap_itself, "That is the empty part, the largest gap. The points are in all the rest."),
             Mistake(
@@ -506,6 +547,10 @@ EXERCISES = [
             Mistake(
                 _rows_and_columns,
                 "Rows are not pitch: a pitch lifts what is ahead and sinks what is behind, and the mean hides both.",
+            ),
+            Mistake(
+                lambda b, a, w, h: (0.0, -_rows_and_columns(b, a, w, h)[1], _mean_turn(b, a, w)),
+                "You take mean rows for pitch. A pitch moves what is ahead and what is behind in opposite ways.",
             ),
             Mistake(
                 _not_across_the_seam,

@@ -119,6 +119,13 @@ def _two_places(first: float, second: float) -> Callable:
     return mistaken
 
 
+def _product_uncut(a: np.ndarray, b: np.ndarray, width: int) -> float:
+    """The greatest product of both lengths over all turns: two negative ones make a positive one."""
+    down = min(a[3], b[3]) - max(a[1], b[1])
+    across = [min(a[2], b[2] + turn) - max(a[0], b[0] + turn) for turn in (-width, 0, width)]
+    return _iou(max(0.0, *(length * down for length in across)), a, b)
+
+
 def _lengths_added_uncut(a: np.ndarray, b: np.ndarray, width: int) -> float:
     """All three lengths are added, the negative ones too."""
     across = sum(min(a[2], b[2] + turn) - max(a[0], b[0] + turn) for turn in (-width, 0, width))
@@ -174,6 +181,12 @@ def _one_of_each_class(boxes: np.ndarray, scores: np.ndarray, threshold: float, 
 def _class_after_class(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
     kept, classes = surest(boxes, scores, threshold, limit), scores.argmax(axis=1)
     return kept[np.argsort(classes[kept], kind="stable")]
+
+
+def _of_the_short_list(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
+    """Numbers in the list of those that reach the threshold, not in the list that was given."""
+    reach = scores.max(axis=1) >= threshold
+    return (np.cumsum(reach) - 1)[surest(boxes, scores, threshold, limit)]
 
 
 def _scored(classes: np.ndarray, best: np.ndarray, n_classes: int = 3) -> np.ndarray:
@@ -317,8 +330,8 @@ EXERCISES = [
         reference=counts,
         inputs=_boxes,
         cases=(
-            lambda rng: (np.zeros((0, 4)), 1280, 160.0),  # nothing was found
             lambda rng: (np.array([[140.0, 0, 160, 9], [150, 0, 170, 9], [1430, 0, 1450, 9]]), 1280, 160.0),
+            lambda rng: (np.zeros((0, 4)), 1280, 160.0),  # nothing was found
         ),
         mistakes=(
             Mistake(
@@ -383,7 +396,7 @@ EXERCISES = [
             ),
             Mistake(
                 lambda boxes, width, start: _in_range(_centre(boxes), start, start + 1.25 * width),
-                "W is the width of the panorama itself, without the quarter that was added.",
+                "Your range does not end within the extended image. It is one turn wide: W, without the quarter added.",
             ),
         ),
     ),
@@ -467,6 +480,10 @@ EXERCISES = [
                 "You always move the second box one turn to the left. Mostly it is right where it is: try all three.",
             ),
             Mistake(
+                _product_uncut,
+                "Boxes apart both ways have two negative lengths, whose product is positive: cut each off at 0 first.",
+            ),
+            Mistake(
                 _lengths_added_uncut,
                 "You add up negative lengths as well: where the boxes do not meet, the length is 0.",
             ),
@@ -487,6 +504,7 @@ EXERCISES = [
             lambda rng: _squares([0, 30], [1, 1], [0.5, 0.7], 0.5, 0.4),  # a score equal to the threshold
             lambda rng: _squares([0, 30], [1, 1], [0.2, 0.3], 0.5, 0.4),  # nothing is good enough
             lambda rng: _squares([30, 0, 60], [1, 1, 1], [0.5, 0.7, 0.6], 0.1, 0.4),
+            lambda rng: (np.zeros((0, 4)), np.zeros((0, 3)), 0.5, 0.4),  # no answer at all
         ),
         mistakes=(
             Mistake(
@@ -501,6 +519,10 @@ EXERCISES = [
             Mistake(
                 lambda *given: np.sort(surest(*given)),
                 "The right rows, but in the order of the list. The greatest score comes first.",
+            ),
+            Mistake(
+                _of_the_short_list,
+                "Your numbers count within those that reach the threshold. Give their rows in the list as given.",
             ),
             Mistake(
                 _class_after_class,

@@ -96,6 +96,12 @@ def _behind(pole: Callable) -> Callable:
     return mistaken
 
 
+def _along_the_other_side(x_upper: np.ndarray, x_lower: np.ndarray, baseline: np.ndarray) -> np.ndarray:
+    """pi minus the angle to the plane, where the direction lies on the other half."""
+    ahead, beside = _across_the_baseline(x_upper, baseline), _arcsin(np.abs(_beside(x_upper, x_lower, baseline)))
+    return np.where(np.sum(x_lower * ahead, axis=1) >= 0, beside, np.pi - beside)
+
+
 def _triple_product(x_upper: np.ndarray, x_lower: np.ndarray, baseline: np.ndarray) -> np.ndarray:
     return np.cross(x_upper, x_lower) @ baseline
 
@@ -335,6 +341,18 @@ def _circular_mean_deg(gap: np.ndarray) -> float:
     return np.degrees(np.angle(np.exp(1j * np.radians(gap)).sum()))
 
 
+def _one_of_a_tie_out(counts: np.ndarray) -> np.ndarray:
+    """Of a tie the first row and the first column are out; what else it joins may go on."""
+    counts, result = np.array(counts), np.full(len(counts), -1)
+    while counts.max() > 0:
+        i, j = np.unravel_index(counts.argmax(), counts.shape)
+        largest = counts == counts[i, j]
+        if largest[i].sum() == 1 == largest[:, j].sum():
+            result[i] = j
+        counts[i], counts[:, j] = 0, 0
+    return result
+
+
 EXERCISES = [
     Exercise(
         "13.1",
@@ -448,6 +466,10 @@ EXERCISES = [
                 "Equation (13.1) is 0 where it should be, but it is no angle yet: a unit normal, an arcsine, one half.",
             ),
             Mistake(
+                _along_the_other_side,
+                "On the other half you go on beyond a right angle. The half-circle ends at the poles: the way to one.",
+            ),
+            Mistake(
                 _sides_by_the_angle,
                 "Which half? Compare with the part of x_upper at a right angle to b, not with x_upper itself.",
             ),
@@ -522,6 +544,10 @@ EXERCISES = [
             Mistake(
                 lambda counts: _with_ties(counts, rows_out=False),
                 "The columns of a tie are out in yours, but its rows may choose again. They are out, too.",
+            ),
+            Mistake(
+                _one_of_a_tie_out,
+                "Of a tie you take out one row and one column. All rows and columns that such counts join are out.",
             ),
             Mistake(
                 lambda counts: _with_ties(counts, stop=True),

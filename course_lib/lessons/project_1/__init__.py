@@ -1,7 +1,6 @@
 """Project P1, the whole filter from the equations alone: its recordings, its stages, and what it is measured by."""
 
 from course_lib.lessons.project_1.figures import frames_figure
-from course_lib.lessons.project_1.project import PROJECT
 from course_lib.lessons.project_1.recordings import CAMERA, PARTICLES, CountedRenderer, recording
 
-__all__ = ["CAMERA", "PARTICLES", "PROJECT", "CountedRenderer", "frames_figure", "recording"]
+__all__ = ["CAMERA", "PARTICLES", "CountedRenderer", "frames_figure", "recording"]

@@ -39,6 +39,31 @@ def _cloud(rng: np.random.Generator) -> tuple:
     return particles, sigma, rng.standard_normal((n, 6))
 
 
+def _facing_back(rng: np.random.Generator) -> tuple:
+    particles, sigma, noise = _cloud(rng)
+    particles[:, 5] = rng.choice((-1, 1), len(particles)) * np.pi
+    return particles, sigma, noise
+
+
+def _nothing_moves(rng: np.random.Generator) -> tuple:
+    particles, _, noise = _cloud(rng)
+    return particles, np.zeros(6), noise
+
+
+def _yaw_wrapped(particles: np.ndarray, sigma: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    """Right as well: the yaw brought back to [-pi, pi)."""
+    moved = propagate(particles, sigma, noise)
+    moved[:, 5] = (moved[:, 5] + np.pi) % (2 * np.pi) - np.pi
+    return moved
+
+
+def _angles_wrapped(particles: np.ndarray, sigma: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    """Right as well: all angles brought back to [-pi, pi)."""
+    moved = propagate(particles, sigma, noise)
+    moved[:, 3:] = (moved[:, 3:] + np.pi) % (2 * np.pi) - np.pi
+    return moved
+
+
 def _along_the_world(particles: np.ndarray, sigma: np.ndarray, noise: np.ndarray) -> np.ndarray:
     return particles + sigma * noise
 
@@ -414,6 +439,8 @@ EXERCISES = [
         number="P1.2",
         reference=propagate,
         inputs=_cloud,
+        cases=(_facing_back, _nothing_moves),
+        others=(_yaw_wrapped, _angles_wrapped),
         mistakes=(
             Mistake(_along_the_world, "That moves along the world's axes. The noise is meant forward and to the left."),
             Mistake(_turned_the_other_way, "Turned the wrong way: at yaw 90 degrees, forward is the world's +y."),

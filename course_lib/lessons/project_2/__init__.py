@@ -1,6 +1,6 @@
 """Project P2: from the boxes of two images to a pose."""
 
 from course_lib.lessons.project_2.figures import boxes_figure
-from course_lib.lessons.project_2.project import Rig, rooms_of
+from course_lib.lessons.project_2.project import rooms_of
 
-__all__ = ["Rig", "boxes_figure", "rooms_of"]
+__all__ = ["boxes_figure", "rooms_of"]

@@ -1,7 +1,6 @@
 """Project P4, an unknown camera from raw frames to a report: its sessions, its stages, and what it is measured by."""
 
 from course_lib.lessons.project_4.figures import room_figure
-from course_lib.lessons.project_4.project import PROJECT
 from course_lib.lessons.project_4.sessions import REPEAT, session
 
-__all__ = ["PROJECT", "REPEAT", "room_figure", "session"]
+__all__ = ["REPEAT", "room_figure", "session"]

@@ -334,6 +334,11 @@ def _one_frame(rng: np.random.Generator) -> tuple:
     return raw, invalid, units, coefficients, pattern, float(rng.uniform(8, 40)), 9.993
 
 
+def _nothing_came(rng: np.random.Generator) -> tuple:
+    raw, invalid, *rest = _one_frame(rng)
+    return np.full_like(raw, invalid), invalid, *rest
+
+
 def _changed(**changes: Callable):
     """`depth_from_raw` with some of its arguments changed: a function of all of them each."""
     names = ("raw", "invalid", "units", "coefficients", "pattern", "focal", "repeat")
@@ -634,6 +639,7 @@ EXERCISES = [
         level="challenge",
         reference=depth_from_raw,
         inputs=_one_frame,
+        cases=(_nothing_came,),
         mistakes=(
             Mistake(_depth_first, "The error is one of the *range*: take it away before you go from range to depth."),
             Mistake(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.integrate import trapezoid
 from scipy.optimize import brentq
 from scipy.stats import norm
 
@@ -56,9 +57,9 @@ def share_by_cross(r, r1, p1, r2, p2, f):
 def least_of(n):
     """04.4: mean and deviation from P(least > x) = sf(x)^n alone, by parts."""
     x = np.linspace(-8, 8, 8001)
-    above, step = norm.sf(x) ** n, x[1] - x[0]
-    mean = x[0] + above.sum() * step
-    second = x[0] ** 2 + 2 * (x * above).sum() * step
+    above = norm.sf(x) ** n
+    mean = x[0] + trapezoid(above, x)
+    second = x[0] ** 2 + 2 * trapezoid(x * above, x)
     return mean, np.sqrt(second - mean**2)
 
 
@@ -174,6 +175,8 @@ WRONG = [
     ("04.3", lambda r, r1, p1, r2, p2, f: share_by_search(r, r1, p1 * r1**2, r2, p2 * r2**2, f), "as bright as a near"),
     ("04.3", lambda r, r1, p1, r2, p2, f: 1 - share_by_search(r, r1, p1, r2, p2, f), "on the farther surface"),
     ("04.3", lambda r, r1, p1, r2, p2, f: r1**2 / (r1**2 + r2**2), "Right on"),
+    ("04.3", lambda r, r1, p1, r2, p2, f: p2 * r1**2 / (p1 * r2**2 + p2 * r1**2), "equally long"),
+    ("04.3", lambda r, r1, p1, r2, p2, f: share_by_cross(r, r1, p1, r2, p2, LIGHT / 4 / np.pi), "sine of metres"),
     ("04.4", lambda n: (-np.sqrt(2 * np.log(n)), least_of(n)[1]), "very large n"),
     ("04.4", lambda n: (least_of(n)[0], least_of(n)[1] ** 2), "is the variance"),
     ("04.4", lambda n: (least_of(n)[0], n**-0.5), "scatter of a mean"),
@@ -207,12 +210,15 @@ WRONG = [
     ("05.4", lambda b, m, d, seen, hit, false: bayes_on_cells()(b, [1], d, seen, hit, false), "correction alone"),
     ("05.4", lambda b, m, d, seen, hit, false: bayes_on_cells()(b, m, d, True, 1, 1), "prediction alone"),
     ("05.5", lambda s, n, frames, p: s / norm.ppf((1 - p) ** (1 / n)), "holds for one frame"),
+    ("05.5", lambda s, n, frames, p: s / norm.ppf((1 - p**frames) ** (1 / n)), "undo that power"),
+    ("05.5", lambda s, n, frames, p: s / norm.ppf(1 - p ** (1 / frames)), "for one particle"),
     ("05.5", lambda s, n, frames, p: s / norm.ppf(((1 - p) / frames) ** (1 / n)), "is a bound"),
     ("05.5", lambda s, n, frames, p: s / norm.ppf(1 - (1 - (1 - p ** (1 / frames))) / n), "differ"),
     ("05.5", lambda s, n, frames, p: s / norm.ppf(p ** (1 / frames / n)), "stay below the step"),
     ("06.1", lambda t, a: a * (1 - t), "at one half it gives two thirds"),
     ("06.1", lambda t, a: a / t, "alpha + d"),
     ("06.1", lambda t, a: a * t / (1 - t + 1e-300), "differ"),
+    ("06.1", lambda t, a: a / (a + t), "solve for the difference"),
     ("06.2", by_lines(left_out=True, guard=True, power=2), "One fault is left, in the first two lines"),
     ("06.2", by_lines(left_out=False, guard=False, power=2), "what does (9) give where all agree"),
     ("06.2", by_lines(left_out=False, guard=True, power=4), "compare the exponent"),
@@ -228,6 +234,11 @@ WRONG = [
     ("06.4", lambda x, p, q: weighed(x, p / q)[:1] * 2, "differ"),
     ("06.4", lambda x, p, q: (weighed(x, p / q)[0], weighed(x, p / q)[1] / len(x) ** 0.5), "sum to 1 already"),
     ("06.4", lambda x, p, q: (np.average(x, weights=p / q), x.std() / len(x) ** 0.5), "unweighed samples"),
+    (
+        "06.4",
+        lambda x, p, q: (weighed(x, p / q)[0], np.std(p / q * x) / len(x) ** 0.5 / np.mean(p / q)),
+        "scatters too",
+    ),
     ("06.4", lambda x, p, q: weighed(x, q / p), "upside down"),
     ("06.4", lambda x, p, q: weighed(x, p), "target alone"),
 ]

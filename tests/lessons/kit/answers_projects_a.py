@@ -27,6 +27,12 @@ def by_complex_numbers(particles, sigma, noise):
     return np.column_stack([xy.real, xy.imag, particles[:, 2:] + step[:, 2:]])
 
 
+def wrapped_into_the_circle(particles, sigma, noise):
+    moved = np.array(by_rotation_matrices(particles, sigma, noise))
+    moved[:, 5] = np.mod(moved[:, 5] + np.pi, 2 * np.pi) - np.pi
+    return moved
+
+
 def left_is_right(particles, sigma, noise):
     return by_rotation_matrices(particles, sigma, noise * [1, -1, 1, 1, 1, 1])
 
@@ -299,6 +305,7 @@ RIGHT = [
     ("P1.1", lambda state0, n: np.ones((n, 1)) * state0),
     ("P1.2", by_rotation_matrices),
     ("P1.2", by_complex_numbers),
+    ("P1.2", wrapped_into_the_circle),
     ("P1.3", by_loops),
     ("P1.3", by_nansum),
     ("P1.3", lambda m, s, a: by_nansum(m, s, a).astype(np.float32)),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit import projects
+from course_lib.lessons.kit.exercises import find_exercise, lesson_numbers
 from course_lib.lessons.kit.projects import (
     AnswerError,
     Project,
@@ -126,6 +127,16 @@ def test_an_endless_loop_is_stopped_and_no_other_seed_waits_for_it(toy, capsys):
     assert lines[2:7] == [f"hidden seed {i}: not run: the seed before took too long" for i in range(2, 7)]
 
 
+def test_what_it_prints_on_the_first_seed_is_shown(toy, capsys):
+    def talks(x):
+        print("frame", x)
+        return off_by(0.1)(x)
+
+    lines = printed(capsys, talks, seeds=[10_001, 10_002], rivals=False)
+    assert lines[0] == "(your function prints) frame 10001.0"
+    assert not any("10002.0" in line for line in lines)
+
+
 def test_a_value_that_is_no_number_fails(toy):
     assert one_outcome(TOY, lambda x: float("nan"), 901).failed
     assert not one_outcome(TOY, off_by(0.0), 901).failed
@@ -166,6 +177,11 @@ def test_stored_numbers_of_other_seeds_are_refused(toy, tmp_path):
 def test_an_unknown_project_is_named():
     with pytest.raises(UnknownProjectError, match="no project 'P9'"):
         find_project("P9")
+
+
+def test_the_stages_of_a_project_are_found_as_exercises_are():
+    assert find_exercise("P1.1").number == "P1.1"
+    assert {"03", *project_names()} <= set(lesson_numbers())
 
 
 @pytest.mark.parametrize("name", project_names())

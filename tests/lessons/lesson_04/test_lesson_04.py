@@ -10,7 +10,7 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.lessons.lesson_04.exercises import nearest_of
 from course_lib.lessons.lesson_04.figures import counts
 from course_lib.lessons.lesson_04.panel import DEPTHS, faults_panel
-from course_lib.lessons.lesson_04.recorded import KINDS, kinds_of, sort_errors
+from course_lib.lessons.lesson_04.recorded import KINDS, kinds_of, on_a_surface, sort_errors
 from course_lib.lessons.lesson_04.time_of_flight import FAULTS, MODEL, capture, frames_of, model, returns, wall
 
 SMALL = DepthCamera.sr4000().resized(88, 72)
@@ -127,3 +127,11 @@ def test_the_least_of_sixteen_noisy_points_is_as_far_off_as_exercise_04_4_predic
     assert nearest_of(2) == pytest.approx((-1 / np.sqrt(np.pi), np.sqrt(1 - 1 / np.pi)), abs=1e-6)
     mean, _ = nearest_of(16)
     assert np.nanmean(nearest) - np.nanmean(frame) == pytest.approx(mean * np.nanstd(frame), abs=0.002)
+
+
+def test_a_point_beside_the_pixel_that_saw_it_may_lie_on_a_surface_and_one_in_the_air_does_not():
+    true = np.full(SMALL.shape, 4.0)
+    true[0, 0] = np.inf
+    behind, before = np.array([0.02, 0.0, 4.09]), np.array([0.0, 0.0, 3.0])
+    assert on_a_surface(np.array([behind, before]), true, SMALL) == 0.5
+    assert on_a_surface(np.array([behind]), true, SMALL, within=0.05) == 0
