@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.likelihood import likelihood
+from course_lib.lessons.lesson_00.exercises import BUDGET, Score, off_the_top
 from course_lib.lessons.lesson_00.panel import pose_panel
-from course_lib.lessons.lesson_00.recorded import moment, moved, wall_reads
+from course_lib.lessons.lesson_00.recorded import mean_votes, moment, moved, wall_reads
 
 
 def test_a_wall_reads_its_distance():
@@ -55,3 +56,37 @@ def test_the_floor_alone_does_not_tell_x():
     assert whole.min() < 0.6 * whole.max()
     assert abs(x[alone.argmax()]) > 0.5
     assert abs(x[whole.argmax()]) < 0.2
+
+
+def test_the_floor_loses_least_from_behind_and_the_sides_most():
+    votes = mean_votes(moment(), back=0.3)
+    lost = {name: before - behind for name, (before, behind) in votes.items()}
+    assert lost["floor"] < 0.02
+    assert lost["floor"] < lost["ceiling"] < 0.1
+    assert min(lost["left side"], lost["right side"]) > 0.15
+    assert all(before == pytest.approx(behind) for before, behind in mean_votes(moment(), back=0.0).values())
+
+
+TRUTH = np.array([2.0, 2.0, 0.1])
+
+
+def test_a_score_is_greatest_at_the_truth_and_answers_so_many_poses_alone():
+    score = Score(TRUTH, np.arange(5))
+    around = TRUTH + np.vstack([np.zeros(3), 0.1 * np.eye(3), -0.1 * np.eye(3)])
+    assert score(around).argmax() == 0
+    assert score(TRUTH) == pytest.approx(score(TRUTH[None])[0])
+    score(np.tile(TRUTH, (BUDGET - score.asked, 1)))
+    with pytest.raises(RuntimeError, match=f"more than {BUDGET} poses"):
+        score(TRUTH)
+    with pytest.raises(ValueError, match=r"poses \(N, 3\)"):
+        score(np.zeros((4, 6)))
+
+
+def test_the_end_of_a_search_is_judged_by_place_and_heading_on_the_circle():
+    given = Score(TRUTH, np.arange(5)), TRUTH
+    assert off_the_top(given, np.add(TRUTH, [0.02, 0.02, 0.015])) is None
+    assert off_the_top(given, [np.add(TRUTH, [0, 0, 2 * np.pi])]) is None
+    assert "0.04 m" in off_the_top(given, np.add(TRUTH, [0.04, 0, 0]))
+    assert "1.5 degrees" in off_the_top(given, TRUTH - [0, 0, np.deg2rad(1.5)])
+    assert "three finite numbers" in off_the_top(given, [1.0, np.nan, 0.0])
+    assert "three numbers" in off_the_top(given, "here")

@@ -8,6 +8,7 @@ import pytest
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.lessons.kit.box_world import Box, BoxWorld
 from course_lib.lessons.lesson_02 import small_room
+from course_lib.lessons.lesson_02.exercises import lateral_sigma, off_the_sigma
 from course_lib.lessons.lesson_02.small_room import (
     STATIONS,
     MapQuality,
@@ -109,3 +110,14 @@ def test_the_shipped_numbers_are_those_of_the_papers_order():
     made = shipped_numbers()
     assert made["registration"]["mean_point_distance_m"] == pytest.approx(0.010, abs=0.004)
     assert made["distance_to_surveyed_world"]["median_m"] < made["registration"]["mean_point_distance_m"]
+
+
+def test_a_predicted_sigma_may_be_five_percent_off_and_no_more():
+    given = (10, 5.0, 0.006, np.deg2rad(0.03))
+    assert lateral_sigma(*given) == pytest.approx(0.0481, abs=0.0001)
+    assert lateral_sigma(1, 6.0, 0.008, 0.01) == pytest.approx(0.008)
+    assert off_the_sigma(given, 1.04 * lateral_sigma(*given)) is None
+    assert off_the_sigma(given, [0.96 * lateral_sigma(*given)]) is None
+    assert "too large" in off_the_sigma(given, 1.06 * lateral_sigma(*given))
+    assert "too small" in off_the_sigma(given, 0.94 * lateral_sigma(*given))
+    assert "finite" in off_the_sigma(given, np.inf)

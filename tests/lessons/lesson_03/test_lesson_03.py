@@ -7,6 +7,7 @@ import pytest
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.lessons.lesson_03.exercises import cut_at_near, off_the_cut
 from course_lib.lessons.lesson_03.measurements import buffer_step, slanted_wall_error
 from course_lib.lessons.lesson_03.panel import camera_panel
 from course_lib.lessons.lesson_03.scenes import corridor
@@ -58,3 +59,25 @@ def test_a_step_of_the_buffer_with_near_a_tenth_of_a_millimetre_is_centimetres_a
     assert buffer_step(7.5, 0.0001, 30.0) == pytest.approx(0.0335, abs=0.0005)
     assert slanted_wall_error(0.0001).max() > 0.03
     assert buffer_step(7.5, 0.1, 11.0) == pytest.approx(buffer_step(7.5, 0.1, 30.0), rel=0.01)
+
+
+TRIANGLE = np.array([[0.0, 0, 3], [4, 0, -1], [0, 2, 3]])
+
+
+def test_a_cut_triangle_may_begin_anywhere_and_go_round_either_way():
+    cut = cut_at_near(TRIANGLE, 1.0)
+    np.testing.assert_allclose(cut, [[0, 0, 3], [2, 0, 1], [2, 1, 1], [0, 2, 3]])
+    for polygon in (cut, np.roll(cut, 2, axis=0), cut[::-1], cut.tolist()):
+        assert off_the_cut((TRIANGLE, 1.0), polygon) is None
+    assert "crosses itself" in off_the_cut((TRIANGLE, 1.0), cut[[0, 2, 1, 3]])
+    assert "should have 4" in off_the_cut((TRIANGLE, 1.0), cut[:3])
+    assert "before the near plane" in off_the_cut((TRIANGLE, 1.0), TRIANGLE)
+    assert "not their places" in off_the_cut((TRIANGLE, 1.0), np.add(cut, [0.1, 0, 0]))
+
+
+def test_a_corner_on_the_plane_counts_once_and_nothing_left_is_nothing():
+    touching = np.array([[0.0, 0, 1], [4, 0, -1], [0, 2, 3]])
+    assert off_the_cut((touching, 1.0), cut_at_near(touching, 1.0)) is None
+    assert off_the_cut((touching, 1.0), [[0, 0, 1], [2, 1, 1], [0, 2, 3]]) is None
+    assert off_the_cut((TRIANGLE - [0, 0, 9], 1.0), []) is None
+    assert off_the_cut((TRIANGLE - [0, 0, 9], 1.0), np.empty((0, 3))) is None
