@@ -24,6 +24,12 @@ SIZE = {"width": 800, "height": 500}
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 HANGS_MS = 1_800_000  # only what hangs takes so long
 DRAWN = "() => { const canvas = document.querySelector('canvas'); return canvas && canvas.width > 300; }"
+# The browser has drawn twenty times: whatever a mouse did before is in the picture, on a slow machine too.
+TWENTY_FRAMES = """() => new Promise(resolve => {
+    let count = 0;
+    const next = () => ++count > 20 ? resolve() : requestAnimationFrame(next);
+    requestAnimationFrame(next);
+})"""
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +69,7 @@ def settled_picture(page) -> np.ndarray:
         if before is not None and coloured > 0.01 and np.array_equal(before, picture):
             return picture
         before = picture
-        page.wait_for_timeout(300)
+        page.evaluate(TWENTY_FRAMES)
 
 
 def turn(page) -> None:
@@ -72,6 +78,7 @@ def turn(page) -> None:
     page.mouse.down()
     page.mouse.move(SIZE["width"] / 2 + 160, SIZE["height"] / 2 + 40, steps=8)
     page.mouse.up()
+    page.evaluate(TWENTY_FRAMES)
 
 
 def share_changed(a: np.ndarray, b: np.ndarray) -> float:
@@ -113,6 +120,7 @@ def test_a_page_works_in_a_sandboxed_frame_and_the_wheel_zooms(browser, tmp_path
         assert seen.sum() > 100, f"the axis of colour {colour} is drawn"
     page.mouse.move(400, 250)
     page.mouse.wheel(0, -400)
+    page.evaluate(TWENTY_FRAMES)
     after = settled_picture(page)
     assert (after < 245).any(axis=2).sum() > 1.1 * (before < 245).any(axis=2).sum()
     assert page.errors == []
