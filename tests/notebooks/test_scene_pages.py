@@ -73,10 +73,11 @@ def settled_picture(page) -> np.ndarray:
 
 
 def turn(page) -> None:
-    """Drags the mouse from the middle to the right."""
+    """Drags the mouse from the middle to the right; the button stays down until the page has drawn it, as by hand."""
     page.mouse.move(SIZE["width"] / 2, SIZE["height"] / 2)
     page.mouse.down()
     page.mouse.move(SIZE["width"] / 2 + 160, SIZE["height"] / 2 + 40, steps=8)
+    page.evaluate(TWENTY_FRAMES)
     page.mouse.up()
     page.evaluate(TWENTY_FRAMES)
 
