@@ -26,6 +26,13 @@ HANGS_MS = 1_800_000  # only what hangs takes so long
 AGAIN = 20
 DRAWN = "() => { const canvas = document.querySelector('canvas'); return canvas && canvas.width > 300; }"
 
+# The browser has drawn twenty times: whatever a mouse did before is in the picture, on a slow machine too.
+TWENTY_FRAMES = """() => new Promise(resolve => {
+    let count = 0;
+    const next = () => ++count > 20 ? resolve() : requestAnimationFrame(next);
+    requestAnimationFrame(next);
+})"""
+
 
 @pytest.fixture(scope="module")
 def browser():
@@ -64,13 +71,14 @@ def settled_picture(page) -> np.ndarray:
         if before is not None and coloured > 0.01 and np.array_equal(before, picture):
             return picture
         before = picture
-        page.wait_for_timeout(300)
+        page.evaluate(TWENTY_FRAMES)
 
 
 def picture_after(page, act, changed) -> np.ndarray:
     """The settled picture after `act(page)`, done again while the picture has not `changed`: a busy page misses some."""
     for _ in range(AGAIN):
         act(page)
+        page.evaluate(TWENTY_FRAMES)
         picture = settled_picture(page)
         if changed(picture):
             break
