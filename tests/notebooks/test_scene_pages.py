@@ -75,7 +75,7 @@ def settled_picture(page) -> np.ndarray:
 
 
 def picture_after(page, act, changed) -> np.ndarray:
-    """The settled picture after `act(page)`, done again while the picture has not `changed`: a busy page misses some."""
+    """The settled picture after `act(page)`, done again until it has `changed`: a busy page misses some."""
     for _ in range(AGAIN):
         act(page)
         page.evaluate(TWENTY_FRAMES)
