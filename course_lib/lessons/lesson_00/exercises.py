@@ -192,7 +192,7 @@ def off_the_top(arguments: tuple, answer: object) -> str | None:
     ends = f"One of your searches ends {away:.2f} m and {np.rad2deg(turned):.1f} degrees from the top"
     began = float(np.hypot(*(start - score.truth)[:2]))
     if away > began + _NEAR_ENOUGH[0]:
-        return f"{ends}, farther away than it began. Does it go on from the pose with the *greatest* score?"
+        return f"{ends}, farther away than it began. Does it keep the *greatest* score, in radians?"
     return (
         f"{ends}. Each cloud should lie about the best pose so far and be narrower than the one before, "
         "but not by so much that the top is left outside."

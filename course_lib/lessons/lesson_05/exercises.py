@@ -298,18 +298,6 @@ def _counted_once(bel, moves, doors, seen, hit, false_alarm):
     return _to_one(_look(moved, doors, seen, hit, false_alarm))
 
 
-def _rolled(bel, moves, doors, seen, hit, false_alarm):
-    """What `np.roll` brings round is moved to the end, which is right for k up to the number of cells."""
-    moved = np.zeros(len(bel))
-    for k, p in enumerate(moves):
-        turned = np.roll(bel, k)
-        if k:
-            turned[-1] += turned[:k].sum()
-            turned[:k] = 0
-        moved += p * turned
-    return _to_one(_look(moved, doors, seen, hit, false_alarm))
-
-
 # 05.5: the least noise that keeps up
 
 
@@ -687,10 +675,6 @@ EXERCISES = [
                     bel, moves[: len(bel)], doors, seen, hit, false_alarm
                 ),
                 "`moves` may be longer than the corridor: whoever rolls on by more cells than there are stops, too.",
-            ),
-            Mistake(
-                _rolled,
-                "np.roll by more cells than there are goes round twice. Whoever rolls that far is in the last cell.",
             ),
             Mistake(
                 _counted_once,

@@ -51,7 +51,7 @@ def first_within(limit):
 
 
 def unlimited(a, f_a, b, f_b, farthest):
-    candidates = a[:, None] + np.arange(int(farthest * 2 * f_a / LIGHT) + 2) * LIGHT / (2 * f_a)
+    candidates = a[:, None] + np.arange(int(farthest * 2 * f_a / LIGHT) + 1) * LIGHT / (2 * f_a)
     return candidates[np.arange(len(a)), abs_miss(candidates, b[:, None], LIGHT / (2 * f_b)).argmin(axis=1)]
 
 
@@ -328,7 +328,7 @@ WRONG = [
     ("05.1", lambda s0, s, t: np.maximum(s0, np.sqrt(t) * s), "greater of the two"),
     ("05.2", by_whole_pose, "leave the floor"),
     ("05.4", step_by_step(three_moves), "first three moves"),
-    ("05.4", step_by_step(rolled), "goes round twice"),
+    ("05.4", step_by_step(rolled), "longer than the corridor"),
     ("05.4", step_by_step(fancy_index), "np.add.at"),
     ("05.4", step_by_step(stopped_where_he_was), "stays where he was"),
     ("05.4", step_by_step(lambda bel, moves: convolved(bel, np.append(0, moves))), "one cell too far"),
