@@ -69,6 +69,8 @@ def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | 
             return f"Return numbers; yours returns a {kind_of(a)}."
         if values.shape != np.shape(r):
             return f"The result must have shape {np.shape(r)}; yours has {values.shape}."
+        if (np.isinf(r) & np.isnan(values)).any() and not (np.isfinite(r) & np.isnan(values)).any():
+            return "Yours is nan where inf is expected."
         if np.isnan(values).any() and not np.isnan(r).any():
             return "There is a NaN in your result: look for 0/0, inf - inf or the logarithm of a negative number."
         if inf_is_an_answer and (np.isinf(values) & ~np.isinf(r)).any():

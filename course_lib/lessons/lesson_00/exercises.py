@@ -78,6 +78,11 @@ def _alpha_left_over(vote: np.ndarray, alpha: float) -> np.ndarray:
         return alpha / vote
 
 
+def _one_for_alpha(vote: np.ndarray, alpha: float) -> np.ndarray:
+    with np.errstate(divide="ignore"):
+        return 1 / vote - alpha
+
+
 def _one_minus_vote(vote: np.ndarray, alpha: float) -> np.ndarray:
     with np.errstate(divide="ignore"):
         return (1 - vote) / vote
@@ -172,7 +177,7 @@ def _start_at_the_top(rng: np.random.Generator) -> tuple:
 
 def off_the_top(arguments: tuple, answer: object) -> str | None:
     """What is wrong with the end of a search, or None."""
-    score, _ = arguments
+    score, start = arguments
     try:
         found = np.asarray(answer, dtype=np.float64)
     except (TypeError, ValueError):
@@ -184,9 +189,13 @@ def off_the_top(arguments: tuple, answer: object) -> str | None:
     turned = float(np.abs(wrap_angle(found[2] - score.truth[2])))
     if away <= _NEAR_ENOUGH[0] and turned <= _NEAR_ENOUGH[1]:
         return None
+    ends = f"One of your searches ends {away:.2f} m and {np.rad2deg(turned):.1f} degrees from the top"
+    began = float(np.hypot(*(start - score.truth)[:2]))
+    if away > began + _NEAR_ENOUGH[0]:
+        return f"{ends}, farther away than it began. Does it keep the *greatest* score, in radians?"
     return (
-        f"One of your searches ends {away:.2f} m and {np.rad2deg(turned):.1f} degrees from the top. "
-        "Does it look closer and closer about the best pose?"
+        f"{ends}. Each cloud should lie about the best pose so far and be narrower than the one before, "
+        "but not by so much that the top is left outside."
     )
 
 
@@ -253,6 +262,14 @@ EXERCISES = [
                 lambda measured, simulated: np.minimum(np.abs(measured - simulated), 10.0),
                 "Yours stops at 10 m. Nothing in the task caps a difference: through an open door it is larger.",
             ),
+            Mistake(
+                lambda measured, simulated: 0.1 / (0.1 + np.abs(measured - simulated)),
+                "That is the pixel's vote. The task asks one step earlier: for the difference in metres.",
+            ),
+            Mistake(
+                lambda measured, simulated: np.where(np.isinf(simulated), np.nan, np.abs(measured - simulated)),
+                "Where the map has a hole yours is nan. Only what was *not measured* is nan; at a hole it is inf.",
+            ),
         ),
     ),
     Exercise(
@@ -304,6 +321,10 @@ EXERCISES = [
             Mistake(
                 lambda vote, alpha: -alpha * np.log(np.maximum(vote, 1e-300)),
                 "A logarithm undoes an exponential. Equation (8) has a fraction.",
+            ),
+            Mistake(
+                _one_for_alpha,
+                "You have 1 where alpha belongs: vote times (alpha + d) is alpha, not 1.",
             ),
         ),
     ),

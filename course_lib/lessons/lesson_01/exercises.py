@@ -86,8 +86,9 @@ def _facing_back(rng: np.random.Generator) -> tuple:
     return (optical_pose(np.array([3.0, 1.0, 1.2, 0.3, -0.4, np.deg2rad(-179.5)])),)
 
 
-def _unturned(rng: np.random.Generator) -> tuple:
-    return (optical_pose(np.array([3.0, 4.0, 1.0, 0.0, 0.0, 0.0])),)
+def _hardly_turned(rng: np.random.Generator) -> tuple:
+    """Nearly the task's own example. Without any turn B B is a pitch of 90 degrees, where two ways to read differ."""
+    return (optical_pose(np.array([3.0, 4.0, 1.0, 0.02, -0.01, 0.03])),)
 
 
 def _other_order(matrix: np.ndarray) -> np.ndarray:
@@ -181,6 +182,14 @@ def _by_yaw_alone(before: np.ndarray, after: np.ndarray) -> np.ndarray:
     return np.concatenate([step, wrap_angle(after - before)[3:]])
 
 
+def _step_by_yaw_alone(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    return np.concatenate([_by_yaw_alone(before, after)[:3], motion(before, after)[3:]])
+
+
+def _optical_motion(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    return state_from_matrix(np.linalg.inv(optical_pose(before)) @ optical_pose(after))
+
+
 def _turn_on_the_wrong_side(before: np.ndarray, after: np.ndarray) -> np.ndarray:
     r, s = _rotations(before, after)
     return _joined(r.T @ (after - before)[:3], s @ r.T)
@@ -252,6 +261,13 @@ def _an_airplane(rng: np.random.Generator) -> tuple:
     return _of_a_program(rng, ((2, 1, 0), (-1, -1, 1), True))
 
 
+def _starts_level(rng: np.random.Generator) -> tuple:
+    """An airplane whose first pose is all zeros, as many recordings begin: that one alone fits every reading."""
+    angles, rotations, new = _an_airplane(rng)
+    angles[0], rotations[0] = 0.0, np.eye(3)
+    return angles, rotations, new
+
+
 def _only_sorted(angles: np.ndarray, rotations: np.ndarray, new: np.ndarray) -> np.ndarray:
     best = min(readings(), key=lambda reading: np.abs(rotations_of(angles, reading) - rotations).max())
     return np.deg2rad(new * best[1])[:, np.argsort(best[0])]
@@ -321,13 +337,25 @@ EXERCISES = [
                 lambda points, state: to_world(points, state[[0, 1, 2, 5, 4, 3]]),
                 "You take the angles for yaw, pitch, roll. A state holds roll, pitch, yaw.",
             ),
+            Mistake(
+                lambda points, state: points @ optical_pose(state)[:3, :3] + state[:3],
+                "Your rotation turns the wrong way. Points are rows here: each matrix on their right is transposed.",
+            ),
+            Mistake(
+                lambda points, state: to_world(points * [-1, 1, 1], state),
+                "Forward and up are right. But y counts to the *left* and X to the right.",
+            ),
+            Mistake(
+                lambda points, state: to_world(points * [1, -1, 1], state),
+                "Forward and left are right. But z counts *up* and Y down.",
+            ),
         ),
     ),
     Exercise(
         number="01.2",
         reference=state_of,
         inputs=_optical,
-        cases=(_facing_back, _unturned),
+        cases=(_facing_back, _hardly_turned),
         mistakes=(
             Mistake(
                 state_from_matrix,
@@ -405,6 +433,22 @@ EXERCISES = [
                 _sine_second,
                 "np.arctan2 takes the sine part first: R21 before R22, and R10 before R00.",
             ),
+            Mistake(
+                lambda matrix: np.concatenate([-matrix[:3, :3].T @ matrix[:3, 3], state_of(matrix)[3:]]),
+                "The angles are right. -R^T t is for world-to-camera matrices; here the last column is the position.",
+            ),
+            Mistake(
+                lambda matrix: state_of(matrix) * [1, 1, 1, 0, 0, 1],
+                "Right for a wagon: your roll and pitch are always 0. A camera in a hand is tilted, too.",
+            ),
+            Mistake(
+                lambda matrix: np.concatenate([matrix[:3, 3], state_of(matrix)[3:] % (2 * np.pi)]),
+                "Your angles run from 0 to 2 pi; the course keeps them between -pi and pi.",
+            ),
+            Mistake(
+                lambda matrix: np.concatenate([state_of(matrix)[:5], state_of(matrix)[5:] % (2 * np.pi)]),
+                "Your yaw runs from 0 to 2 pi; the course keeps every angle between -pi and pi.",
+            ),
         ),
     ),
     Exercise(
@@ -461,6 +505,14 @@ EXERCISES = [
                 lambda before, after: motion(before, after) * [1, 1, 1, *[180 / np.pi] * 3],
                 "Your angles are in degrees; a state holds radians.",
             ),
+            Mistake(
+                _step_by_yaw_alone,
+                "The turn is right. You turn the step by yaw alone: a tilted camera needs the whole of R.",
+            ),
+            Mistake(
+                _optical_motion,
+                "That is the motion in the *optical* frame: right, down, forward. The task asks for the body frame.",
+            ),
         ),
     ),
     Exercise(
@@ -468,7 +520,7 @@ EXERCISES = [
         level="challenge",
         reference=decode,
         inputs=_some_program,
-        cases=(_this_course, _an_airplane),
+        cases=(_this_course, _an_airplane, _starts_level),
         mistakes=(
             Mistake(
                 lambda angles, rotations, new: np.deg2rad(new),
@@ -505,6 +557,20 @@ EXERCISES = [
             Mistake(
                 lambda angles, rotations, new: decode(angles, rotations.transpose(0, 2, 1), new),
                 "You compare with the transposed matrices: those turn the other way.",
+            ),
+            Mistake(
+                lambda angles, rotations, new: decode(angles[:1], rotations[:1], new),
+                "You compare the first pose alone. Where its angles are 0 every reading fits: compare all of them.",
+            ),
+            Mistake(
+                lambda angles, rotations, new: decode(angles, rotations, new)[:, ::-1],
+                "The reading is right, but yours returns yaw, pitch, roll. The task asks for roll, pitch, yaw.",
+            ),
+            Mistake(
+                lambda angles, rotations, new: _best_of(
+                    [r for r in readings() if r[0] == (0, 1, 2)], angles, rotations, new
+                ),
+                "You take it that the columns turn about forward, left, up in this order. There are six orders.",
             ),
         ),
     ),

@@ -93,6 +93,27 @@ def _turned_backwards(steps: np.ndarray) -> np.ndarray:
     return np.array(places)
 
 
+def _turns_in_the_other_order(steps: np.ndarray) -> np.ndarray:
+    turn, places = np.eye(3), [np.zeros(3)]
+    for step in steps:
+        places.append(places[-1] + turn @ step[:3, 3])
+        turn = step[:3, :3] @ turn
+    return np.array(places)
+
+
+def _by_heading_alone(steps: np.ndarray) -> np.ndarray:
+    heading, places = 0.0, [np.zeros(3)]
+    for step in steps:
+        level = pose_matrix(np.array([0, 0, 0, 0, 0, heading]))[:3, :3]
+        places.append(places[-1] + level @ step[:3, 3])
+        heading += np.arctan2(step[1, 0], step[0, 0])
+    return np.array(places)
+
+
+def _last_row(steps: np.ndarray) -> np.ndarray:
+    return np.array([pose[3, :3] for pose in accumulate(steps, np.matmul, initial=np.eye(4))])
+
+
 def _turned_too_early(steps: np.ndarray) -> np.ndarray:
     places, turn = [np.zeros(3)], np.eye(3)
     for step in steps:
@@ -193,7 +214,7 @@ def off_the_sigma(arguments: tuple, answer: object) -> str | None:
         return None
     size = "large" if ratio > 1 else "small"
     if n_steps == 1:
-        return f"With a single step yours is too {size}: what can its heading error still swing?"
+        return f"With a single step yours is too {size}: its heading error has nothing left to swing. What remains?"
     if sigma_heading == 0:
         return f"With perfect headings yours is too {size}: how do the errors of the places alone add up?"
     if sigma_place == 0:
@@ -307,6 +328,26 @@ EXERCISES = [
                 _turned_backwards,
                 "You turn each step the wrong way: R leads from the station's axes to the world's as it is.",
             ),
+            Mistake(
+                _turns_in_the_other_order,
+                "Your turns multiply in the wrong order: the newest one stands on the right of those before.",
+            ),
+            Mistake(
+                _by_heading_alone,
+                "Right on a level floor: you turn by the heading alone. A step may tilt and roll as well.",
+            ),
+            Mistake(
+                _last_row,
+                "Your poses are right, but you read their last *row*. The place is in the last column.",
+            ),
+            Mistake(
+                lambda steps: np.vstack([np.zeros(3), steps[:, :3, 3]]),
+                "These are the steps themselves, each counted from the station before. Carry them on to station 0.",
+            ),
+            Mistake(
+                lambda steps: station_places(steps) * [1, 1, 0],
+                "Your stations all stand at height 0. A step may go up or down as well.",
+            ),
         ),
     ),
     Exercise(
@@ -373,6 +414,12 @@ EXERCISES = [
                 ),
                 "You test x, y and z one by one: that is a cube about the place. The distance is a root of squares.",
             ),
+            Mistake(
+                lambda seen, mapped, limit: float(
+                    np.mean(np.abs(seen[:, None] - mapped[None]).sum(axis=2).min(axis=1) > limit)
+                ),
+                "You add the ways along x, y and z. The distance is the root of the sum of their squares.",
+            ),
         ),
     ),
     Exercise(
@@ -426,6 +473,26 @@ EXERCISES = [
             Mistake(
                 lambda n, spacing, place, heading: lateral_sigma(n, 1.0, place, heading),
                 "You have not used the spacing: the longer a step, the farther it swings.",
+            ),
+            Mistake(
+                _by(lambda n: (n - 1) * n * (2 * n - 1) / 6, places=lambda n: 0),
+                "The headings are right. But the places are wrong by themselves, too: you left these errors out.",
+            ),
+            Mistake(
+                _by(lambda n: (n - 1) * n * (2 * n - 1) / 6, places=lambda n: 2 * n),
+                "You count the place error along the row as well. To the side only one of its two parts counts.",
+            ),
+            Mistake(
+                _by(lambda n: (n - 1) ** 2),
+                "You let the first heading swing the whole row, and forget the others.",
+            ),
+            Mistake(
+                _by(lambda n: n - 1),
+                "Each of your heading errors swings one step. It swings *all* later steps.",
+            ),
+            Mistake(
+                lambda n, spacing, place, heading: lateral_sigma(n, spacing, place, np.deg2rad(heading)),
+                "sigma_heading is in radians already: convert nothing.",
             ),
         ),
     ),

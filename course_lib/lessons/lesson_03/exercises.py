@@ -67,6 +67,11 @@ def _in_millimetres(b: np.ndarray, near: float, far: float) -> np.ndarray:
     return 1000 * linearize(b, near, far)
 
 
+def _buffer_of_depth(b: np.ndarray, near: float, far: float) -> np.ndarray:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return far * (b - near) / (b * (far - near))
+
+
 def _close_to_one(b: np.ndarray, near: float, far: float) -> np.ndarray:
     return np.where(np.isclose(b, 1), np.inf, linearize(b, near, far))
 
@@ -352,6 +357,18 @@ EXERCISES = [
                 _close_to_one,
                 "A b just below 1 is a far surface, and yours makes it inf. Only b = 1 itself was never drawn.",
             ),
+            Mistake(
+                _buffer_of_depth,
+                "That is the equation for b itself, with b put in for Z. Solve it for Z: what is Z for a given b?",
+            ),
+            Mistake(
+                lambda b, near, far: np.where(b < 1, near / np.where(b < 1, 1 - b, 1), np.inf),
+                "near / (1 - b) holds for an infinite far plane. Here b = 1 would lie at far: keep far in.",
+            ),
+            Mistake(
+                lambda b, near, far: linearize(b, 0.1, 30.0),
+                "Right for near = 0.1 and far = 30 m alone: take the two that are given.",
+            ),
         ),
     ),
     Exercise(
@@ -383,6 +400,14 @@ EXERCISES = [
             Mistake(
                 lambda z_start, z_end, s: 1 / (1 / z_start + s / z_end),
                 "At s = 1 only z_end may be left: by how much must the share of z_start shrink?",
+            ),
+            Mistake(
+                lambda z_start, z_end, s: 1 / ((1 - s) * z_start + s * z_end),
+                "You mix first and turn over then. Turn each depth over first: it is 1/Z that is mixed.",
+            ),
+            Mistake(
+                lambda z_start, z_end, s: 0 * s + 2 / (1 / z_start + 1 / z_end),
+                "That is the depth half way, at s = 0.5, everywhere. Where is s?",
             ),
         ),
     ),
@@ -424,6 +449,14 @@ EXERCISES = [
                 "Close: a surface exactly on the near or the far plane is still seen.",
             ),
             Mistake(_zero_for_nothing, "Where nothing is seen yours reads 0 m, right at the lens: it must be inf."),
+            Mistake(
+                lambda layers, near, far: np.where((layers > near) & (layers <= far), layers, np.inf).min(axis=0),
+                "Close: a surface exactly on the near plane is still seen.",
+            ),
+            Mistake(
+                lambda layers, near, far: np.where((layers >= near) & (layers < far), layers, np.inf).min(axis=0),
+                "Close: a surface exactly on the far plane is still seen.",
+            ),
         ),
     ),
     Exercise(
@@ -469,6 +502,10 @@ EXERCISES = [
             Mistake(
                 _new_corners_last,
                 "The corners are right. Put each new one where its edge is, or the polygon crosses itself.",
+            ),
+            Mistake(
+                _cut_with(lambda a, b, near: (1 / near - 1 / a) / (1 / b - 1 / a)),
+                "1/Z changes evenly on the *screen*. Along an edge in space Z itself does: take the share from Z.",
             ),
         ),
     ),

@@ -98,6 +98,33 @@ def _at_20_and_15(rng: np.random.Generator) -> tuple:
     return _two_readings(rng, 20e6, 15e6)
 
 
+def _nearly_in_step(rng: np.random.Generator) -> tuple:
+    """Three turns of one clock are nearly four of the other: the first range that fits roughly is the wrong one, and
+    what fits best of all lies beyond `farthest`."""
+    f_a, f_b, r = 15e6, 1.336 * 15e6, np.array([31.0, 4.0, 12.0, 32.0, 2.0])
+    noise_a, noise_b = np.array([[0, -0.02, 0.01, 0, -0.025], [0, 0.035, -0.01, 0.01, 0.03]])
+    return (r + noise_a) % _turn(f_a), f_a, (r + noise_b) % _turn(f_b), f_b, 32.5
+
+
+def _first_that_fits(within: float):
+    def mistaken(read_a, f_a, read_b, f_b, farthest):
+        candidates, misses = _candidates(read_a, f_a, read_b, f_b, farthest)
+        return _best(candidates, np.abs(misses) >= within)
+
+    return mistaken
+
+
+def _beyond_farthest(more: int):
+    """A mistake: all ranges of so many more turns than fit, also those beyond `farthest`."""
+
+    def mistaken(read_a, f_a, read_b, f_b, farthest):
+        candidates = read_a[:, None] + np.arange(int(farthest / _turn(f_a)) + 1 + more) * _turn(f_a)
+        misses = (candidates - read_b[:, None] + _turn(f_b) / 2) % _turn(f_b) - _turn(f_b) / 2
+        return _best(candidates, np.abs(misses))
+
+    return mistaken
+
+
 def _along_a_line(read_a, f_a, read_b, f_b, farthest):
     candidates, _ = _candidates(read_a, f_a, read_b, f_b, farthest)
     with np.errstate(invalid="ignore"):
@@ -256,13 +283,21 @@ EXERCISES = [
                 lambda ranges, rays: ranges / np.hypot(rays[..., 0], 1),
                 "Your rays are tilted to the side only. They are tilted up and down as well: y counts, too.",
             ),
+            Mistake(
+                lambda ranges, rays: ranges / np.hypot(rays[..., 1], 1),
+                "Your rays are tilted up and down only. They are tilted to the side as well: x counts, too.",
+            ),
+            Mistake(
+                lambda ranges, rays: ranges / rays.sum(axis=-1),
+                "You add the components of the ray. Its length is the root of the sum of their squares.",
+            ),
         ),
     ),
     Exercise(
         number="04.2",
         reference=range_from_two,
         inputs=_readings,
-        cases=(_at_15_and_20, _at_20_and_15),
+        cases=(_at_15_and_20, _at_20_and_15, _nearly_in_step),
         mistakes=(
             Mistake(
                 lambda read_a, f_a, read_b, f_b, farthest: read_a,
@@ -308,6 +343,28 @@ EXERCISES = [
                     read_a + (_candidates(read_a, f_a, read_b, f_b, farthest)[0].shape[1] - 1) * _turn(f_a)
                 ),
                 "You take the farthest candidate always. Ask of each how well it fits the reading at f_b.",
+            ),
+            *(
+                Mistake(
+                    _beyond_farthest(more),
+                    "One of your ranges lies beyond `farthest`: leave such candidates out before you take the best.",
+                )
+                for more in range(4)
+            ),
+            *(
+                Mistake(
+                    _first_that_fits(within),
+                    "You stop at the first range that fits roughly. A later one may fit better: take the best of all.",
+                )
+                for within in (0.1, 0.15, 0.2, 0.25, 0.3, 0.5)
+            ),
+            Mistake(
+                lambda read_a, f_a, read_b, f_b, farthest: range_from_two(read_a, f_b, read_b, f_a, farthest),
+                "The frequencies have changed places: read_a repeats every c / 2f_a.",
+            ),
+            Mistake(
+                lambda read_a, f_a, read_b, f_b, farthest: (read_a + read_b) / 2,
+                "Both readings may be turns short, each by turns of its own length. First find how many.",
             ),
         ),
     ),
@@ -371,6 +428,14 @@ EXERCISES = [
             Mistake(
                 lambda r, r1, rho1, r2, rho2, f: pole_share(r, r1, rho2, r2, rho1, f),
                 "The paints have changed places: rho1 belongs to the surface at r1.",
+            ),
+            Mistake(
+                lambda r, r1, rho1, r2, rho2, f: _share(r, r1, 1.0, r2, 1.0, f),
+                "That is the pole's share of the *light*. Of the area? A share of it sends rho / r^2 as much light.",
+            ),
+            Mistake(
+                lambda r, r1, rho1, r2, rho2, f: pole_share(r, r1, rho1, r2, rho2, 2 * f),
+                "Your phase is 8 pi f r / c. Out and back is 2 r already: 4 pi f r / c.",
             ),
         ),
     ),

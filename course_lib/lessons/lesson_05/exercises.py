@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import norm
 
-from course_lib.geometry import wrap_angle
+from course_lib.geometry import pose_matrix, wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
 
 # 05.1: the spread after t frames
@@ -85,6 +85,19 @@ def _with(change):
 def _steps_alone(particles, sigma_forward, sigma_left, draws):
     right = propagate_own_axes(particles, sigma_forward, sigma_left, draws)
     return right - particles
+
+
+def _by_whole_rotation(particles, sigma_forward, sigma_left, draws):
+    steps = np.column_stack([draws * [sigma_forward, sigma_left], np.zeros(len(draws))])
+    moved = particles.copy()
+    moved[:, :3] += np.einsum("nab,nb->na", pose_matrix(particles)[:, :3, :3], steps)
+    return moved
+
+
+def _by_whole_rotation_on_the_floor(particles, sigma_forward, sigma_left, draws):
+    moved = _by_whole_rotation(particles, sigma_forward, sigma_left, draws)
+    moved[:, 2] = particles[:, 2]
+    return moved
 
 
 def _as_variances(particles, sigma_forward, sigma_left, draws):
@@ -234,6 +247,8 @@ def _move(bel: np.ndarray, moves: np.ndarray, at_the_end: str = "stops") -> np.n
                 moved[-1] += p * bel[cell]
             elif at_the_end == "ring":
                 moved[(cell + k) % n] += p * bel[cell]
+            elif at_the_end == "stays":
+                moved[cell] += p * bel[cell]
     return moved
 
 
@@ -249,6 +264,20 @@ def _corridor_with_doors(rng: np.random.Generator) -> tuple:
     return bel, moves, doors, bool(rng.random() < 0.5), rng.uniform(0.6, 0.95), rng.uniform(0.05, 0.3)
 
 
+def _five_moves(rng: np.random.Generator) -> tuple:
+    bel, _, *rest = _corridor_with_doors(rng)
+    return bel, rng.dirichlet(np.ones(5)), *rest
+
+
+def _more_moves_than_cells(rng: np.random.Generator) -> tuple:
+    return rng.dirichlet(np.ones(4)), rng.dirichlet(np.ones(7)), np.arange(4) == 2, False, 0.9, 0.2
+
+
+def _at_rest(rng: np.random.Generator) -> tuple:
+    bel, _, *rest = _corridor_with_doors(rng)
+    return bel, np.array([1.0]), *rest
+
+
 def _nearly_at_the_end(rng: np.random.Generator) -> tuple:
     return np.array([0, 0, 0, 0.3, 0.7]), np.array([0.1, 0.8, 0.1]), np.arange(5) == 4, True, 0.8, 0.1
 
@@ -259,6 +288,14 @@ def _a_sure_sensor(rng: np.random.Generator) -> tuple:
 
 def _the_tasks_corridor(rng: np.random.Generator) -> tuple:
     return np.array([0.5, 0.5, 0.0]), np.array([0.0, 1.0]), np.array([False, True, False]), True, 0.8, 0.2
+
+
+def _counted_once(bel, moves, doors, seen, hit, false_alarm):
+    """`moved[target] += p * bel`: of several that stop in the last cell only one is added."""
+    moved, cells = np.zeros(len(bel)), np.arange(len(bel))
+    for k, p in enumerate(moves):
+        moved[np.minimum(cells + k, len(bel) - 1)] += p * bel
+    return _to_one(_look(moved, doors, seen, hit, false_alarm))
 
 
 # 05.5: the least noise that keeps up
@@ -278,6 +315,12 @@ def _wagons(rng: np.random.Generator) -> tuple:
 
 def _the_courses_wagon(rng: np.random.Generator) -> tuple:
     return 0.0965, 200, 303, 0.95
+
+
+def _mean_farthest(n: int) -> float:
+    """Mean of the farthest of n standard normal steps."""
+    x = np.linspace(-9, 9, 3001)
+    return float(np.sum(x * n * norm.pdf(x) * norm.cdf(x) ** (n - 1)) * (x[1] - x[0]))
 
 
 def _one_frame(rng: np.random.Generator) -> tuple:
@@ -339,6 +382,18 @@ EXERCISES = [
             Mistake(
                 lambda spread0, sigma, t: np.sqrt(sigma**2 + t * spread0**2),
                 "You swapped the two: the spread at the start counts once, sigma in every frame.",
+            ),
+            Mistake(
+                lambda spread0, sigma, t: np.sqrt(spread0**2 + (t + 1) * sigma**2),
+                "You count one frame too many: after t frames there were t steps, the start is none.",
+            ),
+            Mistake(
+                lambda spread0, sigma, t: np.sqrt(spread0**2 + max(t - 1, 0) * sigma**2),
+                "One frame is missing: the first frame moves the particles already.",
+            ),
+            Mistake(
+                lambda spread0, sigma, t: np.maximum(spread0, np.sqrt(t) * sigma),
+                "You take the greater of the two. Both spread the cloud: their variances add.",
             ),
         ),
     ),
@@ -426,6 +481,18 @@ EXERCISES = [
             Mistake(
                 _with(lambda forward, left, yaw: (forward, left, np.full_like(yaw, yaw.mean()))),
                 "All your particles step in one mean direction. Each has a yaw of its own.",
+            ),
+            Mistake(
+                _with(lambda forward, left, yaw: (forward, left, np.pi / 2 - yaw)),
+                "Sine and cosine have changed places: forward is (cos, sin) of the yaw.",
+            ),
+            Mistake(
+                _by_whole_rotation,
+                "You turn by roll and pitch as well, and the steps leave the floor. Only the yaw turns them; z stays.",
+            ),
+            Mistake(
+                _by_whole_rotation_on_the_floor,
+                "z stays, but roll and pitch still shorten and bend your steps. Only the yaw turns them.",
             ),
         ),
     ),
@@ -537,7 +604,7 @@ EXERCISES = [
         number="05.4",
         reference=bayes_step,
         inputs=_corridor_with_doors,
-        cases=(_nearly_at_the_end, _a_sure_sensor, _the_tasks_corridor),
+        cases=(_nearly_at_the_end, _a_sure_sensor, _the_tasks_corridor, _five_moves, _more_moves_than_cells, _at_rest),
         mistakes=(
             Mistake(
                 lambda bel, moves, doors, seen, hit, false_alarm: _to_one(
@@ -596,6 +663,40 @@ EXERCISES = [
             Mistake(
                 lambda bel, moves, doors, seen, hit, false_alarm: _to_one(_look(bel, doors, seen, hit, false_alarm)),
                 "That is the correction alone. The wagon has moved before.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: bayes_step(
+                    bel, moves[:3], doors, seen, hit, false_alarm
+                ),
+                "You look at the first three moves alone. `moves` may have any length.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: bayes_step(
+                    bel, moves[: len(bel)], doors, seen, hit, false_alarm
+                ),
+                "`moves` may be longer than the corridor: whoever rolls on by more cells than there are stops, too.",
+            ),
+            Mistake(
+                _counted_once,
+                "`a[index] += ...` counts an index that comes twice only once: use np.add.at, or loop over cells.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: _to_one(
+                    _look(_move(bel, moves, "stays"), doors, seen, hit, false_alarm)
+                ),
+                "Whoever would pass the end stays where he was in yours. He rolls on and stops in the last cell.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: bayes_step(
+                    bel, np.append(0.0, moves), doors, seen, hit, false_alarm
+                ),
+                "You roll one cell too far: moves[0] is the probability of staying.",
+            ),
+            Mistake(
+                lambda bel, moves, doors, seen, hit, false_alarm: bayes_step(
+                    bel, moves, doors, False, hit, false_alarm
+                ),
+                "You always take it that no door was seen. `seen` says whether one was.",
             ),
         ),
     ),
@@ -661,6 +762,14 @@ EXERCISES = [
             Mistake(
                 lambda step, n, frames, p: step / norm.ppf(p ** (1 / frames)),
                 "Where is n? With more particles the farthest step is longer.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / norm.ppf(1 - p ** (1 / (frames * n))),
+                "You ask that *every* particle makes the step. One of the n is enough.",
+            ),
+            Mistake(
+                lambda step, n, frames, p: step / _mean_farthest(n),
+                "That keeps up in the *mean*, as in *Measure*. With probability p for all frames it takes more: use p.",
             ),
         ),
     ),

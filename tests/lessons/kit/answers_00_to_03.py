@@ -38,11 +38,11 @@ def one_pose_at_a_time(score, start):
     """A walk: a random step is kept where it leads uphill; the steps grow shorter."""
     rng = np.random.default_rng(1)
     best, height, reach = np.array(start), score(start), np.array([0.3, 0.25, 0.12])
-    for _ in range(249):
+    for _ in range(399):
         tried = best + reach * rng.normal(size=3)
         if (value := score(tried)) > height:
             best, height = tried, value
-        reach = 0.976 * reach
+        reach = 0.985 * reach
     return best.tolist()
 
 
@@ -71,6 +71,35 @@ def degrees_for_radians(score, start):
         cloud[0] = best
         best, reach = cloud[np.argmax(score(cloud))], 0.5 * reach
     return best
+
+
+def too_narrow_too_soon(score, start):
+    rng = np.random.default_rng(0)
+    best, reach = start, np.array([0.28, 0.21, 0.12])
+    for _ in range(10):
+        cloud = best + reach * rng.normal(size=(40, 3))
+        cloud[0] = best
+        best, reach = cloud[np.argmax(score(cloud))], 0.2 * reach
+    return best
+
+
+def ever_worse(score, start):
+    rng = np.random.default_rng(0)
+    best, reach = start, np.array([0.28, 0.21, 0.12])
+    for _ in range(10):
+        cloud = best + reach * rng.normal(size=(40, 3))
+        best, reach = cloud[np.argmin(score(cloud))], 0.65 * reach
+    return best
+
+
+def grids_about_the_best(score, start):
+    """A coarse grid over the whole box, then four finer ones about the best of each."""
+    best, reach = start, np.array([0.4, 0.3, 0.18])
+    for counts in ((6, 5, 5), *[(4, 4, 3)] * 4):
+        steps = np.stack(np.meshgrid(*[np.linspace(-1, 1, k) for k in counts]), axis=-1).reshape(-1, 3)
+        cloud = best + steps * reach
+        best, reach = cloud[np.argmax(score(cloud))], 0.45 * reach
+    return list(best)
 
 
 def rotation(state):
@@ -107,6 +136,43 @@ def left_on_the_whole_matrix(matrix):
     four = np.eye(4)
     four[:3, :3] = B
     return state_from_matrix(four.T @ matrix)
+
+
+def by_first_pose(angles, rotations, new):
+    """Every reading is tried, but on the first pose alone."""
+    for axes, signs, step in itertools.product(
+        itertools.permutations(range(3)), itertools.product((1, -1), repeat=3), (1, -1)
+    ):
+
+        def matrix(row, axes=axes, signs=signs, step=step):
+            turns = [
+                pose_matrix(np.deg2rad(s * a) * np.eye(6)[3 + k]) for k, s, a in zip(axes, signs, row, strict=True)
+            ]
+            return np.linalg.multi_dot(turns[::step])
+
+        if np.allclose(matrix(angles[0])[:3, :3], rotations[0], atol=1e-6):
+            return np.array([state_from_matrix(matrix(row))[3:] for row in new])
+    return None
+
+
+def turns_on_the_left(steps):
+    turn, places = np.eye(3), [np.zeros(3)]
+    for step in steps:
+        places.append(places[-1] + turn @ step[:3, 3])
+        turn = step[:3, :3] @ turn
+    return np.array(places)
+
+
+def by_heading(steps):
+    heading, x, y, z, places = 0.0, 0.0, 0.0, 0.0, [[0.0, 0.0, 0.0]]
+    for step in steps:
+        forward, left, up = step[:3, 3]
+        x += forward * np.cos(heading) - left * np.sin(heading)
+        y += forward * np.sin(heading) + left * np.cos(heading)
+        z += up
+        heading += np.arctan2(step[1, 0], step[0, 0])
+        places.append([x, y, z])
+    return places
 
 
 def distances(seen, mapped):
@@ -246,7 +312,7 @@ WRONG = [
     ("00.2", lambda v, a: np.where(v > 2 * a, a / v - a, np.inf), "inf where a finite number"),
     ("00.3", lambda score, start: start, "the pose that you were given"),
     ("00.3", too_many, "more than 400 poses"),
-    ("00.3", degrees_for_radians, "closer and closer"),
+    ("00.3", degrees_for_radians, "from the top"),
     ("00.3", lambda score, start: start[:2], "three finite numbers"),
     ("00.3", lambda score, start: score(start), "three finite numbers"),
     ("00.3", lambda score, start: np.full(3, np.nan), "three finite numbers"),
@@ -321,7 +387,7 @@ WRONG = [
     ("03.3", lambda layers, n, f: np.nanmin(np.where((layers >= n) & (layers <= f), layers, np.nan), axis=0), "nan"),
     ("03.4", lambda c, near: c[c[:, 2] >= near], "a corner is new"),
     ("03.4", lambda c, near: np.maximum(c, [-np.inf, -np.inf, near]), "bends the triangle"),
-    ("03.4", cut_by_rays, "places"),
+    ("03.4", cut_by_rays, "take the share from Z"),
     ("03.4", lambda c, near: c if c[:, 2].min() >= near else [], "corners and should have"),
     ("03.4", lambda c, near: triangle_fan(c, near)[0:3], "corners and should have"),
     ("03.4", lambda c, near: len(triangle_fan(c, near)), "(n, 3)"),
@@ -329,6 +395,49 @@ WRONG = [
     ("03.3", lambda layers, n, f: masked(layers, layers <= f).min(axis=0), "not near"),
     ("03.3", lambda layers, n, f: masked(layers, (layers >= n) & (layers <= f))[0], "first layer alone"),
     ("03.3", lambda layers, n, f: masked(layers, (layers >= n) & (layers <= f)).mean(axis=0), "inf where a finite"),
+    ("00.1", lambda m, s: 0.1 / (0.1 + np.abs(m - s)), "the pixel's vote"),
+    ("00.1", lambda m, s: np.where(np.isinf(s), np.nan, np.abs(m - s)), "at a hole it is inf"),
+    ("00.2", lambda v, a: 1 / v - a, "where alpha belongs"),
+    ("00.3", too_narrow_too_soon, "left outside"),
+    ("00.3", ever_worse, "greatest"),
+    ("01.1", lambda p, s: p @ optical_pose(s)[:3, :3] + s[:3], "each matrix on their right"),
+    ("01.1", lambda p, s: np.c_[p[:, 2], p[:, 0], -p[:, 1]] @ rotation(s).T + s[:3], "y counts to the *left*"),
+    ("01.1", lambda p, s: np.c_[p[:, 2], -p[:, 0], p[:, 1]] @ rotation(s).T + s[:3], "z counts *up*"),
+    ("01.2", lambda m: six_numbers(m, m[:3, :3] @ B), "apply B once more"),
+    ("01.2", lambda m: six_numbers(m, B @ m[:3, :3]), "multiply by B on the left"),
+    ("01.2", lambda m: np.r_[-m[:3, :3].T @ m[:3, 3], six_numbers(m, body(m))[3:]], "world-to-camera"),
+    ("01.2", lambda m: np.r_[m[:3, 3], 0, 0, six_numbers(m, body(m))[5]], "Right for a wagon"),
+    ("01.2", lambda m: np.r_[six_numbers(m, body(m))[:5], six_numbers(m, body(m))[5] % (2 * np.pi)], "from 0 to 2 pi"),
+    (
+        "01.3",
+        lambda a, b: state_from_matrix(np.linalg.inv(optical_pose(a)) @ optical_pose(b)),
+        "*optical* frame",
+    ),
+    ("01.4", by_first_pose, "first pose alone"),
+    ("01.4", lambda a, R, new: tried_one_by_one(a, R, new)[:, ::-1], "returns yaw, pitch, roll"),
+    ("02.2", turns_on_the_left, "wrong order"),
+    ("02.2", by_heading, "heading alone"),
+    ("02.2", lambda steps: np.vstack([np.zeros(3), steps[:, :3, 3]]), "the steps themselves"),
+    ("02.3", lambda s, m, limit: np.mean(np.abs(s[:, None] - m).sum(-1).min(1) > limit), "along x, y and z"),
+    ("02.4", lambda n, d, p, h: d * h * math.sqrt(sum(k * k for k in range(n))), "left these errors out"),
+    (
+        "02.4",
+        lambda n, d, p, h: np.hypot(p * math.sqrt(2 * n), d * h * math.sqrt(sum(k * k for k in range(n)))),
+        "side",
+    ),
+    ("02.4", lambda n, d, p, h: np.hypot(p * math.sqrt(n), (n - 1) * d * h), "forget the others"),
+    (
+        "02.4",
+        lambda n, d, p, h: np.hypot(p * math.sqrt(n), d * np.deg2rad(h) * math.sqrt(sum(k * k for k in range(n)))),
+        "radians already",
+    ),
+    ("03.1", lambda b, n, f: f * (b - n) / (b * (f - n)), "for b itself"),
+    ("03.1", lambda b, n, f: np.where(b == 1, np.inf, n / np.where(b == 1, 1, 1 - b)), "infinite far plane"),
+    ("03.1", lambda b, n, f: np.where(b == 1, np.inf, depth(b, 0.1, 30.0)), "the two that are given"),
+    ("03.2", lambda a, b, s: 1 / (a + s * (b - a)), "Turn each depth over first"),
+    ("03.2", lambda a, b, s: np.full(len(s), 2 * a * b / (a + b)), "Where is s?"),
+    ("03.3", lambda layers, n, f: masked(layers, (layers > n) & (layers <= f)).min(axis=0), "on the near plane"),
+    ("03.3", lambda layers, n, f: masked(layers, (layers >= n) & (layers < f)).min(axis=0), "on the far plane"),
 ]
 RIGHT = [
     ("00.1", lambda m, s: np.maximum(m, s) - np.minimum(m, s)),
@@ -366,4 +475,14 @@ RIGHT = [
     ("03.3", lambda layers, n, f: np.nanmin(np.where((layers >= n) & (layers <= f), layers, np.inf), axis=0).tolist()),
     ("03.4", triangle_fan),
     ("03.4", lambda c, near: np.array(triangle_fan(c, near))[::-1]),
+    ("00.3", grids_about_the_best),
+    ("01.2", lambda m: np.r_[m[:3, 3], Rotation.from_matrix(body(m)).as_euler("ZYX")[::-1]]),
+    (
+        "02.1",
+        lambda p: [
+            [f(q) for q in p]
+            for f in (np.linalg.norm, lambda q: math.atan2(q[1], q[0]), lambda q: math.asin(q[2] / np.linalg.norm(q)))
+        ],
+    ),
+    ("03.4", lambda c, near: np.float32(np.roll(np.reshape(triangle_fan(c, near), (-1, 3)), 1, axis=0))),
 ]

@@ -7,7 +7,7 @@ from scipy.integrate import trapezoid
 from scipy.optimize import brentq
 from scipy.stats import norm
 
-from course_lib.geometry import wrap_angle
+from course_lib.geometry import pose_matrix, wrap_angle
 
 LIGHT = 299_792_458.0  # m/s
 
@@ -35,6 +35,82 @@ def by_candidates(miss, least=0.0):
         return np.array(best)
 
     return answer
+
+
+def first_within(limit):
+    """04.2: the first range that is read as `a` and nearly as `b`."""
+
+    def answer(a, f_a, b, f_b, farthest):
+        turn_a, turn_b, found = LIGHT / (2 * f_a), LIGHT / (2 * f_b), []
+        for one, other in zip(a, b, strict=True):
+            candidates = np.arange(one, farthest, turn_a)
+            found.append(candidates[np.argmax(abs_miss(candidates, other, turn_b) < limit)])
+        return found
+
+    return answer
+
+
+def unlimited(a, f_a, b, f_b, farthest):
+    candidates = a[:, None] + np.arange(int(farthest * 2 * f_a / LIGHT) + 1) * LIGHT / (2 * f_a)
+    return candidates[np.arange(len(a)), abs_miss(candidates, b[:, None], LIGHT / (2 * f_b)).argmin(axis=1)]
+
+
+def light_share(r, r1, p1, r2, p2, f):
+    near, far = np.sin(4 * np.pi * f / LIGHT * np.array([r - r1, r2 - r]))
+    return far / (near + far)
+
+
+def step_by_step(look):
+    """05.4: `look(bel, moves)` gives the moved belief; then the sensor."""
+
+    def answer(bel, moves, doors, seen, hit, false_alarm):
+        p = np.where(doors, hit, false_alarm)
+        new = look(bel, moves) * (p if seen else 1 - p)
+        return new / new.sum()
+
+    return answer
+
+
+def convolved(bel, moves):
+    whole = np.convolve(bel, moves)
+    return np.append(whole[: len(bel) - 1], whole[len(bel) - 1 :].sum())
+
+
+def three_moves(bel, moves):
+    return convolved(bel, np.append(moves, [0, 0])[:3])
+
+
+def fancy_index(bel, moves):
+    moved = np.zeros(len(bel))
+    for k, p in enumerate(moves):
+        moved[np.minimum(np.arange(len(bel)) + k, len(bel) - 1)] += p * bel
+    return moved
+
+
+def stopped_where_he_was(bel, moves):
+    moved = np.zeros(len(bel))
+    for cell, share in enumerate(bel):
+        for k, p in enumerate(moves):
+            moved[cell + k if cell + k < len(bel) else cell] += p * share
+    return moved
+
+
+def rolled(bel, moves):
+    moved = np.zeros(len(bel))
+    for k, p in enumerate(moves):
+        turned = np.roll(bel, k)
+        if k:
+            turned[-1] += turned[:k].sum()
+            turned[:k] = 0
+        moved += p * turned
+    return moved
+
+
+def by_whole_pose(particles, forward, left, draws):
+    steps = np.column_stack([forward * draws[:, 0], left * draws[:, 1], 0 * draws[:, 0]])
+    moved = particles.copy()
+    moved[:, :3] += [pose_matrix(p)[:3, :3] @ step for p, step in zip(particles, steps, strict=True)]
+    return moved
 
 
 def share_by_search(r, r1, p1, r2, p2, f):
@@ -241,6 +317,23 @@ WRONG = [
     ),
     ("06.4", lambda x, p, q: weighed(x, q / p), "upside down"),
     ("06.4", lambda x, p, q: weighed(x, p), "target alone"),
+    ("04.1", lambda r, rays: r / np.hypot(rays[..., 1], 1), "up and down only"),
+    ("04.1", lambda r, rays: r / rays.sum(axis=-1), "add the components"),
+    ("04.2", first_within(0.3), "fits roughly"),
+    ("04.2", first_within(0.1), "fits roughly"),
+    ("04.2", unlimited, "beyond `farthest`"),
+    ("04.2", lambda a, f_a, b, f_b, farthest: (a + b) / 2, "First find how many"),
+    ("04.3", light_share, "share of the *light*"),
+    ("05.1", lambda s0, s, t: np.sqrt(s0**2 + (t + 1) * s**2), "one frame too many"),
+    ("05.1", lambda s0, s, t: np.maximum(s0, np.sqrt(t) * s), "greater of the two"),
+    ("05.2", by_whole_pose, "leave the floor"),
+    ("05.4", step_by_step(three_moves), "first three moves"),
+    ("05.4", step_by_step(rolled), "longer than the corridor"),
+    ("05.4", step_by_step(fancy_index), "np.add.at"),
+    ("05.4", step_by_step(stopped_where_he_was), "stays where he was"),
+    ("05.4", step_by_step(lambda bel, moves: convolved(bel, np.append(0, moves))), "one cell too far"),
+    ("05.5", lambda step, n, frames, p: step / norm.ppf(1 - p ** (1 / frames / n)), "One of the n is enough"),
+    ("05.5", lambda step, n, frames, p: -step / least_of(n)[0], "in the *mean*"),
 ]
 # Exercise, answer by another way than the solution.
 RIGHT = [
@@ -275,4 +368,6 @@ RIGHT = [
     ("06.3", lambda v, beta: [v.max() - np.ptp(v) * np.sqrt(-(beta**2) * np.log(0.5))]),
     ("06.4", lambda x, p, q: weighed(x, p / q)),
     ("06.4", lambda x, p, q: list(np.multiply(weighed(x, p / q), [1, (len(x) / (len(x) - 1)) ** 0.5]))),
+    ("05.4", step_by_step(convolved)),
+    ("05.4", lambda *given: step_by_step(convolved)(*given).tolist()),
 ]

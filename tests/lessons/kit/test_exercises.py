@@ -92,6 +92,7 @@ def test_an_infinity_is_blamed_on_a_division_only_where_none_is_right():
     hole = Exercise("99.4", lambda x: np.where(x < 0, np.inf, x), lambda rng: (rng.normal(size=9),), DOUBLE.mistakes)
     assert "division by zero" in says(lambda x: x * np.inf)
     assert "inf where a finite number is expected" in says(lambda x: np.where(x < 0.5, np.inf, x), hole)
+    assert "nan where inf is expected" in says(lambda x: np.where(x < 0, np.nan, x), hole)
     assert "a finite number where inf is expected" in says(lambda x: np.abs(x), hole)
 
 
