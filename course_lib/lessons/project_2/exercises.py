@@ -793,7 +793,7 @@ EXERCISES = [
             ),
             Mistake(
                 _mistaken_fit(turn=_mean_turn),
-                "You average the turns of single pairs. A pair far from the centroid knows its direction better: let the sums weigh.",
+                "You average the turns of single pairs. A far pair knows its direction better: let the sums weigh.",
             ),
             Mistake(_stretched, "Your fit may stretch: R alone turns, without a scale."),
         ),

@@ -679,7 +679,7 @@ EXERCISES = [
             ),
             Mistake(
                 _one_rival,
-                "The runner-up and `nothing` both doubt the best: their exponentials add. You take the greater one alone.",
+                "The runner-up and `nothing` both doubt the best: their exponentials add. You take the greater one.",
             ),
         ),
     ),

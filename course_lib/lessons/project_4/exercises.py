@@ -747,7 +747,7 @@ EXERCISES = [
             ),
             Mistake(
                 _errors_of_the_depth,
-                "Range error and pattern are errors of the *range*: take both away before you divide by the ray's length.",
+                "Range error and pattern are errors of the *range*: both go before you divide by the ray's length.",
             ),
             Mistake(
                 _pattern_of_the_depth,
