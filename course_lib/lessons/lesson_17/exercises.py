@@ -471,11 +471,11 @@ EXERCISES = [
             ),
             Mistake(
                 _fault(turned=lambda radians: np.degrees(radians) % 360),
-                "Half of the circle is still missing: an error of -2 degrees becomes 358. Take the shorter way round, then the absolute value.",
+                "Half of the circle is still missing: an error of -2 degrees becomes 358. Take the shorter way.",
             ),
             Mistake(
                 _fault(turned=lambda radians: np.abs(np.degrees(radians)) % 180),
-                "A remainder of 180 calls a robot that looks exactly backwards perfect. Take the difference on the circle.",
+                "A remainder of 180 calls a robot that looks backwards perfect. Take the difference on the circle.",
             ),
             Mistake(
                 _deviations_signed,

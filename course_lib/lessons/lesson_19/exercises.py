@@ -346,7 +346,7 @@ EXERCISES = [
             ),
             Mistake(
                 lambda share, misses: _least(lambda n: _agresti_low(n - misses, n) >= share, misses),
-                "That is the interval of Agresti and Coull: Wilson's middle, another width. The task asks for Wilson's.",
+                "That is the interval of Agresti and Coull: Wilson's middle, another width. Take Wilson's.",
             ),
             Mistake(
                 lambda share, misses: _least(lambda n: wilson_low(n - misses, n) * (1 + Z**2 / n) >= share, misses),

@@ -43,7 +43,7 @@ def _cloud(rng: np.random.Generator) -> tuple:
 def _every_noise(rng: np.random.Generator) -> tuple:
     """A hand-held camera: up, roll and pitch have noise of their own."""
     particles, sigma, noise = _cloud(rng)
-    return particles, sigma + [0, 0, 0.1, 0.02, 0.03, 0], noise
+    return particles, sigma + np.array([0, 0, 0.1, 0.02, 0.03, 0]), noise
 
 
 def _facing_back(rng: np.random.Generator) -> tuple:
@@ -524,7 +524,7 @@ EXERCISES = [
             ),
             Mistake(
                 _only_wagons_noise,
-                "Up, roll and pitch have noise, too: sigma holds six numbers. In the wagon three of them happen to be 0.",
+                "Up, roll and pitch have noise, too: sigma holds six numbers. In the wagon three of them are 0.",
             ),
         ),
     ),
@@ -677,7 +677,7 @@ EXERCISES = [
             ),
             Mistake(
                 _about_the_first,
-                "You average differences from the first particle: the answer depends on which one that is. Add arrows instead.",
+                "You average differences from the first particle: which one is first decides the answer. Add arrows.",
             ),
         ),
     ),

@@ -208,7 +208,7 @@ def _no_pairs(rng: np.random.Generator) -> tuple:
 
 
 def _diverging_turned_round(upper, lower, baseline):
-    return _places(upper, lower, baseline, lambda u, l, b: np.abs(_range(u, l, b)), guard=False)
+    return _places(upper, lower, baseline, lambda *given: np.abs(_range(*given)), guard=False)
 
 
 # P2.4: the penalty of eq. (1)
@@ -683,7 +683,7 @@ EXERCISES = [
             Mistake(_mistaken_penalties(unlike=1.0), "p_obj is 100, not 1: above all that the others can add up to."),
             Mistake(
                 _by_vectors,
-                "You compare places of two frames, which the unknown heading turns. Only their distances from the centroids compare.",
+                "Places of two frames are turned by the unknown heading. Compare distances from the centroids.",
             ),
             Mistake(
                 lambda *given: _penalties(*given, relative=lambda c, m: np.abs(c - m) / (m + 0.1)),
