@@ -197,6 +197,12 @@ def _fault(**left: object) -> Callable:
     return lambda found, true: _row(found, true, **left)
 
 
+def _deviations_signed(found: np.ndarray, true: np.ndarray) -> np.ndarray:
+    difference = (found - true)[~np.isnan(found).any(axis=1)]
+    difference[:, 2] = np.degrees(wrap_angle(difference[:, 2]))
+    return np.concatenate([np.abs(difference).mean(axis=0), difference.std(axis=0)])
+
+
 EXERCISES = [
     Exercise(
         number="17.1",
@@ -354,6 +360,13 @@ EXERCISES = [
                 lambda n_a, mean_a, std_a, n_b, mean_b, std_b: combined(n_b, mean_a, std_a, n_a, mean_b, std_b),
                 "You weigh each group with the other one's number.",
             ),
+            Mistake(
+                lambda n_a, mean_a, std_a, n_b, mean_b, std_b: (
+                    combined(n_a, mean_a, std_a, n_b, mean_b, std_b)[0],
+                    combined(n_a, mean_a, std_a, n_b, mean_b, std_b)[1] / math.sqrt(n_a + n_b),
+                ),
+                "That is the standard error of the mean. Asked is how much single poses scatter.",
+            ),
         ),
         tolerance=1e-9,
     ),
@@ -452,6 +465,26 @@ EXERCISES = [
                 "Your heading errors are radians; the table has degrees.",
             ),
             Mistake(_fault(divisor_less=1), "The divisor n was no fault: the paper's rows fit it (see 17.2)."),
+            Mistake(
+                _fault(turned=lambda radians: np.degrees(wrap_angle(radians)), signed=True),
+                "Two faults are mended, one is left: errors of +1 m and -1 m still cancel in your mean.",
+            ),
+            Mistake(
+                _fault(turned=lambda radians: np.degrees(radians) % 360),
+                "Half of the circle is still missing: an error of -2 degrees becomes 358. Take the shorter way.",
+            ),
+            Mistake(
+                _fault(turned=lambda radians: np.abs(np.degrees(radians)) % 180),
+                "A remainder of 180 calls a robot that looks backwards perfect. Take the difference on the circle.",
+            ),
+            Mistake(
+                _deviations_signed,
+                "Your deviations are of the signed errors. The table has those of the absolute ones.",
+            ),
+            Mistake(
+                lambda found, true: row_of_table(found, true).reshape(2, 3).T.ravel(),
+                "First the three means, then the three deviations: yours alternate.",
+            ),
         ),
     ),
 ]

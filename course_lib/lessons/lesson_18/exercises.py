@@ -268,6 +268,15 @@ def _given_wrong(confidence, right, most_wrong):
     return 1.0 - _answered(confidence, right, most_wrong)
 
 
+def _right_of_the_best(confidence, right, most_wrong):
+    shares = [0.0]
+    for threshold in np.unique(confidence[confidence > 0]):
+        given = confidence >= threshold
+        if np.mean(~right[given]) <= most_wrong:
+            shares.append(float(np.mean(given & right)))
+    return max(shares)
+
+
 def _answers(rng: np.random.Generator) -> tuple:
     """Confidences with ties, of five kinds: as they come; the surest answer wrong; zeros that are right and would be
     allowed; the limit met exactly, and again by half of a tie; all right."""
@@ -562,6 +571,9 @@ EXERCISES = [
                 "You count the right ones. Asked is what one threshold answers, right or wrong.",
             ),
             Mistake(_given_wrong, "You give the share that is *not* answered."),
+            Mistake(
+                _right_of_the_best, "You give the share that is answered *and* right. Coverage counts every answer."
+            ),
         ),
         level="challenge",
     ),

@@ -105,6 +105,12 @@ def _exact_low(hits: int, n: int) -> float:
     return float(beta.ppf(0.025, hits, n - hits + 1))
 
 
+def _agresti_low(hits: int, n: int) -> float:
+    more = n + Z**2
+    p = (hits + Z**2 / 2) / more
+    return p - Z * math.sqrt(p * (1 - p) / more)
+
+
 def _least(enough, misses: int) -> int:
     n = misses + 1
     while not enough(n):
@@ -170,6 +176,11 @@ def _on_a_lever(rng: np.random.Generator) -> tuple:
     return _semantic_covariance(rng), theta, float(forward), float(left)
 
 
+def _not_transposed(p: np.ndarray, theta: float, forward: float, left: float) -> np.ndarray:
+    lever = _lever(theta, forward, left)
+    return lever @ p @ lever
+
+
 EXERCISES = [
     Exercise(
         number="19.1",
@@ -216,6 +227,14 @@ EXERCISES = [
                 lambda x, y, theta, forward, left, turned: _camera(x, y, theta, -forward, -left, theta + turned),
                 "You subtract the offset: that leads from the camera to the robot. Here it goes the other way.",
             ),
+            Mistake(
+                lambda x, y, theta, forward, left, turned: camera_on_map(x, y, theta, left, forward, turned),
+                "Forward and left are exchanged: at theta = 0, forward is +x and left is +y.",
+            ),
+            Mistake(
+                lambda x, y, theta, forward, left, turned: _camera(x, y, theta, forward, left, turned),
+                "The place is right; the camera looks where the robot looks, and then by `turned` further: add theta.",
+            ),
         ),
         level="warm-up",
     ),
@@ -223,6 +242,7 @@ EXERCISES = [
         number="19.2",
         reference=start_knowledge,
         inputs=_knowledge,
+        tolerance=1e-9,  # the variances are some 1e-5
         mistakes=(
             Mistake(
                 lambda p, z, tilt: _known(p, z, math.radians(tilt)),
@@ -273,6 +293,10 @@ EXERCISES = [
                 lambda p, z, tilt: _known(p, z, math.radians(tilt) ** 2),
                 "sigma_z is a standard deviation; the covariance's diagonal holds squares.",
             ),
+            Mistake(
+                lambda p, z, tilt: start_knowledge(p, z, tilt) * (np.arange(6) != 4),
+                "The pitch is missing: it is known as well as the roll, sigma_tilt.",
+            ),
         ),
     ),
     Exercise(
@@ -320,6 +344,22 @@ EXERCISES = [
                 lambda share, misses: _least(lambda n: wilson_low(n, n) >= share, misses),
                 "You count no miss: hits are n less the misses.",
             ),
+            Mistake(
+                lambda share, misses: _least(lambda n: _agresti_low(n - misses, n) >= share, misses),
+                "That is the interval of Agresti and Coull: Wilson's middle, another width. Take Wilson's.",
+            ),
+            Mistake(
+                lambda share, misses: _least(lambda n: wilson_low(n - misses, n) * (1 + Z**2 / n) >= share, misses),
+                "Wilson's lower end is divided by 1 + z^2 / n: that is missing.",
+            ),
+            Mistake(
+                lambda share, misses: _least(lambda n: wilson_low(n - misses, n, 2.576) >= share, misses),
+                "z = 2.576 is the 99 % interval. Take 1.96.",
+            ),
+            Mistake(
+                lambda share, misses: _least(lambda n: wilson_low(n - misses, n, 2.0) >= share, misses),
+                "z = 2 is 1.96 rounded, and a place or more beside it. Take 1.96.",
+            ),
         ),
         tolerance=1e-9,
     ),
@@ -360,6 +400,18 @@ EXERCISES = [
             Mistake(
                 lambda p, theta, forward, left: _lever(theta, forward, left) @ p,
                 "A covariance is carried from both sides: J P is only half of it.",
+            ),
+            Mistake(
+                _not_transposed,
+                "The second J is transposed: J P J'. Without it x and y do not feel the lever from both sides.",
+            ),
+            Mistake(
+                lambda p, theta, forward, left: np.diag(np.diag(carried(p, theta, forward, left))),
+                "The diagonal is right; what stands beside it is not 0: place and heading lean on each other.",
+            ),
+            Mistake(
+                lambda p, theta, forward, left: carried(p, theta, forward, 0.0),
+                "Left does not act in yours: a camera to the left moves, too, when the robot turns.",
             ),
         ),
         level="challenge",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
 
 # P1.1: eqs (3), (4)
@@ -37,6 +38,12 @@ def _cloud(rng: np.random.Generator) -> tuple:
     particles = np.concatenate([rng.uniform(-9, 9, (n, 3)), rng.uniform(-np.pi, np.pi, (n, 3))], axis=1)
     sigma = np.array([rng.uniform(0.1, 0.4), rng.uniform(0.02, 0.08), 0.0, 0.0, 0.0, rng.uniform(0.2, 0.6)])
     return particles, sigma, rng.standard_normal((n, 6))
+
+
+def _every_noise(rng: np.random.Generator) -> tuple:
+    """A hand-held camera: up, roll and pitch have noise of their own."""
+    particles, sigma, noise = _cloud(rng)
+    return particles, sigma + np.array([0, 0, 0.1, 0.02, 0.03, 0]), noise
 
 
 def _facing_back(rng: np.random.Generator) -> tuple:
@@ -100,6 +107,10 @@ def _only_moved(particles: np.ndarray, sigma: np.ndarray, noise: np.ndarray) -> 
     moved = propagate(particles, sigma, noise)
     moved[:, 5] = particles[:, 5]
     return moved
+
+
+def _only_wagons_noise(particles: np.ndarray, sigma: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    return propagate(particles, sigma * [1, 1, 0, 0, 0, 1], noise)
 
 
 # P1.3: eq. (8)
@@ -178,6 +189,11 @@ def _holes_as_zero(measured: np.ndarray, simulated: np.ndarray, alpha: float) ->
 def _squared(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> np.ndarray:
     valid = np.isfinite(measured)
     return np.sum(alpha / (alpha + (measured[valid] - simulated[:, valid]) ** 2), axis=1)
+
+
+def _signed(measured: np.ndarray, simulated: np.ndarray, alpha: float) -> np.ndarray:
+    valid = np.isfinite(measured)
+    return np.sum(alpha / (alpha + measured[valid] - simulated[:, valid]), axis=1)
 
 
 # P1.4: eqs (9), (10), (11)
@@ -261,6 +277,17 @@ def _only_yaw(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
     return found
 
 
+def _half_the_directions(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
+    angles = particles[:, 3:]
+    return np.concatenate([w @ particles[:, :3], np.arctan((w @ np.sin(angles)) / (w @ np.cos(angles)))])
+
+
+def _about_the_first(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
+    first = particles[0, 3:]
+    mean = first + w @ wrap_angle(particles[:, 3:] - first)
+    return np.concatenate([w @ particles[:, :3], wrap_angle(mean)])
+
+
 # P1.6: resampling, 3.4
 
 
@@ -286,6 +313,16 @@ def _last_without_weight(rng: np.random.Generator) -> tuple:
 def _all_on_one(rng: np.random.Generator) -> tuple:
     n = int(rng.integers(4, 11))
     return np.eye(n)[rng.integers(n)], float(rng.uniform(0.05, 0.95))
+
+
+def _first_without_weight(rng: np.random.Generator) -> tuple:
+    """The first point lies at 0, where the stretch of a particle without weight begins and ends."""
+    return np.array([0.0, 0.4, 0.6, 0.0]), 0.0
+
+
+def _sum_short_of_one(rng: np.random.Generator) -> tuple:
+    """Weights as single precision leaves them: their sum ends before the last point."""
+    return np.array([0.3, 0.3, 0.4, 0.0]) * (1 - 1e-7), 1 - 1e-8
 
 
 def _equal_weights(rng: np.random.Generator) -> tuple:
@@ -358,6 +395,24 @@ def _all_at_one_place(rng: np.random.Generator) -> tuple:
 
 def _weighed(states: np.ndarray, measured: np.ndarray, render, beta: float) -> np.ndarray:
     return particle_weights(likelihood(measured, render(states), 0.1), beta)
+
+
+def _heaviest_alone(particles, measured, render, sigma, beta, noise, u):
+    moved = propagate(particles, sigma, noise)
+    w = _weighed(moved, measured, render, beta)
+    return moved[np.argmax(w)], moved[resample(w, u)]
+
+
+def _weights_forgotten(particles, measured, render, sigma, beta, noise, u):
+    moved = propagate(particles, sigma, noise)
+    _, kept = one_round(particles, measured, render, sigma, beta, noise, u)
+    return estimate(moved, np.full(len(moved), 1 / len(moved))), kept
+
+
+def _estimate_before_moving(particles, measured, render, sigma, beta, noise, u):
+    moved = propagate(particles, sigma, noise)
+    w = _weighed(moved, measured, render, beta)
+    return estimate(particles, w), moved[resample(w, u)]
 
 
 def _estimate_after_resampling(particles, measured, render, sigma, beta, noise, u):
@@ -439,7 +494,7 @@ EXERCISES = [
         number="P1.2",
         reference=propagate,
         inputs=_cloud,
-        cases=(_facing_back, _nothing_moves),
+        cases=(_facing_back, _nothing_moves, _every_noise),
         others=(_yaw_wrapped, _angles_wrapped),
         mistakes=(
             Mistake(_along_the_world, "That moves along the world's axes. The noise is meant forward and to the left."),
@@ -466,6 +521,10 @@ EXERCISES = [
                     np.concatenate([particles[:, :5], np.deg2rad(particles[:, 5:])], axis=1), sigma, noise
                 ),
                 "The yaw is in radians already; you convert it once more.",
+            ),
+            Mistake(
+                _only_wagons_noise,
+                "Up, roll and pitch have noise, too: sigma holds six numbers. In the wagon three of them are 0.",
             ),
         ),
     ),
@@ -505,6 +564,10 @@ EXERCISES = [
             Mistake(
                 lambda measured, simulated, alpha: np.array([likelihood(measured, simulated, alpha).sum()]),
                 "One number for all particles: sum over the pixels of each, not over the particles.",
+            ),
+            Mistake(
+                _signed,
+                "The difference is not made absolute: too near counts as more than perfect, or as infinitely bad.",
             ),
         ),
     ),
@@ -559,6 +622,14 @@ EXERCISES = [
                 lambda values, beta: np.zeros(len(values)) if np.ptp(values) == 0 else particle_weights(values, beta),
                 "Where all likelihoods agree your weights are 0, and do not sum to one. What would be fair?",
             ),
+            Mistake(
+                lambda values, beta: np.ones(len(values)) if np.ptp(values) == 0 else particle_weights(values, beta),
+                "Where all likelihoods agree each of your weights is 1: they must sum to one there, too.",
+            ),
+            Mistake(
+                lambda values, beta: np.eye(len(values))[0] if np.ptp(values) == 0 else particle_weights(values, beta),
+                "Where all likelihoods agree one particle gets everything in yours. Nothing speaks for it.",
+            ),
         ),
     ),
     Exercise(
@@ -592,13 +663,29 @@ EXERCISES = [
                 lambda particles, w: estimate(particles, np.full(len(w), 1 / len(w))),
                 "You have the circle, but no weights.",
             ),
+            Mistake(
+                lambda particles, w: np.concatenate([w @ particles[:, :5], estimate(particles, w)[5:]]),
+                "Yaw is on the circle in yours, roll and pitch are not: all three angles are averaged there.",
+            ),
+            Mistake(
+                _half_the_directions,
+                "arctan of a quotient knows half of the directions only: np.arctan2 takes both sums.",
+            ),
+            Mistake(
+                lambda particles, w: np.concatenate([w @ particles[:, :3], w @ (particles[:, 3:] % (2 * np.pi))]),
+                "From 0 to 2 pi the seam is at 0 instead of 180 degrees; it is still there. Average on the circle.",
+            ),
+            Mistake(
+                _about_the_first,
+                "You average differences from the first particle: which one is first decides the answer. Add arrows.",
+            ),
         ),
     ),
     Exercise(
         number="P1.6",
         reference=resample,
         inputs=_weights_and_offset,
-        cases=(_last_without_weight, _all_on_one, _equal_weights),
+        cases=(_last_without_weight, _first_without_weight, _sum_short_of_one, _all_on_one, _equal_weights),
         mistakes=(
             Mistake(_offset_not_divided, "The offset is u of one step: the first point lies at u / N, not at u."),
             Mistake(_from_middle, "Your points do not start at u / N: where is u?"),
@@ -624,6 +711,20 @@ EXERCISES = [
             Mistake(
                 lambda w, u: np.minimum(np.searchsorted(w, _positions(w, u), side="right"), len(w) - 1),
                 "You look the points up among the weights. They lie along the *sum* of the weights so far.",
+            ),
+            Mistake(
+                lambda w, u: np.minimum(np.searchsorted(np.cumsum(w), _positions(w, u)), len(w) - 1),
+                "Right, but for a point on the end of a stretch: at u = 0 you draw a particle of weight 0.",
+            ),
+            Mistake(
+                lambda w, u: np.minimum(np.searchsorted(np.cumsum(w), _positions(w, u), side="right"), len(w) - 1),
+                "Right, but where the sum ends short of 1 by rounding you draw the last particle, be its weight 0.",
+            ),
+            Mistake(lambda w, u: resample(w, u) + 1, "Your indices begin with 1; NumPy's begin with 0."),
+            Mistake(lambda w, u: resample(w, u)[::-1], "Right particles, but descending."),
+            Mistake(
+                lambda w, u: w[resample(w, u)],
+                "These are the weights of the particles that live on. Return their indices.",
             ),
         ),
     ),
@@ -666,6 +767,18 @@ EXERCISES = [
                     particles, measured, render, 0 * sigma, beta, noise, u
                 ),
                 "Your particles do not move at all: where is the system noise?",
+            ),
+            Mistake(_heaviest_alone, "Your estimate is the heaviest particle. In (12) all take part."),
+            Mistake(_weights_forgotten, "Your estimate is a plain mean: it does not use the weights."),
+            Mistake(
+                _estimate_before_moving,
+                "The weights are of the moved particles, your estimate is of those from before they moved.",
+            ),
+            Mistake(
+                lambda particles, measured, render, sigma, beta, noise, u: one_round(
+                    particles, measured, render, sigma, beta, noise, 0.5
+                ),
+                "Your offset is always 0.5: use the u that is given.",
             ),
         ),
     ),

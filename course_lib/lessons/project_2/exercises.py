@@ -207,6 +207,10 @@ def _no_pairs(rng: np.random.Generator) -> tuple:
     return np.zeros((0, 2)), np.zeros((0, 2)), 0.3
 
 
+def _diverging_turned_round(upper, lower, baseline):
+    return _places(upper, lower, baseline, lambda *given: np.abs(_range(*given)), guard=False)
+
+
 # P2.4: the penalty of eq. (1)
 
 
@@ -255,6 +259,12 @@ def _mistaken_penalties(**parts) -> Callable:
 def _one_centroid(*given):
     middle = given[5].mean(axis=0)
     return _penalties(*given, far=lambda points: np.linalg.norm(points - middle, axis=1))
+
+
+def _by_vectors(*given):
+    seen, mapped = (given[k] - given[k].mean(axis=0) for k in (1, 5))
+    apart = np.linalg.norm(seen[:, None] - mapped[None], axis=2)
+    return _penalties(*given, relative=lambda c, m: apart / np.maximum(m, 0.1))
 
 
 def _observed_and_mapped(rng: np.random.Generator) -> tuple:
@@ -386,6 +396,25 @@ def _mistaken_fit(**parts) -> Callable:
     return lambda places, landmarks: _fitted(places, landmarks, **parts)
 
 
+def _half_turns(places, landmarks) -> float:
+    theta = _turn(places, landmarks)
+    return float(np.arctan(np.tan(theta)))
+
+
+def _mean_turn(places, landmarks) -> float:
+    a, b = places - places.mean(axis=0), landmarks - landmarks.mean(axis=0)
+    turns = np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])
+    return float(np.arctan2(np.sin(turns).mean(), np.cos(turns).mean()))
+
+
+def _stretched(places, landmarks):
+    if _no_pose(places, landmarks):
+        return np.nan, np.nan, np.nan
+    scale = np.linalg.norm(landmarks - landmarks.mean(axis=0)) / np.linalg.norm(places - places.mean(axis=0))
+    x, y = _shift(scale * places, landmarks, _turn(places, landmarks))
+    return float(x), float(y), _turn(places, landmarks)
+
+
 def _svd_without_sign(places, landmarks):
     if _no_pose(places, landmarks):
         return np.nan, np.nan, np.nan
@@ -497,6 +526,18 @@ EXERCISES = [
                 lambda box, width: tuple(np.degrees(_angles(box, width))),
                 "In radians, please.",
             ),
+            Mistake(
+                lambda box, width: (angles_of(box, width)[0], np.pi / 2 - angles_of(box, width)[1]),
+                "That is the angle from straight up. Elevation is 0 at the horizon.",
+            ),
+            Mistake(
+                lambda box, width: angles_of(box - 0.5, width),
+                "Half a pixel off: boxes are in edge coordinates, where the middle is at width / 2.",
+            ),
+            Mistake(
+                lambda box, width: (_wrapped(angles_of(box, width)[0] - np.pi), angles_of(box, width)[1]),
+                "Azimuth 0 is the image's middle, not its left edge.",
+            ),
         ),
     ),
     Exercise(
@@ -586,6 +627,9 @@ EXERCISES = [
                 lambda upper, lower, baseline: _places(upper, lower, baseline)[:, ::-1],
                 "x is forward, where the azimuth is 0: cos for x, sin for y.",
             ),
+            Mistake(
+                _diverging_turned_round, "Where the rays diverge there is no place: an absolute value makes one up."
+            ),
         ),
     ),
     Exercise(
@@ -637,6 +681,14 @@ EXERCISES = [
             Mistake(_one_centroid, "Each side has a centroid of its own, in its own frame."),
             Mistake(_mistaken_penalties(unlike=0.0), "Unlike classes cost p_obj = 100."),
             Mistake(_mistaken_penalties(unlike=1.0), "p_obj is 100, not 1: above all that the others can add up to."),
+            Mistake(
+                _by_vectors,
+                "Places of two frames are turned by the unknown heading. Compare distances from the centroids.",
+            ),
+            Mistake(
+                lambda *given: _penalties(*given, relative=lambda c, m: np.abs(c - m) / (m + 0.1)),
+                "The divisor is the greater of |dx_m| and 0.1 m, not their sum.",
+            ),
         ),
     ),
     Exercise(
@@ -727,6 +779,23 @@ EXERCISES = [
                 _mistaken_fit(turn=lambda places, landmarks: _turn(places, landmarks) % (2 * np.pi)),
                 "Your theta runs from 0 to 2 pi; asked is -pi to pi.",
             ),
+            Mistake(
+                lambda places, landmarks: (*fit_pose(places, landmarks)[:2], -fit_pose(places, landmarks)[2]),
+                "Right but for the sign of theta: the pose turns the body onto the map.",
+            ),
+            Mistake(
+                lambda places, landmarks: tuple(np.nan_to_num(fit_pose(places, landmarks))),
+                "Where there is no pose return NaN three times: (0, 0, 0) is a place.",
+            ),
+            Mistake(
+                _mistaken_fit(turn=_half_turns),
+                "arctan of a quotient knows half of the directions only: np.arctan2 takes both.",
+            ),
+            Mistake(
+                _mistaken_fit(turn=_mean_turn),
+                "You average the turns of single pairs. A far pair knows its direction better: let the sums weigh.",
+            ),
+            Mistake(_stretched, "Your fit may stretch: R alone turns, without a scale."),
         ),
     ),
 ]

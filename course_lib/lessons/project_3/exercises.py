@@ -394,6 +394,18 @@ def _without_wrap(poses, best):
     return far | (np.abs(poses[:, 2] - best[2]) > SAME_HEADING)
 
 
+def _elsewhere_and_turned(poses, best):
+    far = np.linalg.norm(poses[:, :2] - best[:2], axis=1) > SAME_PLACE
+    return far & (np.abs(wrap_angle(poses[:, 2] - best[2])) > SAME_HEADING)
+
+
+def _one_rival(poses, scores, nothing):
+    if not len(poses):
+        return 0.0
+    runner_up = scores[_another(poses, poses[np.argmax(scores)])].max(initial=nothing)
+    return float(1 / (1 + np.exp((runner_up - scores.max()) / 2)))
+
+
 def _overflowing(poses, scores, nothing):
     if not len(poses):
         return 0.0
@@ -482,6 +494,10 @@ EXERCISES = [
                 _mistaken_squared(weight=lambda s: np.tile(np.eye(2), (len(s), 1, 1))),
                 "That is the squared distance in metres. Weigh it with the inverse of S.",
             ),
+            Mistake(
+                lambda *given: squared_distances(*given) / 2,
+                "The half belongs to stage 3. d^2 is r S^-1 r, without it.",
+            ),
         ),
     ),
     Exercise(
@@ -563,6 +579,10 @@ EXERCISES = [
             ),
             Mistake(
                 _mistaken_assignment(left=0), "An observation without a landmark gets -1, not 0: landmark 0 is one."
+            ),
+            Mistake(
+                _mistaken_assignment(total=lambda gains, squared: np.mean(gains) if gains else 0.0),
+                "The score is the sum of the gains, not their mean.",
             ),
         ),
     ),
@@ -652,6 +672,14 @@ EXERCISES = [
             Mistake(
                 lambda *given: 1 - _sure(*given),
                 "That is the doubt. Asked is the confidence.",
+            ),
+            Mistake(
+                _mistaken_confidence(another=_elsewhere_and_turned),
+                "Another answer is more than 0.5 m away *or* turned by more than 10 degrees; yours asks for both.",
+            ),
+            Mistake(
+                _one_rival,
+                "The runner-up and `nothing` both doubt the best: their exponentials add. You take the greater one.",
             ),
         ),
     ),

@@ -24,7 +24,8 @@ def _raw_with(code: int, rng: np.random.Generator) -> tuple:
     values = rng.permutation(np.arange(int(low), int(low) + 40_000, 7))[: 3 * 12 * 16].reshape(3, 12, 16)
     values = values.astype(np.uint16)
     values[rng.random(values.shape) < rng.uniform(0.04, 0.12)] = code
-    values.flat[:3] = code
+    values.flat[rng.permutation(values.size - 1)[:3] + 1] = code
+    values.flat[0] = int(low) + 3  # the first pixel was measured: it is not the code
     return (values,)
 
 
@@ -78,6 +79,13 @@ def _wall(rng: np.random.Generator) -> tuple:
     return ranges, float(distance)
 
 
+def _no_corners(rng: np.random.Generator) -> tuple:
+    """A wall whose four corners were not measured."""
+    ranges, distance = _wall(rng)
+    ranges[[0, 0, -1, -1], [0, -1, 0, -1]] = np.nan
+    return ranges, distance
+
+
 def _odd_image(rng: np.random.Generator) -> tuple:
     """A pixel on the axis, whose ray says nothing of the focal length."""
     v, u = np.indices((7, 9))
@@ -92,6 +100,19 @@ def _by_corners(ranges: np.ndarray, distance: float, centre: float) -> float:
     used = np.isfinite(ranges) & (square > 0)
     with np.errstate(divide="ignore"):
         return float(np.sqrt(np.median(square[used] / ((ranges[used] / distance) ** 2 - 1))))
+
+
+def _by_a_line(ranges: np.ndarray, distance: float, off: float, power: int = 2) -> float:
+    """A straight line through zero, least squares; off: of the middle, from width / 2."""
+    v, u = np.indices(ranges.shape)
+    square = (u - ranges.shape[1] / 2 + off) ** 2 + (v - ranges.shape[0] / 2 + off) ** 2
+    more, used = (ranges / distance) ** power - 1, np.isfinite(ranges)
+    return float(np.sqrt(np.sum(square[used] ** 2) / np.sum(square[used] * more[used])))
+
+
+def _the_first_corner(ranges: np.ndarray, distance: float) -> float:
+    square, _ = _pixels(ranges)
+    return float(np.sqrt(square[0, 0] / ((ranges[0, 0] / distance) ** 2 - 1)))
 
 
 def _pixels(ranges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -276,6 +297,13 @@ def _at_rest(rng: np.random.Generator) -> tuple:
     return values, np.array([0.5, 2.0, 4.0, 7.5, 9.0])
 
 
+def _means_on_the_edges(rng: np.random.Generator) -> tuple:
+    """Means that lie on an edge to the last digit: 1 m and 2 m belong to the bin that begins there, 4 m to none."""
+    middle = np.array([[1.0, 1.5, 2.0], [2.0, 3.0, 4.0]])
+    spread = np.array([[0.25, 0.125, 0.5], [0.25, 0.125, 1.0]])
+    return np.stack([middle - spread, middle + spread]), np.array([1.0, 2.0, 4.0])
+
+
 def _nothing_at_all(rng: np.random.Generator) -> tuple:
     return np.full((3, 4, 5), np.nan), np.array([1.0, 2.0, 3.0])
 
@@ -297,6 +325,10 @@ def _now_and_then(frames: np.ndarray, edges: np.ndarray) -> np.ndarray:
     variance = (np.where(measured, frames - mean, 0.0) ** 2).sum(axis=0) / np.maximum(count - 1, 1)
     inside = [(count > 1) & (mean >= low) & (mean < high) for low, high in itertools.pairwise(edges)]
     return np.array([np.sqrt(variance[bin_].mean()) if bin_.any() else np.nan for bin_ in inside])
+
+
+def _upper_edge_in(frames: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    return noise_by_distance(frames, np.nextafter(edges, np.inf))
 
 
 # P4.7: the whole chain
@@ -354,6 +386,16 @@ def _depth_first(raw, invalid, units, coefficients, pattern, focal, repeat):
     measured = np.where(raw == invalid, np.nan, raw / units) / _lengths(raw.shape, focal)
     p = 2 * np.pi * 4 * measured / repeat
     return measured - (coefficients[0] + coefficients[1] * np.sin(p) + coefficients[2] * np.cos(p)) - pattern
+
+
+def _errors_of_the_depth(raw, invalid, units, coefficients, pattern, focal, repeat):
+    measured, none = np.where(raw == invalid, np.nan, raw / units), np.zeros(3)
+    error = measured - depth_from_raw(raw, invalid, units, coefficients, pattern, 1e12, repeat)
+    return depth_from_raw(raw, invalid, units, none, np.zeros(raw.shape), focal, repeat) - error
+
+
+def _pattern_of_the_depth(raw, invalid, units, coefficients, pattern, focal, repeat):
+    return depth_from_raw(raw, invalid, units, coefficients, np.zeros(raw.shape), focal, repeat) - pattern
 
 
 def _pattern_first(raw, invalid, units, coefficients, pattern, focal, repeat):
@@ -416,6 +458,10 @@ EXERCISES = [
                 "That is its place in a list of numbers, not the number itself.",
             ),
             Mistake(lambda raw: int(np.bincount(raw.ravel())[1:].argmax()), "One too small: the count starts at 0."),
+            Mistake(
+                lambda raw: int(raw.flat[0]),
+                "The first pixel may have been measured. Look at all of them: what repeats?",
+            ),
         ),
     ),
     Exercise(
@@ -475,7 +521,7 @@ EXERCISES = [
         number="P4.3",
         reference=focal_length,
         inputs=_wall,
-        cases=(_odd_image,),
+        cases=(_odd_image, _no_corners),
         mistakes=(
             Mistake(
                 lambda ranges, distance: _by_corners(ranges, distance, 0.0),
@@ -493,6 +539,15 @@ EXERCISES = [
                 "That is in pixels times metres. The focal length does not know how far the wall is.",
             ),
             Mistake(lambda ranges, distance: 1 / focal_length(ranges, distance), "That is 1 / f."),
+            Mistake(
+                lambda ranges, distance: _by_a_line(ranges, distance, 0.0),
+                "Half a pixel off: the middle of the image is at (width - 1) / 2.",
+            ),
+            Mistake(
+                lambda ranges, distance: _by_a_line(ranges, distance, 0.5, power=1),
+                "The ratio r / Z is squared in the equation.",
+            ),
+            Mistake(_the_first_corner, "That corner need not have been measured: let all pixels speak that were."),
         ),
     ),
     Exercise(
@@ -541,6 +596,10 @@ EXERCISES = [
                 lambda measured, true, repeat: 1000 * bias_coefficients(measured, true, repeat),
                 "Yours are in millimetres. Asked for: metres.",
             ),
+            Mistake(
+                lambda measured, true, repeat: bias_coefficients(measured, true, repeat)[[1, 2, 0]],
+                "The constant comes first: (a, b, c).",
+            ),
         ),
     ),
     Exercise(
@@ -584,13 +643,17 @@ EXERCISES = [
                 lambda depth, tolerance: flying_pixels(depth, 0.05),
                 "Your tolerance is always the same: use the one that is given.",
             ),
+            Mistake(
+                lambda depth, tolerance: np.isfinite(depth) & ~flying_pixels(depth, tolerance),
+                "The mask is the wrong way round: True is for pixels that fly.",
+            ),
         ),
     ),
     Exercise(
         number="P4.6",
         reference=noise_by_distance,
         inputs=_at_rest,
-        cases=(_nothing_at_all,),
+        cases=(_nothing_at_all, _means_on_the_edges),
         mistakes=(
             Mistake(
                 lambda frames, edges: _by_bins(frames, edges, lambda s: s.mean(axis=0).std()),
@@ -631,6 +694,10 @@ EXERCISES = [
             Mistake(
                 lambda frames, edges: 1000 * noise_by_distance(frames, edges),
                 "Yours is in millimetres. Asked for: metres.",
+            ),
+            Mistake(
+                _upper_edge_in,
+                "A mean that lies on an edge belongs to the bin that begins there, not to the one that ends.",
             ),
         ),
     ),
@@ -677,6 +744,18 @@ EXERCISES = [
             Mistake(
                 _changed(repeat=lambda given: 4 * given["repeat"]),
                 "Your wave goes round once within c / 2f. This error goes round four times.",
+            ),
+            Mistake(
+                _errors_of_the_depth,
+                "Range error and pattern are errors of the *range*: both go before you divide by the ray's length.",
+            ),
+            Mistake(
+                _pattern_of_the_depth,
+                "The pattern is one of the *range*, too: take it away before you divide by the ray's length.",
+            ),
+            Mistake(
+                lambda *given: depth_from_raw(*given) / _lengths(given[0].shape, given[5]),
+                "You divide by 1 + s / f^2. The length of the ray is its root.",
             ),
         ),
     ),

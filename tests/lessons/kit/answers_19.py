@@ -122,6 +122,15 @@ def body_offset(p, theta, forward, left):
 
 # Exercise, answer, words of the hint that must come.
 WRONG = [
+    (
+        "19.2",
+        lambda p, z, tilt: (
+            np.insert(np.insert(p, [2, 2, 2], 0, 0), [2, 2, 2], 0, 1)
+            + np.diag([0, 0, z**2, *[np.deg2rad(tilt) ** 2] * 2, 0])
+            + 1e-6 * np.eye(6)
+        ),
+        "values differ",
+    ),
     ("19.1", lambda x, y, theta, f, left, t: (x + f, y + left, by_matrix(x, y, theta, f, left, t)[2]), "Turn them by"),
     ("19.1", lambda x, y, theta, f, left, t: by_matrix(x, y, theta, f, -left, t), "robot's right"),
     ("19.1", on_the_full_circle, "-pi to pi"),

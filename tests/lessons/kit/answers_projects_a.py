@@ -157,8 +157,24 @@ def by_a_line(ranges, distance):
     return math.sqrt(np.sum(s[used] ** 2) / np.sum(s[used] * y[used]))
 
 
+def drawn_without_weightless(w, u):
+    heavy = np.flatnonzero(w)
+    ends = np.cumsum(w[heavy])
+    return heavy[np.searchsorted(ends / ends[-1], (np.arange(len(w)) + u) / len(w))]
+
+
+def drawn_from_the_left(w, u):
+    return np.minimum(np.searchsorted(np.cumsum(w), (np.arange(len(w)) + u) / len(w)), len(w) - 1)
+
+
+def only_what_a_wagon_does(particles, sigma, noise):
+    moved = np.array(by_rotation_matrices(particles, sigma, noise))
+    moved[:, 2:5] = particles[:, 2:5]
+    return moved
+
+
 def by_the_corner(ranges, distance):
-    """One corner that was measured is enough where there is no noise."""
+    """One corner, measured or not."""
     height, width = ranges.shape
     square = ((width - 1) ** 2 + (height - 1) ** 2) / 4
     return np.array([math.sqrt(square / ((ranges[0, 0] / distance) ** 2 - 1))])
@@ -248,6 +264,10 @@ WRONG = [
     ("P4.2", lambda n, d: (np.mean(n / d), 0.0), "mean of quotients"),
     ("P4.2", lambda n, d: by_moments(n, d)[0], "Return 2 values"),
     ("P4.3", half_a_pixel_by_width, "Half a pixel"),
+    ("P4.3", by_the_corner, "need not have been measured"),
+    ("P4.1", lambda raw: raw[0, 0, 0], "first pixel"),
+    ("P1.2", only_what_a_wagon_does, "six numbers"),
+    ("P1.6", drawn_from_the_left, "weight 0"),
     ("P4.3", lambda r, d: by_a_line(r, d) ** 2, "square of the focal length"),
     ("P4.3", lambda r, d: by_a_line(r, d) * d, "pixels times metres"),
     ("P4.4", lambda m, t, repeat: by_normal_equations(m, t, repeat / 4), "sixteen"),
@@ -291,7 +311,6 @@ RIGHT = [
     ("P4.2", by_moments),
     ("P4.2", by_its_ends),
     ("P4.3", by_a_line),
-    ("P4.3", by_the_corner),
     ("P4.4", by_normal_equations),
     ("P4.4", lambda m, t, repeat: np.array(by_normal_equations(m, t, repeat), np.float32)),
     ("P4.5", by_loops_over_pixels),
@@ -315,7 +334,7 @@ RIGHT = [
     ("P1.5", lambda p, w: np.array(by_arrows(p, w), np.float32)),
     ("P1.6", walking_along),
     ("P1.6", by_counting),
-    ("P1.6", lambda w, u: np.searchsorted(np.cumsum(w), (np.arange(len(w)) + u) / len(w))),
+    ("P1.6", drawn_without_weightless),
     ("P1.7", one_round_in_one_breath),
     ("P1.7", lambda *given: list(one_round_in_one_breath(*given))),
 ]
