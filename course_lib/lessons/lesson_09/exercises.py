@@ -206,7 +206,7 @@ def _example_4(rng: np.random.Generator) -> tuple:
 
 
 def _far_turned(rng: np.random.Generator) -> tuple:
-    """Fifteen degrees and four decimetres, nobody in the way: the shifts of the first steps turn with the later ones."""
+    """Fifteen degrees and four decimetres, nobody in the way: the first steps' shifts turn with the later steps."""
     angles = np.repeat(np.deg2rad([10.0, 100.0, 190.0]), 8)
     normals = np.column_stack([np.cos(angles), np.sin(angles)])
     along = np.column_stack([-normals[:, 1], normals[:, 0]])
@@ -490,8 +490,8 @@ EXERCISES = [
             ),
             Mistake(
                 _shifts_never_turned,
-                "You move the points step by step and add up the steps. A turn also turns the shifts made before it: move the "
-                "points by the whole motion so far.",
+                "You move the points step by step and add up the steps. A turn also turns the shifts before it: move "
+                "the points by the whole motion so far.",
             ),
             Mistake(
                 lambda p, n, c, s: _fitted(p, n, c, s, power=0.0),

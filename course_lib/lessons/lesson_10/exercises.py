@@ -360,7 +360,7 @@ EXERCISES = [
         mistakes=(
             Mistake(
                 _next_lower,
-                "Where u falls just on the first of a cell yours is one too low: u = 0 is the first cell. Cut decimals off.",
+                "Where u falls just on a border yours is a cell too low: u = 0 is the first cell.",
             ),
             Mistake(
                 lambda free, cell, u: free_places(free[::-1], cell, u),
@@ -465,7 +465,7 @@ EXERCISES = [
             ),
             Mistake(
                 lambda scores, short, long: _shares(_last_seen(scores, between=True), short, long),
-                "You fill dark frames from later ones. The filter does not know the future: the means stay as they are.",
+                "You fill dark frames from later ones. The filter does not know the future: the means stay.",
             ),
             Mistake(
                 lambda scores, short, long: _shares(scores, short, long, lambda s, u: 1 - s / u),
@@ -619,6 +619,10 @@ EXERCISES = [
             _one_alone,
         ),
         mistakes=(
+            Mistake(
+                _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) < m and abs(a[2] - b[2]) % np.pi < r),
+                "A remainder of pi takes looking back for looking ahead, and a small turn the other way for a large one: wrap.",
+            ),
             Mistake(
                 _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) <= m and abs(wrap_angle(a[2] - b[2])) < r),
                 "Exactly at the limit is not nearer than it: a new place. Use <.",

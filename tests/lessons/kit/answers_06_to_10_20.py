@@ -35,10 +35,10 @@ def weigh_with(exponent):
 
     def answer(m, images, alpha, beta):
         pixels = list(zip(*np.nonzero(np.isfinite(m)), strict=True))
-        l = np.array([sum(alpha / (alpha + abs(m[p] - image[p])) for p in pixels) for image in images])
-        if l.max() == l.min():
-            return [1 / len(l)] * len(l)
-        return to_sum_one(np.exp(exponent((l - l.min()) / (l.max() - l.min()), beta)))
+        sums = np.array([sum(alpha / (alpha + abs(m[p] - image[p])) for p in pixels) for image in images])
+        if np.ptp(sums) == 0:
+            return [1 / len(sums)] * len(sums)
+        return to_sum_one(np.exp(exponent((sums - sums.min()) / np.ptp(sums), beta)))
 
     return answer
 
@@ -147,14 +147,14 @@ WRONG = [
     ("09.1", lambda n, d, k: n ** (1 / k), "the *old* one"),
     ("09.2", lambda rot, w: by_vectors(rot, w).T, "transposed"),
     ("09.2", lambda rot, w: rotation_exp(w @ rotation_log(rot[0].T @ rot)), "first step alone"),
-    ("09.2", lambda rot, w: rot[w.argmax()], "heaviest"),
+    ("09.2", lambda rot, w: rot[w.argmax()], "back"),
     ("09.3", lambda e, c: (first(e, c), np.mean(e**2 <= 3 * sigma(c) ** 2)), "nine variances"),
     ("09.3", lambda e, c: (first(e, c), np.sum(abs(e) <= 3 * sigma(c))), "divided by their number"),
     ("09.3", lambda e, c: (first(e, c[:1] * 0 + c.mean(0)), np.mean(abs(e) <= 3 * sigma(c))), "one mean covariance"),
     ("09.4", lambda p, n, c, s: walls(p, n, c, 0.2, geman), "always 0.2"),
     ("09.4", lambda p, n, c, s: walls(p, n, c, 1, geman), "leave `scale` out"),
     ("09.4", sum_of_steps, "add up the steps"),
-    ("10.1", rounded_up, "one too low"),
+    ("10.1", rounded_up, "a cell too low"),
     ("10.1", lambda free, cell, u: by_argwhere(free[::-1], cell, u), "from the last one up"),
     ("10.1", by_running_sum, "must have shape"),
     ("10.2", last_score_again, "last score once more"),
