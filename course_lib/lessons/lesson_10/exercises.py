@@ -621,7 +621,7 @@ EXERCISES = [
         mistakes=(
             Mistake(
                 _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) < m and abs(a[2] - b[2]) % np.pi < r),
-                "A remainder of pi takes looking back for looking ahead, and a small turn the other way for a large one: wrap.",
+                "A remainder of pi takes looking back for looking ahead: wrap the difference of the headings instead.",
             ),
             Mistake(
                 _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) <= m and abs(wrap_angle(a[2] - b[2])) < r),
