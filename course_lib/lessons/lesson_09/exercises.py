@@ -322,10 +322,6 @@ EXERCISES = [
                 "You give the start back, R_1: the step is never taken.",
             ),
             Mistake(
-                lambda rotations, w: rotations[np.argmax(w)],
-                "You give the heaviest rotation back. All of them pull, each with its weight.",
-            ),
-            Mistake(
                 lambda rotations, w: rotation_exp(w @ rotation_log(rotations[0].T @ rotations)),
                 "That is the first step alone, a turn seen from R_1. Put it onto R_1, and repeat.",
             ),
