@@ -132,6 +132,34 @@ def _equal_as(value: float):
     return mistaken
 
 
+def _with_exponent(exponent):
+    """A mistake: everything right but the exponent of (10), made of the normalized likelihood minus 1 and beta."""
+
+    def mistaken(measured, images, alpha, beta):
+        values = _likelihoods(measured, images, alpha)
+        if not np.ptp(values) > 0:
+            return weigh(measured, images, alpha, beta)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return _to_one(np.exp(exponent((values - values.max()) / np.ptp(values), beta)))
+
+    return mistaken
+
+
+def _likelihoods(measured, images, alpha):
+    valid = np.isfinite(measured)
+    return np.sum(alpha / (alpha + np.abs(measured[valid] - images[:, valid])), axis=1)
+
+
+def _by_normalized_likelihood(measured, images, alpha, beta):
+    values = _likelihoods(measured, images, alpha)
+    return _to_one(values - values.min()) if np.ptp(values) > 0 else weigh(measured, images, alpha, beta)
+
+
+def _missed_by_any(measured, images, alpha, beta):
+    seen_by_all = np.where(np.isfinite(images).all(axis=0), measured, np.nan)
+    return weigh(seen_by_all, images, alpha, beta)
+
+
 # 06.3: beta read backwards
 
 
@@ -211,6 +239,16 @@ def _mean_by(weight):
     return mistaken
 
 
+def _mean_with_raw(error):
+    """A mistake: the right mean, and `error(w, x)` of weights that sum to one."""
+
+    def mistaken(x, target, proposal):
+        w = _to_one(target / proposal)
+        return w @ x, error(w, x)
+
+    return mistaken
+
+
 _MISSES, _EQUAL, _SQUARE = ("misses", "left out"), ("equal", "not guarded"), ("square", "of beta squared")
 # Which faults of the given code are still in an answer, and what to say.
 FAULTS_LEFT = (
@@ -231,6 +269,18 @@ EXERCISES = [
         cases=(_the_papers_alpha,),
         level="warm-up",
         mistakes=(
+            Mistake(
+                lambda term, alpha: alpha - alpha / term,
+                "Your sign is turned round: a difference is not negative.",
+            ),
+            Mistake(
+                lambda term, alpha: alpha / term - 1,
+                "You take away 1, a share, from metres. Multiply (8) out once more: alpha + d stands there.",
+            ),
+            Mistake(
+                lambda term, alpha: np.round(alpha / term - alpha, 1),
+                "You round, as the example is printed. Give the numbers as they come out.",
+            ),
             Mistake(
                 _turned_over,
                 "Yours grows with the term. A pixel that counts more differs *less*.",
@@ -271,6 +321,30 @@ EXERCISES = [
         inputs=_images,
         cases=(_a_lucky_pixel, _all_alike, _nothing_measured),
         mistakes=(
+            Mistake(
+                _with_exponent(lambda miss, beta: -(miss**2) / (2 * beta**2)),
+                "Your exponent has the 2 of the usual Gaussian below the line. Equation (10) has none.",
+            ),
+            Mistake(
+                _with_exponent(lambda miss, beta: miss / beta),
+                "Your exponent is not squared. Equation (10) squares the distance from 1, and beta.",
+            ),
+            Mistake(
+                _with_exponent(lambda miss, beta: miss**2 / beta**2),
+                "The minus sign of (10) is missing: your worst particle weighs most.",
+            ),
+            Mistake(
+                _with_exponent(lambda miss, beta: -((miss + 1) ** 2) / beta**2),
+                "Your worst particle weighs most: (10) takes the distance from 1, not from 0.",
+            ),
+            Mistake(
+                _by_normalized_likelihood,
+                "You leave (10) out: the normalized likelihood itself, divided by its sum, is not yet the weight.",
+            ),
+            Mistake(
+                _missed_by_any,
+                "You leave out, for all, a pixel that *any* particle misses. Leave out only what was not measured.",
+            ),
             *(Mistake(_with_faults(**dict(faults)), hint) for faults, hint in FAULTS_LEFT),
             Mistake(
                 _as_printed,
@@ -321,6 +395,10 @@ EXERCISES = [
         inputs=_unequal_likelihoods,
         cases=(_the_papers_beta, _a_large_beta),
         mistakes=(
+            Mistake(
+                lambda values, beta: round(least_likelihood(values, beta), 1),
+                "You round, as the example is printed. Give the number as it comes out.",
+            ),
             Mistake(
                 lambda values, beta: max(least_likelihood(values, beta), values.min()),
                 "You stop at the worst particle. For a large beta the l of one half lies below all of them.",
@@ -403,6 +481,22 @@ EXERCISES = [
         others=(_with_bessel,),
         level="challenge",
         mistakes=(
+            Mistake(
+                _mean_with_raw(lambda w, x: np.sqrt(np.sum((w * x) ** 2))),
+                "Your mean is right. A spread is made of deviations from the mean, not of the samples themselves.",
+            ),
+            Mistake(
+                _mean_with_raw(lambda w, x: np.sqrt(np.sum((w * (x - x.mean())) ** 2))),
+                "Your mean is right. In the error take deviations from that mean, not from the plain one.",
+            ),
+            Mistake(
+                _mean_with_raw(lambda w, x: x.std() * np.sqrt(np.sum(w**2))),
+                "Your mean is right. In yours the samples' spread is unweighed, over root N_eff: derive it.",
+            ),
+            Mistake(
+                _mean_with_raw(lambda w, x: np.std(w * x)),
+                "Your mean is right. Yours is the scatter of w x: take deviations from the mean, then weigh them.",
+            ),
             Mistake(
                 lambda x, target, proposal: (x.mean(), np.sqrt(np.mean((x - x.mean()) ** 2) / len(x))),
                 "These are the samples unweighed: they belong to the proposal. The target's mean is asked.",

@@ -131,6 +131,13 @@ def _residual_error(w: np.ndarray, x: np.ndarray) -> float:
     return float(np.sqrt((len(w) - copies.sum()) * _one_draw(rest, x)) / len(w))
 
 
+def _not_clipped(w: np.ndarray, x: np.ndarray) -> float:
+    right, parts = np.cumsum(w), np.arange(len(w))[:, None] / len(w)
+    p = len(w) * (np.minimum(right, parts + 1 / len(w)) - np.maximum(right - w, parts))
+    with np.errstate(invalid="ignore"):  # a variance of negative probabilities may be negative
+        return float(np.sqrt(np.sum(_variances(p, x))) / len(w))
+
+
 def _weights_and_values(rng: np.random.Generator) -> tuple:
     (w,) = _uneven_weights(rng)
     return w, rng.normal(rng.uniform(-3, 3), 1.0, size=len(w))
@@ -153,6 +160,33 @@ EXERCISES = [
         level="warm-up",
         cases=(_given(170, 175, -175, -165), _given(-20, 5, 10), _given(0, 90, 170, -90), _given(30, 30, 30)),
         mistakes=(
+            Mistake(
+                lambda angles, w: (mean_angle(angles, w)[0], _length(angles, w) / len(w)),
+                "np.mean divides by N once more: the weights sum to 1 already, so add up. Your R is too short.",
+            ),
+            Mistake(
+                lambda angles, w: (mean_angle(angles, w)[0], _length(angles, np.full(len(w), 1 / len(w)))),
+                "Your direction is right. Your R has no weights: it is the length of the same mean point.",
+            ),
+            Mistake(
+                lambda angles, w: (mean_angle(angles, w)[0], _length(angles, w) * len(w)),
+                "Your R grows with the number of particles: it is the length of a mean, at most 1.",
+            ),
+            Mistake(
+                lambda angles, w: (float(np.sum(w * np.cos(angles))), float(np.sum(w * np.sin(angles)))),
+                "That is the mean point itself, by its coordinates. Asked for are its direction and its length.",
+            ),
+            Mistake(
+                lambda angles, w: (-mean_angle(angles, w)[0], _length(angles, w)),
+                "Your direction is mirrored: it has the wrong sign.",
+            ),
+            Mistake(
+                lambda angles, w: (
+                    mean_angle(angles, w)[0],
+                    float(np.sqrt(-2 * np.log(np.minimum(_length(angles, w), 1)))),
+                ),
+                "That is the circular standard deviation, made of R. R itself is asked for.",
+            ),
             Mistake(
                 lambda angles, w: (float(np.sum(w * angles)), _length(angles, w)),
                 "Your direction is eq. (12) as printed: it fails at the wrap. Take the direction of the mean point.",
@@ -249,6 +283,10 @@ EXERCISES = [
         cases=(_some_whole,),
         mistakes=(
             Mistake(
+                lambda w: (np.floor(10 * w), _shares(10 * w - np.floor(10 * w))),
+                "Your N is always 10, as in the lesson: it is len(w).",
+            ),
+            Mistake(
                 lambda w: (_copies(w), _shares(w - _copies(w))),
                 "That is filterpy's slip: w is taken for N w, and the light particles get a negative probability.",
             ),
@@ -317,6 +355,22 @@ EXERCISES = [
         cases=(_all_equal, _one_has_all, _some_whole),
         mistakes=(
             Mistake(
+                lambda w: float(np.sum(len(w) * w * (1 - w) ** (len(w) - 1))),
+                "You count those that are drawn exactly once. Drawn twice or more they live on, too.",
+            ),
+            Mistake(
+                lambda w: float(np.sum(w * (1 - (1 - w) ** len(w)))),
+                "You weigh the chances. A survivor counts 1, heavy or light: add up the chances alone.",
+            ),
+            Mistake(
+                lambda w: float(len(w)),
+                "That is how many are drawn. Some of them are copies of the same one.",
+            ),
+            Mistake(
+                lambda w: float(len(w) * np.sum(1 - (1 - w) ** len(w))),
+                "The sum of the chances is the number already: do not multiply by N.",
+            ),
+            Mistake(
                 lambda w: float(np.sum((1 - w) ** len(w))),
                 "That is how many die out. The others survive: 1 minus that, for each particle.",
             ),
@@ -381,6 +435,22 @@ EXERCISES = [
         level="challenge",
         cases=(_three_and_values, _light_ones_last),
         mistakes=(
+            Mistake(
+                lambda w, x: float(np.sqrt(_one_draw(w, x) * np.sum(w**2))),
+                "With N_eff in it that is the error of the *weighted* mean. Asked for is what resampling adds.",
+            ),
+            Mistake(
+                _not_clipped,
+                "Where a field lies outside a part your overlap is negative. It is 0 there.",
+            ),
+            Mistake(
+                lambda w, x: stratified_error(np.sort(w)[::-1], x[np.argsort(-w)]),
+                "You sort the particles first. The fields lie on the strip in the order given, and it matters.",
+            ),
+            Mistake(
+                lambda w, x: stratified_error(w, x) * len(w) / (len(w) - 1),
+                "The mean divides by N, not by N - 1: no variance is estimated here, all probabilities are known.",
+            ),
             Mistake(
                 lambda w, x: float(np.sqrt(_one_draw(w, x) / len(w))),
                 "That is the formula for independent draws. Here each part of the strip has a mean of its own.",

@@ -67,6 +67,10 @@ def _along_the_axes(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
     return np.abs(estimated[:, None, :2] - path[None, :, :2]).sum(axis=2).min(axis=1)
 
 
+def _nearest_by_axes(estimated: np.ndarray, path: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(np.abs(estimated[:, None, :2] - path[None, :, :2]).min(axis=1), axis=1)
+
+
 # 08.2: the three numbers of a row of table 1
 
 
@@ -234,6 +238,18 @@ def _zero_for_never(scores: np.ndarray, limit: float, patience: int) -> int:
     return max(lost_since(scores, limit, patience), 0)
 
 
+def _first_window(scores: np.ndarray, limit: float, patience: int, summary) -> int:
+    lows = (f for f in range(patience - 1, len(scores)) if summary(scores[f - patience + 1 : f + 1]) < limit)
+    return next(lows, -1)
+
+
+def _row_ended(scores: np.ndarray, limit: float, patience: int) -> int:
+    frame = lost_since(scores, limit, patience)
+    while 0 <= frame < len(scores) - 1 and scores[frame + 1] < limit:
+        frame += 1
+    return frame
+
+
 # 08.4: what frames that are alike are worth
 
 
@@ -279,6 +295,26 @@ EXERCISES = [
         level="warm-up",
         cases=(_on_the_path, _a_single_estimate, _a_hump_in_the_floor),
         mistakes=(
+            Mistake(
+                lambda estimated, path: _pairwise(estimated[:, :2], path[:, :2]).max(axis=1),
+                "That is the farthest point of the path. The nearest one is asked for.",
+            ),
+            Mistake(
+                lambda estimated, path: _pairwise(estimated[:, 1:], path[:, 1:]).min(axis=1),
+                "You take the columns y and z. The floor is x and y, the first two.",
+            ),
+            Mistake(
+                lambda estimated, path: np.abs(estimated[:, None, 0] - path[None, :, 0]).min(axis=1),
+                "You look at x alone. The distance on the floor has two parts, x and y.",
+            ),
+            Mistake(
+                lambda estimated, path: np.abs(estimated[:, None, :2] - path[None, :, :2]).max(axis=2).min(axis=1),
+                "You take the larger of the ways along x and y. The straight way is the root of the sum of squares.",
+            ),
+            Mistake(
+                _nearest_by_axes,
+                "Your nearest x and nearest y may be of two points: distances first, then the minimum.",
+            ),
             Mistake(
                 _nearest_in_space,
                 "You search in space and measure on the floor. Leave out z before you search, not after.",
@@ -335,6 +371,46 @@ EXERCISES = [
         inputs=_errors,
         cases=(_all_alike,),
         mistakes=(
+            Mistake(
+                lambda errors: (np.sort(errors)[len(errors) // 2], *table_row(errors)[1:]),
+                "For an even number of errors yours is the upper of the middle two; a median lies halfway between.",
+            ),
+            Mistake(
+                lambda errors: (np.sort(errors)[(len(errors) - 1) // 2], *table_row(errors)[1:]),
+                "For an even number of errors yours is the lower of the middle two; a median lies halfway between.",
+            ),
+            Mistake(
+                lambda errors: (errors[len(errors) // 2], *table_row(errors)[1:]),
+                "Yours is the middle frame. A median is the middle of the errors *sorted* by size.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.mean(errors), np.mean(errors <= 0.30)),
+                "Your sigma is the mean error. Square the errors, take the mean, then the root.",
+            ),
+            Mistake(
+                lambda errors: (np.median(errors), np.sqrt(np.sum(errors**2)) / len(errors), np.mean(errors <= 0.30)),
+                "You divide by T after the root. Root *mean* square: the mean first, then the root.",
+            ),
+            Mistake(
+                lambda errors: (
+                    np.median(errors),
+                    np.sqrt(np.sum(errors**2) / (len(errors) - 1)),
+                    np.mean(errors <= 0.30),
+                ),
+                "You divide by T - 1: that is for scatter about an estimated mean. Here it is the mean of T squares.",
+            ),
+            Mistake(
+                lambda errors: (
+                    np.median(errors),
+                    np.sqrt(np.mean((errors - np.median(errors)) ** 2)),
+                    np.mean(errors <= 0.30),
+                ),
+                "Your sigma is about the median. Here it is about zero: nothing is subtracted.",
+            ),
+            Mistake(
+                lambda errors: (*table_row(errors)[:2], np.mean(errors <= 0.10)),
+                "Your limit is 0.10 m, one sigma of the paper. The table has three of them, 0.30 m.",
+            ),
             Mistake(
                 lambda errors: (np.median(errors), np.std(errors), np.mean(errors <= 0.30)),
                 "np.std measures the scatter about the mean: a constant error of 5 m would get 0. Take it about zero.",
@@ -396,6 +472,22 @@ EXERCISES = [
         ),
         mistakes=(
             Mistake(
+                lambda scores, limit, patience: _counter(scores, limit, patience, lambda n: 1),
+                "A good score sets your counter to 1. It counts low scores, and after a good one there is none.",
+            ),
+            Mistake(
+                lambda scores, limit, patience: lost_since(-scores, -limit, patience),
+                "You count scores *above* the limit. Low ones raise the alarm.",
+            ),
+            Mistake(
+                lambda scores, limit, patience: _first_window(scores, limit, patience, np.median),
+                "You take the median of a row. A single good score ends the row: each of them must be low.",
+            ),
+            Mistake(
+                _row_ended,
+                "You wait for the end of the whole row. The alarm comes as soon as `patience` scores are complete.",
+            ),
+            Mistake(
                 lambda scores, limit, patience: _counter(scores, limit, patience, lambda n: max(n - 1, 0)),
                 "Your counter goes down by one at a good score. In a row means: a good score ends the row.",
             ),
@@ -452,6 +544,38 @@ EXERCISES = [
         level="challenge",
         cases=(_independent, _all_the_same, _taking_turns, _four_frames, _fallons_run),
         mistakes=(
+            Mistake(
+                lambda n, a: n / (1 + (n - 1) * a),
+                "You take all pairs for equally alike. Frames k apart have the correlation a^k, which falls.",
+            ),
+            Mistake(
+                lambda n, a: min(float(n), effective_frames(n, a)),
+                "You stop at n. Errors that take turns (a below 0) cancel: they are worth more than n.",
+            ),
+            Mistake(
+                lambda n, a: effective_frames(n, abs(a)),
+                "You take the absolute value of a. Errors that take turns, a below 0, cancel: keep the sign.",
+            ),
+            Mistake(
+                lambda n, a: float(round(effective_frames(n, a))),
+                "You round to whole frames. Leave the number as it comes.",
+            ),
+            Mistake(
+                lambda n, a: float(int(effective_frames(n, a))),
+                "You cut the decimals off. Leave the number as it comes.",
+            ),
+            Mistake(
+                lambda n, a: n**2 / (n + 2 * sum((n - k) * a**k for k in range(1, n - 1))),
+                "The farthest pair is missing: the first frame and the last are n - 1 apart.",
+            ),
+            Mistake(
+                lambda n, a: n**2 / (n + 2 * sum((n - k + 1) * a**k for k in range(1, n))),
+                "You count one pair too many at every distance: 4 frames have 3 pairs of neighbours.",
+            ),
+            Mistake(
+                lambda n, a: n / (1 + 2 * sum((n - k) * a**k for k in range(1, n))),
+                "One division by n is missing: of n errors the *share* with a partner k frames on is (n - k) / n.",
+            ),
             Mistake(
                 lambda n, a: n * (1 - a) / (1 + a),
                 "Close: that is the limit of long runs. Near the ends a frame has fewer neighbours: sum over pairs.",

@@ -22,6 +22,18 @@ def _particles(rng: np.random.Generator) -> tuple:
     return int(rng.integers(20, 1000)), int(rng.integers(1, 7)), int(rng.integers(1, 7))
 
 
+def _example_1(rng: np.random.Generator) -> tuple:
+    return 200, 3, 6
+
+
+def _the_other_way(rng: np.random.Generator) -> tuple:
+    return 200, 3, 2
+
+
+def _the_same_dimension(rng: np.random.Generator) -> tuple:
+    return int(rng.integers(20, 1000)), 4, 4
+
+
 # 09.2: the mean of rotations in their tangent space
 
 _ROUNDS = 20
@@ -50,6 +62,18 @@ def _rotations(rng: np.random.Generator) -> tuple:
     w = rng.uniform(0.2, 1.0, n)
     w[0] *= 3
     return (base * Rotation.from_rotvec(apart)).as_matrix(), w / w.sum()
+
+
+def _half_a_radian_about_z(rng: np.random.Generator) -> tuple:
+    return Rotation.from_rotvec([[0, 0, 0], [0, 0, 1], [0, 0, 1]]).as_matrix(), np.array([0.5, 0.25, 0.25])
+
+
+def _one_rotation(rng: np.random.Generator) -> tuple:
+    return Rotation.from_rotvec([[0.3, -2.0, 1.0]]).as_matrix(), np.ones(1)
+
+
+def _equal_rotations(rng: np.random.Generator) -> tuple:
+    return np.tile(Rotation.from_rotvec([0.1, 0.4, 2.5]).as_matrix(), (4, 1, 1)), np.array([0.4, 0.3, 0.2, 0.1])
 
 
 def _mean_of_angles(rotations: np.ndarray, w: np.ndarray) -> np.ndarray:
@@ -103,6 +127,14 @@ def _errors_and_covariances(rng: np.random.Generator) -> tuple:
     return errors, covariances
 
 
+def _example_3(rng: np.random.Generator) -> tuple:
+    return np.array([[0.1, 0.0], [0.1, 0.2]]), np.tile(0.01 * np.eye(2), (2, 1, 1))
+
+
+def _one_component(rng: np.random.Generator) -> tuple:
+    return rng.normal(0, 2, (6, 1)), rng.uniform(0.2, 1.0, (6, 1, 1))
+
+
 def _second_kept(first: Callable) -> Callable:
     return lambda e, c: (first(e, c), honesty(e, c)[1])
 
@@ -128,7 +160,6 @@ def _fitted(
     steps: int = 40,
     power: float = 2.0,
     backwards: bool = False,
-    weigh_right_side: bool = True,
     fresh_weights: bool = True,
     turns: bool = True,
     lever_before: bool = False,
@@ -145,7 +176,7 @@ def _fitted(
         if w is None or fresh_weights:
             w = (1 + (r / scale) ** 2) ** -power
         left = jacobian.T @ (w[:, None] * jacobian)
-        right = jacobian.T @ (w * r if weigh_right_side else r)
+        right = jacobian.T @ (w * r)
         motion = motion - np.linalg.lstsq(left, right, rcond=None)[0]
     return motion
 
@@ -165,7 +196,37 @@ def _points_and_walls(rng: np.random.Generator) -> tuple:
     turn, shift = rng.choice([-1, 1]) * np.deg2rad(rng.uniform(1.5, 3.0)), rng.uniform(-0.06, 0.06, 2)
     c, s = np.cos(turn), np.sin(turn)
     points = (world - shift) @ np.array([[c, -s], [s, c]])
-    return points, normals, away[which].astype(float), 0.2
+    return points, normals, away[which].astype(float), float(rng.choice([0.15, 0.2, 0.25]))
+
+
+def _example_4(rng: np.random.Generator) -> tuple:
+    points = np.array([[2.1, 0.5], [2.1, -0.5], [1.0, 0.0], [0.5, 1.0], [-0.5, 1.0]])
+    normals = np.array([[1.0, 0.0]] * 3 + [[0.0, 1.0]] * 2)
+    return points, normals, np.array([2.0, 2.0, 2.0, 1.0, 1.0]), 0.1
+
+
+def _far_turned(rng: np.random.Generator) -> tuple:
+    """Fifteen degrees and four decimetres, nobody in the way: the first steps' shifts turn with the later steps."""
+    angles = np.repeat(np.deg2rad([10.0, 100.0, 190.0]), 8)
+    normals = np.column_stack([np.cos(angles), np.sin(angles)])
+    along = np.column_stack([-normals[:, 1], normals[:, 0]])
+    world = 3.0 * normals + rng.uniform(-1.2, 1.5, (len(angles), 1)) * along
+    c, s = np.cos(np.deg2rad(15)), np.sin(np.deg2rad(15))
+    return (world - [0.3, -0.25]) @ np.array([[c, -s], [s, c]]), normals, np.full(len(angles), 3.0), 1.5
+
+
+def _shifts_never_turned(points: np.ndarray, normals: np.ndarray, offsets: np.ndarray, scale: float) -> np.ndarray:
+    """Each step is right about the points where they are; the sum of the steps is not the motion."""
+    motion, moved = np.zeros(3), points
+    for _ in range(40):
+        jacobian = np.column_stack([normals, normals[:, 1] * moved[:, 0] - normals[:, 0] * moved[:, 1]])
+        r = (normals * moved).sum(axis=1) - offsets
+        w = (1 + (r / scale) ** 2) ** -2.0
+        left, right = jacobian.T @ (w[:, None] * jacobian), jacobian.T @ (w * r)
+        step = -np.linalg.lstsq(left, right, rcond=None)[0]
+        c, s = np.cos(step[2]), np.sin(step[2])
+        moved, motion = moved @ np.array([[c, s], [-s, c]]) + step[:2], motion + step
+    return motion
 
 
 EXERCISES = [
@@ -173,7 +234,32 @@ EXERCISES = [
         number="09.1",
         reference=particles_for,
         inputs=_particles,
+        cases=(
+            _example_1,
+            _the_other_way,
+            _the_same_dimension,
+        ),
         mistakes=(
+            Mistake(
+                lambda n, d, d_new: float(int(n ** (1 / d))) ** d_new,
+                "You cut the d-th root to a whole number: so the spacing changes. Leave all numbers as they come.",
+            ),
+            Mistake(
+                lambda n, d, d_new: float(round(n ** (1 / d))) ** d_new,
+                "You round the d-th root: so the spacing changes. Leave all numbers as they come.",
+            ),
+            Mistake(
+                lambda n, d, d_new: float(int(n ** (d_new / d))),
+                "You cut the decimals off. Leave the number as it is.",
+            ),
+            Mistake(
+                lambda n, d, d_new: max(float(n), float(n) ** (d_new / d)),
+                "In fewer dimensions fewer particles are as dense: the number may be smaller than n.",
+            ),
+            Mistake(
+                lambda n, d, d_new: float(n) ** (1 / d_new),
+                "You take the root of the new dimension: n fill the *old* one. The d-th root, then to the power d_new.",
+            ),
             Mistake(
                 lambda n, d, d_new: float(n) ** ((1 / d) ** d_new),
                 "a ** b ** c is a ** (b ** c) in Python: set brackets around the d-th root.",
@@ -221,7 +307,24 @@ EXERCISES = [
         number="09.2",
         reference=mean_rotation,
         inputs=_rotations,
+        cases=(
+            _half_a_radian_about_z,
+            _one_rotation,
+            _equal_rotations,
+        ),
         mistakes=(
+            Mistake(
+                lambda rotations, w: mean_rotation(rotations, w).T,
+                "Your matrix is transposed: that is the rotation back.",
+            ),
+            Mistake(
+                lambda rotations, w: rotations[0],
+                "You give the start back, R_1: the step is never taken.",
+            ),
+            Mistake(
+                lambda rotations, w: rotation_exp(w @ rotation_log(rotations[0].T @ rotations)),
+                "That is the first step alone, a turn seen from R_1. Put it onto R_1, and repeat.",
+            ),
             Mistake(
                 _mean_of_angles,
                 "You average roll, pitch and yaw: at a seam or looking straight down that is no mean at all.",
@@ -268,7 +371,39 @@ EXERCISES = [
         number="09.3",
         reference=honesty,
         inputs=_errors_and_covariances,
+        cases=(
+            _example_3,
+            _one_component,
+        ),
         mistakes=(
+            Mistake(
+                _first_kept(lambda e, c: np.mean(_normalized(e, c) <= 9)),
+                "Those are whole images in the ellipsoid of three sigma. Take single errors, each by its own sigma.",
+            ),
+            Mistake(
+                _first_kept(lambda e, c: np.sum(_in_sigmas(e, c) <= 3)),
+                "You count the errors within. A share is that count divided by their number, T d.",
+            ),
+            Mistake(
+                _first_kept(lambda e, c: np.mean(_in_sigmas(e, c) <= 1)),
+                "Your limit is one sigma. Three are asked for.",
+            ),
+            Mistake(
+                _first_kept(lambda e, c: np.mean(e**2 <= 3 * _variances(c))),
+                "Squared, the limit is nine variances, not three.",
+            ),
+            Mistake(
+                _first_kept(lambda e, c: np.mean(np.abs(e) <= 3 * np.sqrt(np.linalg.eigvalsh(c)))),
+                "Roots of eigenvalues are sigmas along the ellipsoid's axes. The diagonal has those of the components.",
+            ),
+            Mistake(
+                _first_kept(lambda e, c: np.mean(e >= -3 * np.sqrt(_variances(c)))),
+                "An error of +4 sigma is outside, too: take its absolute value.",
+            ),
+            Mistake(
+                _second_kept(lambda e, c: honesty(e, np.tile(c.mean(axis=0), (len(e), 1, 1)))[0]),
+                "You use one mean covariance for all images. Each image has claimed its own.",
+            ),
             Mistake(
                 _second_kept(lambda e, c: _normalized(e, c).mean()),
                 "Your first number grows with the number of components: divide by d.",
@@ -324,7 +459,36 @@ EXERCISES = [
         reference=fit_motion,
         inputs=_points_and_walls,
         tolerance=1e-4,
+        cases=(
+            _example_4,
+            _far_turned,
+        ),
         mistakes=(
+            Mistake(
+                lambda p, n, c, s: fit_motion(p, n, c, s)[[2, 0, 1]],
+                "The values are right, in another order: t_x, t_y, theta.",
+            ),
+            Mistake(
+                lambda p, n, c, s: fit_motion(p, n, c, 1.0),
+                "You leave `scale` out: r / scale says what is far.",
+            ),
+            Mistake(
+                lambda p, n, c, s: fit_motion(p, n, c, 0.2),
+                "Your scale is always 0.2 m: use the argument.",
+            ),
+            Mistake(
+                lambda p, n, c, s: fit_motion(p, n, c, 0.1),
+                "Your scale is always 0.1 m, as in the example: use the argument.",
+            ),
+            Mistake(
+                lambda p, n, c, s: fit_motion(p, n, c, 0.15),
+                "Your scale is always 0.15 m, as in the lesson: use the argument.",
+            ),
+            Mistake(
+                _shifts_never_turned,
+                "You move the points step by step and add up the steps. A turn also turns the shifts before it: move "
+                "the points by the whole motion so far.",
+            ),
             Mistake(
                 lambda p, n, c, s: _fitted(p, n, c, s, power=0.0),
                 "All points count alike, and the person pulls. Weigh each by 1 / (1 + (r / scale)^2)^2.",

@@ -88,6 +88,18 @@ def _occupied(free, cell, u):
     return free_places(~free, cell, u)
 
 
+def _first_of_each_cell(rng: np.random.Generator) -> tuple:
+    """Numbers at the very start of each of four free cells, 0 first: cutting off differs from rounding up here."""
+    free = np.array([[False, True, True], [True, False, True]])
+    return free, 0.5, np.column_stack([[0.0, 0.25, 0.5, 0.75], rng.random((4, 2))])
+
+
+def _next_lower(free, cell, u):
+    rows, columns = np.nonzero(free)
+    chosen = np.ceil(u[:, 0] * len(rows)).astype(int) - 1
+    return cell * np.column_stack([columns[chosen] + u[:, 1], rows[chosen] + u[:, 2]])
+
+
 # 10.2: how many new particles
 
 
@@ -135,6 +147,17 @@ def _scores(rng: np.random.Generator) -> tuple:
     scores += rng.uniform(-0.03, 0.03, len(scores))
     scores[3], scores[9:11], scores[-2] = np.nan, np.nan, np.nan
     return scores, float(rng.uniform(0.3, 0.6)), float(rng.uniform(0.02, 0.1))
+
+
+def _example_2(rng: np.random.Generator) -> tuple:
+    return np.array([0.8, 0.8, np.nan, 0.4]), 0.5, 0.1
+
+
+def _last_seen(scores, between=False):
+    seen = np.flatnonzero(~np.isnan(scores))
+    if between:
+        return np.interp(np.arange(len(scores)), seen, scores[seen])
+    return scores[seen[np.searchsorted(seen, np.arange(len(scores)), side="right") - 1]]
 
 
 # 10.3: until it is enough
@@ -211,6 +234,37 @@ def _new_bins_only(bins, least):
     return len(bins)
 
 
+def _example_3(rng: np.random.Generator) -> tuple:
+    return np.array([7, 7, 7, *[2, 7] * 48, 2]), 20
+
+
+def _a_new_bin_at_the_bound(rng: np.random.Generator) -> tuple:
+    """The draw that would be enough lands in a new bin: now it is not enough."""
+    return np.array([5] * 19 + [9, 5] * 40), 20
+
+
+def _fewer_than_least(rng: np.random.Generator) -> tuple:
+    return np.array([3, 3, 8, 3, 1]), 20
+
+
+def _ever_new_bins(rng: np.random.Generator) -> tuple:
+    """More draws than the lesson's upper bound, from so many bins that they are not enough."""
+    return np.arange(3_200) % 400, 20
+
+
+def _one_bin_behind(bins, least):
+    seen: set[int] = set()
+    for n, one in enumerate(bins, start=1):
+        if n >= _bound(max(1, len(seen)), least):
+            return n
+        seen.add(int(one))
+    return len(bins)
+
+
+def _reached(bins, least):
+    return draws_needed(np.append(bins, bins[-1:]), least) <= len(bins)
+
+
 # 10.4: distinct places
 
 
@@ -261,6 +315,32 @@ def _against_all(states, scores, metres, radians):
     return np.array(kept)
 
 
+def _example_4(rng: np.random.Generator) -> tuple:
+    states = np.array([[0, 0, 3.1], [0.1, 0, -3.1], [0, 0, 0], [5, 0, 3.1]])
+    return states, np.array([0.7, 0.9, 0.5, 0.6]), 0.5, 0.3
+
+
+def _at_the_limit(rng: np.random.Generator) -> tuple:
+    """Exactly half a metre apart: that is not nearer than half a metre."""
+    return np.array([[1.0, 2.0, 0.4], [1.5, 2.0, 0.4], [1.5, 2.25, 0.4]]), np.array([0.9, 0.5, 0.4]), 0.5, 0.3
+
+
+def _ahead_and_back(rng: np.random.Generator) -> tuple:
+    """One spot: two that look ahead, on either side of 0, and two that look back, on either side of pi."""
+    headings = np.array([0.1, -0.1, 3.1, -3.1])
+    return np.column_stack([np.zeros((4, 2)), headings]), rng.permutation([0.9, 0.8, 0.6, 0.5]), 0.5, 0.3
+
+
+def _one_alone(rng: np.random.Generator) -> tuple:
+    return np.array([[1.0, 2.0, 3.0]]), np.array([0.7]), 0.5, 0.3
+
+
+def _best_only(states, scores, metres, radians):
+    best = np.argmax(scores)
+    order = [int(i) for i in np.argsort(-scores)]
+    return np.array([i for i in order if i == best or not _near(states[i], states[best], metres, radians)])
+
+
 def _clustered(near: Callable = _near, order: Callable | None = None) -> Callable:
     """A mistake: as the reference, with another test of nearness or another order."""
 
@@ -276,7 +356,24 @@ EXERCISES = [
         number="10.1",
         reference=free_places,
         inputs=_grids,
+        cases=(_first_of_each_cell,),
         mistakes=(
+            Mistake(
+                _next_lower,
+                "Where u falls just on a border yours is a cell too low: u = 0 is the first cell.",
+            ),
+            Mistake(
+                lambda free, cell, u: free_places(free[::-1], cell, u),
+                "You count the rows from the last one up. The first row begins at y = 0.",
+            ),
+            Mistake(
+                lambda free, cell, u: free_places(free, cell, u) - cell / 2,
+                "You take whole numbers for the middles of the cells. Here cell c reaches from c to c + 1.",
+            ),
+            Mistake(
+                _places(lambda rows, columns, chosen, u: [columns[chosen] + u[:, 0], rows[chosen] + u[:, 1]]),
+                "You use u[:, 0] twice: it chooses the cell, u[:, 1] and u[:, 2] say where in it.",
+            ),
             Mistake(
                 _from_the_box,
                 "These places fill the whole box, walls included. Choose among the free cells first, by u[:, 0].",
@@ -340,7 +437,36 @@ EXERCISES = [
         number="10.2",
         reference=new_shares,
         inputs=_scores,
+        cases=(_example_2,),
         mistakes=(
+            Mistake(
+                lambda scores, short, long: _shares(_last_seen(scores), short, long),
+                "In the dark you take the last score once more. That moves both means; they stay as they are.",
+            ),
+            Mistake(
+                lambda scores, short, long: _shares(scores, short, long, lambda s, u: abs(1 - s / u)),
+                "You take the absolute value. Where the short mean is the greater one all is well: the share is 0.",
+            ),
+            Mistake(
+                lambda scores, short, long: _shares(scores, short, long, lambda s, u: min(0.0, 1 - s / u)),
+                "min keeps what is below 0. The share is never less than 0: max.",
+            ),
+            Mistake(
+                lambda scores, short, long: _shares(scores, short, long, lambda s, u: max(0.0, u / s - 1)),
+                "You divide by the short mean. The long one, what is usual, stands below the fraction line.",
+            ),
+            Mistake(
+                lambda scores, short, long: _shares(scores, short, long, lambda s, u: float(s < u)),
+                "That is an alarm, yes or no. A share says *how much* of the particles.",
+            ),
+            Mistake(
+                lambda scores, short, long: np.where(np.isnan(scores), np.nan, new_shares(scores, short, long)),
+                "In a dark frame you give NaN. The means stay as they are, and so does the share.",
+            ),
+            Mistake(
+                lambda scores, short, long: _shares(_last_seen(scores, between=True), short, long),
+                "You fill dark frames from later ones. The filter does not know the future: the means stay.",
+            ),
             Mistake(
                 lambda scores, short, long: _shares(scores, short, long, lambda s, u: 1 - s / u),
                 "A share cannot be negative: where the short mean is the greater one, it is 0.",
@@ -407,7 +533,37 @@ EXERCISES = [
         number="10.3",
         reference=draws_needed,
         inputs=_landings,
+        cases=(
+            _example_3,
+            _a_new_bin_at_the_bound,
+            _fewer_than_least,
+            _ever_new_bins,
+        ),
         mistakes=(
+            Mistake(
+                _one_bin_behind,
+                "You ask before you look: the bin of the present draw counts, too, before you compare.",
+            ),
+            Mistake(
+                lambda bins, least: max(least, draws_needed(bins, least)),
+                "Where the draws run out before `least` yours says `least`. All T were made, no more.",
+            ),
+            Mistake(
+                lambda bins, least: draws_needed(bins, 100),
+                "Your `least` is always 100, as in the lesson: use the argument.",
+            ),
+            Mistake(
+                lambda bins, least: draws_needed(bins, least) if _reached(bins, least) else -1,
+                "Where the draws run out yours says -1. Then all T were made: return T.",
+            ),
+            Mistake(
+                _sampling(lambda n, seen, least, bins: n >= min(3_000, _bound(len(seen), least))),
+                "You stop at 3,000, the upper bound of the lesson. Here it is 10**6.",
+            ),
+            Mistake(
+                lambda bins, least: len(np.unique(bins)),
+                "That is the number of bins. Asked for is the number of draws.",
+            ),
             Mistake(
                 _all_bins_at_once,
                 "You look at all bins before you draw. What counts is the bins that were hit so far.",
@@ -456,7 +612,61 @@ EXERCISES = [
         number="10.4",
         reference=distinct_places,
         inputs=_hypotheses,
+        cases=(
+            _example_4,
+            _at_the_limit,
+            _ahead_and_back,
+            _one_alone,
+        ),
         mistakes=(
+            Mistake(
+                _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) < m and abs(a[2] - b[2]) % np.pi < r),
+                "A remainder of pi takes looking back for looking ahead: wrap the difference of the headings instead.",
+            ),
+            Mistake(
+                _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) <= m and abs(wrap_angle(a[2] - b[2])) < r),
+                "Exactly at the limit is not nearer than it: a new place. Use <.",
+            ),
+            Mistake(
+                _clustered(
+                    lambda a, b, m, r: (
+                        np.hypot(*(a[:2] - b[:2])) < m and abs(a[2] % (2 * np.pi) - b[2] % (2 * np.pi)) < r
+                    )
+                ),
+                "From 0 to 2 pi the seam is ahead: 0.1 and 6.2 rad are near. Wrap the *difference* of the headings.",
+            ),
+            Mistake(
+                _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) < m and abs(np.sin(a[2] - b[2])) < np.sin(r)),
+                "The sine of a half turn is 0, too: looking back you take for the same. Wrap the difference instead.",
+            ),
+            Mistake(
+                _clustered(lambda a, b, m, r: np.linalg.norm(a - b) < m),
+                "You make one length of metres and radians. Each has its own limit.",
+            ),
+            Mistake(
+                _clustered(lambda a, b, m, r: np.sum((a[:2] - b[:2]) ** 2) < m and abs(wrap_angle(a[2] - b[2])) < r),
+                "You compare a squared distance with metres: the root is missing.",
+            ),
+            Mistake(
+                _clustered(lambda a, b, m, r: np.abs(a[:2] - b[:2]).sum() < m and abs(wrap_angle(a[2] - b[2])) < r),
+                "You add the ways along x and y. The straight way is the root of the sum of their squares.",
+            ),
+            Mistake(
+                _best_only,
+                "You compare with the very best state alone. Compare with every place that is kept.",
+            ),
+            Mistake(
+                lambda s, v, m, r: v[distinct_places(s, v, m, r)],
+                "Yours gives the scores of the places. Asked are their indices.",
+            ),
+            Mistake(
+                lambda s, v, m, r: distinct_places(s, v, m, r)[0],
+                "Yours gives the best place alone. Asked are all of them, best first.",
+            ),
+            Mistake(
+                lambda s, v, m, r: np.argsort(np.argsort(-v))[distinct_places(s, v, m, r)],
+                "Yours are ranks in the sorted list. Asked are indices into the states as they were given.",
+            ),
             Mistake(
                 _clustered(lambda a, b, m, r: np.hypot(*(a[:2] - b[:2])) < m and abs(a[2] - b[2]) < r),
                 "3.1 and -3.1 rad are 0.08 rad apart, not 6.2: wrap the difference of the headings.",

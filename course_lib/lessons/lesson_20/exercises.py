@@ -36,6 +36,10 @@ def _filled(raw: np.ndarray, metres: np.ndarray, invalid: int, value: float) -> 
     return np.where(raw == invalid, value, metres)
 
 
+def _in_half_precision(raw: np.ndarray, units_per_metre: float, invalid: int) -> np.ndarray:
+    return to_metres(raw, units_per_metre, invalid).astype(np.float16).astype(np.float64)
+
+
 # 20.2: the intrinsics of a resized image
 
 
@@ -82,6 +86,12 @@ def _one_focal_length(k: np.ndarray, scale: float) -> np.ndarray:
     square = k.copy()
     square[1, 1] = k[0, 0]
     return resized_intrinsics(square, scale)
+
+
+def _one_centre(k: np.ndarray, scale: float) -> np.ndarray:
+    resized = resized_intrinsics(k, scale)
+    resized[1, 2] = resized[0, 2]
+    return resized
 
 
 # 20.3: the baseline from marks at known distances
@@ -172,6 +182,11 @@ def _from_the_top(v_upper: np.ndarray, v_lower: np.ndarray, height: int, distanc
     return float(np.median(distance * (np.tan(np.pi * v_lower / height) - np.tan(np.pi * v_upper / height))))
 
 
+def _positive_only(u: np.ndarray, v: np.ndarray, height: int, distance: np.ndarray) -> float:
+    found = _all_marks(u, v, height, distance)
+    return float(np.median(found[found > 0])) if (found > 0).any() else float("nan")
+
+
 # 20.4: how far apart must the cameras stand?
 
 
@@ -220,6 +235,20 @@ def _none_is_enough(rng: np.random.Generator) -> tuple:
     return 8.0, 2.0, 512, 0.05
 
 
+def _where_none(value: float):
+    """A mistake: `value` where no baseline is good enough."""
+
+    def mistaken(distance, row_error, height, limit):
+        found = baseline_needed(distance, row_error, height, limit)
+        return found if np.isfinite(found) else value
+
+    return mistaken
+
+
+def _root_of_absolute(distance: float, reach: float) -> float:
+    return float(2 * (reach - np.sqrt(abs(reach**2 - distance**2))))
+
+
 EXERCISES = [
     Exercise(
         number="20.1",
@@ -228,6 +257,20 @@ EXERCISES = [
         level="warm-up",
         cases=(_nothing_measured, _all_measured),
         mistakes=(
+            Mistake(
+                lambda raw, units_per_metre, invalid: np.where(raw <= invalid, np.nan, raw / units_per_metre),
+                "Only a pixel that is equal to `invalid` is a hole, not every one that is smaller.",
+            ),
+            Mistake(
+                lambda raw, units_per_metre, invalid: np.where(
+                    (raw == 0) | (raw == invalid), np.nan, raw / units_per_metre
+                ),
+                "You leave out 0 as well. Where `invalid` is another number, 0 is a depth like any other.",
+            ),
+            Mistake(
+                lambda raw, units_per_metre, invalid: _in_half_precision(raw, units_per_metre, invalid),
+                "float16 holds three digits only: at 10 m that is 8 mm. Use float32 or float64.",
+            ),
             Mistake(
                 lambda raw, units_per_metre, invalid: np.where(raw == 65535, np.nan, raw / units_per_metre),
                 "You take 65535 for no measurement in every file. This file may use another number: use `invalid`.",
@@ -307,6 +350,26 @@ EXERCISES = [
         cases=(_unchanged, _the_papers_camera),
         mistakes=(
             Mistake(
+                lambda k, scale: np.floor(resized_intrinsics(k, scale)),
+                "You cut off to whole pixels. A principal point may lie anywhere between them.",
+            ),
+            Mistake(
+                lambda k, scale: resized_intrinsics(k, 0.25),
+                "Your scale is always a quarter, as in the example: use the argument.",
+            ),
+            Mistake(
+                _one_centre,
+                "You take cx for cy as well. The image is not as high as it is wide.",
+            ),
+            Mistake(
+                lambda k, scale: _with(k, scale, lambda c: scale * (c + 1) - 1),
+                "The edge lies half a pixel before the first centre, at -0.5: yours is a whole pixel off.",
+            ),
+            Mistake(
+                lambda k, scale: resized_intrinsics(k, scale) * [[1], [1], [0]],
+                "The last row is missing: a pinhole's K ends in [0, 0, 1].",
+            ),
+            Mistake(
                 _columns_only,
                 "Your rows keep their size. The image shrinks in both directions: fy and cy, too.",
             ),
@@ -370,6 +433,34 @@ EXERCISES = [
         inputs=_marks,
         cases=(_exchanged, _even_number_of_marks, _signs_that_differ, _one_mark),
         mistakes=(
+            Mistake(
+                lambda u, v, height, distance: baseline_from_marks(u, v, height - 1, distance),
+                "You divide by height - 1. The symbol table counts `height` rows from straight up to straight down.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: float(np.median(_all_marks(u, v, height, 1 / distance) ** -1)),
+                "That is the formula of a *distance*, turned: B = rho (tan - tan), so multiply.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: baseline_from_marks(height - u, v, height, distance),
+                "You add the two heights. Both see the same mark: the heights differ by the baseline, so subtract.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: float(np.max(_all_marks(u, v, height, distance))),
+                "You take the largest. One mark may be misread: the task asks for the median.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: float(_all_marks(u, v, height, distance)[0]),
+                "You use the first mark alone. It may be the misread one: the median of all.",
+            ),
+            Mistake(
+                lambda u, v, height, distance: round(baseline_from_marks(u, v, height, distance), 2),
+                "You round to centimetres, as the example is printed. Give the number as it comes out.",
+            ),
+            Mistake(
+                _positive_only,
+                "You leave out negative ones: of exchanged images nothing is left. Keep all marks, and the sign.",
+            ),
             Mistake(
                 lambda u, v, height, distance: abs(baseline_from_marks(u, v, height, distance)),
                 "You drop the sign. A negative baseline says that the images are exchanged: leave it as it comes.",
@@ -448,6 +539,30 @@ EXERCISES = [
         cases=(_of_the_task, _none_is_enough),
         tolerance=1e-5,
         mistakes=(
+            Mistake(
+                _where_none(np.inf),
+                "Where even the best baseline is not good enough the task asks for NaN, not for infinity.",
+            ),
+            Mistake(
+                _where_none(0.0),
+                "Where even the best baseline is not good enough the task asks for NaN, not for 0.",
+            ),
+            Mistake(
+                _where_none(-1.0),
+                "Where even the best baseline is not good enough the task asks for NaN, not for -1.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: _root_of_absolute(
+                    distance, _reach(row_error, height, limit)
+                ),
+                "A negative number under the root says that no baseline is good enough: NaN, no absolute value.",
+            ),
+            Mistake(
+                lambda distance, row_error, height, limit: (
+                    2 * distance if _reach(row_error, height, limit) >= distance else np.nan
+                ),
+                "There the error is least. Asked for is the *least baseline* whose error is still within the limit.",
+            ),
             Mistake(
                 _small_angles,
                 "Close: that is for far marks. Near the rig the angles are not small: keep 1 / cos(e)^2.",

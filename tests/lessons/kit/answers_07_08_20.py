@@ -191,7 +191,7 @@ WRONG = [
     ("20.1", lambda raw, units, invalid: metres(raw, units, invalid).round(3), "round to millimetres"),
     ("20.1", lambda raw, units, invalid: np.nan_to_num(metres(raw, units, invalid)), "A hole is 0 m"),
     ("20.2", lambda k, s: np.vstack([[k[0, 0] * s, 0, (k[0, 2] + 0.5) * s - 0.5], k[1:]]), "both directions"),
-    ("20.2", lambda k, s: np.array([[s, 0, (s - 1) / 2], [0, s, (s - 1) / 2], [0, 0, 1]]) @ k // 1, "differ"),
+    ("20.2", lambda k, s: np.array([[s, 0, (s - 1) / 2], [0, s, (s - 1) / 2], [0, 0, 1]]) @ k // 1, "cut off"),
     ("20.3", lambda u, v, h, d: abs(np.median(baselines(u, v, h, d))), "drop the sign."),
     ("20.3", lambda u, v, h, d: np.median(abs(baselines(u, v, h, d))), "mark by mark"),
     ("20.3", lambda u, v, h, d: np.sort(baselines(u, v, h, d))[len(d) // 2], "upper of the middle two"),
