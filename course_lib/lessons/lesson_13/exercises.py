@@ -330,12 +330,13 @@ def _misjudged(arguments: tuple, answer: object) -> str | None:
         return "Give two numbers, separated by a comma: the turn and its standard error, degrees."
     wanted, se = turn_of_the_lower(*arguments)
     n = len(arguments[0])
+    far = max(4 * se, 0.1)  # a wrong match or two that happen to lie near may pull at a good answer so much
     if not np.isfinite([turn, error]).all():
         return "There is a NaN or an infinity in your result: is a mean taken of nothing?"
-    if abs(_wrap_deg(turn - wanted)) > 4 * se:
-        if abs(_wrap_deg(turn + wanted)) <= 4 * se:
+    if abs(_wrap_deg(turn - wanted)) > far:
+        if abs(_wrap_deg(turn + wanted)) <= far:
             return "Your turn has the wrong sign: a camera that turns left sees everything move to the right."
-        if abs(_wrap_deg(np.degrees(turn) - wanted)) <= 4 * se:
+        if abs(_wrap_deg(np.degrees(turn) - wanted)) <= far:
             return "Your turn is in radians; the task asks for degrees."
         return "Your turn is more than four standard errors off: wrong matches pull at it, or the seam does."
     if not -180 - 1e-9 <= turn < 180 + 1e-9:
@@ -347,7 +348,7 @@ def _misjudged(arguments: tuple, answer: object) -> str | None:
     if error < 0.5 * se:
         return "Your standard error is less than half of what it must be. By how many right matches do you divide?"
     if error > 3 * se:  # a wrong match that happens to lie near may widen it
-        if error < 2 * se * np.sqrt(n):
+        if 0.4 * se * np.sqrt(n) < error < 2 * se * np.sqrt(n):
             return "That is about the spread of one match. The mean of many is surer: by which factor?"
         return "Your standard error is far too large: do wrong matches add to the spread?"
     return None
