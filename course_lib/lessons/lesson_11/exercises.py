@@ -151,6 +151,10 @@ def _gaps_without_the_last(columns: np.ndarray, width: int) -> tuple[float, floa
     return float(around[k]), float(around[k - 1] + width)
 
 
+def _gaps_without_the_last_of_several(columns: np.ndarray, width: int) -> tuple[float, float]:
+    return _gaps_without_the_last(columns, width) if len(columns) > 1 else shortest_stretch(columns, width)
+
+
 def _moved_if_wide(columns: np.ndarray, width: int) -> tuple[float, float]:
     """Where the columns span more than half the picture, those of its left half are moved by a turn."""
     wide = np.ptp(columns) > width / 2
@@ -226,6 +230,18 @@ def _points_behind(rng: np.random.Generator) -> tuple:
     """All points near the seam: every second one of them crosses it."""
     around = np.column_stack([np.pi + rng.uniform(-0.02, 0.02, 12), rng.uniform(-0.9, 0.6, 12)])
     return _knocked(np.array([0.5, -0.7, 0.9]), around, 1280)
+
+
+def _first_point_twice(rng: np.random.Generator) -> tuple:
+    """The first two points are one: together they leave the turn about their own direction open."""
+    before, after, width, height = _a_knock(rng)
+    before[1], after[1] = before[0], after[0]
+    return before, after, width, height
+
+
+def _from_so_many(n: int) -> Callable:
+    """A mistake: the first n points alone."""
+    return lambda before, after, width, height: knock_linear(before[:n], after[:n], width, height)
 
 
 def _yaw_alone(before: np.ndarray, after: np.ndarray, width: int, height: int) -> tuple[float, float, float]:
@@ -362,8 +378,13 @@ EXERCISES = [
             lambda rng: (0.0, 1280.0, 1280),  # both edges are one line
             lambda rng: (1410.0, 130.0, 1280),  # u_max of a box across the seam
             lambda rng: (10.0, 1900.0, 1280),
+            lambda rng: (2500.0, 40.0, 1280),  # nearly two turns: one `if` takes away a single one
         ),
         mistakes=(
+            Mistake(
+                lambda a, b, w: g - 360 if (g := _plain_gap(a, b, w)) >= 180 else g + 360 if g < -180 else g,
+                "An `if` takes away one turn at most. Columns beyond the edges may be more than one turn apart.",
+            ),
             Mistake(
                 _plain_gap,
                 "Across the seam yours is nearly a whole turn. Bring the difference back to [-180, 180).",
@@ -465,6 +486,10 @@ EXERCISES = [
         ),
         mistakes=(
             Mistake(
+                _gaps_without_the_last_of_several,
+                "One gap is missing: the one from the last point across the seam to the first.",
+            ),
+            Mistake(
                 lambda columns, width: (float(columns.min()), float(columns.max())),
                 "Least and greatest column: across the seam that is the long way round, through the whole picture.",
             ),
@@ -524,10 +549,24 @@ EXERCISES = [
         level="challenge",
         reference=knock,
         inputs=_a_knock,
-        cases=(_no_knock, _points_behind),
+        cases=(_no_knock, _points_behind, _first_point_twice),
         others=(knock_linear, _from_angle_differences),
         tolerance=0.05,
         mistakes=(
+            *(
+                Mistake(
+                    _from_so_many(n), "You use the first points only. Which turn do they leave open? Stack them all."
+                )
+                for n in (1, 2)
+            ),
+            Mistake(
+                lambda b, a, w, h: (*np.multiply(knock(b, a, w, h), [1, 1, -1]).tolist(),),
+                "Roll and pitch are right, yaw has the wrong sign: left is positive, and moves what is seen right.",
+            ),
+            Mistake(
+                lambda b, a, w, h: (*np.multiply(knock(b, a, w, h), [-1, 1, 1]).tolist(),),
+                "Pitch and yaw are right, roll has the wrong sign: a positive one lowers the right side (y is left).",
+            ),
             Mistake(
                 lambda b, a, w, h: knock(a, b, w, h),
                 "Your signs are turned around. A camera that turns left sees everything move to the right.",

@@ -126,6 +126,16 @@ def _product_uncut(a: np.ndarray, b: np.ndarray, width: int) -> float:
     return _iou(max(0.0, *(length * down for length in across)), a, b)
 
 
+def _product_cut(a: np.ndarray, b: np.ndarray, width: int) -> float:
+    """The product of two lengths that may both be negative, cut off at 0; the best of three turns."""
+    best = 0.0
+    for turn in (-width, 0, width):
+        moved = b + np.array([turn, 0, turn, 0])
+        shared = (min(a[2], moved[2]) - max(a[0], moved[0])) * (min(a[3], b[3]) - max(a[1], b[1]))
+        best = max(best, _iou(shared, a, b))
+    return best
+
+
 def _lengths_added_uncut(a: np.ndarray, b: np.ndarray, width: int) -> float:
     """All three lengths are added, the negative ones too."""
     across = sum(min(a[2], b[2] + turn) - max(a[0], b[0] + turn) for turn in (-width, 0, width))
@@ -181,6 +191,14 @@ def _one_of_each_class(boxes: np.ndarray, scores: np.ndarray, threshold: float, 
 def _class_after_class(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
     kept, classes = surest(boxes, scores, threshold, limit), scores.argmax(axis=1)
     return kept[np.argsort(classes[kept], kind="stable")]
+
+
+def _in_several_classes(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
+    """A box takes part in every class in which its score reaches the threshold."""
+    kept: set[int] = set()
+    for column in scores.T:
+        kept.update(_suppressed(boxes, column[:, None], threshold, limit).tolist())
+    return np.array(sorted(kept, key=lambda i: -scores[i].max()), dtype=int)
 
 
 def _of_the_short_list(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
@@ -302,12 +320,21 @@ def _highest(scores: np.ndarray, right: np.ndarray, least: float) -> float:
     return float(max(good, default=np.inf))
 
 
-def _row_by_row(scores: np.ndarray, right: np.ndarray, least: float) -> float:
-    """Box after box from the surest down: among equal scores it may stop in the middle."""
-    order = np.argsort(-scores, kind="stable")
-    hits, n = np.cumsum(right[order]), np.arange(1, len(scores) + 1)
-    good = np.flatnonzero([_wilson_low(int(h), int(k)) >= least for h, k in zip(hits, n, strict=True)])
-    return float(scores[order[good[-1]]]) if len(good) else np.inf
+def _row_by_row(order_of: Callable) -> Callable:
+    """A mistake: box after box in the order `order_of(scores)`; among equal scores it may stop in the middle."""
+
+    def mistaken(scores: np.ndarray, right: np.ndarray, least: float) -> float:
+        order = order_of(scores)
+        hits, n = np.cumsum(right[order]), np.arange(1, len(scores) + 1)
+        good = np.flatnonzero([_wilson_low(int(h), int(k)) >= least for h, k in zip(hits, n, strict=True)])
+        return float(scores[order[good[-1]]]) if len(good) else np.inf
+
+    return mistaken
+
+
+def _without_the_middle(hits: int, n: int) -> float:
+    """Wilson's formula without z squared / 2n above the fraction line."""
+    return _wilson_low(hits, n) - 1.96**2 / (2 * n) / (1 + 1.96**2 / n)
 
 
 def _share_of_all(scores: np.ndarray, right: np.ndarray, least: float) -> float:
@@ -330,10 +357,19 @@ EXERCISES = [
         reference=counts,
         inputs=_boxes,
         cases=(
+            lambda rng: (np.array([[90.0, 0, 110, 9], [91, 0, 110, 9], [92, 0, 110, 9]]), 1280, 100.25),  # halves
             lambda rng: (np.array([[140.0, 0, 160, 9], [150, 0, 170, 9], [1430, 0, 1450, 9]]), 1280, 160.0),
             lambda rng: (np.zeros((0, 4)), 1280, 160.0),  # nothing was found
         ),
         mistakes=(
+            Mistake(
+                lambda boxes, width, start: _in_range(boxes[:, 0] + boxes[:, 2] / 2, start, start + width),
+                "Numbers 2 and 3 of a box are u_max and v_max, not its width and height.",
+            ),
+            Mistake(
+                lambda boxes, width, start: _in_range((boxes[:, 0] + boxes[:, 2]) // 2, start, start + width),
+                "`//` cuts half columns off. A centre may lie between two columns: divide with `/`.",
+            ),
             Mistake(
                 lambda boxes, width, start: _in_range(boxes[:, 0], start, start + width),
                 "You look at the left edge. The centre of the box decides.",
@@ -405,6 +441,7 @@ EXERCISES = [
         reference=overlap,
         inputs=_two_boxes,
         cases=(
+            lambda rng: (np.array([100.0, 300, 200, 400]), np.array([740.0, 300, 840, 400]), 1280),  # half a turn apart
             lambda rng: (np.array([1200.0, 300, 1300, 400]), np.array([0.0, 300, 20, 400]), 1280),
             lambda rng: (np.array([0.0, 300, 20, 400]), np.array([1200.0, 300, 1300, 400]), 1280),
             lambda rng: (np.array([1200.0, 300, 1300, 400]), np.array([1200.0, 300, 1300, 400]), 1280),  # equal
@@ -412,6 +449,14 @@ EXERCISES = [
             lambda rng: (np.array([100.0, 300, 200, 400]), np.array([900.0, 450, 950, 500]), 1280),  # far apart
         ),
         mistakes=(
+            Mistake(
+                _product_cut,
+                "Boxes apart both ways have two negative lengths, whose product is positive: cut each off at 0 first.",
+            ),
+            Mistake(
+                lambda a, b, w: 100 * overlap(a, b, w),
+                "That is in percent. The IoU is a share: 1 for the same box.",
+            ),
             Mistake(
                 lambda a, b, w: _iou(_across(a, b) * _down(a, b), a, b),
                 "Across the seam yours is 0: one of the boxes may have to be moved by a whole turn first.",
@@ -507,6 +552,14 @@ EXERCISES = [
             lambda rng: (np.zeros((0, 4)), np.zeros((0, 3)), 0.5, 0.4),  # no answer at all
         ),
         mistakes=(
+            Mistake(
+                _in_several_classes,
+                "A box has one class, that of its greatest score. In yours it takes part in several.",
+            ),
+            Mistake(
+                lambda boxes, scores, threshold, limit: _suppressed(boxes, scores[:, :1], threshold, limit),
+                "You look at the first class alone. A box's score is the greatest of its row.",
+            ),
             Mistake(
                 _slip(by_class=False),
                 "A chair may stand before a sofa: only boxes of the same class put each other out.",
@@ -604,9 +657,33 @@ EXERCISES = [
                 "You stop when it fails for the first time. Precision goes up and down: lower thresholds may do again.",
             ),
             Mistake(_highest, "That is the highest good threshold. The lowest one finds most objects."),
+            *(
+                Mistake(
+                    _row_by_row(order_of),
+                    "Boxes with equal scores stay or go together: no threshold cuts between them.",
+                )
+                for order_of in (
+                    lambda scores: np.argsort(-scores, kind="stable"),
+                    lambda scores: np.argsort(-scores),
+                    lambda scores: np.argsort(scores)[::-1],
+                    lambda scores: np.argsort(scores, kind="stable")[::-1],
+                )
+            ),
             Mistake(
-                _row_by_row,
-                "Boxes with equal scores stay or go together: no threshold cuts between them.",
+                lambda scores, right, least: _lowest(scores, right, least, _wilson_low, enough=np.greater),
+                "You keep boxes with more than t. A box with a score of just t is kept, too.",
+            ),
+            Mistake(
+                lambda scores, right, least: _lowest(scores, right, least, lambda hits, n: _wilson_low(hits, n, 1.645)),
+                "z = 1.645 is for 90 %. The task has z = 1.96.",
+            ),
+            Mistake(
+                lambda scores, right, least: _lowest(scores, right, least, lambda hits, n: _wilson_low(hits, n, 1.0)),
+                "z = 1 is one standard deviation, about 68 %. The task has z = 1.96.",
+            ),
+            Mistake(
+                lambda scores, right, least: _lowest(scores, right, least, _without_the_middle),
+                "Something is missing above Wilson's fraction line: the middle of the interval is not k / n itself.",
             ),
             Mistake(
                 _share_of_all,

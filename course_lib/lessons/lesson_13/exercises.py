@@ -55,6 +55,12 @@ def _row_with_the_angle_of_the_level(
     return _row(_elevation(v, height) + np.arctan(baseline / horizontal_range), height)
 
 
+def _row_at_a_slant(v: np.ndarray, horizontal_range: float, baseline: float, height: int) -> np.ndarray:
+    """Takes the range along the ray of the upper camera."""
+    e_u = _elevation(v, height)
+    return _row(np.arctan2(horizontal_range * np.sin(e_u) + baseline, horizontal_range * np.cos(e_u)), height)
+
+
 # 13.2: how far a direction misses the epipolar half-circle of another, for a rig of any direction
 
 
@@ -111,6 +117,13 @@ def _sides_by_the_angle(x_upper: np.ndarray, x_lower: np.ndarray, baseline: np.n
     near = np.sum(x_upper * x_lower, axis=1) >= 0
     beside = np.abs(_beside(x_upper, x_lower, baseline))
     return np.where(near, _arcsin(beside), _arccos(np.abs(x_lower @ baseline)))
+
+
+def _normal_not_of_length_one(x_upper: np.ndarray, x_lower: np.ndarray, baseline: np.ndarray) -> np.ndarray:
+    """The normal b x x_upper as it is; the rest is right."""
+    on_this_half = np.sum(x_lower * _across_the_baseline(x_upper, baseline), axis=1) >= 0
+    beside = _arcsin(np.abs(_triple_product(x_upper, x_lower, baseline)))
+    return np.where(on_this_half, beside, _arccos(np.abs(x_lower @ baseline)))
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
@@ -293,11 +306,20 @@ def _wrap_deg(angle):
 def _matches(rng: np.random.Generator, turn: float | None = None, n: int | None = None) -> tuple:
     n = int(rng.integers(80, 200)) if n is None else n
     turn = rng.uniform(-180, 180) if turn is None else turn
+    return _some_wrong(rng, turn, n, rng.uniform(0.1, 0.4), rng.uniform(0.2, 0.5))
+
+
+def _some_wrong(rng: np.random.Generator, turn: float, n: int, noise: float, share: float) -> tuple:
+    """n matches with noise (degrees) of which a share is wrong."""
     upper = rng.uniform(-np.pi, np.pi, n)
-    lower = upper - np.radians(turn + rng.normal(0, rng.uniform(0.1, 0.4), n))
-    wrong = rng.permutation(n) < rng.uniform(0.2, 0.5) * n
+    lower = upper - np.radians(turn + rng.normal(0, noise, n))
+    wrong = rng.permutation(n) < share * n
     lower[wrong] = rng.uniform(-np.pi, np.pi, wrong.sum())
     return upper, wrap_angle(lower)
+
+
+MANY = 1500
+"""So many matches, half of them wrong, tell an error bar from one that is off by the root of two."""
 
 
 def _misjudged(arguments: tuple, answer: object) -> str | None:
@@ -308,20 +330,25 @@ def _misjudged(arguments: tuple, answer: object) -> str | None:
         return "Give two numbers, separated by a comma: the turn and its standard error, degrees."
     wanted, se = turn_of_the_lower(*arguments)
     n = len(arguments[0])
+    far = max(4 * se, 0.1)  # a wrong match or two that happen to lie near may pull at a good answer so much
     if not np.isfinite([turn, error]).all():
         return "There is a NaN or an infinity in your result: is a mean taken of nothing?"
-    if abs(_wrap_deg(turn - wanted)) > 4 * se:
-        if abs(_wrap_deg(turn + wanted)) <= 4 * se:
+    if abs(_wrap_deg(turn - wanted)) > far:
+        if abs(_wrap_deg(turn + wanted)) <= far:
             return "Your turn has the wrong sign: a camera that turns left sees everything move to the right."
-        if abs(_wrap_deg(np.degrees(turn) - wanted)) <= 4 * se:
+        if abs(_wrap_deg(np.degrees(turn) - wanted)) <= far:
             return "Your turn is in radians; the task asks for degrees."
         return "Your turn is more than four standard errors off: wrong matches pull at it, or the seam does."
     if not -180 - 1e-9 <= turn < 180 + 1e-9:
         return "The turn is right but for whole turns: bring it to [-180, 180)."
+    if n >= MANY and 0.5 * se <= error < 0.8 * se:
+        return "Your standard error is too small by a quarter or more: did wrong matches help to make the mean sure?"
+    if n >= MANY and 1.6 * se < error < 3 * se:
+        return "Your standard error is too large: one standard deviation is asked for, no 95 % interval."
     if error < 0.5 * se:
         return "Your standard error is less than half of what it must be. By how many right matches do you divide?"
     if error > 3 * se:  # a wrong match that happens to lie near may widen it
-        if error < 2 * se * np.sqrt(n):
+        if 0.4 * se * np.sqrt(n) < error < 2 * se * np.sqrt(n):
             return "That is about the spread of one match. The mean of many is surer: by which factor?"
         return "Your standard error is far too large: do wrong matches add to the spread?"
     return None
@@ -353,6 +380,27 @@ def _one_of_a_tie_out(counts: np.ndarray) -> np.ndarray:
     return result
 
 
+def _all_that_is_equal_out(counts: np.ndarray) -> np.ndarray:
+    """Where the largest count stands twice, anywhere, the rows and columns of all of them are out."""
+    counts, result = np.array(counts), np.full(len(counts), -1)
+    while counts.max() > 0:
+        places = np.argwhere(counts == counts.max())
+        if len(places) == 1:
+            result[places[0][0]] = places[0][1]
+        for i, j in places:
+            counts[i], counts[:, j] = 0, 0
+    return result
+
+
+def _ties_of_the_whole_table(counts: np.ndarray) -> np.ndarray:
+    """Pairs first, then leaves out those whose count stands twice in the row or column of the table as given."""
+    result = _first_of_a_tie(counts)
+    for i, j in enumerate(result):
+        if j >= 0 and max(np.sum(counts[i] == counts[i, j]), np.sum(counts[:, j] == counts[i, j])) > 1:
+            result[i] = -1
+    return result
+
+
 EXERCISES = [
     Exercise(
         "13.1",
@@ -365,6 +413,28 @@ EXERCISES = [
             lambda rng: (np.array([100.0]), 1000.0, 0.3, 640),  # far away: hardly higher
         ),
         mistakes=(
+            Mistake(
+                _row_at_a_slant,
+                "You take the range along the slanted ray. It is horizontal, from the rig's axis: the same for both.",
+            ),
+            Mistake(
+                lambda v, horizontal_range, baseline, height: lower_row(v, horizontal_range, baseline, 640),
+                "Your panorama is always 640 rows high: use the argument.",
+            ),
+            Mistake(
+                lambda v, horizontal_range, baseline, height: lower_row(v, horizontal_range, 0.3, height),
+                "Your baseline is always 0.3 m: use the argument.",
+            ),
+            Mistake(
+                lambda v, horizontal_range, baseline, height: np.degrees(
+                    _elevation_for_row(v, horizontal_range, baseline, height)
+                ),
+                "That is the elevation in degrees; the task asks for the row in pixels.",
+            ),
+            Mistake(
+                lambda v, horizontal_range, baseline, height: v - lower_row(v, horizontal_range, baseline, height),
+                "That is by how many rows a point moves. Asked is the row itself.",
+            ),
             Mistake(_row_of_a_higher_camera, "Your point sinks. A camera further down sees it higher: e_l > e_u."),
             Mistake(_row_from_angles_added, "baseline / range adds to the tangent of e_u, not to the angle."),
             Mistake(
@@ -429,6 +499,18 @@ EXERCISES = [
             _in_the_plane,
         ),
         mistakes=(
+            Mistake(
+                _normal_not_of_length_one,
+                "The halves are right. But b x x_upper is shorter than 1: make it a unit vector before the arcsine.",
+            ),
+            Mistake(
+                lambda up, low, b: np.maximum(miss(up, low, b), miss(low, up, b)),
+                "That is the larger of the two ways, as in (13.2). Asked is the way from x_lower only.",
+            ),
+            Mistake(
+                lambda up, low, b: np.pi / 2 - miss(up, low, b),
+                "That is a right angle less the angle asked for: an arccosine in place of an arcsine?",
+            ),
             Mistake(
                 lambda up, low, b: _arcsin(np.abs(_beside(up, low, b))),
                 "That is the angle to the whole circle. The half behind is forbidden: there the way ends at a pole.",
@@ -502,6 +584,14 @@ EXERCISES = [
             lambda rng: (np.array([[3]]),),
         ),
         mistakes=(
+            Mistake(
+                _all_that_is_equal_out,
+                "Equal counts in different rows and different columns are no tie: nobody has to choose.",
+            ),
+            Mistake(
+                _ties_of_the_whole_table,
+                "You look for ties after the pairing, in the table as given. Look in each round, among what is open.",
+            ),
             Mistake(_each_row_its_best, "Two of your rows share a column: a column that is taken is taken."),
             Mistake(_columns_stay_free, "You give every row its best column: one-to-one, and never with a count of 0."),
             Mistake(
@@ -575,6 +665,7 @@ EXERCISES = [
         level="challenge",
         verify=_misjudged,
         cases=(
+            lambda rng: _some_wrong(rng, 40.0, MANY, noise=0.3, share=0.5),
             lambda rng: _matches(rng, turn=179.9),  # half of the matches on either side of the seam
             lambda rng: _matches(rng, turn=-180.0),
             lambda rng: _matches(rng, turn=0.0),

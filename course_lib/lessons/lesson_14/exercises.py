@@ -64,6 +64,14 @@ def _place_with_the_range(box_upper: np.ndarray, box_lower: np.ndarray, width: i
     return baseline / (np.tan(e_l) - np.tan(e_u)) * _direction(a, e_u)
 
 
+def _place_with_d_for_the_range(
+    box_upper: np.ndarray, box_lower: np.ndarray, width: int, baseline: float
+) -> np.ndarray:
+    """Goes d along the floor and then up by its tangent."""
+    (a, e_u), (_, e_l) = (_angles(_centre(box), width) for box in (box_upper, box_lower))
+    return _distance(e_u, e_l, baseline) * np.array([np.cos(a), np.sin(a), np.tan(e_u)])
+
+
 def _place_from_below(box_upper: np.ndarray, box_lower: np.ndarray, width: int, baseline: float) -> np.ndarray:
     (_, e_u), (a, e_l) = (_angles(_centre(box), width) for box in (box_upper, box_lower))
     return _distance(e_u, e_l, baseline) * _direction(a, e_l)
@@ -240,6 +248,53 @@ def _medians_apart(e_u: np.ndarray, e_l: np.ndarray, baseline: float) -> float:
     return float(baseline / (np.tan(np.median(e_l)) - np.tan(np.median(e_u))))
 
 
+def _along_the_ray(e_u: np.ndarray, e_l: np.ndarray, baseline: float) -> float:
+    return float(np.median(baseline * np.cos(e_l) / np.sin(e_l - e_u)))
+
+
+def _first_match(e_u: np.ndarray, e_l: np.ndarray, baseline: float) -> float:
+    return float(baseline / (np.tan(e_l[0]) - np.tan(e_u[0])))
+
+
+def _tangent_of_the_difference(e_u: np.ndarray, e_l: np.ndarray, baseline: float) -> float:
+    return float(baseline / np.median(np.tan(e_l - e_u)))
+
+
+def _nan_if_any_diverges(e_u: np.ndarray, e_l: np.ndarray, baseline: float) -> float:
+    return range_of(e_u, e_l, baseline) if (np.tan(e_l) > np.tan(e_u)).all() else float("nan")
+
+
+def _of_those_in_front(range_from: Callable) -> Callable:
+    """A mistake: `range_from` of the matches that do not diverge; NaN where there is none."""
+
+    def mistaken(e_u, e_l, baseline):
+        good = np.tan(e_l) > np.tan(e_u)
+        return range_from(e_u[good], e_l[good], baseline) if good.any() else float("nan")
+
+    return mistaken
+
+
+def _or_nan(range_from: Callable) -> Callable:
+    """`range_from`, but NaN where all matches diverge."""
+
+    def mistaken(e_u, e_l, baseline):
+        return range_from(e_u, e_l, baseline) if (np.tan(e_l) > np.tan(e_u)).any() else float("nan")
+
+    return mistaken
+
+
+_SPOILED = {
+    _mean_slope: "One match on something else spoils a mean; a median does not notice it.",
+    _mean_range: "A mean of ranges follows whichever slope is nearest 0. Median, and of the slopes.",
+    _along_the_ray: "That is d, along the slanted ray. Asked is the horizontal range: the difference of tangents.",
+    _first_match: "You take the first match alone. It may be the one on something else.",
+    _angles_not_tangents: "It is the tangents that differ by B / rho, not the angles.",
+    _medians_apart: "Subtract match by match first: the two medians may belong to different features.",
+    _tangent_of_the_difference: "You take the tangent of the difference. Take the difference of the two tangents.",
+}
+"""Ranges that are wrong whether or not matches that diverge were looked at, and why."""
+
+
 # 14.4: the mean error of a range
 
 
@@ -279,6 +334,14 @@ EXERCISES = [
         level="warm-up",
         cases=(_across_the_seam, lambda rng: _boxes_at(rng, 0.5), lambda rng: _boxes_at(rng, 0.04, wide=0.03)),
         mistakes=(
+            Mistake(
+                _place_with_d_for_the_range,
+                "You go d along the floor. d runs along the slanted ray; along the floor it is d cos e_u.",
+            ),
+            Mistake(
+                _place_with(lambda e_u, e_l, baseline: baseline / (e_l - e_u) / np.cos(e_u)),
+                "baseline / (e_l - e_u) holds for level rays alone. Take eq. (14.1), or the tangents of (14.3).",
+            ),
             Mistake(_place_with_the_range, "You go the horizontal range along a slanted direction: multiply by d."),
             Mistake(_place_from_below, "d is measured from the upper camera, so it goes with the upper direction."),
             Mistake(
@@ -358,6 +421,18 @@ EXERCISES = [
             lambda rng: (*_level_rays(rng), 0.004),
         ),
         mistakes=(
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma, sigma_baseline: range_sigma(
+                    rho, e_u, e_l, 0.3, sigma, sigma_baseline
+                ),
+                "Your baseline is always 0.3 m: use the argument.",
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma, sigma_baseline: np.hypot(
+                    _by_angles(rho, e_u, e_l, baseline, sigma), (rho / baseline) ** 2 * sigma_baseline
+                ),
+                "The range is proportional to the baseline: differentiate B / slope by B, and put rho = B / slope in.",
+            ),
             Mistake(
                 lambda rho, e_u, e_l, baseline, sigma, sigma_baseline: _by_angles(rho, e_u, e_l, baseline, sigma),
                 "The baseline is not known exactly either: its error is still missing.",
@@ -469,8 +544,15 @@ EXERCISES = [
         verify=refuses_range,
         cases=(_one_match_is_far_off, _images_swapped, lambda rng: _matches_with(rng, 9, 0, np.zeros)),
         mistakes=(
-            Mistake(_mean_slope, "One match on something else spoils a mean; a median does not notice it."),
-            Mistake(_mean_range, "A mean of ranges follows whichever slope is nearest 0. Median, and of the slopes."),
+            *(
+                Mistake(guarded(range_from), why)
+                for range_from, why in _SPOILED.items()
+                for guarded in (lambda itself: itself, _or_nan, _of_those_in_front)
+            ),
+            Mistake(
+                _nan_if_any_diverges,
+                "Yours is NaN as soon as one match diverges. One may be a stranger: NaN only where all of them do.",
+            ),
             Mistake(
                 lambda e_u, e_l, baseline: float(baseline / np.median(np.tan(e_l) - np.tan(e_u))),
                 "Right while there is a range. But where the matches diverge yours is negative: NaN belongs there.",
@@ -479,16 +561,10 @@ EXERCISES = [
                 lambda e_u, e_l, baseline: abs(float(baseline / np.median(np.tan(e_u) - np.tan(e_l)))),
                 "Your absolute value hides matches that diverge: there the answer is NaN, no positive number.",
             ),
-            Mistake(_angles_not_tangents, "It is the tangents that differ by B / rho, not the angles."),
             Mistake(_other_order, "Your range is negative: the lower camera sees points higher, tan e_l - tan e_u."),
-            Mistake(_medians_apart, "Subtract match by match first: the two medians may belong to different features."),
             Mistake(
                 lambda e_u, e_l, baseline: float(baseline / np.median(np.abs(np.tan(e_l) - np.tan(e_u)))),
                 "A negative slope is a wrong match. Its absolute value makes it look right: take slopes as they are.",
-            ),
-            Mistake(
-                lambda e_u, e_l, baseline: float(baseline / np.median(np.tan(e_l - e_u))),
-                "You take the tangent of the difference. Take the difference of the two tangents.",
             ),
             Mistake(
                 lambda e_u, e_l, baseline: 1 / range_of(e_u, e_l, baseline),
@@ -511,6 +587,28 @@ EXERCISES = [
         level="challenge",
         cases=(_level_rays,),
         mistakes=(
+            *(
+                Mistake(
+                    lambda rho, e_u, e_l, baseline, sigma, share=share: (
+                        sigma**2 * (_by_curvature(rho, e_u, e_l, baseline) * share[0])
+                        + sigma**2 * (_by_tangent(rho, e_u, e_l, baseline) * share[1])
+                    ),
+                    "One of the two parts is off by a factor of two: a half of Taylor's series, or the 2 of 2 / s^3.",
+                )
+                for share in ((0.5, 1), (2, 1), (1, 0.5), (1, 2))
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: mean_error(rho, e_u, e_l, baseline, sigma) / rho,
+                "That is the share of the range. The task asks for metres.",
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: 0 * rho,
+                "Zero is the first order. The second does not cancel: B / slope bends.",
+            ),
+            Mistake(
+                lambda rho, e_u, e_l, baseline, sigma: mean_error(rho, e_u, e_l, 0.3, sigma),
+                "Your baseline is always 0.3 m: use the argument.",
+            ),
             Mistake(
                 lambda rho, e_u, e_l, baseline, sigma: sigma**2 * _by_curvature(rho, e_u, e_l, baseline),
                 "The slope is not even either: tan e bends, too. Its second derivative gives a second part.",
@@ -554,6 +652,6 @@ EXERCISES = [
                 "Too far is positive: measured minus true.",
             ),
         ),
-        tolerance=1e-9,
+        tolerance=5e-5,  # a second derivative taken numerically is right as well
     ),
 ]

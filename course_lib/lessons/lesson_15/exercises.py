@@ -413,6 +413,17 @@ EXERCISES = [
         cases=(_unlike_classes, lambda rng: (np.array([[0.3]]),), lambda rng: (np.array([[0.2, 0.5, 0.4]]),)),
         mistakes=(
             Mistake(
+                lambda cost: _matched(cost, margin=lambda *open_: -_to_next_best(*open_)),
+                "Your margins are negative: the next best minus the one taken, by how much it was *dearer*.",
+            ),
+            Mistake(
+                lambda cost: (
+                    match_with_margins(cost)[0],
+                    np.where(np.isinf(m := match_with_margins(cost)[1]), np.nan, m),
+                ),
+                "Where no other column was open the margin is inf. NaN is for rows without a column.",
+            ),
+            Mistake(
                 _each_row_its_own,
                 "Each row takes its own cheapest column, so one column may be taken twice. It must be one-to-one.",
             ),
@@ -508,6 +519,24 @@ EXERCISES = [
             lambda rng: (np.ones((6, 2)), 3),
         ),
         mistakes=(
+            Mistake(
+                _shift(lambda n, k, squares: k * squares / n / (n - k) ** 2),
+                "You add the hidden ones as if independent of each other. None is hidden twice: that ties them.",
+            ),
+            Mistake(
+                _shift(lambda n, k, squares: (k / (n - k)) ** 2 * squares / n),
+                "Yours lets all hidden ones lie on one side. They pull in different ways: their mean is nearer.",
+            ),
+            Mistake(
+                lambda places, n_hidden: centroid_shift(places, n_hidden) * np.sqrt(np.pi) / 2,
+                "That is a mean distance (of a round normal cloud). Asked is the root of the mean square.",
+            ),
+            Mistake(
+                lambda places, n_hidden: float(
+                    np.sqrt(n_hidden * np.sum(places**2) / (len(places) * (len(places) - 1) * (len(places) - n_hidden)))
+                ),
+                "You take the squares from the origin. It is the places about their centroid that count.",
+            ),
             Mistake(
                 _shift(lambda n, k, squares: squares / n / (n - k)),
                 "You draw as if with replacement. With nobody hidden yours still moves: no object is seen twice.",

@@ -109,6 +109,10 @@ def _sums_of(source, target):
     return a, b, *_sums(a, b)
 
 
+def _length(points: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(points, axis=1)
+
+
 def _uncentred(source, target):
     return float(np.hypot(*_sums(source, target)) / np.sum(source**2))
 
@@ -212,6 +216,10 @@ def _by_all_squares(source, target):
 
 def _squares_of_rest(fit, source, target, k):
     return np.sum(np.delete((fit.apply(source) - target) ** 2, k, axis=0))
+
+
+def _own_square(fit, source, target, k):
+    return np.sum((fit.apply(source[k : k + 1]) - target[k]) ** 2)
 
 
 # 16.4: the weighted fit
@@ -321,6 +329,29 @@ def _by_svd_without_sign(source, target, weights):
     return float(x), float(y), float(np.arctan2(turn[1, 0], turn[0, 0]))
 
 
+def _plain_centroids_for_the_place(source, target, weights):
+    theta = fit_weighted(source, target, weights)[2]
+    x, y = target.mean(axis=0) - _rotation(theta) @ source.mean(axis=0)
+    return float(x), float(y), theta
+
+
+def _centroids_not_divided(source, target, weights):
+    """The weighted sums divided by the number of pairs, not by the sum of the weights."""
+    s_g, m_g = (weights @ points / len(weights) for points in (source, target))
+    dot, cross = _sums(weights[:, None] * (source - s_g), target - m_g)
+    x, y = m_g - _rotation(float(np.arctan2(cross, dot))) @ s_g
+    return float(x), float(y), float(np.arctan2(cross, dot))
+
+
+def _points_times_weights(source, target, weights):
+    return fit_weighted(source * weights[:, None], target * weights[:, None], np.ones(len(weights)))
+
+
+def _without_zeros(source, target, weights):
+    """Pairs of weight 0 go, all others count alike."""
+    return fit_weighted(source, target, (weights > 0).astype(float))
+
+
 def _in_degrees(source, target, weights):
     x, y, theta = fit_weighted(source, target, weights)
     return x, y, float(np.rad2deg(theta))
@@ -376,6 +407,17 @@ def _two_points(rng: np.random.Generator) -> tuple:
     return source, 0.0, np.tile(0.04 * np.eye(2), (2, 1, 1))
 
 
+def _of_covariances(change: Callable) -> Callable:
+    """A mistake: right but for the covariances, each (2, 2) changed by `change`."""
+    return lambda source, theta, covariances: _sigmas(source, theta, np.array([change(c) for c in covariances]))
+
+
+def _along_instead_of_across(source, theta, covariances):
+    x, y, _ = pose_sigmas(source, theta, covariances)
+    a = source - source.mean(axis=0)
+    return x, y, float(np.sqrt(np.einsum("ni,nij,nj->", a, covariances, a)) / np.sum(a**2))
+
+
 def _averaged(covariances: np.ndarray) -> np.ndarray:
     """Round errors of the mean size of the needles."""
     size = np.trace(covariances, axis1=1, axis2=2).mean() / 2
@@ -400,6 +442,22 @@ EXERCISES = [
         level="warm-up",
         cases=(_one_point, lambda rng: (*_one_point(rng)[:2], np.pi), lambda rng: (*_points(rng), 0.0)),
         mistakes=(
+            Mistake(
+                _placed(lambda s, t, theta: t.mean() - _rotation(theta) @ s.mean(axis=0)),
+                "mean() without an axis is one number, of x and y together. The centroid is a point: mean(axis=0).",
+            ),
+            Mistake(
+                _placed(lambda s, t, theta: len(s) * _right_place(s, t, theta)),
+                "You add up what the pairs say. The centroids are means: divide by their number.",
+            ),
+            Mistake(
+                _placed(lambda s, t, theta: np.median(t - s @ _rotation(theta).T, axis=0)),
+                "Least squares asks for the mean of what the pairs say, not for their median.",
+            ),
+            Mistake(
+                _placed(lambda s, t, theta: -_right_place(s, t, theta)),
+                "Your place has the wrong sign: landmarks minus turned measurements, t = m_G - R s_G.",
+            ),
             Mistake(
                 _placed(lambda s, t, theta: t.mean(axis=0) - s.mean(axis=0)),
                 "The centroid of the source is in the body frame: turn it before you subtract it.",
@@ -444,6 +502,22 @@ EXERCISES = [
         inputs=_scaled_points,
         cases=(_mirrored_points, _points_on_a_line),
         mistakes=(
+            Mistake(
+                lambda source, target: 1 / fitted_scale(target, source),
+                "You fit the target to the source and turn that around. With noise it is another number.",
+            ),
+            Mistake(
+                lambda source, target: (lambda a, b, dot, cross: np.mean(_length(b) / _length(a)))(
+                    *_sums_of(source, target)
+                ),
+                "A mean of ratios trusts near points as much as far ones, and noise adds length. Use the sums C and S.",
+            ),
+            Mistake(
+                lambda source, target: (lambda a, b, dot, cross: _length(b).mean() / _length(a).mean())(
+                    *_sums_of(source, target)
+                ),
+                "A ratio of mean lengths counts noise as size. Use the sums of dot and cross products.",
+            ),
             Mistake(
                 _singular_values,
                 "A sum of singular values lets a mirror fit. With a negative determinant the last one counts minus.",
@@ -518,6 +592,10 @@ EXERCISES = [
             _where_they_differ(_worst_left_out, _by_all_squares),
         ),
         mistakes=(
+            Mistake(
+                _without(_own_square, lambda values: int(np.argmax(values))),
+                "You take the pair that is farthest off the fit of the others. Asked is how well these others fit.",
+            ),
             Mistake(_best_by(np.sum), "You add the lengths of the residuals. Asked is the sum of their squares."),
             Mistake(_best_by(np.max), "You take the largest residual left. Asked is the sum of all the squares."),
             Mistake(_best_by(np.median), "You take the median of what is left. Asked is the sum of all the squares."),
@@ -567,6 +645,26 @@ EXERCISES = [
             _wall_that_looks_mirrored,
         ),
         mistakes=(
+            Mistake(
+                _plain_centroids_for_the_place,
+                "The heading is right. The place needs the *weighted* centroids as well: t = m_G - R s_G.",
+            ),
+            Mistake(
+                _centroids_not_divided,
+                "A weighted centroid is the weighted sum divided by the sum of the *weights*, not by n.",
+            ),
+            Mistake(
+                _points_times_weights,
+                "You multiply the points by their weights, which moves them. Weigh the squares, not the places.",
+            ),
+            Mistake(
+                _without_zeros,
+                "You leave out pairs of weight 0 and count all others alike: the other weights matter, too.",
+            ),
+            Mistake(
+                lambda source, target, weights: fit_weighted(source, target, 1 / np.maximum(weights, 1e-9)),
+                "You divide by the weights. A large weight means: count this pair more.",
+            ),
             Mistake(
                 lambda source, target, weights: fit_weighted(source, target, np.ones(len(source))),
                 "Your fit counts every pair alike: the weights are not used.",
@@ -650,6 +748,22 @@ EXERCISES = [
             _two_points,
         ),
         mistakes=(
+            Mistake(
+                _of_covariances(lambda c: np.diag(np.diag(c))),
+                "You use the variances alone. A needle's x and y err together: take the whole matrix.",
+            ),
+            Mistake(
+                _of_covariances(lambda c: np.trace(c) / 2 * np.eye(2)),
+                "You make each needle round. Which way it points decides how much it turns the fit.",
+            ),
+            Mistake(
+                _along_instead_of_across,
+                "Your heading takes the errors *along* the line to the centroid. Only those across it turn the fit.",
+            ),
+            Mistake(
+                lambda source, theta, covariances: pose_sigmas(source, -theta, covariances),
+                "You turn by -theta from the body to the world: check the signs in R.",
+            ),
             Mistake(
                 lambda source, theta, covariances: pose_sigmas(source, theta, _averaged(covariances)),
                 "You take all errors for round and alike. Only the part across the line to the centroid turns the fit.",

@@ -299,7 +299,74 @@ def by_median(upper, lower):
 
 
 # Exercise, answer, words of the hint that must come.
+def stretch_without_the_seam(around, width):
+    k = np.diff(around).argmax()
+    return around[k + 1], around[k] + width
+
+
+def from_two_points(before, after, width, height):
+    """The first two points alone; roll, pitch, yaw."""
+    first, then = points_that_moved(before[:2], after[:2], width, height)
+    rows = np.concatenate([np.stack([np.cross(axis, d) for axis in np.eye(3)], axis=-1) for d in then])
+    return np.degrees(np.linalg.lstsq(rows, (first - then).ravel(), rcond=None)[0])
+
+
+def best_of_three_products(a, b, w):
+    """Lengths multiplied before they are cut off at 0."""
+    shared = max((min(a[2], b[2] + t) - max(a[0], b[0] + t)) * (min(a[3], b[3]) - max(a[1], b[1])) for t in (-w, 0, w))
+    areas = [(box[2] - box[0]) * (box[3] - box[1]) for box in (a, b)]
+    return max(shared, 0) / (sum(areas) - max(shared, 0))
+
+
+def box_after_box(scores, right, least):
+    """Running sums in the order of the scores: equal ones are cut apart."""
+    order = np.argsort(-scores)
+    k, n = np.cumsum(right[order]), np.arange(1, len(scores) + 1)
+    good = np.flatnonzero([wilson(hits, of) >= least for hits, of in zip(k, n, strict=True)])
+    return scores[order][good[-1]] if len(good) else np.inf
+
+
+def all_equal_counts_out(counts):
+    counts, found = counts.astype(float), np.full(len(counts), -1)
+    while counts.max() > 0:
+        places = np.argwhere(counts == counts.max())
+        if len(places) == 1:
+            found[places[0, 0]] = places[0, 1]
+        for i, j in places:
+            counts[i], counts[:, j] = -1, -1
+    return found
+
+
+def with_b_cross_x(up, low, b):
+    """The normal b x x_upper, not of length one; the halves are right."""
+    ahead = up - np.outer(up @ b, b)
+    beside = np.arcsin(np.clip(np.abs(np.sum(np.cross(b, up) * low, axis=1)), 0, 1))
+    return np.where(np.sum(ahead * low, axis=1) < 0, np.arccos(np.clip(np.abs(low @ b), 0, 1)), beside)
+
+
+def along_the_slanted_ray(v, rho, b, h):
+    e = (0.5 - v / h) * PI
+    return (0.5 - np.arctan2(rho * np.sin(e) + b, rho * np.cos(e)) / PI) * h
+
+
 WRONG = [
+    ("11.2", two_ifs, "more than one turn apart"),
+    (
+        "11.3",
+        lambda c, w: stretch_without_the_seam(np.sort(c), w) if len(c) > 1 else (c[0], c[0]),
+        "from the last point across the seam",
+    ),
+    ("11.4", from_two_points, "the first points only"),
+    ("12.1", lambda b, w, s: (b[:, 0] + b[:, 2] / 2 >= s) & (b[:, 0] + b[:, 2] / 2 < s + w), "not its width"),
+    ("12.1", lambda b, w, s: ((b[:, 0] + b[:, 2]) // 2 >= s) & ((b[:, 0] + b[:, 2]) // 2 < s + w), "half columns"),
+    ("12.2", best_of_three_products, "two negative lengths"),
+    ("12.4", box_after_box, "equal scores stay or go together"),
+    ("12.4", lambda s, r, least: (thresholds(s, r, least, lambda k, n: wilson(k, n, 1.645)) or [np.inf])[0], "90 %"),
+    ("13.1", along_the_slanted_ray, "along the slanted ray"),
+    ("13.2", with_b_cross_x, "make it a unit vector"),
+    ("13.3", all_equal_counts_out, "nobody has to choose"),
+    ("13.4", lambda u, x: (by_histogram(u, x)[0], 1.96 * by_histogram(u, x)[1]), "no 95 % interval"),
+    ("13.4", lambda u, x: (by_histogram(u, x)[0], by_histogram(u, x)[1] * 0.72), "did wrong matches help"),
     ("11.1", lambda c, r, w, h: look(-2 * PI * min(max(c + 0.5, 0), w) / w, PI / 2 - PI * (r + 0.5) / h), "Right on"),
     ("11.1", lambda c, r, w, h: look(2 * PI * (c + 0.5) / w, PI / 2 - PI * (r + 0.5) / h), "Mirrored"),
     ("11.1", lambda c, r, w, h: look(-2 * PI * c / w, PI / 2 - PI * r / h), "the middle of a pixel"),
@@ -383,7 +450,6 @@ RIGHT = [
     ),
     ("11.2", lambda a, b, w: np.degrees(wrap_angle((a - b) / w * 2 * PI))),
     ("11.2", turned_until_it_fits),
-    ("11.2", two_ifs),
     ("11.2", lambda a, b, w: (180 - gap_deg(b, a, w)) % 360 - 180),
     ("11.2", lambda a, b, w: np.array([((a - b) % w + w / 2) % w - w / 2]) / w * 360),
     ("11.3", stretch_by_trying),

@@ -367,7 +367,71 @@ def given_row(found, true, unable_leave=False, circle=False, lengths=False):
 
 
 # Exercise, answer, words of the hint that must come.
+def fit_with_plain_place(source, target, weights):
+    """The heading with weights, the place from plain centroids."""
+    share = weights / weights.sum()
+    a, b = source - share @ source, target - share @ target
+    theta = np.arctan2(weights @ (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), weights @ np.sum(a * b, axis=1))
+    turn = np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
+    x, y = target.mean(axis=0) - turn @ source.mean(axis=0)
+    return x, y, theta
+
+
+def farthest_off_the_others(source, target):
+    off = []
+    for k in range(len(source)):
+        fit = fit_rigid_2d(np.delete(source, k, axis=0), np.delete(target, k, axis=0))
+        off.append(np.linalg.norm(fit.apply(source[k : k + 1]) - target[k]))
+    return np.argmax(off)
+
+
+def scale_turned_around(source, target):
+    """The target fitted to the source, and the scale's inverse."""
+    a, b = (points - points.mean(axis=0) for points in (source, target))
+    return np.sum(b**2) / np.hypot(np.sum(a * b), np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]))
+
+
+def mean_error_by_differences(rho, u, e, b, sigma):
+    """Second derivatives taken numerically."""
+
+    def range_of(u, e):
+        return b / (np.tan(e) - np.tan(u))
+
+    h = 1e-4
+    second = range_of(u + h, e) + range_of(u - h, e) + range_of(u, e + h) + range_of(u, e - h) - 4 * range_of(u, e)
+    return sigma**2 / 2 * second / h**2
+
+
+def row_sigma(rho, u, e, b, s):
+    return rho**2 / b * s * np.hypot(1 / np.cos(u) ** 2, 1 / np.cos(e) ** 2)
+
+
+def with_d_on_the_floor(u, lower, width, baseline):
+    e_u, e_l = elevation(u, width), elevation(lower, width)
+    d, a = baseline * np.cos(e_l) / np.sin(e_l - e_u), azimuth(u, width)
+    return [d * np.cos(a), d * np.sin(a), d * np.tan(e_u)]
+
+
 WRONG = [
+    ("14.1", with_d_on_the_floor, "along the floor"),
+    ("14.2", lambda rho, u, e, b, s, sb: np.hypot(row_sigma(rho, u, e, b, s), (rho / b) ** 2 * sb), "proportional"),
+    ("14.3", lambda u, e, b: np.nan if (e < u).all() else b / np.mean(slope(u, e)), "spoils a mean"),
+    (
+        "14.3",
+        lambda u, e, b: np.nan if (e < u).all() else np.median(b * np.cos(e) / np.sin(e - u)),
+        "along the slanted ray",
+    ),
+    ("14.3", lambda u, e, b: np.nan if (e < u).any() else b / np.median(slope(u, e)), "as soon as one match"),
+    ("14.4", lambda rho, u, e, b, s: mean_error_by_differences(rho, u, e, b, s) / rho, "share of the range"),
+    (
+        "15.4",
+        lambda p, k: np.sqrt(k * np.sum((p - p.mean(axis=0)) ** 2) / len(p)) / (len(p) - k),
+        "None is hidden twice",
+    ),
+    ("16.2", scale_turned_around, "turn that around"),
+    ("16.3", farthest_off_the_others, "farthest off the fit of the others"),
+    ("16.4", fit_with_plain_place, "*weighted* centroids"),
+    ("16.4", lambda s, t, w: tuple(fit_rigid_2d(s[w > 0], t[w > 0])), "count all others alike"),
     ("14.1", lambda u, low, w, b: place(u, low, w, 0.3), "always 0.3 m"),
     ("14.1", lambda u, low, w, b: place(u, low, w, b)[:2], "shape (3,); yours has (2,)"),
     (
@@ -474,6 +538,7 @@ WRONG = [
 ]
 # Exercise, answer by another way than the solution.
 RIGHT = [
+    ("14.4", mean_error_by_differences),
     ("14.1", place),
     ("14.1", place_single),
     ("14.2", sigma),
