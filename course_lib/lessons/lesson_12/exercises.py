@@ -550,6 +550,12 @@ EXERCISES = [
             lambda rng: _squares([0, 30], [1, 1], [0.2, 0.3], 0.5, 0.4),  # nothing is good enough
             lambda rng: _squares([30, 0, 60], [1, 1, 1], [0.5, 0.7, 0.6], 0.1, 0.4),
             lambda rng: (np.zeros((0, 4)), np.zeros((0, 3)), 0.5, 0.4),  # no answer at all
+            lambda rng: (
+                _SQUARE + np.zeros((2, 1)),
+                np.array([[0.9, 0.1], [0.7, 0.6]]),
+                0.5,
+                0.4,
+            ),  # two likely classes
         ),
         mistakes=(
             Mistake(

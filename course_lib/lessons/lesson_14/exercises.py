@@ -206,6 +206,13 @@ def _one_match_is_far_off(rng: np.random.Generator) -> tuple:
     return _matches_with(rng, 5, 1, lambda size: rng.uniform(0.5, 0.6, size))
 
 
+def _stranger_first(rng: np.random.Generator) -> tuple:
+    """The match on something else comes first in the list."""
+    e_u, e_l, baseline = _one_match_is_far_off(rng)
+    order = np.argsort(e_u - e_l)
+    return e_u[order], e_l[order], baseline
+
+
 def _images_swapped(rng: np.random.Generator) -> tuple:
     """Every match diverges, as when the upper image is taken for the lower: there is no range."""
     e_u, e_l, baseline = _matches_with(rng, 8, 0, lambda size: np.zeros(size))
@@ -542,7 +549,7 @@ EXERCISES = [
         reference=range_of,
         inputs=_matches,
         verify=refuses_range,
-        cases=(_one_match_is_far_off, _images_swapped, lambda rng: _matches_with(rng, 9, 0, np.zeros)),
+        cases=(_one_match_is_far_off, _stranger_first, _images_swapped, lambda rng: _matches_with(rng, 9, 0, np.zeros)),
         mistakes=(
             *(
                 Mistake(guarded(range_from), why)
