@@ -554,7 +554,7 @@ EXERCISES = [
             ),
             Mistake(
                 lambda bins, least: draws_needed(bins, least) if _reached(bins, least) else -1,
-                "Where the draws run out yours says -1. Then all T were made: return T.",
+                "Where the draws run out yours says -1. Then all T were made: the answer is T.",
             ),
             Mistake(
                 _sampling(lambda n, seen, least, bins: n >= min(3_000, _bound(len(seen), least))),

@@ -785,7 +785,7 @@ EXERCISES = [
             ),
             Mistake(
                 lambda places, landmarks: tuple(np.nan_to_num(fit_pose(places, landmarks))),
-                "Where there is no pose return NaN three times: (0, 0, 0) is a place.",
+                "Where there is no pose the answer is NaN three times: (0, 0, 0) is a place.",
             ),
             Mistake(
                 _mistaken_fit(turn=_half_turns),

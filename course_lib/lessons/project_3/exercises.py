@@ -444,6 +444,14 @@ def _no_pose(rng: np.random.Generator) -> tuple:
     return np.zeros((0, 3)), np.zeros(0), 5.0
 
 
+def _far_and_looking_alike(rng: np.random.Generator) -> tuple:
+    """A rival elsewhere with the same heading, one at the same place turned round, and both at once."""
+    best = np.array([*rng.uniform(1, 3, 2), rng.uniform(-3, 3)])
+    poses = best + np.array([[0, 0, 0], [2, 0, 0], [0, 0, 2], [2, 1, 1]])
+    poses[:, 2] = wrap_angle(poses[:, 2])
+    return poses, np.array([10.0, 9.0, 8.0, 7.0]), 4.0
+
+
 def _one_answer(rng: np.random.Generator) -> tuple:
     poses = np.array([[2.0, 2.0, 3.12], [2.1, 2.0, -3.13]])
     return poses, np.array([9.0, 8.5]), 6.0
@@ -637,7 +645,7 @@ EXERCISES = [
         number="P3.5",
         reference=confidence,
         inputs=_scored_poses,
-        cases=(_high_scores, _far_below_nothing, _no_pose, _one_answer),
+        cases=(_high_scores, _far_below_nothing, _no_pose, _one_answer, _far_and_looking_alike),
         mistakes=(
             Mistake(
                 _mistaken_confidence(another=_all_but_itself),
