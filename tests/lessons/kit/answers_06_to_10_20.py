@@ -147,7 +147,6 @@ WRONG = [
     ("09.1", lambda n, d, k: n ** (1 / k), "the *old* one"),
     ("09.2", lambda rot, w: by_vectors(rot, w).T, "transposed"),
     ("09.2", lambda rot, w: rotation_exp(w @ rotation_log(rot[0].T @ rot)), "first step alone"),
-    ("09.2", lambda rot, w: rot[w.argmax()], "Right on"),
     ("09.3", lambda e, c: (first(e, c), np.mean(e**2 <= 3 * sigma(c) ** 2)), "nine variances"),
     ("09.3", lambda e, c: (first(e, c), np.sum(abs(e) <= 3 * sigma(c))), "divided by their number"),
     ("09.3", lambda e, c: (first(e, c[:1] * 0 + c.mean(0)), np.mean(abs(e) <= 3 * sigma(c))), "one mean covariance"),
