@@ -195,7 +195,7 @@ def test_a_time_out_that_is_none_is_refused(seconds):
         refresh.run(argparse.Namespace(lessons=["03"], cell_timeout=seconds))
 
 
-def test_only_addresses_and_kernel_paths_are_sanitized():
+def test_only_addresses_kernel_paths_and_where_a_scene_lies_are_sanitized():
     lines = [line for line in SANITIZE.read_text().splitlines() if line and not line.startswith("#")]
-    assert [line for line in lines if line.startswith("[")] == ["[picture]", "[address]", "[kernel-path]"]
-    assert len(lines) == 9
+    assert [line for line in lines if line.startswith("[")] == ["[picture]", "[address]", "[scene]", "[kernel-path]"]
+    assert len(lines) == 12
