@@ -1,0 +1,198 @@
+"""The one way to read what a user hands over: bounded before memory is taken, and every error has a name.
+
+Each reader takes `what` the file is ("depth image"), for the message, and the `error` that its caller raises; a message
+says which file, what was found and what was expected. A missing file is the caller's error too, unless `missing` names
+another one.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import struct
+from pathlib import Path
+from typing import NamedTuple, NoReturn
+
+import numpy as np
+
+MEGABYTE = 1_000_000
+
+MOST_TEXT = 64 * MEGABYTE
+"""Bytes of a text or JSON file: 500,000 rows of poses are 40 MB."""
+
+MOST_BYTES = 2_000 * MEGABYTE
+"""Bytes of any file: a scanned building of 40 million triangles."""
+
+MOST_PIXELS = 100_000_000
+"""Pixels of an image: a panorama of 14,000 x 7,000. A bomb of 0.8 MB held four times as many, and took 3.4 GB."""
+
+MOST_LEVELS = 50
+"""Lists and objects inside each other in JSON; our own formats have four."""
+
+
+def read_bytes(
+    path: str | Path,
+    what: str,
+    error: type[Exception],
+    most: int = MOST_BYTES,
+    missing: type[Exception] | None = None,
+) -> bytes:
+    """Everything in a file, at most `most` bytes. A pipe or device, which may never end, is refused."""
+    path = Path(path)
+    require_file(path, what, missing or error)
+    try:
+        if (size := path.stat().st_size) > most:
+            raise error(f"{what} {path} has {size / MEGABYTE:,.0f} MB; at most {most / MEGABYTE:,.0f} MB are read")
+        return path.read_bytes()
+    except OSError as reason:
+        raise error(f"{what} {path} cannot be read: {reason.strerror}") from reason
+
+
+def require_file(path: Path, what: str, error: type[Exception]) -> None:
+    """Raises `error` unless `path` is a file that can be read."""
+    try:
+        if path.is_file():
+            return
+        kind = "is a folder" if path.is_dir() else "is no plain file" if path.exists() else "is missing"
+    except (OSError, ValueError) as reason:  # a name that is too long, or holds a zero byte
+        raise error(f"{what} {str(path)!r} cannot be opened: {reason}") from reason
+    raise error(f"{what} {path} {kind}: give the path of an existing file")
+
+
+def read_text(
+    path: str | Path,
+    what: str,
+    error: type[Exception],
+    most: int = MOST_TEXT,
+    missing: type[Exception] | None = None,
+) -> str:
+    """The text of a UTF-8 file, with or without a byte order mark, with the line ends of any system."""
+    data = read_bytes(path, what, error, most, missing)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as reason:
+        line = data[: reason.start].count(b"\n") + 1
+        raise error(
+            f"{what} {path} is not UTF-8 text: byte {data[reason.start]:#04x} in line {line}. Was another file given "
+            "in its place? If not, save it as UTF-8"
+        ) from None
+    if "\0" in text:
+        line = text[: text.index("\0")].count("\n") + 1
+        raise error(f"{what} {path} is not text: a zero byte in line {line}")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_json(
+    path: str | Path,
+    what: str,
+    error: type[Exception],
+    most: int = MOST_TEXT,
+    missing: type[Exception] | None = None,
+) -> object:
+    """What a JSON file holds: numbers finite, no name twice in one object, at most `MOST_LEVELS` levels."""
+    text = read_text(path, what, error, most, missing)
+
+    def refuse(reason: str) -> NoReturn:
+        raise error(f"{what} {path} {reason}")
+
+    def constant(name: str) -> NoReturn:
+        refuse(f"holds {name}, which is no JSON number; what is not known is written null")
+
+    def number(digits: str) -> float:
+        value = float(digits)
+        return value if math.isfinite(value) else refuse(f"holds the number {digits[:20]}, which is too large")
+
+    def members(pairs: list[tuple[str, object]]) -> dict[str, object]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            names = [name for name, _ in pairs]
+            twice = next(name for name in names if names.count(name) > 1)
+            refuse(f"has {twice!r} twice in one object: which one is meant?")
+        return found
+
+    if (levels := _levels(text)) > MOST_LEVELS:
+        refuse(f"has {levels} levels of lists and objects inside each other; at most {MOST_LEVELS} are read")
+    try:
+        return json.loads(text, parse_constant=constant, parse_float=number, object_pairs_hook=members)
+    except json.JSONDecodeError as reason:
+        refuse(f"is not JSON: line {reason.lineno}, column {reason.colno}: {reason.msg}")
+    except error:
+        raise
+    except ValueError as reason:  # a whole number of thousands of digits
+        refuse(f"is not JSON that can be read: {reason}")
+
+
+def _levels(text: str) -> int:
+    """How deep lists and objects are nested in a JSON text; brackets inside strings do not count."""
+    deepest = level = 0
+    for bracket in re.findall(r'"(?:[^"\\]|\\.)*"|[\[\]{}]', text):
+        if bracket in "[{":
+            level += 1
+            deepest = max(deepest, level)
+        elif bracket in "]}":
+            level -= 1
+    return deepest
+
+
+class ImageHeader(NamedTuple):
+    """What an image file says of itself before it is unpacked."""
+
+    kind: str
+    """"PNG" or "JPEG"."""
+    width: int
+    height: int
+    frames: int
+    """More than one for an animated PNG."""
+
+
+def read_image(
+    path: str | Path,
+    what: str,
+    error: type[Exception],
+    kinds: tuple[str, ...] = ("PNG", "JPEG"),
+    missing: type[Exception] | None = None,
+) -> np.ndarray:
+    """The pixels of a PNG or JPEG, as they are stored (OpenCV's order, BGR); at most `MOST_PIXELS` of them."""
+    import cv2
+
+    data = read_bytes(path, what, error, missing=missing)
+    header = image_header(data)
+    expected = " or ".join(kinds)
+    if header is None or header.kind not in kinds:
+        found = f"is a {header.kind}" if header else f"begins with {data[:8]!r}" if data else "is empty, not complete"
+        raise error(f"{what} {path} {found}; {expected} is expected")
+    if header.width * header.height > MOST_PIXELS:
+        size = f"{header.width} x {header.height} pixels"
+        raise error(f"{what} {path} has {size}; at most {MOST_PIXELS / 1e6:.0f} million are read")
+    if header.frames > 1:
+        raise error(f"{what} {path} is animated ({header.frames} frames); one picture is expected")
+    try:
+        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+    except cv2.error as reason:
+        raise error(f"{what} {path} cannot be read as a {header.kind}: {reason.err}") from None
+    if image is None:
+        raise error(f"{what} {path} cannot be read as a {header.kind}: is it complete?")
+    return image
+
+
+def image_header(data: bytes) -> ImageHeader | None:
+    """Kind and size of a PNG or JPEG from its first bytes; None for anything else.
+
+    Sources: PNG specification, section 11.2.2 (IHDR); ITU-T T.81, section B.2.2 (frame header).
+    """
+    if data[:8] == b"\x89PNG\r\n\x1a\n" and data[12:16] == b"IHDR" and len(data) >= 33:
+        width, height = struct.unpack(">II", data[16:24])
+        control = data.find(b"acTL", 33, 1 << 16)  # of an animated PNG
+        frames = struct.unpack(">I", data[control + 4 : control + 8])[0] if 0 < control <= len(data) - 8 else 1
+        return ImageHeader("PNG", width, height, frames)
+    if data[:3] != b"\xff\xd8\xff":
+        return None
+    at = 2
+    while at + 9 <= len(data) and data[at] == 0xFF:
+        marker, length = data[at + 1], int.from_bytes(data[at + 2 : at + 4], "big")
+        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
+            height, width = struct.unpack(">HH", data[at + 5 : at + 9])
+            return ImageHeader("JPEG", width, height, 1)
+        at += 1 if marker == 0xFF else 2 + length
+    return None

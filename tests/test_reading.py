@@ -1,0 +1,150 @@
+"""What a user hands over is bounded before memory is taken, and every fault of it is named."""
+
+import json
+import os
+import struct
+import zlib
+
+import cv2
+import numpy as np
+import pytest
+
+from course_lib import reading
+from course_lib.reading import image_header, read_bytes, read_image, read_json, read_text
+
+
+class AskedError(ValueError):
+    """What the caller asked to be raised."""
+
+
+def png(width, height, extra=b""):
+    """A PNG that announces a size and holds one row."""
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    head = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0))
+    return (
+        b"\x89PNG\r\n\x1a\n" + head + extra + chunk(b"IDAT", zlib.compress(b"\0" * (width + 1))) + chunk(b"IEND", b"")
+    )
+
+
+def test_text_with_and_without_a_mark_and_with_any_line_end_is_the_same(tmp_path):
+    for data in (b"sofa\nchair\n", b"\xef\xbb\xbfsofa\r\nchair\r\n", b"sofa\rchair\r"):
+        (tmp_path / "a").write_bytes(data)
+        assert read_text(tmp_path / "a", "names", AskedError) == "sofa\nchair\n"
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"sofa\nch\xe4ir", "names .*a is not UTF-8 text: byte 0xe4 in line 2"),
+        (b"sofa\nch\0ir", "zero byte in line 2"),
+        ("sofa".encode("utf-16"), "not UTF-8 text: byte 0xff in line 1"),
+    ],
+)
+def test_what_is_no_text_is_named_with_its_line(tmp_path, data, said):
+    (tmp_path / "a").write_bytes(data)
+    with pytest.raises(AskedError, match=said):
+        read_text(tmp_path / "a", "names", AskedError)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "line 1, column 1"),
+        ('{"a": 1,\n "b" 2}', "line 2, column 6"),
+        ("[" * 100_000, "100000 levels"),
+        ("[" * 51 + "]" * 51, "51 levels"),
+        ('{"a": NaN}', "holds NaN"),
+        ('{"a": 1e999}', "1e999, which is too large"),
+        ('{"a": 1, "a": 2}', "'a' twice"),
+        ('{"a": ' + "9" * 5000 + "}", "not JSON that can be read"),
+    ],
+)
+def test_json_that_cannot_be_meant_is_named(tmp_path, text, said):
+    (tmp_path / "a.json").write_text(text)
+    with pytest.raises(AskedError, match=said):
+        read_json(tmp_path / "a.json", "map", AskedError)
+
+
+def test_brackets_in_a_text_are_no_levels(tmp_path):
+    content = {"name": "[{" * 1000 + '"\\', "rows": [[1.5, None, True]]}
+    (tmp_path / "a.json").write_text(json.dumps(content))
+    assert read_json(tmp_path / "a.json", "map", AskedError) == content
+
+
+def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path, monkeypatch):
+    with (tmp_path / "a").open("wb") as file:
+        file.truncate(reading.MOST_TEXT + 1)
+    with pytest.raises(AskedError, match="has 64 MB; at most 64 MB"):
+        read_text(tmp_path / "a", "names", AskedError)
+    with (tmp_path / "a").open("wb") as file:
+        file.truncate(5_000_000_000)  # a hole: it takes no room on the disk
+    with pytest.raises(AskedError, match="has 5,000 MB; at most 2,000 MB"):
+        read_bytes(tmp_path / "a", "map", AskedError)
+
+
+def test_what_is_no_file_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"map .*none is missing"):
+        read_bytes(tmp_path / "none", "map", AskedError, missing=FileNotFoundError)
+    with pytest.raises(AskedError, match="is a folder"):
+        read_bytes(tmp_path, "map", AskedError)
+    for name in ("a" * 5000, "a\0b"):
+        with pytest.raises(AskedError, match="map"):
+            read_bytes(tmp_path / name, "map", AskedError)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="named pipes of POSIX")
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(AskedError, match="no plain file"):
+        read_bytes(tmp_path / "pipe", "map", AskedError)
+
+
+def test_an_image_bomb_is_refused_by_its_header(tmp_path):
+    (tmp_path / "a.png").write_bytes(png(20_000, 20_000))
+    with pytest.raises(AskedError, match="20000 x 20000 pixels; at most 100 million"):
+        read_image(tmp_path / "a.png", "depth image", AskedError)
+
+
+def test_an_animated_png_is_refused(tmp_path):
+    control = struct.pack(">II", 3, 0)
+    chunk = struct.pack(">I", 8) + b"acTL" + control + struct.pack(">I", zlib.crc32(b"acTL" + control))
+    (tmp_path / "a.png").write_bytes(png(4, 1, extra=chunk))
+    with pytest.raises(AskedError, match=r"animated .3 frames"):
+        read_image(tmp_path / "a.png", "depth image", AskedError)
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [(b"", "is empty"), (b"BM" + b"\0" * 60, "begins with b'BM"), (png(4, 4)[:40], "complete"), (b"\x89PNG", "begins")],
+)
+def test_what_is_no_image_is_named(tmp_path, data, said):
+    (tmp_path / "a.png").write_bytes(data)
+    with pytest.raises(AskedError, match=said):
+        read_image(tmp_path / "a.png", "depth image", AskedError)
+
+
+def test_another_kind_of_image_is_named(tmp_path):
+    (tmp_path / "a.png").write_bytes(cv2.imencode(".jpg", np.zeros((4, 8, 3), np.uint8))[1].tobytes())
+    with pytest.raises(AskedError, match="is a JPEG; PNG is expected"):
+        read_image(tmp_path / "a.png", "depth image", AskedError, kinds=("PNG",))
+
+
+@pytest.mark.parametrize("size", [(1, 1), (640, 320), (65, 999)])
+@pytest.mark.parametrize("ending", [".png", ".jpg"])
+def test_headers_say_the_size_that_is_then_unpacked(tmp_path, rng, size, ending):
+    image = rng.integers(0, 255, (size[1], size[0], 3), dtype=np.uint8)
+    data = cv2.imencode(ending, image)[1].tobytes()
+    (tmp_path / "a").write_bytes(data)
+    header = image_header(data)
+    assert (header.width, header.height, header.frames) == (*size, 1)
+    assert read_image(tmp_path / "a", "image", AskedError).shape == image.shape
+
+
+def test_a_progressive_jpeg_with_a_comment_has_its_size():
+    image = np.zeros((30, 60, 3), np.uint8)
+    data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_PROGRESSIVE, 1])[1].tobytes()
+    commented = data[:2] + b"\xff\xfe" + struct.pack(">H", 9) + b"comment" + data[2:]
+    assert image_header(commented) == ("JPEG", 60, 30, 1)
