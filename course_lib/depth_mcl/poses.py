@@ -5,12 +5,14 @@ Matrices are camera-to-world in the optical convention (x right, y down, z forwa
 
 from __future__ import annotations
 
+import re
 import warnings
 from pathlib import Path
 
 import numpy as np
 
 from course_lib.geometry import is_rotation, rotation_mean
+from course_lib.reading import read_text
 
 
 class SequenceError(ValueError):
@@ -90,15 +92,21 @@ def _nearest_rigid(poses: np.ndarray) -> np.ndarray:
 
 
 def read_numbers(path: Path) -> np.ndarray:
-    """Rows of numbers `(rows, columns)`, finite, from a text file; `SequenceError` for anything else in it."""
-    if not path.is_file():
-        raise FileNotFoundError(f"no file {path}")
+    """Rows of numbers `(rows, columns)`, finite, from a text file; `SequenceError` for anything else in it.
+
+    A first line such as "# x y z, metres; 214 rows" announces how many there are: a file that was cut off is noticed.
+    """
+    text = read_text(path, "file", SequenceError, missing=FileNotFoundError)
+    lines = text.splitlines()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # of an empty file, which gets an error below
-            numbers = np.loadtxt(path, dtype=np.float64, ndmin=2)
+            numbers = np.loadtxt(lines, dtype=np.float64, ndmin=2)
     except ValueError as error:
         raise SequenceError(f"{path} must hold rows of numbers, all of one length: {error}") from error
+    announced = re.match(r"#.*\b(\d+) rows$", lines[0]) if lines else None
+    if announced and (int(announced[1]) != len(numbers) or not text.endswith("\n")):
+        raise SequenceError(f"{path} announces {announced[1]} rows and holds {len(numbers)}: it is not complete")
     if numbers.size == 0 or not np.isfinite(numbers).all():
         raise SequenceError(f"{path} is empty or holds values that are not finite")
     return numbers

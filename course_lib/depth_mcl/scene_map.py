@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import re
+import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import trimesh
 
+from course_lib.depth_mcl.mesh_file import read_mesh
 from course_lib.geometry import is_rotation
 
 # Below this area (square metres) a triangle has no inside that a pixel centre could hit.
@@ -16,6 +18,17 @@ _DEGENERATE_AREA = 1e-16
 # No place on Earth lies farther than this many metres, half its circumference, from where a map could have its zero.
 MAX_COORDINATE = 2e7
 
+# Nor is any part of a building farther than this many metres from its middle.
+MAX_DISTANCE = 5000.0
+
+# A building that is larger than this many metres in all three directions is doubtful; so is a part this far away.
+LARGEST_BUILDING = 200.0
+
+_CURE = "To leave such triangles out: SceneMap.load(path, drop_far=True), or `localize --drop-far`"
+
+# Metres between neighbouring numbers above which a file's single precision is worth a warning.
+COARSE = 1.5e-3
+
 # Metres between the points that coordinates are taken from (`SceneMap.anchor`). Drawn 0.7 km from it a wall is wrong by
 # 1 mm, at 80 m by 0.1 mm.
 _ANCHOR_STEP = 100.0
@@ -23,6 +36,10 @@ _ANCHOR_STEP = 100.0
 
 class SceneMapError(ValueError):
     """A map that cannot be used: unreadable, empty, or with values that are no geometry."""
+
+
+class SceneMapWarning(UserWarning):
+    """A map that can be used, but looks as if it were not meant so."""
 
 
 class SceneMap:
@@ -68,37 +85,23 @@ class SceneMap:
             array.setflags(write=False)
 
     @classmethod
-    def load(cls, path: str | Path) -> SceneMap:
+    def load(cls, path: str | Path, drop_far: bool = False) -> SceneMap:
         """Map from any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
 
-        Raises `FileNotFoundError` where there is no file, `SceneMapError` where it cannot be read, holds no triangles,
-        or fewer than its own header announces (PLY, OFF; an OBJ file has no header, so a truncated one goes unnoticed).
+        drop_far: triangles farther than `MAX_DISTANCE` from the middle of the map are left out; else they are an error.
+        Warns (`SceneMapWarning`) of what looks like millimetres, like a stray part, or like coordinates that the file
+        holds too coarsely. Raises `FileNotFoundError` where there is no file, `SceneMapError` where it cannot be read,
+        holds no triangles, or fewer than its own header announces (PLY, OFF, STL, GLB; an OBJ file has no header, so
+        one that was cut off at the end of a line goes unnoticed).
         """
-        path = Path(path)
-        if not path.is_file():
-            raise FileNotFoundError(f"no map at {path}: give the path of a mesh file (PLY, OBJ, STL or GLB)")
+        vertices, faces = read_mesh(path, SceneMapError)
         try:
-            mesh = trimesh.load(path, process=False)
-            if isinstance(mesh, trimesh.Scene):
-                mesh = mesh.to_mesh() if mesh.geometry else None
-            vertices = getattr(mesh, "vertices", np.empty((0, 3)))
-            faces = getattr(mesh, "faces", np.empty((0, 3), dtype=np.int32))
-        except Exception as error:  # trimesh's readers raise whatever their parsing stumbles on
-            raise SceneMapError(
-                f"{path} cannot be read as a mesh ({type(error).__name__}: {error}): is it complete, and PLY, OBJ, STL "
-                "or GLB?"
-            ) from error
-        if len(vertices) == 0:
-            raise SceneMapError(f"{path} holds neither vertices nor triangles: is the file complete?")
-        if faces is None or len(faces) == 0:
-            raise SceneMapError(f"{path} holds no triangles ({len(vertices)} vertices): mesh it first")
-        announced = _announced_faces(path)
-        if announced is not None and len(faces) < announced:
-            raise SceneMapError(f"{path} announces {announced} faces and holds {len(faces)}: the file is not complete")
-        try:
-            return cls(vertices, faces)
+            found = cls(vertices, _of_one_building(vertices, faces, drop_far))
         except SceneMapError as error:
             raise SceneMapError(f"{path}: {error}") from None
+        for doubt in _doubts(found):
+            warnings.warn(f"{path}: {doubt}", SceneMapWarning, stacklevel=2)
+        return found
 
     def transformed(self, matrix: np.ndarray) -> SceneMap:
         """The map moved by a rigid transform `(4, 4)`."""
@@ -138,27 +141,63 @@ class SceneMap:
 
 
 def _require_places_on_earth(corners: np.ndarray) -> None:
-    """Raises `SceneMapError` where one of the triangles `(F, 3, 3)` is too far away for a building."""
-    far_away = (np.abs(corners) > MAX_COORDINATE).any(axis=(1, 2))
-    if far_away.any():
-        first = int(np.argmax(far_away))
+    """Raises `SceneMapError` where one of the triangles `(F, 3, 3)` is at no place on Earth."""
+    beyond = (np.abs(corners) > MAX_COORDINATE).any(axis=(1, 2))
+    if beyond.any():
+        first = int(np.argmax(beyond))
         x, y, z = corners[first][np.abs(corners[first]).max(axis=1).argmax()]
         raise SceneMapError(
-            f"{int(far_away.sum())} of {len(corners)} triangles lie beyond {MAX_COORDINATE:g} m, where no building is: "
-            f"triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Coordinates must be metres. To drop such "
-            "triangles: mesh = trimesh.load(path, process=False); "
-            f"mesh.update_faces((abs(mesh.triangles) <= {MAX_COORDINATE:g}).all(axis=(1, 2))); mesh.export(path)"
+            f"{int(beyond.sum())} of {len(corners)} triangles lie beyond {MAX_COORDINATE:g} m, where no building is: "
+            f"triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Coordinates must be metres. {_CURE}"
         )
 
 
-def _announced_faces(path: Path) -> int | None:
-    """Number of faces that the header of a PLY or OFF file announces; None where there is no such header."""
-    with path.open("rb") as file:
-        header = file.read(1 << 16)
-    if header.startswith(b"ply"):
-        match = re.search(rb"^element face (\d+)", header.split(b"end_header")[0], re.M)
-        return int(match.group(1)) if match else None
-    if header.startswith(b"OFF"):
-        numbers = re.findall(rb"\d+", re.sub(rb"#.*", b"", header[3:]))
-        return int(numbers[1]) if len(numbers) > 1 else None
-    return None
+def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) -> np.ndarray:
+    """The faces of a file without those that are absurdly far from its middle, the median of all corners.
+
+    Raises `SceneMapError`, which names the first of them, unless they are to be dropped.
+    """
+    if faces.ndim != 2 or faces.shape[1:] != (3,) or faces.min() < 0 or faces.max() >= len(vertices):
+        return faces  # the map itself says what is wrong
+    corners = vertices[faces]
+    with np.errstate(invalid="ignore", over="ignore"):
+        sound = (np.abs(corners) <= MAX_COORDINATE).all(axis=(1, 2))  # not what is NaN
+        middle = np.median(corners[sound].reshape(-1, 3), axis=0) if sound.any() else np.zeros(3)
+        distance = np.linalg.norm(corners - middle, axis=2)
+        far_away = ~(distance <= MAX_DISTANCE).all(axis=1)
+    if drop_far:
+        return faces[~far_away]
+    if far_away.any() and np.isfinite(corners).all():
+        first = int(np.argmax(far_away))
+        x, y, z = corners[first][distance[first].argmax()]
+        raise SceneMapError(
+            f"{int(far_away.sum())} of {len(corners)} triangles lie farther than {MAX_DISTANCE:g} m from the middle of "
+            f"the map: triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Coordinates must be metres (are these "
+            f"millimetres?). {_CURE}"
+        )
+    return faces
+
+
+def _doubts(scene_map: SceneMap) -> Iterator[str]:
+    """What about a map that can be used looks as if it were not meant."""
+    vertices, corners = scene_map.vertices, scene_map.vertices[scene_map.faces]
+    size = scene_map.bounds[1] - scene_map.bounds[0]
+    told = f"{size[0]:,.0f} x {size[1]:,.0f} x {size[2]:,.0f} m"
+    if size.min() > LARGEST_BUILDING:
+        yield f"the map is {told} large: are these millimetres? Coordinates must be metres"
+    middles = corners.mean(axis=1)
+    low, high = np.percentile(middles, (1, 99), axis=0)
+    most = np.linalg.norm(high - low)
+    if np.linalg.norm(size) > max(10 * most, LARGEST_BUILDING):
+        away = np.linalg.norm(middles - scene_map.origin, axis=1)
+        x, y, z = middles[away.argmax()]
+        yield (
+            f"the map is {told} large, but 98 % of its triangles lie within {most:,.0f} m: triangle {away.argmax()} at "
+            f"({x:g}, {y:g}, {z:g}) is {away.max():,.0f} m from the middle. Does it belong to the building?"
+        )
+    step = float(np.spacing(np.float32(np.abs(vertices).max())))
+    if step > COARSE and np.array_equal(vertices, vertices.astype(np.float32)):
+        yield (
+            f"coordinates of {np.abs(vertices).max():,.0f} m in single precision have steps of {step * 1000:g} mm: "
+            "move the map's zero into the building before saving it"
+        )

@@ -26,6 +26,7 @@ import numpy as np
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_poses, read_tum, write_tum
 from course_lib.geometry import UP_AXES
+from course_lib.reading import read_image, read_text
 
 NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
 
@@ -225,7 +226,8 @@ def write_sequence(
     if times is not None:
         write_tum(folder / "groundtruth.txt", times, camera_to_world)
     if path_on_floor is not None:
-        np.savetxt(folder / "path_on_floor.txt", path_on_floor, fmt="%.4f", header="x y z, metres")
+        told = f"x y z, metres; {len(path_on_floor)} rows"
+        np.savetxt(folder / "path_on_floor.txt", path_on_floor, fmt="%.4f", header=told)
     np.savetxt(
         folder / "poses.txt",
         np.column_stack([frames, camera_to_world.reshape(-1, 16)]),
@@ -236,14 +238,7 @@ def write_sequence(
 
 def read_depth_png(path: str | Path, units_per_metre: float = UNITS_PER_METRE) -> np.ndarray:
     """Depth image `(H, W)` float32 metres from a 16-bit PNG, in millimetres or as told; 0 becomes NaN (unmeasured)."""
-    import cv2
-
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"no depth image at {path}")
-    image = cv2.imdecode(np.fromfile(path, dtype=np.uint8), cv2.IMREAD_UNCHANGED) if path.stat().st_size else None
-    if image is None:
-        raise SequenceError(f"{path} cannot be read as a PNG: is it complete?")
+    image = read_image(path, "depth image", SequenceError, kinds=("PNG",), missing=FileNotFoundError)
     if image.dtype != np.uint16 or image.ndim != 2:
         raise SequenceError(f"{path} must be a 16-bit single-channel PNG; got {image.dtype} with shape {image.shape}")
     depth = image.astype(np.float32) * np.float32(1 / units_per_metre)
@@ -301,9 +296,8 @@ def _read_tum_folder(folder: Path) -> tuple[dict[int, Path], np.ndarray, np.ndar
     With groundtruth.txt an image's pose is the one nearest in time, and an image without one within
     `TUM_TIME_DIFFERENCE` is left out, as the dataset's own tool associate.py does it.
     """
-    rows = [
-        line.split() for line in (folder / "depth.txt").read_text().splitlines() if line.strip()[:1] not in ("", "#")
-    ]
+    text = read_text(folder / "depth.txt", "list of images", SequenceError)
+    rows = [line.split() for line in text.splitlines() if line.strip()[:1] not in ("", "#")]
     try:
         times = np.array([float(time) for time, _ in rows])
     except ValueError as error:
@@ -355,7 +349,7 @@ def _read_up(folder: Path) -> str | None:
     path = folder / "up.txt"
     if not path.is_file():
         return None
-    up = path.read_text().strip()
+    up = read_text(path, "the upward axis", SequenceError).strip()
     if up not in UP_AXES:
         raise SequenceError(f"{path} must name one of {', '.join(UP_AXES)}; got {up!r}")
     return up

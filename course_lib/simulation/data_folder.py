@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import shutil
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+
+from course_lib.writing import replaced_outputs
 
 
 def require_folder(out: str | Path) -> Path:
@@ -30,13 +31,8 @@ def checksums(folder: Path, products: Sequence[str]) -> str:
 
 
 def move_products(folder: Path, out: Path, products: Sequence[str]) -> None:
-    """Puts the finished products in their place: copied beside it first, then renamed, old ones out and new ones in."""
-    out.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=out.parent, prefix=f".{out.name}-") as beside:
-        new, old = Path(beside) / "new", Path(beside) / "old"
-        shutil.copytree(folder, new)
-        old.mkdir()
+    """Puts the finished products in the place of the earlier ones, all at once; what else is in `out` stays."""
+    with replaced_outputs(out, "make-data", products) as new:
         for name in products:
-            if (out / name).exists():
-                (out / name).rename(old / name)
-            (new / name).rename(out / name)
+            copy = shutil.copytree if (folder / name).is_dir() else shutil.copy2
+            copy(folder / name, new / name)

@@ -1,13 +1,14 @@
 """Maps and cameras: what they accept, what they refuse, and the projection."""
 
 import pickle
+import warnings
 
 import numpy as np
 import pytest
 import trimesh
 
 from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.scene_map import SceneMap, SceneMapError
+from course_lib.depth_mcl.scene_map import SceneMap, SceneMapError, SceneMapWarning
 from course_lib.depth_mcl.sensor import depth_image_from_points, subsample_depth
 from tests.depth_mcl.shapes import OFF_CENTRE, SMALL, room
 
@@ -78,7 +79,7 @@ def test_a_point_cloud_is_named(tmp_path):
 
 
 def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(FileNotFoundError, match="no map at"):
+    with pytest.raises(FileNotFoundError, match=r"map .* is missing"):
         SceneMap.load(tmp_path / "nowhere.ply")
 
 
@@ -121,7 +122,7 @@ def test_the_anchor_is_the_origin_near_it_and_follows_the_cameras_by_whole_steps
     assert np.abs(scene.anchor(np.array([[1e30, 0, 0]]))).max() < 1e6 + 100
 
 
-@pytest.mark.parametrize("coordinate", [3e7, -1e20, 7.7e37])
+@pytest.mark.parametrize("coordinate", [6e3, 1e4, 1e6, 3e7, -1e20, 7.7e37])
 def test_a_triangle_that_cannot_belong_to_a_building_is_named_and_can_be_dropped(coordinate, tmp_path):
     box = room()
     vertices = np.concatenate([box.vertices, TRIANGLE])
@@ -130,9 +131,45 @@ def test_a_triangle_that_cannot_belong_to_a_building_is_named_and_can_be_dropped
     with pytest.raises(SceneMapError, match=r"map\.ply: 1 of 13 triangles .* triangle 12 has a corner at") as raised:
         SceneMap.load(tmp_path / "map.ply")
     assert f"{np.float32(coordinate):g}" in str(raised.value)
-    cure = str(raised.value).split("such triangles: ")[1]
-    exec(cure, {"trimesh": trimesh, "path": tmp_path / "map.ply"})
-    assert np.allclose(SceneMap.load(tmp_path / "map.ply").bounds, box.bounds)
+    cure = str(raised.value).split("such triangles out: ")[1].split(", or ")[0]
+    found = eval(cure, {"SceneMap": SceneMap, "path": tmp_path / "map.ply"})
+    assert np.allclose(found.bounds, box.bounds)
+
+
+def test_no_map_lies_beyond_the_earth():
+    with pytest.raises(SceneMapError, match=r"1 of 1 triangles lie beyond 2e\+07 m"):
+        SceneMap(TRIANGLE + np.array([3e7, 0, 0]), [[0, 1, 2]])
+
+
+def saved(path, vertices, faces):
+    trimesh.Trimesh(vertices, faces, process=False).export(path)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "doubt"),
+    [
+        (room().vertices * 400, room().faces, "are these millimetres"),
+        (
+            np.concatenate([room().vertices, TRIANGLE + np.array([900.0, 0, 0])]),
+            np.concatenate([np.tile(room().faces, (20, 1)), [[8, 9, 10]]]),
+            "triangle 240 at .* from the middle. Does it belong",
+        ),
+        (room().vertices + np.array([500_000, 5_300_000, 0]), room().faces, "steps of 500 mm"),
+    ],
+)
+def test_a_map_that_looks_as_if_it_were_not_meant_is_used_with_a_warning(vertices, faces, doubt, tmp_path):
+    with pytest.warns(SceneMapWarning, match=doubt) as told:
+        SceneMap.load(saved(tmp_path / "map.ply", vertices, faces))
+    assert len(told) == 1
+
+
+def test_maps_of_buildings_are_not_doubted(tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        SceneMap.load(saved(tmp_path / "room.ply", room().vertices, room().faces))
+        SceneMap.load(saved(tmp_path / "tunnel.ply", room().vertices * [400, 1, 1], room().faces))
+        SceneMap.load(saved(tmp_path / "city.ply", room().vertices + np.array([3000, 2000, 100]), room().faces))
 
 
 def test_a_map_that_travelled_is_the_same_and_as_frozen():

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.rendering.large_triangles import cut_large_triangles
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.geometry import as_states, is_rotation, optical_pose
 
@@ -96,12 +97,14 @@ class DepthRenderer:
 
     @property
     def drawn(self) -> SceneMap:
-        """The triangles that are drawn: the map, or, unless `exact`, fewer."""
-        if self.exact:
-            return self.scene_map
-        from course_lib.depth_mcl.simplification import simplified
+        """The triangles that are drawn: the map, or, unless `exact`, fewer; none of them large."""
+        drawn = self.scene_map
+        if not self.exact:
+            from course_lib.depth_mcl.simplification import simplified
 
-        return simplified(self.scene_map)
+            drawn = simplified(drawn)
+        vertices, faces = cut_large_triangles(drawn.vertices, drawn.faces)
+        return drawn if faces is drawn.faces else SceneMap(vertices, faces)
 
     def render(self, states: np.ndarray) -> np.ndarray:
         """Depth images `(N, H, W)` float32 metres of the map from states `(N, 6)`; `inf` where nothing is hit.

@@ -6,7 +6,6 @@ No room of these is the experiment's: `make_room(seed)` draws other layouts, sha
 from __future__ import annotations
 
 import json
-import os
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -21,6 +20,7 @@ from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, stand_up
 from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.recording import TrueObject, true_object
+from course_lib.writing import write_at_once
 
 VERSION = 1
 BOXES_FILE = "boxes.json"
@@ -108,6 +108,4 @@ def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:
 
 
 def _write_image_list(folder: Path, images: list[dict]) -> None:
-    partial = folder / (BOXES_FILE + ".partial")
-    partial.write_text(json.dumps({"version": VERSION, "images": images}))
-    os.replace(partial, folder / BOXES_FILE)
+    write_at_once(folder / BOXES_FILE, json.dumps({"version": VERSION, "images": images}))

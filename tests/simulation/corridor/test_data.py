@@ -16,6 +16,7 @@ from course_lib.simulation.corridor.surface_fusion import FusionModel
 from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.parameter_tables import field_comments, parameter_tables
 from course_lib.simulation.sensors.laser_survey import ScannerModel
+from course_lib.writing import MADE
 
 SMALL = CorridorModels(
     scanner=ScannerModel(step_deg=0.8),
@@ -60,7 +61,7 @@ def test_a_negative_seed_is_refused():
 @pytest.mark.slow
 def test_all_products_are_there_and_readable(small):
     folder, summary = small
-    assert {path.name for path in folder.iterdir()} == set(PRODUCTS)
+    assert {path.name for path in folder.iterdir()} == {*PRODUCTS, MADE}
     assert len(SceneMap.load(folder / "map.ply").faces) == summary["measured"]["map"]["triangles"]
     assert len(read_sequence(folder / "wagon")) == 3
     assert len(read_sequence(folder / "hand")) == 4

@@ -113,7 +113,7 @@ def test_a_damaged_recording_is_named(small, tmp_path, change, message):
 
 
 def test_a_folder_without_a_recording_is_named(tmp_path):
-    with pytest.raises(PanoramaError, match="cannot read"):
+    with pytest.raises(PanoramaError, match="is missing"):
         read_stereo_recording(tmp_path)
     (tmp_path / "poses.json").write_text("{")
     with pytest.raises(PanoramaError, match="not JSON"):

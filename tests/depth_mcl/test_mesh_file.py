@@ -1,0 +1,156 @@
+"""Mesh files that are cut off, bombs, or no meshes at all are refused by name."""
+
+import io
+import json
+import struct
+
+import numpy as np
+import pytest
+import trimesh
+
+from course_lib.depth_mcl.mesh_file import read_mesh
+
+BOX = trimesh.creation.box((1, 2, 3))
+
+
+class AskedError(ValueError):
+    """What the caller asked to be raised."""
+
+
+def exported(kind, **options):
+    data = BOX.export(file_type=kind, **options)
+    return data.encode() if isinstance(data, str) else data
+
+
+ASCII_PLY = exported("ply", encoding="ascii")
+BINARY_PLY = exported("ply")
+OFF = exported("off")
+QUADS = (
+    b"""ply
+format ascii 1.0
+element vertex 8
+property float x
+property float y
+property float z
+element face 3
+property list uchar int vertex_indices
+end_header
+"""
+    + b"".join(b"%d %d %d\n" % (i & 1, i >> 1 & 1, i >> 2) for i in range(8))
+    + b"4 0 1 3 2\n4 4 5 7 6\n4 0 1 5 4\n"
+)
+
+
+def read(tmp_path, data, kind):
+    path = tmp_path / f"map.{kind}"
+    path.write_bytes(data)
+    return read_mesh(path, AskedError)
+
+
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [
+        (ASCII_PLY, "ply"),
+        (BINARY_PLY, "ply"),
+        (OFF, "off"),
+        (exported("obj"), "obj"),
+        (exported("stl"), "stl"),
+        (exported("stl_ascii"), "stl"),
+        (exported("glb"), "glb"),
+        (OFF.replace(b"OFF\n", b"OFF ", 1), "off"),
+        (OFF.replace(b"OFF\n", b"OFF\n# by hand\n\n", 1), "off"),
+    ],
+)
+def test_every_format_is_read_whole(tmp_path, data, kind):
+    vertices, faces = read(tmp_path, data, kind)
+    assert len(faces) == 12
+    assert np.allclose(np.ptp(vertices, axis=0), [1, 2, 3])
+
+
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [
+        (QUADS[: QUADS.rindex(b"4 0 1 5 4")], "ply"),  # two quads are four triangles: more than three
+        (ASCII_PLY[: len(ASCII_PLY) * 3 // 4], "ply"),
+        (ASCII_PLY[: ASCII_PLY.index(b"end_header")], "ply"),
+        (BINARY_PLY[:-20], "ply"),
+        (b"\n".join(OFF.splitlines()[:-2]), "off"),
+        (exported("stl")[:-60], "stl"),
+        (exported("stl_ascii")[:-200], "stl"),
+        (exported("glb")[:-40], "glb"),
+    ],
+)
+def test_a_file_that_was_cut_off_is_refused(tmp_path, data, kind):
+    assert len(read(tmp_path, QUADS, "ply")[1]) == 6
+    with pytest.raises(AskedError, match=r"map .*map\.(ply|off|stl|glb) (announces|cannot be read)"):
+        read(tmp_path, data, kind)
+
+
+@pytest.mark.parametrize("count", [10**6, 10**9, 10**18])
+def test_counts_that_the_file_cannot_hold_are_refused_before_memory_is_taken(tmp_path, count):
+    for data, kind, old, new in (
+        (ASCII_PLY, "ply", b"vertex 8", b"vertex %d"),
+        (BINARY_PLY, "ply", b"face 12", b"face %d"),
+        (OFF, "off", b"8 12", b"%d 12"),
+    ):
+        assert old in data
+        with pytest.raises(AskedError, match="announces"):
+            read(tmp_path, data.replace(old, new % count, 1), kind)
+    with pytest.raises(AskedError, match="announces"):
+        read(tmp_path, exported("stl")[:80] + struct.pack("<I", min(count, 2**32 - 1)) + b"\0" * 100, "stl")
+
+
+def glb(accessors):
+    """A GLB file with one triangle mesh whose accessors are these."""
+    content = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": accessors,
+        "buffers": [{"byteLength": 4}],
+        "bufferViews": [{"buffer": 0, "byteLength": 4}],
+    }
+    text = json.dumps(content).encode()
+    text += b" " * (-len(text) % 4)
+    data = struct.pack("<II", 4, 0x004E4942) + b"\0" * 4
+    return struct.pack("<4sIIII", b"glTF", 2, 32 + len(text), len(text), 0x4E4F534A) + text + data
+
+
+def test_a_glb_bomb_is_refused_and_takes_no_memory_here(tmp_path):
+    """Accessors without data are zeros, as many as are asked for: 12 GB from 500 bytes."""
+    bomb = glb(
+        [
+            {"componentType": 5126, "type": "VEC3", "count": 10**9},
+            {"componentType": 5125, "type": "SCALAR", "count": 3},
+        ]
+    )
+    with pytest.raises(AskedError, match=r"map\.glb cannot be read as a mesh: reading it takes more than 600 MB"):
+        read(tmp_path, bomb, "glb")
+
+
+@pytest.mark.parametrize("kind", ["zip", "txt", "mtl", "blend1", "html"])
+def test_what_is_no_mesh_by_its_ending_is_refused(tmp_path, kind):
+    archive = io.BytesIO()
+    np.savez(archive, a=np.zeros(10))
+    with pytest.raises(AskedError, match="which is no mesh: PLY"):
+        read(tmp_path, archive.getvalue(), kind)
+
+
+@pytest.mark.parametrize("kind", ["ply", "off", "stl", "obj", "glb"])
+@pytest.mark.parametrize("data", [b"", b"\0" * 1000, b"ply\n", b"no mesh at all\n" * 50, b"\xff" * 300])
+def test_what_is_no_mesh_inside_is_refused(tmp_path, kind, data):
+    with pytest.raises(AskedError, match=r"map .*map\."):
+        read(tmp_path, data, kind)
+
+
+def test_materials_and_what_they_name_are_left_alone(tmp_path):
+    (tmp_path / "map.mtl").write_text("newmtl wall\nmap_Kd /etc/passwd\n")
+    data = b"mtllib map.mtl\nusemtl wall\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    assert len(read(tmp_path, data, "obj")[1]) == 1
+
+
+def test_a_missing_file_is_the_systems_error(tmp_path):
+    with pytest.raises(FileNotFoundError, match="is missing"):
+        read_mesh(tmp_path / "none.ply", AskedError)
