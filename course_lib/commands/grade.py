@@ -1,0 +1,117 @@
+"""Grade a folder of submissions: points and hints as CSV and as a page; students' code runs in a sandbox."""
+
+from __future__ import annotations
+
+import argparse
+import secrets
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from course_lib.processors import processors
+from course_lib.writing import write_at_once
+
+TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "folder",
+        type=Path,
+        metavar="FOLDER",
+        help="what the students handed in: FOLDER/alice/06_....ipynb or FOLDER/alice_06.ipynb, notebooks or .py files",
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="where the results go (default: FOLDER with -grades after its name)"
+    )
+    parser.add_argument(
+        "--seed",
+        type=int,
+        help="draws the hidden inputs; keep it to yourself (default: a new one, which the page tells: with it the "
+        "results come again)",
+    )
+    parser.add_argument("--jobs", type=int, metavar="N", help="answers at a time (default: one a processor)")
+    parser.add_argument(
+        "--seconds", type=float, default=60.0, metavar="S", help="all calls of one answer (default: %(default)g)"
+    )
+    parser.add_argument(
+        "--call-seconds", type=float, default=20.0, metavar="S", help="one call of an answer (default: %(default)g)"
+    )
+    parser.add_argument(
+        "--memory", type=int, default=1000, metavar="MB", help="memory of one answer (default: %(default)d)"
+    )
+    parser.add_argument(
+        "--scores", action="store_true", help="also run the projects' last functions: minutes for each submission"
+    )
+    parser.add_argument(
+        "--trusted",
+        action="store_true",
+        help="grade although this machine cannot keep strangers' code in: only where you trust every file",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    if sys.platform == "win32":
+        raise RuntimeError("grading needs Linux; on Windows use the Windows Subsystem for Linux (WSL 2)")
+    # Only here: they bring the lessons with them.
+    from course_lib.classroom.confinement import Limits
+    from course_lib.classroom.grade_page import grade_page
+    from course_lib.classroom.grade_tables import answers_table, totals_table
+    from course_lib.classroom.grading import grade_folder
+
+    out = results_folder(arguments.folder, arguments.out)
+    for name, value in (("--jobs", arguments.jobs), ("--seconds", arguments.seconds), ("--memory", arguments.memory)):
+        if value is not None and not value > 0:
+            raise ValueError(f"{name} {value}: it must be more than 0")
+    if arguments.seed is not None and arguments.seed < 0:
+        raise ValueError(f"--seed {arguments.seed}: it must be 0 or more")
+    seed = secrets.randbelow(2**48) if arguments.seed is None else arguments.seed
+    limits = Limits(arguments.call_seconds, arguments.seconds, arguments.memory)
+    started = time.monotonic()
+    jobs, trusted, scores = arguments.jobs or processors(), arguments.trusted, arguments.scores
+    results = grade_folder(arguments.folder, seed, jobs, limits, trusted, scores, progress_bar)
+    pages = {TABLE: answers_table(results), TOTALS: totals_table(results), PAGE: grade_page(results)}
+    write(out, pages)
+    print(summary(results, time.monotonic() - started))
+    print("\n".join(f"{out / name}" for name in pages))
+    return 0
+
+
+def results_folder(folder: Path, out: Path | None) -> Path:
+    """Where the results go. Raises `ValueError` for a place among the submissions."""
+    found = Path(out) if out is not None else folder.resolve().with_name(f"{folder.resolve().name}-grades")
+    if found.resolve().is_relative_to(folder.resolve()):
+        raise ValueError(f"--out {found} lies among the submissions: results would be handed back as somebody's work")
+    return found
+
+
+def progress_bar(graded: Iterable, total: int) -> Iterator:
+    from tqdm import tqdm
+
+    interval = 0.1 if sys.stderr.isatty() else 10.0
+    return tqdm(graded, desc="grading", unit="answer", total=total, mininterval=interval, file=sys.stderr)
+
+
+def write(out: Path, pages: dict[str, str]) -> None:
+    """Every file written beside its place and then put there, so that none is ever half a file."""
+    out.mkdir(parents=True, exist_ok=True)
+    for name, text in pages.items():
+        write_at_once(out / name, text)
+
+
+def summary(results, seconds: float) -> str:
+    """What the terminal says: how many, what was refused and not read, how long, and with which seed."""
+    statuses = [one.status for one in results.graded]
+    counts = ", ".join(f"{statuses.count(status)} {status}" for status in dict.fromkeys(sorted(statuses))) or "none"
+    students = {one.student for one in results.graded}
+    lines = [f"{len(students)} students, {len(statuses)} answers: {counts}; {seconds:.0f} s"]
+    tried = [(one.student, one.number, what) for one in results.graded for what in one.refused]
+    lines += [f"refused: {student}, {number}: tried to {what}" for student, number, what in tried[:20]]
+    lines += [f"and {len(tried) - 20} more, on the page"] if len(tried) > 20 else []
+    lines += [f"not read: {one.name}: {one.why}" for one in results.collection.not_read[:20]]
+    held = "all walls about strangers' code held" if not results.missing else "--trusted, without: "
+    lines.append(f"{held}{'; '.join(results.missing)}. Seed: {results.seed}")
+    peak = max((one.peak_mb for one in results.graded), default=0.0)
+    lines.append(f"memory of the largest answer's process: {peak:.0f} MB")
+    return "\n".join(lines)

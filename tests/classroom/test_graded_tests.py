@@ -1,0 +1,182 @@
+"""Graded tests: full, half and no points on a secret seed's inputs; feedback that gives nothing away; nothing heard."""
+
+from __future__ import annotations
+
+import io
+import logging
+import os
+import subprocess
+import sys
+import warnings
+
+import numpy as np
+import pytest
+
+from course_lib.classroom import graded_tests
+from course_lib.classroom.graded_tests import grade, points, secret, silence
+from course_lib.classroom.points import points_of
+from course_lib.lessons.kit.exercises import find_exercise
+
+SEED = 98_765_432_101
+
+
+def right(term, alpha):
+    return alpha * (1 - term) / term
+
+
+def right_for_three(term, alpha):
+    return right(term, alpha) if len(term) == 3 else -term
+
+
+def right_up_to_five(term, alpha):
+    return right(term, alpha) if len(term) <= 5 else -term
+
+
+def stub(term, alpha):
+    """Differences."""
+    ...
+
+
+def test_all_points_half_and_none():
+    assert grade("06.1", right, SEED) == (2.0, "right.")
+    assert grade("06.1", right_up_to_five, SEED).points == 1.0
+    assert "Right on some inputs" in grade("06.1", right_up_to_five, SEED).sentence
+    assert grade("06.1", right_for_three, SEED).points == 0.0
+    assert grade("06.1", stub, SEED) == (0.0, "not attempted.")
+    assert grade("06.1", lambda term, alpha: ..., SEED) == (0.0, "not attempted.")
+    assert grade("06.1", 3.0, SEED).sentence == "not yet. A function is asked; this is a float."
+
+
+def test_a_typical_mistake_is_answered_with_its_hint():
+    exercise = find_exercise("06.1")
+    found = grade("06.1", exercise.mistakes[0].function, SEED)
+    assert found == (0.0, f"not yet. {exercise.mistakes[0].hint}")
+
+
+def test_the_inputs_are_the_secret_seeds_and_no_others():
+    seen = {seed: [] for seed in (0, SEED, SEED + 1)}
+    for seed, kept in seen.items():
+        grade("06.1", lambda term, alpha, kept=kept: kept.append(term) or right(term, alpha), seed)
+    first = [kept[3].tolist() for kept in seen.values()]
+    check = [given[0].tolist() for given in find_exercise("06.1").draw(np.random.default_rng(0))]
+    assert len({str(one) for one in first}) == 3
+    assert first[0] not in check, "a class's seed 0 is not the seed of the course's own check"
+    assert secret(SEED, "06.1") != secret(SEED, "06.2")
+    again = []
+    grade("06.1", lambda term, alpha: again.append(term) or right(term, alpha), SEED)
+    assert [one.tolist() for one in again] == [one.tolist() for one in seen[SEED]]
+
+
+def raises_its_inputs(term, alpha):
+    raise ValueError(f"the inputs were {term} {alpha}")
+
+
+def raises_an_error_named_by_its_inputs(term, alpha):
+    raise type(f"E{str(term[0]).replace('.', '_')}", (Exception,), {})
+
+
+def prints_its_inputs(term, alpha):
+    print(term)
+    return term
+
+
+def stops_now_and_then(term, alpha):
+    return right(term, alpha) if len(term) < 6 else term[99]
+
+
+def quits(term, alpha):
+    raise SystemExit
+
+
+def changes_its_input(term, alpha):
+    term *= 2
+    return term
+
+
+def forgets_to_return(term, alpha):
+    right(term, alpha)
+
+
+@pytest.mark.parametrize(
+    ("function", "sentence"),
+    [
+        (raises_its_inputs, "not yet. Your function stops with ValueError."),
+        (raises_an_error_named_by_its_inputs, "not yet. Your function stops with an error."),
+        (prints_its_inputs, "not yet. Not right on any input."),
+        (stops_now_and_then, "not yet. Your function stops with IndexError on some inputs."),
+        (quits, "not yet. Your function calls exit() or quit()."),
+        (changes_its_input, "not yet. Your function changes the array it was given."),
+        (forgets_to_return, "not yet. Your function returns None."),
+    ],
+)
+def test_the_feedback_says_the_kind_and_no_word_of_the_students(function, sentence, capsys):
+    points("06.1", function, SEED)
+    assert capsys.readouterr().out == f"06.1: {sentence}\n"
+
+
+def test_what_stops_on_some_inputs_keeps_half(capsys):
+    assert points("06.1", stops_now_and_then, SEED) == 1.0
+
+
+def test_an_endless_loop_is_stopped_once_and_the_rest_is_wrong(monkeypatch):
+    monkeypatch.setattr(graded_tests, "CALL_SECONDS", 2.0)
+    calls = []
+
+    def never_ends(term, alpha):
+        calls.append(term)
+        while len(calls) > 20:
+            pass
+        return right(term, alpha)
+
+    assert grade("06.1", never_ends, SEED) == (1.0, "not yet. Your function does not end on some inputs.")
+    assert len(calls) == 21
+
+
+def test_nothing_of_an_answer_is_heard(capfd, caplog):
+    handler = logging.StreamHandler()  # keeps the stream itself
+
+    def noisy(term, alpha):
+        print("to standard output")
+        print("to the error stream", file=sys.stderr)
+        os.write(1, b"below Python\n")
+        os.write(2, b"below Python\n")
+        warnings.warn("a warning", stacklevel=1)
+        handler.stream.write("kept from before\n")
+        subprocess.run(["sh", "-c", "echo another process >&2"], check=True)
+        sys.displayhook(6.0)
+        return right(term, alpha)
+
+    assert points("06.1", noisy, SEED) == 2.0
+    assert capfd.readouterr() == ("06.1: right.\n", "")
+
+
+def test_afterwards_everything_is_heard_again(capfd):
+    shown = sys.displayhook
+    with silence():
+        pass
+    assert sys.displayhook is shown
+    print("a word")
+    print("an error", file=sys.stderr)
+    os.write(2, b"below\n")
+    assert capfd.readouterr() == ("a word\n", "an error\nbelow\n")
+
+
+def test_a_stream_that_was_kept_by_somebody_is_as_it_was(monkeypatch):
+    class Stream(io.StringIO):
+        """Like the kernel's own: takes attributes."""
+
+    stream = Stream()
+    monkeypatch.setattr(sys, "stderr", stream)
+    with silence():
+        stream.write("unheard")
+        print("unheard", file=sys.stderr)
+    stream.write("heard")
+    assert stream.getvalue() == "heard"
+    assert "write" not in vars(stream)
+
+
+@pytest.mark.parametrize("number", ["00.1", "12.4", "18.3", "P2.2", "P4.7"])
+def test_the_reference_has_all_points_on_other_seeds(number):
+    exercise = find_exercise(number)
+    for seed in (1, SEED):
+        assert grade(number, exercise.reference, seed) == (points_of(exercise), "right.")

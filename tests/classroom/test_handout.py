@@ -1,0 +1,147 @@
+"""A class's folder: made at once or not at all, only in a place of its own, the same for the same seed."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+from course_lib.classroom import handout
+from course_lib.classroom.assignment_cells import read_assignments
+from course_lib.classroom.handout import MARKER, HandoutError, make_handout
+from course_lib.classroom.leaks import LeakError, find_leaks, teachers_words
+from course_lib.classroom.nbgrader_course import canary_of
+
+SEED = 31_415_926_535
+TWO = read_assignments(["06", "P2"])
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A whole handout of a lesson and a project."""
+    return make_handout(tmp_path_factory.mktemp("class") / "handout", TWO, SEED, solved=True)
+
+
+def contents(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_every_folder_says_what_it_is(made):
+    folders = [made, made / "student", made / "teacher"]
+    folders += [made / "teacher" / name for name in ("solutions", "rubric", "grading", "nbgrader", "solved")]
+    assert [folder.name for folder in folders if not (folder / "README.md").is_file()] == []
+    assert {path.name for path in made.iterdir()} == {"student", "teacher", "README.md", MARKER}
+    assert {path.name for path in (made / "teacher").iterdir()} == {
+        *(folder.name for folder in folders[3:]),
+        "README.md",
+    }
+
+
+def test_the_teachers_folder_is_closed_to_others(made):
+    assert (made / "teacher").stat().st_mode & 0o077 == 0
+    assert (made / "student").stat().st_mode & 0o055 == 0o055
+
+
+def test_everything_of_the_teachers_holds_the_canary_and_nothing_of_the_students_does(made):
+    canary = canary_of(SEED)
+    assert find_leaks(made / "student", teachers_words(SEED, canary)) == []
+    holding = [leak.split(" holds ")[0] for leak in find_leaks(made / "teacher", {"the canary": canary})]
+    own = {"solutions/06.py", "solutions/P2.py", "rubric/06.md", "rubric/P2.md", "grading/course_grading.py"}
+    own |= {"nbgrader/source/06/06.ipynb", "nbgrader/source/P2/P2.ipynb", "solved/06_likelihood_and_weights.ipynb"}
+    assert own <= set(holding)
+    assert "the secret seed" in teachers_words(SEED, canary)
+    assert "the secret seed" not in teachers_words(7, canary), "a small number is everywhere"
+
+
+def test_the_same_seed_makes_the_same_folder_and_another_one_other_tests(made, tmp_path):
+    again = contents(make_handout(tmp_path / "again", TWO, SEED, solved=True))
+    assert again == contents(made)
+    other = contents(make_handout(tmp_path / "other", TWO, SEED + 1, solved=True))
+    differing = {name for name in again if again[name] != other[name]}
+    assert "teacher/grading/course_grading.py" in differing
+    assert all(name.startswith("teacher/") for name in differing)
+    assert canary_of(SEED) != canary_of(SEED + 1)
+
+
+def test_the_seed_stands_in_the_graded_tests_alone(made):
+    found = find_leaks(made, {"the secret seed": str(SEED)})
+    assert found == ["teacher/grading/course_grading.py holds the secret seed"]
+
+
+def test_the_model_answers_run(made, capsys):
+    names: dict = {}
+    exec((made / "teacher" / "solutions" / "06.py").read_text(encoding="utf-8"), names)
+    assert {"difference_at_solution", "importance_mean_solution"} <= set(names)
+
+
+def test_the_rubric_has_every_exercise_with_its_points_and_mistakes(made):
+    page = (made / "teacher" / "rubric" / "06.md").read_text(encoding="utf-8")
+    assert page.startswith("# Rubric · 06 · Likelihood and weights")
+    assert "**16 points.**" in page
+    assert re.findall(r"^## (\S+) .* · (\S+), (\d) points$", page, re.M) == [
+        ("06.1", "warm-up", "2"),
+        ("06.2", "core", "4"),
+        ("06.3", "core", "4"),
+        ("06.4", "challenge", "6"),
+    ]
+    assert "* Your alpha is always 0.1 m: use the argument." in page
+    assert page.count("**To talk about.** ") == 4
+    project = (made / "teacher" / "rubric" / "P2.md").read_text(encoding="utf-8")
+    assert "## P2, the score · 12 points" in project
+    assert "better than the paper's method (0.309 m on the hidden seeds)" in project
+
+
+def test_a_place_that_holds_something_else_is_refused_and_left_alone(tmp_path):
+    other = tmp_path / "mine"
+    other.mkdir()
+    (other / "thesis.txt").write_text("years")
+    with pytest.raises(HandoutError, match="no handout of ours"):
+        make_handout(other, TWO, SEED)
+    (other / MARKER).write_text('{"made_by": "somebody else"}')
+    with pytest.raises(HandoutError, match="no handout of ours"):
+        make_handout(other, TWO, SEED)
+    with pytest.raises(HandoutError, match="no folder"):
+        make_handout(other / "thesis.txt", TWO, SEED)
+    assert (other / "thesis.txt").read_text() == "years"
+    assert [path.name for path in tmp_path.iterdir()] == ["mine"]
+
+
+def test_an_empty_folder_is_taken_and_a_handout_of_ours_is_replaced_as_a_whole(tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    make_handout(out, TWO[:1], SEED)
+    (out / "student" / "stray.txt").write_text("left over")
+    make_handout(out, TWO[1:], SEED)
+    assert not (out / "student" / "stray.txt").exists()
+    assert json.loads((out / MARKER).read_text())["lessons"] == ["P2"]
+    assert not list((out / "student").glob("06*"))
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_submissions_and_grades_are_never_replaced(tmp_path):
+    out = make_handout(tmp_path / "out", TWO[:1], SEED)
+    (out / "teacher" / "nbgrader" / "gradebook.db").write_text("grades")
+    with pytest.raises(HandoutError, match=r"gradebook\.db, which would be lost"):
+        make_handout(out, TWO[:1], SEED)
+    assert (out / "teacher" / "nbgrader" / "gradebook.db").read_text() == "grades"
+
+
+def test_a_leak_stops_it_and_the_old_folder_stays(tmp_path, monkeypatch):
+    out = make_handout(tmp_path / "out", TWO[:1], SEED)
+    before = contents(out)
+    monkeypatch.setattr(handout, "STUDENT_README", f"Dear students, {canary_of(SEED)}")
+    with pytest.raises(LeakError, match=r"HANDOUT\.md holds the canary"):
+        make_handout(out, TWO, SEED)
+    assert contents(out) == before
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_what_fails_on_the_way_leaves_nothing(tmp_path, monkeypatch):
+    def full(*given):
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(handout, "write_course", full)
+    with pytest.raises(OSError, match="no space"):
+        make_handout(tmp_path / "out", TWO[:1], SEED)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,152 @@
+"""Student copies: no solution and no trace of one, all else as stored, every link leads somewhere in the folder."""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePosixPath
+
+import nbformat
+import pytest
+
+from course_lib.classroom.assignment_cells import AssignmentError, read_assignments, tag_of
+from course_lib.classroom.leaks import find_leaks, solutions
+from course_lib.classroom.student_copies import (
+    LINK,
+    relinked,
+    reworded_page,
+    solved_notebook,
+    student_notebook,
+    within,
+    write_copies,
+)
+from course_lib.lessons.kit.exercises import check
+
+ASSIGNMENTS = read_assignments()
+NAMES = [assignment.name for assignment in ASSIGNMENTS]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A folder of all lessons and projects."""
+    folder = tmp_path_factory.mktemp("student")
+    write_copies(folder, ASSIGNMENTS)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def two(tmp_path_factory):
+    """A folder of one lesson and one project."""
+    folder = tmp_path_factory.mktemp("two")
+    write_copies(folder, read_assignments(["6", "P2"]))
+    return folder
+
+
+def links_of(folder):
+    """(page, target) of every link and picture of a folder's pages and lessons that leads to a file."""
+    for path in sorted([*folder.rglob("*.md"), *folder.rglob("*.ipynb")]):
+        if path.suffix == ".md":
+            texts = [path.read_text(encoding="utf-8")]
+        else:
+            cells = nbformat.read(path, as_version=4).cells
+            outputs = [output for cell in cells for output in cell.get("outputs", [])]
+            texts = [cell.source for cell in cells if cell.cell_type == "markdown"]
+            texts += [str(output.get("data", {}).get("text/html", "")) for output in outputs]
+        for text in texts:
+            targets = [match[2] for match in LINK.finditer(text)] + re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", text)
+            targets += re.findall(r'(?:src|href)="([^"]+)"', text)
+            for target in targets:
+                if not re.match(r"[a-z]+:|#", target):
+                    yield path, target.partition("#")[0]
+
+
+def test_every_link_picture_and_scene_of_the_folder_is_in_it(whole, two):
+    for folder in (whole, two):
+        found = list(links_of(folder))
+        assert len(found) > 20
+        assert [(page.name, target) for page, target in found if not (page.parent / target).is_file()] == []
+
+
+def test_lessons_lead_to_each_other(whole):
+    assert "05_particles_and_motion.ipynb" in {target for page, target in links_of(whole) if page.name[:2] == "06"}
+
+
+def test_a_lesson_that_is_not_handed_out_is_no_link(two):
+    readme = (two / "README.md").read_text(encoding="utf-8")
+    assert "[06 · Likelihood and weights](06_likelihood_and_weights.ipynb)" in readme
+    assert "| 07 · Estimate and resample |" in readme
+
+
+@pytest.mark.parametrize("assignment", ASSIGNMENTS, ids=NAMES)
+def test_a_copy_is_the_lesson_without_its_solutions(assignment):
+    copy = student_notebook(assignment)
+    kept = [cell for cell in assignment.stored.cells if tag_of(cell) != "solution"]
+    assert [cell.id for cell in copy.cells] == [cell.id for cell in kept]
+    assert len(kept) == len(assignment.stored.cells) - (0 if assignment.is_project else len(assignment.exercises()))
+    for mine, stored in zip(copy.cells, kept, strict=True):
+        assert mine.metadata == stored.metadata
+        if mine.cell_type == "code":
+            assert mine.source == stored.source
+            assert [output.get("data", output.get("text")) for output in mine.outputs] == [
+                output.get("data", output.get("text")) for output in stored.outputs
+            ]
+
+
+@pytest.mark.parametrize("assignment", ASSIGNMENTS, ids=NAMES)
+def test_nothing_tells_that_a_cell_was_there(assignment):
+    copy = student_notebook(assignment)
+    counts = [cell.execution_count for cell in copy.cells if cell.cell_type == "code"]
+    assert counts == list(range(1, len(counts) + 1))
+    text = nbformat.writes(copy)
+    assert "source_hidden" not in text
+    assert not re.search(r"_solution\b|-solution\b|[Ss]olution \d\d\.\d|model solution|solutions/", text)
+    assert not re.search(r"\b(the|a) solution\b", text, re.I)
+
+
+def test_the_pages_of_the_series_tell_of_no_solutions(whole):
+    for page in ("README.md", "projects/README.md"):
+        assert "solution" not in (whole / page).read_text(encoding="utf-8").lower()
+
+
+def test_no_model_answer_is_in_the_folder_and_a_planted_one_is_found(whole, tmp_path):
+    answers = solutions(ASSIGNMENTS)
+    assert len(answers) > 110
+    assert find_leaks(whole, answers) == []
+    write_copies(tmp_path, ASSIGNMENTS[6:7], lambda assignment, resolve: assignment.notebook())
+    found = find_leaks(tmp_path, answers)
+    assert len(found) == len(ASSIGNMENTS[6].exercises())
+    assert found[0].startswith("06_likelihood_and_weights.ipynb holds the model answer of ")
+
+
+def test_a_text_that_was_changed_is_missed_and_not_handed_out():
+    assert reworded_page("Done. The\n  solution is below.", ((" The solution is below.", ""),)) == "Done."
+    with pytest.raises(AssignmentError, match="0 times"):
+        reworded_page("It is elsewhere.", (("The solution", ""),))
+
+
+def test_links_to_other_sites_and_within_the_page_stay():
+    text = "[a](https://b.c) [d](#e) [f](g.md#h) ![i](pictures/j.png)"
+    assert relinked(text, lambda target: None) == "[a](https://b.c) [d](#e) f ![i](pictures/j.png)"
+    resolve = within({PurePosixPath("g.md")}, PurePosixPath("projects/P1.ipynb"))
+    assert relinked("[f](../g.md#h) [k](l.md)", resolve) == "[f](../g.md#h) k"
+
+
+def test_a_lesson_that_is_not_there_is_named():
+    with pytest.raises(AssignmentError, match="no lesson 77"):
+        read_assignments(["06", "77"])
+
+
+@pytest.mark.parametrize("name", ["06", "12", "P2", "P4"])
+def test_a_solved_copy_says_what_running_it_says(name, capsys):
+    (assignment,) = read_assignments([name])
+    solved = solved_notebook(assignment, canary="a-word")
+    names: dict = {}
+    exec("import numpy as np", names)
+    for cell in solved.cells:
+        if tag_of(cell) in ("exercise", "submission"):
+            assert "    # a-word\n" in cell.source
+            exec(cell.source, names)
+        elif tag_of(cell) == "check":
+            number = cell.metadata["exercise"]
+            check(number, eval(cell.source.split(", ")[1].rstrip(")"), names))
+            assert capsys.readouterr().out == cell.outputs[0].text == f"{number}: right.\n"
+    assert "not attempted" not in nbformat.writes(solved)

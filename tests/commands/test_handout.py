@@ -1,0 +1,60 @@
+"""`course.py handout`: what it says, and what it refuses in one line."""
+
+from __future__ import annotations
+
+import pytest
+
+from course_lib.classroom.nbgrader_trial import HEADER, Trial
+from course_lib.cli import main
+from course_lib.commands import handout
+
+
+def test_it_makes_the_folder_and_says_which_part_is_whose(tmp_path, capsys):
+    assert main(["handout", "06", "--out", str(tmp_path / "class"), "--seed", "5"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("1 notebook in ")
+    assert f"{tmp_path / 'class' / 'student'}   for the students" in out
+    assert f"{tmp_path / 'class' / 'teacher'}   for you alone" in out
+    assert "SEED = 5" in (tmp_path / "class" / "teacher" / "grading" / "course_grading.py").read_text()
+    assert not (tmp_path / "class" / "teacher" / "solved").exists()
+
+
+def test_without_a_seed_the_system_draws_one(tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(handout.secrets, "randbits", lambda bits: drawn.append(bits) or 4_000_000_007)
+    assert main(["handout", "00", "--out", str(tmp_path / "class")]) == 0
+    assert drawn[0] >= 60
+    assert "SEED = 4000000007" in (tmp_path / "class" / "teacher" / "grading" / "course_grading.py").read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["99"], "no lesson 99"),
+        (["06", "--seed", "-1"], "--seed must be 0 or more"),
+        (["06", "--out", "/"], "no handout of ours"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(words, told, capsys):
+    assert main(["handout", *words]) == 2
+    error = capsys.readouterr().err.strip().splitlines()
+    assert error[-1].startswith("error: ")
+    assert told in error[-1]
+
+
+def test_a_trial_that_is_not_as_it_must_be_fails(capsys, monkeypatch):
+    fine = Trial("06", 16.0, 16.0, 0.0, 6.0, 6.0, (), 20.0)
+    assert fine.as_it_must_be
+    for wrong in (
+        Trial("06", 16.0, 15.0, 0.0, 6.0, 6.0, (), 20.0),
+        Trial("06", 16.0, 16.0, 1.0, 6.0, 6.0, (), 20.0),
+        Trial("06", 16.0, 16.0, 0.0, 5.0, 6.0, (), 20.0),
+        Trial("06", 16.0, 16.0, 0.0, 6.0, 6.0, ("release/06.ipynb holds the canary",), 20.0),
+    ):
+        assert not wrong.as_it_must_be
+        assert "WRONG" in wrong.row()
+        monkeypatch.setattr("course_lib.classroom.nbgrader_trial.try_assignment", lambda *a, wrong=wrong, **k: wrong)
+        assert main(["handout", "06", "--try"]) == 1
+        assert capsys.readouterr().out.startswith(HEADER)
+    monkeypatch.setattr("course_lib.classroom.nbgrader_trial.try_assignment", lambda *a, **k: fine)
+    assert main(["handout", "06", "--try"]) == 0
