@@ -1,10 +1,12 @@
 """What only the notebooks use: each lesson's figures, panel and exercises, and what several of them share.
 
-`kit/` holds what several lessons share: `exercises` judges answers, `projects` scores what a project ends in, `panel`,
-`live_figure` and `progress_bar` are the moving parts, `display` shows a figure, `scene` a scene in three dimensions,
-and `room_photographs`, `panorama_features`, `room_observations` and `corridor_views` load what more than one lesson
-looks at. A lesson's methods are never here: they are in `course_lib.depth_mcl` and `course_lib.spherical_stereo`;
-figures and objects of scenes that commands draw too are in `course_lib.plots`.
+`kit/` holds what several lessons share: `predictions` asks before and shows again after, `exercises` judges answers,
+`student_record` keeps both for the student, `lesson_progress` counts them and `progress_page` shows them, `projects`
+scores what a project ends in, `panel`, `live_figure` and `progress_bar` are the moving parts, `display` shows a figure,
+`scene` a scene in three dimensions, and `room_photographs`, `panorama_features`, `room_observations` and
+`corridor_views` load what more than one lesson looks at. A lesson's methods are never here: they are in
+`course_lib.depth_mcl` and `course_lib.spherical_stereo`; figures and objects of scenes that commands draw too are in
+`course_lib.plots`.
 
 A new lesson NN is a notebook and a folder:
 
@@ -13,7 +15,8 @@ A new lesson NN is a notebook and a folder:
   the tags task, exercise (the stub), check, hint, solution (with `metadata.jupyter.source_hidden = true`).
 * `lessons/lesson_NN/`, of which the notebook imports the package alone:
   `__init__.py` hands on what the notebook calls as `lesson_NN.something`, and `PANELS`.
-  `figures.py`: a figure comes from `figures.new_figure` and goes to `show(figure, alt=...)`.
+  `figures.py`: a figure comes from `figures.new_figure` and goes to `show(figure, alt=lesson_NN.ALT["name"])`.
+  `alternative_texts.py`: `ALT`, what each figure shows, by name; out of the cells, where it would give answers away.
   A scene comes from `plots.scenes.new_plotter`, the notebook's own cell adds what is seen (`plots.scenes`, PyVista),
   and it goes to `show_scene(plotter, "NN_name", title=..., alt=...)`.
   `panel.py`: `PANELS = {title: function that makes the panel}`; its figure is a `LiveFigure`, its `draw` a plain
@@ -30,8 +33,9 @@ Then `python3 course.py refresh NN` runs the notebook and stores its outputs. Th
 
 from course_lib.lessons.kit.display import show
 from course_lib.lessons.kit.exercises import check
+from course_lib.lessons.kit.predictions import predict, recall
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.kit.scene import show_scene
 from course_lib.paths import data_path
 
-__all__ = ["check", "data_path", "progress", "show", "show_scene"]
+__all__ = ["check", "data_path", "predict", "progress", "recall", "show", "show_scene"]

@@ -11,6 +11,7 @@ import nbformat
 import pytest
 
 from course_lib.paths import notebook_paths, project_paths
+from tests.notebooks.driven_lab import require_chromium, served_lab
 
 # Tests of what every notebook must keep: projects have the rules of the lessons, but a shape of their own.
 OF_PROJECTS_TOO = ("test_rules",)
@@ -98,3 +99,28 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 @pytest.fixture
 def all_lessons() -> list[Lesson]:
     return [read(path) for path in notebook_paths()]
+
+
+@pytest.fixture(scope="module")
+def lab_folder(tmp_path_factory) -> Path:
+    """What that JupyterLab serves: copies of the notebooks."""
+    return tmp_path_factory.mktemp("lab")
+
+
+@pytest.fixture(scope="module")
+def lab(lab_folder):
+    """Address of the lessons' JupyterLab, for the tests of one file."""
+    require_chromium()
+    pytest.importorskip("playwright.sync_api")
+    with served_lab(lab_folder) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def browser(lab):
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=require_chromium(), args=["--no-sandbox"])
+        yield browser
+        browser.close()

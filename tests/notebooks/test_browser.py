@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 
 import pytest
 
 from course_lib.paths import notebook_paths
+from tests.notebooks.accessibility import serious_findings
 from tests.notebooks.driven_lab import (
     STATES,
-    chromium,
     first_panel,
     open_lesson,
+    require_chromium,
     run_cells,
-    served_lab,
     wait_for_a_picture,
 )
-
-playwright = pytest.importorskip("playwright.sync_api")
 
 # The first lesson and widgets of each paper that are used most: filter stepper (07), penalty weights (15). That other
 # panels draw, and draw anew, is tested without a browser (tests/lessons/kit/test_panels.py), their cells by nbval.
@@ -27,33 +24,6 @@ LESSONS = [path for path in notebook_paths() if path.name[:2] in ("00", "07", "1
 BUTTONS = {"07": ("Estimate", "Resample", "Propagate", "Weigh"), "15": ("From the start", "Next round", "Back")}
 # Whole runs are nbval's work too: here one is enough, of the others what stands before the first panel's end.
 RUN_WHOLLY = ("00",)
-
-
-def require_chromium() -> str:
-    """The browser's path; without one the test is skipped, and says so, but fails where CI=true."""
-    path = chromium()
-    if path is None:
-        message = "no Chromium or Chrome found (on Debian or Ubuntu: apt-get install chromium): not driven in a browser"
-        if os.environ.get("CI", "").lower() == "true":
-            pytest.fail(message)
-        pytest.skip(message)
-    return path
-
-
-@pytest.fixture(scope="module")
-def lab(tmp_path_factory):
-    """Address of the lessons' JupyterLab."""
-    require_chromium()
-    with served_lab(tmp_path_factory.mktemp("lab")) as address:
-        yield address
-
-
-@pytest.fixture(scope="module")
-def browser(lab):
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=require_chromium(), args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 @pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
@@ -82,6 +52,7 @@ def test_a_lesson_runs_and_its_first_panel_answers(browser, lab, path):
         button = panel.get_by_role("button", name=label, exact=True)
         wait_for_a_picture(page, panel, "click", button.click)
     assert "This panel failed" not in panel.inner_text()
+    assert serious_findings(page) == []
     assert errors == []
     page.close()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import re
 import types
 
@@ -91,11 +92,11 @@ def test_the_stub_has_a_docstring_and_is_not_passed(lesson):
         assert judge(find_exercise(number), stub).status == "not attempted"
 
 
-def test_the_solution_is_folded_starts_with_a_comment_and_passes(lesson):
+def test_the_solution_is_folded_with_nothing_but_its_number_to_be_seen_and_passes(lesson):
     for number in lesson.exercise_numbers():
         cell = only(lesson.exercise_cells(number, "solution"))
         assert cell.metadata["jupyter"]["source_hidden"] is True
-        assert cell.source.startswith("#")
+        assert cell.source.splitlines()[0] == f"# Solution {number}", "a folded cell shows its first line"
         solutions = functions_of(lesson, cell)
         (name,) = stub_of(lesson, number)
         assert name not in solutions, "the solution has a name of its own, so the student's work is never overwritten"
@@ -106,10 +107,11 @@ def test_the_solution_is_folded_starts_with_a_comment_and_passes(lesson):
 
 @pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
 def test_each_typical_mistake_fails_with_its_own_hint(exercise):
-    assert len({mistake.hint for mistake in exercise.mistakes}) >= 3  # one mistake may be made in several ways
+    assert len(exercise.mistakes) >= 3
+    assert len({mistake.hint for mistake in exercise.mistakes}) == len(exercise.mistakes)
     for mistake in exercise.mistakes:
-        for seed in SEEDS:
-            verdict = judge(exercise, mistake.function, seed)
+        for function, seed in itertools.product(mistake.functions, SEEDS):
+            verdict = judge(exercise, function, seed)
             assert verdict.status == "wrong"
             assert mistake.hint in verdict.message
 

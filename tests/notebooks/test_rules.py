@@ -6,7 +6,8 @@ import ast
 import re
 import statistics
 
-from course_lib.commands.refresh import MAX_BYTES, METADATA, WIDGET_VIEW
+from course_lib.commands.refresh import MAX_BYTES, METADATA
+from course_lib.commands.saved_panels import WIDGET_VIEW
 from course_lib.paths import REPOSITORY
 
 FORBIDDEN_WIDGETS = {"Output", "interact", "interactive", "interactive_output", "interact_manual", "Play"}
@@ -78,6 +79,28 @@ def test_every_picture_has_alternative_text(lesson):
             assert re.search(r'\btitle="[^"]{8,}"', frame), f"a frame without a title: {frame[:80]}"
     for alt in re.findall(r"!\[([^\]]*)\]\(", lesson.markdown):
         assert len(alt.split()) >= 4, f"alternative text too short: {alt!r}"
+
+
+def test_what_a_picture_shows_is_told_out_of_sight_not_before_one_looks(lesson):
+    for cell in lesson.visible_code_cells:
+        if cell.metadata.get("exercise"):
+            continue
+        told = [
+            keyword.value
+            for node in ast.walk(ast.parse(cell.source))
+            if isinstance(node, ast.Call)
+            for keyword in node.keywords
+            if keyword.arg == "alt"
+        ]
+        assert not any(isinstance(value, ast.Constant | ast.JoinedStr | ast.BinOp) for value in told), cell.id
+
+
+def test_the_first_and_the_last_cell_link_to_the_neighbours_and_to_the_series(lesson):
+    neighbours = sorted(lesson.path.parent.glob("[0-9P][0-9]_*.ipynb"))
+    here = neighbours.index(lesson.path)
+    wanted = {"README.md", *(path.name for path in neighbours[max(here - 1, 0) : here + 2] if path != lesson.path)}
+    for cell in (lesson.cells[0], lesson.cells[-1]):
+        assert wanted <= set(re.findall(r"\]\(([^)]+)\)", cell.source)), cell.id
 
 
 def scene_sources(lesson) -> list[str]:

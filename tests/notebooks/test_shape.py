@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import itertools
 import re
 
@@ -50,6 +51,41 @@ def test_nothing_runs_before_the_prediction(lesson):
     first_code = kinds.index("code")
     assert "## Predict" in text_of(lesson.cells[:first_code])
     assert "?" in text_of(section(lesson, "Predict"))
+
+
+def called(cell, name: str) -> ast.Call | None:
+    """The call of the function `name` in a code cell, if there is one."""
+    calls = [node for node in ast.walk(ast.parse(cell.source)) if isinstance(node, ast.Call)]
+    return next((call for call in calls if isinstance(call.func, ast.Name) and call.func.id == name), None)
+
+
+def typed_in(answer: ast.expr) -> str:
+    """The words of an f-string that stand there as they are, without what is computed and how it is formatted."""
+    formats = {node.format_spec for node in ast.walk(answer) if isinstance(node, ast.FormattedValue)}
+    strings = [node for node in ast.walk(answer) if isinstance(node, ast.JoinedStr) and node not in formats]
+    return "".join(part.value for string in strings for part in string.values if isinstance(part, ast.Constant))
+
+
+def test_every_prediction_has_a_box_right_below_it(lesson):
+    text, asked = section(lesson, "Predict")[:2]
+    assert asked.cell_type == "code"
+    number, *questions = [argument.value for argument in called(asked, "predict").args]
+    assert number == lesson.number
+    assert len(questions) == len(re.findall(r"^\d+\. ", text.source, re.M))
+    for question in questions:
+        assert len(question) <= 60, f"a question reads in one line: {question!r}"
+
+
+def test_the_recap_sets_what_was_measured_beside_every_prediction(lesson):
+    """The recall is the last code cell: everything that it speaks of was measured before."""
+    last = lesson.code_cells[-1]
+    asked = next(call for cell in lesson.code_cells if (call := called(cell, "predict")))
+    number, *answers = called(last, "recall").args
+    assert number.value == lesson.number
+    assert len(answers) == len(asked.args) - 1
+    for answer in answers:
+        assert any(isinstance(node, ast.Name) for node in ast.walk(answer)), "an answer is computed in the lesson"
+        assert not re.search(r"\d\.\d", typed_in(answer)), "a number that a cell measured is not typed in"
 
 
 def test_promised_equations_are_shown_with_their_number_and_symbols(lesson):

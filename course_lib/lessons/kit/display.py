@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import base64
 import html
+import io
 import re
 from typing import Literal
 
 from IPython.display import display
 from matplotlib.figure import Figure
+from PIL import Image
 
-from course_lib.plots.figures import jpeg_bytes, png_bytes
+from course_lib.plots.figures import png_bytes, webp_bytes
+
+# Pixels: in a narrow window a figure is scrolled rather than made smaller than this, or its labels could not be read.
+LEAST_WIDTH = 640
 
 
 class FigureError(ValueError):
@@ -24,7 +29,7 @@ def show(figure: Figure, alt: str, photograph: bool = False) -> None:
     Raises `FigureError` where title, axis labels with units (such as "depth Z [m]") or `alt` are missing.
     """
     require_labels(figure)
-    display(Picture(jpeg_bytes(figure), alt, "jpeg") if photograph else Picture(png_bytes(figure), alt))
+    display(Picture(webp_bytes(figure), alt, "webp") if photograph else Picture(png_bytes(figure), alt))
 
 
 def require_labels(figure: Figure) -> None:
@@ -42,12 +47,12 @@ def require_labels(figure: Figure) -> None:
 
 
 class Picture:
-    """A PNG or JPEG with alternative text, shown as `<img alt=...>`.
+    """A PNG or WebP with alternative text, shown as `<img alt=...>`.
 
     JupyterLab drops the alternative text of an `image/png` output, so the picture travels as HTML.
     """
 
-    def __init__(self, data: bytes, alt: str, kind: Literal["png", "jpeg"] = "png") -> None:
+    def __init__(self, data: bytes, alt: str, kind: Literal["png", "webp"] = "png") -> None:
         if len(alt.split()) < 4:
             raise FigureError(f"alternative text says what the picture shows, in a sentence; got {alt!r}")
         self.data, self.alt, self.kind = data, " ".join(alt.split()), kind
@@ -55,7 +60,11 @@ class Picture:
     def html(self) -> str:
         """The `<img>` element, its bytes inside."""
         data = base64.b64encode(self.data).decode("ascii")
-        return f'<img alt="{html.escape(self.alt)}" src="data:image/{self.kind};base64,{data}" style="max-width: 100%">'
+        least = min(LEAST_WIDTH, Image.open(io.BytesIO(self.data)).width)
+        return (
+            f'<img alt="{html.escape(self.alt)}" src="data:image/{self.kind};base64,{data}"'
+            f' style="max-width: 100%; min-width: {least}px">'
+        )
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
         return {"text/plain": repr(self), "text/html": self.html()}

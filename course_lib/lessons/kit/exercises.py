@@ -20,7 +20,9 @@ from typing import Literal
 import numpy as np
 
 from course_lib.lessons.kit.attempt import SECONDS, attempt
-from course_lib.lessons.kit.hints import MISSING_RETURN, agree_all, hint, kind_of, known_mistake
+from course_lib.lessons.kit.hints import MISSING_RETURN, agree, agree_all, hint, kind_of, known_mistake
+from course_lib.lessons.kit.progress_page import bring_up_to_date
+from course_lib.lessons.kit.student_record import record_check, record_folder
 
 # Random inputs per check: enough that a case drawn for one input in five is never missed, save once in 200 checks.
 N_INPUTS = 24
@@ -32,10 +34,19 @@ Level = Literal["warm-up", "core", "challenge"]
 
 @dataclass(frozen=True)
 class Mistake:
-    """A mistake that people really make: `function` computes what they compute, `hint` says what to look at."""
+    """A mistake that people really make: `function` computes what they compute, `hint` says what to look at.
+
+    others: the same mistake made in other ways, whose values differ.
+    """
 
     function: Callable
     hint: str
+    others: tuple[Callable, ...] = ()
+
+    @property
+    def functions(self) -> tuple[Callable, ...]:
+        """Every way in which the mistake is made."""
+        return (self.function, *self.others)
 
 
 @dataclass(frozen=True)
@@ -87,6 +98,13 @@ def check(number: str, function: Callable) -> None:
     if verdict.printed:
         print(f"(your function prints) {verdict.printed[:SHOWN].rstrip()}")
     print(f"{number}: {verdict.message}")
+    if record_folder() is not None:
+        try:
+            if said := record_check(number, verdict.status):
+                print(f"({said})")
+        except OSError as error:
+            print(f"(not kept: {error})")
+        bring_up_to_date()
 
 
 def find_exercise(number: str) -> Exercise:
@@ -128,11 +146,38 @@ def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float 
             return _wrong(f"Your function {call.failure}", printed)
         if call.value is ...:
             return _not_attempted()
-        if not _same_values(used, given):
+        if not same_values(used, given):
             return _wrong("Your function changes the array it was given: work on a new one.", printed)
         answers.append(call.value)
-    sentence = _verified(exercise, arguments, answers) if exercise.verify else _compared(exercise, arguments, answers)
+    sentence = fault(exercise, arguments, answers)
     return Verdict("right", "right.", printed) if sentence is None else _wrong(sentence, printed)
+
+
+def right_on(exercise: Exercise, arguments: list[tuple], answers: list) -> list[bool]:
+    """For each input whether the answer is right: the reference's, or that of the one other function that fits best.
+
+    An answer of None is wrong. The arguments are not changed. What is partly right can so be told from what is wrong.
+    """
+    if exercise.verify is not None:
+        return [
+            answer is not None and exercise.verify(copy.deepcopy(given), answer) is None
+            for given, answer in zip(arguments, answers, strict=True)
+        ]
+    return max(
+        (
+            [
+                agree(a, allowed(*copy.deepcopy(given)), exercise.tolerance)
+                for given, a in zip(arguments, answers, strict=True)
+            ]
+            for allowed in (exercise.reference, *exercise.others)
+        ),
+        key=sum,
+    )
+
+
+def fault(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
+    """What is wrong with the answers, in a sentence that shows neither inputs nor right values; None: nothing is."""
+    return _verified(exercise, arguments, answers) if exercise.verify else _compared(exercise, arguments, answers)
 
 
 def _compared(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
@@ -166,7 +211,8 @@ def is_stub(function: Callable) -> bool:
     return all(i.opname in idle for i in instructions) and constants == [None]
 
 
-def _same_values(given: tuple, kept: tuple) -> bool:
+def same_values(given: tuple, kept: tuple) -> bool:
+    """Whether arguments after a call are what they were before it."""
     pairs = zip(given, kept, strict=True)
     return all(np.array_equal(g, k, equal_nan=np.asarray(k).dtype.kind == "f") for g, k in pairs)
 

@@ -42,9 +42,10 @@ def hint(exercise: Exercise, arguments: list[tuple], answers: list, wanted: list
 def known_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
     """The hint of the known mistake that gives just these answers, or None."""
     for mistake in exercise.mistakes:
-        slips = [mistake.function(*copy.deepcopy(given)) for given in arguments]
-        if agree_all(answers, slips, exercise.tolerance):
-            return mistake.hint
+        for function in mistake.functions:
+            slips = [function(*copy.deepcopy(given)) for given in arguments]
+            if agree_all(answers, slips, exercise.tolerance):
+                return mistake.hint
     return None
 
 

@@ -6,6 +6,9 @@ into stored notebooks. The picture is an `HTML` widget with an `<img alt=...>`.
 
 `panel.draw(**values)` and the functions in `panel.actions` are plain functions: tests call them directly, so an error
 is never lost in a widget's callback. For a reader an error appears under the picture, which keeps its last state.
+
+What is stored is a still: the picture at the defaults, its numbers, and how to get the controls back. The classes
+"course-..." are what the small extension of `course.py lab` (course_lib/commands/lab_extension) knows a panel by.
 """
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ import numpy as np
 from IPython.display import display
 
 from course_lib.lessons.kit.display import Picture
-from course_lib.plots.figures import compress
+from course_lib.plots.figures import compress, compress_photograph
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,7 @@ class Switch:
 
 Control = Slider | Choice | Switch
 
+NO_CONTROLS_HERE = "<p>Run this cell to move the controls.</p>"
 LEAST_LABEL_EM = 14.0  # so that the sliders of most panels begin at one place
 EM_PER_LETTER = 0.55  # measured in JupyterLab: up to 0.52; a label that is longer than its place is cut
 
@@ -92,6 +96,11 @@ def _pair(slider: widgets.FloatSlider, number: widgets.BoundedFloatText, control
     widgets.dlink((number, "value"), (slider, "value"))
 
 
+def _numbers(text: str, role: str = "") -> str:
+    """A panel's line or two of numbers; a long one goes on between two words, so that no unit is cut."""
+    return f'<pre{role} style="white-space: pre-wrap; word-break: normal">{html.escape(text)}</pre>'
+
+
 def _decimals(value: float) -> int:
     """Decimals that a number is written with: 2 for 0.05, 0 for 15."""
     return len(f"{value:.10f}".rstrip("0").partition(".")[2])
@@ -102,7 +111,8 @@ class Panel:
 
     title: short, unique in its lesson. draw: takes every control's value by name, returns a `Drawing`. continuous:
     redraw while a slider moves; False (redraw on release) where `draw` takes longer than 0.15 s in the median. actions:
-    extra buttons, label -> function that takes the present values and returns the values to set.
+    extra buttons, label -> function that takes the present values and returns the values to set. photograph: the
+    picture is mostly one, which the few colours of a palette would turn into patches: its still is stored as WebP.
     """
 
     def __init__(
@@ -112,22 +122,27 @@ class Panel:
         draw: Callable[..., Drawing],
         continuous: bool = True,
         actions: dict[str, Callable[[dict], dict]] | None = None,
+        photograph: bool = False,
     ) -> None:
         names = [control.name for control in controls]
         if len(set(names)) != len(names) or not names:
             raise ValueError(f"a panel needs controls of different names; got {names}")
-        self.title, self.draw, self.continuous = title, draw, continuous
+        self.title, self.draw, self.continuous, self.photograph = title, draw, continuous, photograph
         self.controls: dict[str, Control] = {control.name: control for control in controls}
         self.actions = {"Reset": lambda values: self.defaults()} | (actions or {})
         self.error: Exception | None = None
         self._held = False
         self._inputs: dict[str, widgets.ValueWidget] = {}
-        self._picture, self._summary = widgets.HTML(), widgets.HTML()
+        self._picture = widgets.HTML(tooltip="", layout=widgets.Layout(overflow="auto"))
+        self._summary = widgets.HTML(tooltip="")
+        self._summary.add_class("course-numbers")
         letters = max((len(control.label) for control in controls if not isinstance(control, Switch)), default=0)
         self._label_em = max(LEAST_LABEL_EM, EM_PER_LETTER * letters)
         rows = [self._row(control) for control in controls]
         buttons = [self._button(label) for label in self.actions]
-        self.box = widgets.VBox([*rows, widgets.HBox(buttons), self._picture, self._summary])
+        wraps = widgets.Layout(flex_flow="row wrap")  # many buttons go on in a second line where the window is narrow
+        self.box = widgets.VBox([*rows, widgets.HBox(buttons, layout=wraps), self._picture, self._summary])
+        self.box.add_class("course-panel")
         self.redraw()
 
     def defaults(self) -> dict:
@@ -162,7 +177,7 @@ class Panel:
             raise
         self.error = None
         self._picture.value = Picture(drawing.png, drawing.alt).html()
-        self._summary.value = f"<pre>{html.escape(drawing.summary)}</pre>"
+        self._summary.value = _numbers(drawing.summary, role=' role="status"')
 
     def say(self, text: str) -> None:
         """A line under the picture while an action works; the picture stays until `redraw`."""
@@ -174,7 +189,8 @@ class Panel:
 
     def _row(self, control: Control) -> widgets.Widget:
         label = {"description": control.label, "style": {"description_width": f"{self._label_em:g}em"}}
-        wide = widgets.Layout(width=f"{self._label_em + 20:g}em")
+        label["tooltip"] = control.label  # without one, ipywidgets says "null"
+        wide = widgets.Layout(width=f"{self._label_em + 20:g}em", max_width="calc(100% - 4px)")
         if isinstance(control, Choice):
             widget = row = widgets.Dropdown(options=control.options, value=control.default, layout=wide, **label)
         elif isinstance(control, Switch):
@@ -185,7 +201,9 @@ class Panel:
         else:
             ends = {"min": control.least, "max": control.greatest, "step": control.step, "value": control.default}
             slider = widgets.FloatSlider(**ends, **label, layout=wide, readout=False, continuous_update=self.continuous)
-            widget = widgets.BoundedFloatText(**ends, layout=widgets.Layout(width="7em"), tooltip=control.label)
+            # The slider's label stands beside it; its own, of no width, is for who hears the page.
+            label["style"] = {"description_width": "0px"}
+            widget = widgets.BoundedFloatText(**ends, **label, layout=widgets.Layout(width="7em"))
             _pair(slider, widget, control)
             row = widgets.HBox([slider, widget])
         widget.observe(lambda change: None if self._held else self.redraw(), names="value")
@@ -193,7 +211,7 @@ class Panel:
         return row
 
     def _button(self, label: str) -> widgets.Button:
-        button = widgets.Button(description=label)
+        button = widgets.Button(description=label, layout=widgets.Layout(width="auto", min_width="9em"))
         button.on_click(lambda _: self.press(label))
         return button
 
@@ -201,7 +219,8 @@ class Panel:
         view = self.box._repr_mimebundle_().get("application/vnd.jupyter.widget-view+json")
         drawing = self.draw(**self.defaults())
         rgb = cv2.imdecode(np.frombuffer(drawing.png, np.uint8), cv2.IMREAD_COLOR_RGB)
-        still = f"{Picture(compress(rgb), drawing.alt).html()}<pre>{html.escape(drawing.summary)}</pre>"
+        kept = (compress_photograph(rgb), drawing.alt, "webp") if self.photograph else (compress(rgb), drawing.alt)
+        still = f"{Picture(*kept).html()}{_numbers(drawing.summary)}{NO_CONTROLS_HERE}"
         bundle = {"text/plain": repr(self), "text/html": still}
         return bundle if view is None else bundle | {"application/vnd.jupyter.widget-view+json": view}
 

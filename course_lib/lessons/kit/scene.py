@@ -20,6 +20,7 @@ from course_lib.paths import STORE_SCENES
 from course_lib.plots.figures import compress
 from course_lib.plots.scene_page import ScenePageError, page_html, same_scene
 from course_lib.plots.scenes import SceneError
+from course_lib.writing import write_at_once
 
 if TYPE_CHECKING:
     import pyvista
@@ -107,5 +108,5 @@ def _written(page: str, name: str) -> str:
 
 def _write(path: Path, page: str) -> str:
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8")
+    write_at_once(path, page)
     return path.as_posix()

@@ -61,7 +61,7 @@ def stored_picture(path: Path, cell_id: str | None = None) -> Image.Image:
             continue
         for output in cell.get("outputs", []):
             text = "".join(output.get("data", {}).get("text/html", ""))
-            found = re.search(r'src="data:image/png;base64,([^"]+)"', text)
+            found = re.search(r'src="data:image/[a-z]+;base64,([^"]+)"', text)
             if found:
                 return Image.open(io.BytesIO(base64.b64decode(found.group(1)))).convert("RGB")
     where = "no cell" if cell_id is None else f"no cell {cell_id}"

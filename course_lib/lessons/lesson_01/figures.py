@@ -88,8 +88,11 @@ def _triad(axes, matrix: np.ndarray, names, colour: str | None, length: float, l
         end = start + length * matrix[:3, column]
         own = colour or STYLES[column]["color"]
         axes.plot(*zip(start, end, strict=True), color=own, linestyle=line, linewidth=2.4)
-        above = [0, 0, 0.13 if abs(matrix[2, column]) < 0.5 else 0]
-        axes.text(*(start + 1.16 * (end - start) + above), name, color=own, ha="center", va="center", fontsize=9)
+        beyond, above = 1.16, 0.13 if abs(matrix[2, column]) < 0.5 else 0
+        if name == "forward":  # the longest name: above the tip it would lie on its axis and leave the box
+            beyond, above = 0.8, -0.24
+        place = start + beyond * (end - start) + [0, 0, above]
+        axes.text(*place, name, color=own, ha="center", va="center", fontsize=9)
 
 
 def mean_figure(headings: np.ndarray, as_numbers: float, on_circle: float) -> Figure:

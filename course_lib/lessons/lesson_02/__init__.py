@@ -1,5 +1,6 @@
 """Lesson 02, a map from a laser scan: what a camera sees of a small room's maps, the corridor's map, figures, panel."""
 
+from course_lib.lessons.lesson_02.alternative_texts import ALT
 from course_lib.lessons.lesson_02.figures import (
     corridor_figure,
     fusion_figure,
@@ -13,6 +14,7 @@ from course_lib.lessons.lesson_02.small_room import STATIONS, distance_to_room, 
 from course_lib.lessons.lesson_02.views import camera_view, corridor_difference, row, shipped_numbers, true_view
 
 __all__ = [
+    "ALT",
     "PANELS",
     "STATIONS",
     "camera_view",

@@ -437,6 +437,7 @@ EXERCISES = [
             Mistake(
                 _by(lambda n: n),
                 "Each of your heading errors swings one step. It swings *all* later steps.",
+                others=(_by(lambda n: n - 1),),
             ),
             Mistake(
                 _by(lambda n: n * (n + 1) * (2 * n + 1) / 6),
@@ -445,6 +446,7 @@ EXERCISES = [
             Mistake(
                 _by(lambda n: n**2),
                 "You let the first heading swing the whole row, and forget the others.",
+                others=(_by(lambda n: (n - 1) ** 2),),
             ),
             Mistake(
                 _by(lambda n: n**3),
@@ -481,14 +483,6 @@ EXERCISES = [
             Mistake(
                 _by(lambda n: (n - 1) * n * (2 * n - 1) / 6, places=lambda n: 2 * n),
                 "You count the place error along the row as well. To the side only one of its two parts counts.",
-            ),
-            Mistake(
-                _by(lambda n: (n - 1) ** 2),
-                "You let the first heading swing the whole row, and forget the others.",
-            ),
-            Mistake(
-                _by(lambda n: n - 1),
-                "Each of your heading errors swings one step. It swings *all* later steps.",
             ),
             Mistake(
                 lambda n, spacing, place, heading: lateral_sigma(n, spacing, place, np.deg2rad(heading)),

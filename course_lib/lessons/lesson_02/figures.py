@@ -69,6 +69,7 @@ def maps_figure(maps: dict[str, SceneMap], door_open: bool = False) -> Figure:
         draw_cut(a, room_cut(door_open), "0.75", 3.0, "room")
         draw_cut(a, cut(scene_map.vertices, scene_map.faces), figures.BLUE, 1.3, "map")
         a.set(title=name, xlabel="x [m]", ylabel="y [m]", xlim=(-0.3, 5.3), ylim=(-0.3, 4.3), aspect="equal")
+    a.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     return figure
 
 

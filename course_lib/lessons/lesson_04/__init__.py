@@ -1,5 +1,6 @@
 """Lesson 04, the depth camera: its scene, its faults one by one, figures and panel."""
 
+from course_lib.lessons.lesson_04.alternative_texts import ALT
 from course_lib.lessons.lesson_04.figures import (
     idea_figure,
     noise_figure,
@@ -12,6 +13,7 @@ from course_lib.lessons.lesson_04.recorded import kinds_of, on_a_surface, sort_e
 from course_lib.lessons.lesson_04.time_of_flight import capture, frames_of, returns, wall
 
 __all__ = [
+    "ALT",
     "PANELS",
     "capture",
     "faults_panel",

@@ -258,6 +258,7 @@ EXERCISES = [
             Mistake(
                 lambda ranges, rays: ranges / np.abs(rays).sum(axis=-1),
                 "You add the components of the ray. Its length is the root of the sum of their squares.",
+                others=(lambda ranges, rays: ranges / rays.sum(axis=-1),),
             ),
             Mistake(
                 lambda ranges, rays: np.nan_to_num(ranges / np.linalg.norm(rays, axis=-1)),
@@ -286,10 +287,6 @@ EXERCISES = [
             Mistake(
                 lambda ranges, rays: ranges / np.hypot(rays[..., 1], 1),
                 "Your rays are tilted up and down only. They are tilted to the side as well: x counts, too.",
-            ),
-            Mistake(
-                lambda ranges, rays: ranges / rays.sum(axis=-1),
-                "You add the components of the ray. Its length is the root of the sum of their squares.",
             ),
         ),
     ),
@@ -344,19 +341,15 @@ EXERCISES = [
                 ),
                 "You take the farthest candidate always. Ask of each how well it fits the reading at f_b.",
             ),
-            *(
-                Mistake(
-                    _beyond_farthest(more),
-                    "One of your ranges lies beyond `farthest`: leave such candidates out before you take the best.",
-                )
-                for more in range(4)
+            Mistake(
+                _beyond_farthest(0),
+                "One of your ranges lies beyond `farthest`: leave such candidates out before you take the best.",
+                others=tuple(_beyond_farthest(more) for more in (1, 2, 3)),
             ),
-            *(
-                Mistake(
-                    _first_that_fits(within),
-                    "You stop at the first range that fits roughly. A later one may fit better: take the best of all.",
-                )
-                for within in (0.1, 0.15, 0.2, 0.25, 0.3, 0.5)
+            Mistake(
+                _first_that_fits(0.1),
+                "You stop at the first range that fits roughly. A later one may fit better: take the best of all.",
+                others=tuple(_first_that_fits(within) for within in (0.15, 0.2, 0.25, 0.3, 0.5)),
             ),
             Mistake(
                 lambda read_a, f_a, read_b, f_b, farthest: range_from_two(read_a, f_b, read_b, f_a, farthest),

@@ -1,5 +1,6 @@
 """Lesson 05, particles and motion: clouds that walk, an oracle that keeps the nearest, their figures and panel."""
 
+from course_lib.lessons.lesson_05.alternative_texts import ALT
 from course_lib.lessons.lesson_05.clouds import corner_states, nearest_expected, wagon_states, walk
 from course_lib.lessons.lesson_05.figures import (
     beliefs_figure,
@@ -11,6 +12,7 @@ from course_lib.lessons.lesson_05.figures import (
 from course_lib.lessons.lesson_05.panel import PANELS, cloud_panel
 
 __all__ = [
+    "ALT",
     "PANELS",
     "beliefs_figure",
     "cloud_panel",

@@ -366,6 +366,7 @@ EXERCISES = [
             Mistake(
                 lambda spread0, sigma, t: np.sqrt(np.maximum(spread0**2 + (t - 1) * sigma**2, 0)),
                 "One frame is missing: the first frame moves the particles already.",
+                others=(lambda spread0, sigma, t: np.sqrt(spread0**2 + max(t - 1, 0) * sigma**2),),
             ),
             Mistake(
                 lambda spread0, sigma, t: np.sqrt(spread0 + t * sigma),
@@ -386,10 +387,6 @@ EXERCISES = [
             Mistake(
                 lambda spread0, sigma, t: np.sqrt(spread0**2 + (t + 1) * sigma**2),
                 "You count one frame too many: after t frames there were t steps, the start is none.",
-            ),
-            Mistake(
-                lambda spread0, sigma, t: np.sqrt(spread0**2 + max(t - 1, 0) * sigma**2),
-                "One frame is missing: the first frame moves the particles already.",
             ),
             Mistake(
                 lambda spread0, sigma, t: np.maximum(spread0, np.sqrt(t) * sigma),

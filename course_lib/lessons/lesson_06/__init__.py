@@ -1,5 +1,6 @@
 """Lesson 06, likelihood and weights: one depth image of the corridor, four likelihoods, and their panel."""
 
+from course_lib.lessons.lesson_06.alternative_texts import ALT
 from course_lib.lessons.lesson_06.figures import cost_figure, profiles_figure, terms_figure, weights_figure
 from course_lib.lessons.lesson_06.panel import PANELS, likelihood_panel
 from course_lib.lessons.lesson_06.profiles import (
@@ -16,6 +17,7 @@ from course_lib.lessons.lesson_06.profiles import (
 )
 
 __all__ = [
+    "ALT",
     "AXES",
     "FORMS",
     "FRAME",

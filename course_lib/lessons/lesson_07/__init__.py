@@ -1,5 +1,6 @@
 """Lesson 07, estimate and resample: means on the circle, four resamplers, the Kalman filter, and the filter stepper."""
 
+from course_lib.lessons.lesson_07.alternative_texts import ALT
 from course_lib.lessons.lesson_07.beside_kalman import (
     beside_kalman,
     best_bells,
@@ -19,6 +20,7 @@ from course_lib.lessons.lesson_07.resampling import (
 )
 
 __all__ = [
+    "ALT",
     "PANELS",
     "SCHEMES",
     "beside_kalman",

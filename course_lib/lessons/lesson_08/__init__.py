@@ -1,6 +1,7 @@
 """Lesson 08, the corridor experiment: its figures, and a panel that runs the filter along the corridor at once."""
 
 from course_lib.lessons.lesson_08.along import STRETCH
+from course_lib.lessons.lesson_08.alternative_texts import ALT
 from course_lib.lessons.lesson_08.figures import (
     along_figure,
     as_in_the_paper_figure,
@@ -19,6 +20,7 @@ from course_lib.lessons.lesson_08.stored_runs import (
 )
 
 __all__ = [
+    "ALT",
     "PANELS",
     "STRETCH",
     "along_figure",

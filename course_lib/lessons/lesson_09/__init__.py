@@ -1,5 +1,6 @@
 """Lesson 09, six degrees of freedom: why 200 particles are lost, and four ideas that make it work."""
 
+from course_lib.lessons.lesson_09.alternative_texts import ALT
 from course_lib.lessons.lesson_09.bare_corridor import slide
 from course_lib.lessons.lesson_09.basin import measure_basin
 from course_lib.lessons.lesson_09.clouds import cloud_density
@@ -20,6 +21,7 @@ from course_lib.lessons.lesson_09.panel import PANELS, refinement_panel
 from course_lib.lessons.lesson_09.stored import ablation, each_recording, stored_table
 
 __all__ = [
+    "ALT",
     "FRAMES",
     "PANELS",
     "SEED",

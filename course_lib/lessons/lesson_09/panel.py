@@ -76,7 +76,7 @@ def refinement_panel() -> Panel:
         lines += errors.semilogy(steps, np.ones(STEPS + 1), **style, label=name)
     (here,) = errors.plot([0], [1], "o", color=figures.VERMILION, markersize=10, fillstyle="none", markeredgewidth=2)
     errors.set(title="Error after each step", xlabel="step [-]", ylabel="error [m or 10 degrees]")
-    errors.set(ylim=(1e-3, 10), xlim=(-0.5, STEPS + 0.5))
+    errors.set(ylim=(1e-3, 10), xlim=(-0.5, STEPS + 0.5), xticks=steps[::2])
     errors.legend(loc="upper right", fontsize=8)
     live = LiveFigure(figure, [drawn, apart, *lines, here])
 

@@ -1,5 +1,6 @@
 """Lesson 10, lost and found: a hotel with two rooms alike, kidnappings in it, filters that start anywhere."""
 
+from course_lib.lessons.lesson_10.alternative_texts import ALT
 from course_lib.lessons.lesson_10.figures import (
     carried_figure,
     chance_figure,
@@ -42,6 +43,7 @@ from course_lib.lessons.lesson_10.trials import (
 
 __all__ = [
     "ALPHA",
+    "ALT",
     "BETA",
     "CAMERA",
     "KIDNAPPINGS",

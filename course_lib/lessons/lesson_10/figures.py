@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
 
 from course_lib.depth_mcl.lost_and_found.adaptive_count import kld_count
 from course_lib.depth_mcl.lost_and_found.global_search import Places
@@ -24,8 +26,9 @@ def draw_hotel(axes: Axes, title: str) -> None:
     for colour, boxes in zip(("0.35", "0.86"), boxes_on_the_plan(), strict=True):
         for (x0, y0, _), (x1, y1, _) in boxes:
             axes.add_patch(Rectangle((x0, y0), x1 - x0, y1 - y0, facecolor=colour, edgecolor="0.5", linewidth=0.4))
+    around = [withStroke(linewidth=3, foreground="white")]  # particles may lie under a name
     for name, (x, y) in _NAMES.items():
-        axes.text(x, y, name, fontsize=8, color="0.25", ha="center", va="center")
+        axes.text(x, y, name, fontsize=8, color="0.25", ha="center", va="center", zorder=6, path_effects=around)
     axes.set(xlim=(-0.2, 12.2), ylim=(-0.2, 5.9), aspect="equal", title=title, xlabel="x [m]", ylabel="y [m]")
     axes.grid(False)
 
@@ -64,7 +67,7 @@ def carried_figure(errors: np.ndarray, scores: np.ndarray, weights: np.ndarray, 
         strict=True,
     ):
         for k, row in enumerate(rows):
-            a.plot(row, **(figures.line_style(k) | {"markersize": 3, "linewidth": 1.1}), label=f"seed {k + 1}")
+            a.plot(row, **(figures.line_style(k) | {"markersize": 3, "linewidth": 1.1}), label=f"run {k + 1}")
         a.axvline(uncovered - 0.5, color="black", linestyle=":", linewidth=1.2)
         a.set(title=title, xlabel="frame [-]", ylabel=label, ylim=(0, None))
     axes[2].set_ylim(0, 1.05)
@@ -182,5 +185,6 @@ def told_figure(errors: np.ndarray, statuses: Sequence[str], title: str, happene
         axes.plot(chosen, errors[chosen], **style, label=f"it says: {status}")
     axes.axvline(happened - 0.5, color="black", linestyle=":", linewidth=1.4, label=what)
     axes.set(title=title, xlabel="frame [-]", ylabel="distance from the truth [m]", ylim=(-0.3, None))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
     return figure

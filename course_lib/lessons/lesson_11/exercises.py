@@ -488,6 +488,7 @@ EXERCISES = [
             Mistake(
                 _gaps_without_the_last_of_several,
                 "One gap is missing: the one from the last point across the seam to the first.",
+                others=(_gaps_without_the_last,),
             ),
             Mistake(
                 lambda columns, width: (float(columns.min()), float(columns.max())),
@@ -528,10 +529,6 @@ EXERCISES = [
             ),
             Mistake(_largest_gap_itself, "That is the empty part, the largest gap. The points are in all the rest."),
             Mistake(
-                _gaps_without_the_last,
-                "One gap is missing: the one from the last point across the seam to the first.",
-            ),
-            Mistake(
                 lambda columns, width: (
                     shortest_stretch(columns, width)[0],
                     float(np.ptp(shortest_stretch(columns, width))),
@@ -553,11 +550,10 @@ EXERCISES = [
         others=(knock_linear, _from_angle_differences),
         tolerance=0.05,
         mistakes=(
-            *(
-                Mistake(
-                    _from_so_many(n), "You use the first points only. Which turn do they leave open? Stack them all."
-                )
-                for n in (1, 2)
+            Mistake(
+                _from_so_many(1),
+                "You use the first points only. Which turn do they leave open? Stack them all.",
+                others=(_from_so_many(2),),
             ),
             Mistake(
                 lambda b, a, w, h: (*np.multiply(knock(b, a, w, h), [1, 1, -1]).tolist(),),

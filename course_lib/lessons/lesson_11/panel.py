@@ -80,7 +80,7 @@ def sphere_panel() -> Panel:
         Slider("v", "row v [pixels]", 0, 640, 410, 10),
         Slider("look", "look towards [degrees]", -180, 180, 150, 15),
     ]
-    return Panel("11 panorama and sphere", controls, draw)
+    return Panel("11 panorama and sphere", controls, draw, photograph=True)
 
 
 PANELS = {"11 panorama and sphere": sphere_panel}

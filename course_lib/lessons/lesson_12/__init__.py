@@ -1,6 +1,7 @@
 """Lesson 12, detecting objects: a sofa that the seam cuts, thresholds, and the hue and saturation of a box."""
 
 from course_lib.lessons.kit.room_photographs import the_image
+from course_lib.lessons.lesson_12.alternative_texts import ALT
 from course_lib.lessons.lesson_12.figures import crops_figure, hues_and_saturations, idea_figure, threshold_figure
 from course_lib.lessons.lesson_12.learning import anchors, training_figure, training_picture
 from course_lib.lessons.lesson_12.panel import PANELS
@@ -17,6 +18,7 @@ from course_lib.lessons.lesson_12.seam_cuts import (
 )
 
 __all__ = [
+    "ALT",
     "PANELS",
     "anchors",
     "chosen_threshold",

@@ -452,6 +452,7 @@ EXERCISES = [
             Mistake(
                 _product_cut,
                 "Boxes apart both ways have two negative lengths, whose product is positive: cut each off at 0 first.",
+                others=(_product_uncut,),
             ),
             Mistake(
                 lambda a, b, w: 100 * overlap(a, b, w),
@@ -523,10 +524,6 @@ EXERCISES = [
             Mistake(
                 _two_places(-1, np.inf),
                 "You always move the second box one turn to the left. Mostly it is right where it is: try all three.",
-            ),
-            Mistake(
-                _product_uncut,
-                "Boxes apart both ways have two negative lengths, whose product is positive: cut each off at 0 first.",
             ),
             Mistake(
                 _lengths_added_uncut,
@@ -663,17 +660,14 @@ EXERCISES = [
                 "You stop when it fails for the first time. Precision goes up and down: lower thresholds may do again.",
             ),
             Mistake(_highest, "That is the highest good threshold. The lowest one finds most objects."),
-            *(
-                Mistake(
-                    _row_by_row(order_of),
-                    "Boxes with equal scores stay or go together: no threshold cuts between them.",
-                )
-                for order_of in (
-                    lambda scores: np.argsort(-scores, kind="stable"),
-                    lambda scores: np.argsort(-scores),
-                    lambda scores: np.argsort(scores)[::-1],
-                    lambda scores: np.argsort(scores, kind="stable")[::-1],
-                )
+            Mistake(
+                _row_by_row(lambda scores: np.argsort(-scores, kind="stable")),
+                "Boxes with equal scores stay or go together: no threshold cuts between them.",
+                others=(
+                    _row_by_row(lambda scores: np.argsort(-scores)),
+                    _row_by_row(lambda scores: np.argsort(scores)[::-1]),
+                    _row_by_row(lambda scores: np.argsort(scores, kind="stable")[::-1]),
+                ),
             ),
             Mistake(
                 lambda scores, right, least: _lowest(scores, right, least, _wilson_low, enough=np.greater),

@@ -62,7 +62,7 @@ def extended_axes(axes: Axes, image_bgr: np.ndarray, title: str) -> list[Artist]
 
 def idea_figure(image_bgr: np.ndarray, boxes: np.ndarray, labels: Sequence[str], counted: np.ndarray) -> Figure:
     """The extended panorama with every box that the network saw on it; thin and dotted where it does not count."""
-    figure, axes = figures.new_figure(size=(9.6, 4.1))
+    figure, axes = figures.new_figure(size=(8.6, 3.7))
     extended_axes(axes, image_bgr, "What the network sees on the extended image (dashed: the range that counts)")
     for box, label, counts in zip(boxes, labels, counted, strict=True):
         colour, _ = class_style(label)
@@ -116,7 +116,7 @@ def part_of(box: Sequence[float], share: float) -> tuple[float, float, float, fl
 
 def crops_figure(image_bgr: np.ndarray, boxes: dict[str, Sequence[float]]) -> Figure:
     """Some boxes close up, each with the central half in which its colour is measured."""
-    figure, axes = figures.new_figure(1, len(boxes), size=(2.9 * len(boxes), 3.1))
+    figure, axes = figures.new_figure(1, len(boxes), size=(2.5 * len(boxes), 2.8))
     for a, (name, box) in zip(np.atleast_1d(axes), boxes.items(), strict=True):
         crop, scale, corner = crop_of(image_bgr, box, 220)
         a.imshow(crop, extent=(0, 220 / scale, 220 / scale, 0))

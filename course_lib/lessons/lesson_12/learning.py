@@ -59,7 +59,7 @@ def training_figure(taught: TrainingPicture, chosen: int) -> Figure:
     size, centre = box[2:] - box[:2], (box[:2] + box[2:]) / 2
     best = np.argmax(shape_overlap(INPUT_SCALE * size[None], shapes)[0])
     cell = strides[best] / INPUT_SCALE
-    figure, (whole, close) = figures.new_figure(1, 2, size=(9.6, 3.6))
+    figure, (whole, close) = figures.new_figure(1, 2, size=(8.6, 3.4))
     whole.get_gridspec().set_width_ratios([2.2, 1])
     panorama(whole, brighter(taught.image), "A picture of the training, and what is asked for")
     for other, label in zip(taught.boxes, taught.labels, strict=True):
@@ -67,7 +67,7 @@ def training_figure(taught: TrainingPicture, chosen: int) -> Figure:
     low, high = centre - 80, centre + 80
     close.imshow(brighter(taught.image)[..., ::-1], extent=(0, taught.image.shape[1], taught.image.shape[0], 0))
     close.set(xlim=(low[0], high[0]), ylim=(high[1], low[1]), xlabel="column u [pixels]", ylabel="row v [pixels]")
-    close.set_title(f"A {taught.labels[chosen]}: cells and shapes")
+    close.set_title(f"{taught.labels[chosen].capitalize()}: cells, shapes")
     close.grid(False)
     for edge in np.arange(np.floor(low.min() / cell), np.ceil(high.max() / cell) + 1) * cell:
         close.axvline(edge, color="white", linewidth=0.4)

@@ -96,7 +96,7 @@ def seam_panel(percents: Sequence[int] = CUTS) -> Panel:
         Switch("extension", "append the left quarter (extension)", True),
         Slider("threshold", "score threshold [-]", 0.1, 0.9, 0.5, 0.05),
     ]
-    return Panel("12 slide the seam", controls, draw)
+    return Panel("12 slide the seam", controls, draw, photograph=True)
 
 
 def where_they_count(boxes: np.ndarray, width: int) -> np.ndarray:
@@ -164,7 +164,7 @@ def hue_panel(image_bgr: np.ndarray, things: Sequence[TrueObject]) -> Panel:
         Choice("thing", "object", tuple(shown_things), first),
         Slider("share", "part of the box [share]", 0.1, 1.0, 0.5, 0.1),
     ]
-    return Panel("12 hue and saturation", controls, draw)
+    return Panel("12 hue and saturation", controls, draw, photograph=True)
 
 
 PANELS = {

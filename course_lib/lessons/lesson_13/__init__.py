@@ -2,6 +2,7 @@
 
 from course_lib.lessons.kit.panorama_features import scene
 from course_lib.lessons.kit.room_photographs import pair_of
+from course_lib.lessons.lesson_13.alternative_texts import ALT
 from course_lib.lessons.lesson_13.figures import counts_figure, matched_figure, pair_figure
 from course_lib.lessons.lesson_13.matching import (
     PLACES,
@@ -17,6 +18,7 @@ from course_lib.lessons.lesson_13.panel import PANELS, matching_panel
 from course_lib.lessons.lesson_13.sphere_scene import half_circle, upright_plane
 
 __all__ = [
+    "ALT",
     "PANELS",
     "PLACES",
     "WAYS",

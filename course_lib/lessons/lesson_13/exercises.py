@@ -587,6 +587,7 @@ EXERCISES = [
             Mistake(
                 _all_that_is_equal_out,
                 "Equal counts in different rows and different columns are no tie: nobody has to choose.",
+                others=(lambda counts: _with_ties(counts, anywhere=True),),
             ),
             Mistake(
                 _ties_of_the_whole_table,
@@ -622,10 +623,6 @@ EXERCISES = [
             Mistake(
                 lambda counts: _with_ties(counts, rows=False),
                 "You see ties in a column. Two columns with equally many matches for one row are a tie as well.",
-            ),
-            Mistake(
-                lambda counts: _with_ties(counts, anywhere=True),
-                "Equal counts in different rows and different columns are no tie: nobody has to choose.",
             ),
             Mistake(
                 lambda counts: _with_ties(counts, columns_out=False),

@@ -105,7 +105,7 @@ def matching_panel() -> Panel:
         Slider("turn", "lower camera turned by [degrees]", -5.0, 5.0, 0.0, 0.25),
         Switch("constraint", "use the epipolar constraint", True),
     ]
-    return Panel("13 one object in two panoramas", controls, draw)
+    return Panel("13 one object in two panoramas", controls, draw, photograph=True)
 
 
 _LABEL = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.85}

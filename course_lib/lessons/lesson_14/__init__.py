@@ -2,6 +2,7 @@
 
 from course_lib.lessons.kit.panorama_features import scene
 from course_lib.lessons.kit.room_photographs import pair_of, room_map, room_recording
+from course_lib.lessons.lesson_14.alternative_texts import ALT
 from course_lib.lessons.lesson_14.figures import (
     ellipse_figure,
     errors_figure,
@@ -24,6 +25,7 @@ from course_lib.lessons.lesson_14.ranges import (
 )
 
 __all__ = [
+    "ALT",
     "PANELS",
     "PIXEL",
     "PLACES",

@@ -318,6 +318,16 @@ def _by_curvature(rho, e_u, e_l, baseline):
     return rho**3 / baseline**2 * (np.cos(e_u) ** -4 + np.cos(e_l) ** -4)
 
 
+def _with_shares(of_curvature, of_tangent):
+    """The mean error with its two parts taken so many times."""
+
+    def wrong(rho, e_u, e_l, baseline, sigma):
+        curvature = of_curvature * _by_curvature(rho, e_u, e_l, baseline)
+        return sigma**2 * (curvature + of_tangent * _by_tangent(rho, e_u, e_l, baseline))
+
+    return wrong
+
+
 def _by_tangent(rho, e_u, e_l, baseline):
     return rho**2 / baseline * (np.tan(e_u) / np.cos(e_u) ** 2 - np.tan(e_l) / np.cos(e_l) ** 2)
 
@@ -552,9 +562,8 @@ EXERCISES = [
         cases=(_one_match_is_far_off, _stranger_first, _images_swapped, lambda rng: _matches_with(rng, 9, 0, np.zeros)),
         mistakes=(
             *(
-                Mistake(guarded(range_from), why)
+                Mistake(range_from, why, others=(_or_nan(range_from), _of_those_in_front(range_from)))
                 for range_from, why in _SPOILED.items()
-                for guarded in (lambda itself: itself, _or_nan, _of_those_in_front)
             ),
             Mistake(
                 _nan_if_any_diverges,
@@ -594,15 +603,10 @@ EXERCISES = [
         level="challenge",
         cases=(_level_rays,),
         mistakes=(
-            *(
-                Mistake(
-                    lambda rho, e_u, e_l, baseline, sigma, share=share: (
-                        sigma**2 * (_by_curvature(rho, e_u, e_l, baseline) * share[0])
-                        + sigma**2 * (_by_tangent(rho, e_u, e_l, baseline) * share[1])
-                    ),
-                    "One of the two parts is off by a factor of two: a half of Taylor's series, or the 2 of 2 / s^3.",
-                )
-                for share in ((0.5, 1), (2, 1), (1, 0.5), (1, 2))
+            Mistake(
+                _with_shares(0.5, 1),
+                "One of the two parts is off by a factor of two: a half of Taylor's series, or the 2 of 2 / s^3.",
+                others=(_with_shares(2, 1), _with_shares(1, 0.5), _with_shares(1, 2)),
             ),
             Mistake(
                 lambda rho, e_u, e_l, baseline, sigma: mean_error(rho, e_u, e_l, baseline, sigma) / rho,

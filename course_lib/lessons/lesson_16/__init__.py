@@ -1,6 +1,7 @@
 """Lesson 16, pose from points: matched points of the room, noise on points, the figures and the panel of the fit."""
 
 from course_lib.lessons.kit.room_observations import room_scenes
+from course_lib.lessons.lesson_16.alternative_texts import ALT
 from course_lib.lessons.lesson_16.figures import centred_figure, heading_figure, noise_figure
 from course_lib.lessons.lesson_16.fits import (
     LINE,
@@ -18,6 +19,7 @@ from course_lib.lessons.lesson_16.fits import (
 from course_lib.lessons.lesson_16.panel import PANELS, fit_panel
 
 __all__ = [
+    "ALT",
     "LINE",
     "PANELS",
     "ROOM",

@@ -1,6 +1,7 @@
 """Lesson 17, the room experiment: its places, which poses fail, and a panel that hides objects from the camera."""
 
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
+from course_lib.lessons.lesson_17.alternative_texts import ALT
 from course_lib.lessons.lesson_17.experiments import (
     KINDS,
     exact_results,
@@ -21,6 +22,7 @@ from course_lib.lessons.lesson_17.room_runs import (
 )
 
 __all__ = [
+    "ALT",
     "KINDS",
     "PANELS",
     "errors",

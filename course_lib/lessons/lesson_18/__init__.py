@@ -2,6 +2,7 @@
 
 from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
+from course_lib.lessons.lesson_18.alternative_texts import ALT
 from course_lib.lessons.lesson_18.figures import (
     ambiguities_figure,
     few_seen_figure,
@@ -37,6 +38,7 @@ from course_lib.lessons.lesson_18.trials import (
 from course_lib.lessons.lesson_18.two_matches import both_right, matched_by_colour, matched_by_two
 
 __all__ = [
+    "ALT",
     "FEW_SEEN",
     "GAP_ALONE",
     "PAIR",

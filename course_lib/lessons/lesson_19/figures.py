@@ -18,18 +18,39 @@ from course_lib.plots.panorama_drawing import class_style, draw_box, panorama
 from course_lib.plots.room_figures import draw_pose
 
 DEVIATIONS = 2  # standard deviations of an ellipse
+SAME_PLACE_M = 0.3  # what stands nearer to something than this gets one name with it: the television on its cabinet
 
 
 def draw_room(axes: Axes, title: str) -> None:
-    """The true room from above: walls, and every piece's footprint in its class's colour, named by a letter or two."""
+    """The true room from above: walls, and every piece's footprint in its class's colour, with its name."""
     here = world()
     corners = np.vstack([here.room.walls, here.room.walls[:1]])
     axes.plot(*corners.T, color=figures.BLACK, linewidth=2.0)
     for corners, item in zip(here.footprints, here.room.objects, strict=True):
         colour, _ = class_style(item.label)
         axes.add_patch(Polygon(corners, facecolor=colour, alpha=0.35, edgecolor=colour))
-        axes.text(*corners.mean(axis=0), item.label, fontsize=6, ha="center", va="center", clip_on=True)
+    labels, sizes = [item.label for item in here.room.objects], [np.ptp(corners, axis=0) for corners in here.footprints]
+    for names, k in named_together(labels, np.array([corners.mean(axis=0) for corners in here.footprints])):
+        across, along = sizes[k]
+        upright = along > 2 * across  # a name is wider than a narrow piece, and would cross the wall beside it
+        words = {"rotation": 90 if upright else 0, "fontsize": 6, "linespacing": 0.9, "clip_on": True}
+        axes.text(*here.footprints[k].mean(axis=0), "\n".join(names), ha="center", va="center", **words)
     axes.set(title=title, xlabel="x [m]", ylabel="y [m]", aspect="equal")
+
+
+def named_together(labels: Sequence[str], places: np.ndarray) -> list[tuple[list[str], int]]:
+    """What stands at one place, by name, so that no name covers another: (names, index of the first of them) of each.
+
+    labels: n of them. places: `(n, 2)`, metres.
+    """
+    groups: list[tuple[list[str], int]] = []
+    for k, label in enumerate(labels):
+        same = [names for names, first in groups if np.hypot(*(places[first] - places[k])) < SAME_PLACE_M]
+        if same:
+            same[0].append(label)
+        else:
+            groups.append(([label], k))
+    return groups
 
 
 def ellipse(covariance: np.ndarray, centre: Sequence[float]) -> np.ndarray:
@@ -42,12 +63,13 @@ def ellipse(covariance: np.ndarray, centre: Sequence[float]) -> np.ndarray:
 
 def sensors_figure(one: Journey) -> Figure:
     """What both sensors see from one place: the upper panorama with its objects, the depth image, the plan."""
-    figure = figures.new_figure(size=(9.0, 6.4))[0]
+    figure = figures.new_figure(size=(8.2, 5.3))[0]
     figure.clear()
-    grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.15])
+    grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.1])
     above, image, plan = (figure.add_subplot(part) for part in (grid[0, :], grid[1, 0], grid[1, 1]))
     small = one.images[0][::2, ::2]
     panorama(above, small, f"Upper panorama: {len(one.found.upper_detections)} objects found")
+    above.set_ylim(0.80 * small.shape[0], 0.34 * small.shape[0])  # ceiling and tripod left out: the objects larger
     for detection in one.found.upper_detections:
         draw_box(above, np.array(detection.box) / 2, small.shape[1], detection.label, detection.label)
     drawn = figures.depth_image(image, one.depths[0], "Depth image, 43 degrees wide", _limits(one.depths[0]))
@@ -122,7 +144,7 @@ def starts_figure(one: Journey) -> Figure:
         bars.text(
             k + 1, mean_score(run) + 0.01, f"{mean_score(run):.3f}\noff by {metres:.2f} m", ha="center", fontsize=8
         )
-    plan.legend(fontsize=7, loc="upper right", bbox_to_anchor=(1.0, 0.86))
+    plan.legend(fontsize=7, loc="upper right", bbox_to_anchor=(0.94, 0.76))
     bars.set(
         title="How well it explains the depth images", xlabel="start [-]", ylabel="mean raw score [-]", ylim=(0, 1.15)
     )
@@ -143,7 +165,7 @@ def wall_figure(one: Journey) -> Figure:
     side.plot(0, 0, "x", color=figures.BLACK, markersize=9, markeredgewidth=2, label="true place")
     side.plot(*place, "o", color=figures.BLUE, label="depth filter")
     covariance = axes_of @ last.error_covariance[:3, :3] @ axes_of.T
-    side.plot(*ellipse(1e4 * covariance, place), color=figures.BLUE, label="what it says of itself (2 sigma)")
+    side.plot(*ellipse(1e4 * covariance, place), color=figures.BLUE, label="its own 2 sigma")
     side.set(title="How far off, seen from behind the robot", xlabel="to the left [cm]", ylabel="up [cm]")
     side.set(xlim=(-100, 100), ylim=(-100, 100), aspect="equal")
     side.legend(fontsize=7, loc="lower right")

@@ -110,7 +110,8 @@ def anywhere_panel() -> Panel:
         Slider("hidden", "panoramas hidden [percent]", 0, 100, STORY["hidden"], 10),
         Switch("cap", "lens cap on the depth camera"),
     ]
-    panel = Panel("19 put the robot anywhere", controls, draw, actions={"Locate": locate, "Somewhere": somewhere})
+    actions = {"Locate": locate, "Somewhere": somewhere}
+    panel = Panel("19 put the robot anywhere", controls, draw, actions=actions, photograph=True)
     return panel
 
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.depth_mcl.mesh_file import mesh_endings
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
@@ -43,9 +44,13 @@ def recording(folder: str | Path | None = None) -> Recording:
     if folder is None:
         sequence = read_sequence(data_path("corridor/hand"))
         return Recording("stand-in: the corridor, carried by hand", sequence, corridor_map())
-    maps = sorted(Path(folder).glob("map.*"))
-    if Path(folder).is_dir() and not maps:
-        raise MissingMapError(f"no map in {folder}: put the mesh there as map.ply (or .obj, .stl, .glb), in metres")
+    maps = sorted(path for path in Path(folder).glob("map.*") if path.suffix.lower().lstrip(".") in mesh_endings())
+    if Path(folder).is_dir() and len(maps) != 1:
+        raise MissingMapError(
+            f"no map in {folder}: put the mesh there as map.ply (or .obj, .stl, .glb), in metres"
+            if not maps
+            else f"{len(maps)} maps in {folder}, {maps[0].name} and {maps[1].name}: leave one of them there"
+        )
     sequence = read_sequence(folder)
     return Recording(Path(folder).name, sequence, SceneMap.load(maps[0]))
 
@@ -136,6 +141,7 @@ def misread_run(given: Recording, reading: str, frames: int, **options: object) 
     The misread recording is written to a folder of its own and read back, as a reader's would be.
     """
     way, sequence = READINGS[reading], given.sequence
+    frames = min(frames, len(sequence))
     k = sequence.intrinsics * np.array([[way.focal_scale, 1, 1], [1, way.focal_scale, 1], [1, 1, 1]])
     depths = [sequence.depth(index) * np.float32(way.depth_scale) for index in range(frames)]
     poses = [way.pose(pose) for pose in sequence.camera_to_world[:frames]]
@@ -144,11 +150,15 @@ def misread_run(given: Recording, reading: str, frames: int, **options: object) 
         return run_sequence(given.scene_map, read_sequence(folder), **options)
 
 
-def readings_table(checker: Checker, frames: Sequence[int]) -> str:
-    """Every reading over some frames: the median of |z - z_map|, least and greatest of a frame, and the hits."""
+def compare_readings(checker: Checker, frames: Sequence[int]) -> dict[str, list[Compared]]:
+    """Name of every reading, the right one first -> what it makes of each of the frames."""
+    return {name: [checker(frame, name) for frame in frames] for name in READINGS}
+
+
+def readings_table(readings: dict[str, list[Compared]]) -> str:
+    """Of `compare_readings`: the median of |z - z_map|, least and greatest of a frame, and the hits."""
     lines = [f"{'read with':34} {'median |z - z_map|, over the frames':37} pixels on the map"]
-    for name in READINGS:
-        compared = [checker(frame, name) for frame in frames]
+    for name, compared in readings.items():
         medians = np.array([one.median for one in compared])
         told = "no number"
         if np.isfinite(medians).any():

@@ -12,6 +12,8 @@ from PIL import Image
 from course_lib.lessons.kit.display import FigureError, Picture, require_labels, show
 from course_lib.plots import figures
 
+PNG = figures.png_bytes(figures.new_figure(size=(1, 1))[0])
+
 
 def finished_figure():
     figure, axes = figures.new_figure()
@@ -61,7 +63,7 @@ def test_a_photograph_keeps_its_colours(monkeypatch):
     ]
     assert colours[0] <= 128
     assert colours[1] > 1000
-    assert "data:image/jpeg;base64," in shown[1].html()
+    assert "data:image/webp;base64," in shown[1].html()
 
 
 @pytest.mark.parametrize("alt", ["", "a plot", "figure 1"])
@@ -71,12 +73,18 @@ def test_alternative_text_must_say_something(alt):
 
 
 def test_a_picture_carries_its_alternative_text_safely():
-    picture = Picture(b"png", 'A "quoted" <wall> seen & measured')
+    picture = Picture(PNG, 'A "quoted" <wall> seen & measured')
     bundle = picture._repr_mimebundle_()
     assert 'alt="A &quot;quoted&quot; &lt;wall&gt; seen &amp; measured"' in bundle["text/html"]
     assert bundle["text/plain"].startswith("Picture: A ")
 
 
 def test_the_picture_is_an_address_in_html():
-    html = Picture(b"\x89PNG", "A wall seen from above").html()
+    html = Picture(PNG, "A wall seen from above").html()
     assert re.search(r'src="data:image/png;base64,[A-Za-z0-9+/=]+"', html)
+
+
+@pytest.mark.parametrize(("inches", "least"), [(3, 300), (10, 640)])
+def test_a_wide_figure_is_scrolled_rather_than_shrunk_until_nobody_reads_it(inches, least):
+    picture = Picture(figures.png_bytes(figures.new_figure(size=(inches, 1))[0]), "An empty figure for a test")
+    assert f"min-width: {least}px" in picture.html()

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import base64
+import io
+import re
+
 import ipywidgets
 import pytest
+from PIL import Image
 
 from course_lib.lessons.kit.display import FigureError, Picture
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
@@ -61,7 +66,7 @@ def test_a_moved_slider_redraws_picture_and_numbers():
     slider.value = 2.0
     shown = [w.value for w in all_widgets(panel.box) if isinstance(w, ipywidgets.HTML)]
     assert 'alt="A test picture with x 2, a, False"' in shown[0]
-    assert shown[1] == "<pre>x = 2 &lt;m&gt;</pre>"
+    assert re.fullmatch(r'<pre role="status" style="[^"]+">x = 2 &lt;m&gt;</pre>', shown[1])
 
 
 def test_several_controls_are_set_with_one_redraw():
@@ -124,7 +129,29 @@ def test_the_bundle_carries_the_defaults_as_a_still_whatever_the_controls_say():
     assert set(bundle) == {"text/plain", "text/html", VIEW}
     assert bundle["text/plain"] == "Panel 'test': x [m], kind, on"
     assert "A test picture with x 1, a, False" in bundle["text/html"]
+    assert "Run this cell to move the controls." in bundle["text/html"]
     assert bundle[VIEW]["model_id"] == panel.box.model_id
+
+
+def test_only_a_panel_of_photographs_is_stored_as_one():
+    def still(panel: Panel) -> str:
+        data = re.search(r'src="data:image/(png|webp);base64,([^"]+)"', panel._repr_mimebundle_()["text/html"])
+        assert Image.open(io.BytesIO(base64.b64decode(data[2]))).format.lower() == data[1]
+        return data[1]
+
+    assert still(make()) == "png"
+    assert still(make(photograph=True)) == "webp"
+
+
+def test_every_control_has_a_name_in_any_front_end_and_no_tooltip_that_reads_null():
+    panel = make()
+    for widget in all_widgets(panel.box):
+        if isinstance(widget, ipywidgets.ValueWidget) and not isinstance(widget, ipywidgets.HTML):
+            assert widget.description in ("x [m]", "kind", "on")
+        if isinstance(widget, ipywidgets.FloatSlider | ipywidgets.Dropdown | ipywidgets.BoundedFloatText):
+            assert widget.tooltip == widget.description  # None is written as title="null"
+    box = widget_of(panel, ipywidgets.BoundedFloatText)
+    assert box.style.description_width == "0px"  # heard, not seen a second time
 
 
 def test_slow_panels_redraw_on_release():

@@ -11,7 +11,7 @@ import pytest
 from course_lib.lessons.kit.room_photographs import room_recording, the_image
 from course_lib.lessons.lesson_11.panel import sphere_panel
 from course_lib.lessons.lesson_11.sphere_view import SIZE, SphereView, circle_around, circle_on_panorama
-from course_lib.lessons.lesson_11.views import SCENE, all_bearings, look_up, object_at_the_seam
+from course_lib.lessons.lesson_11.views import SCENE, all_bearings, look_up, object_at_the_seam, scene
 from course_lib.lessons.lesson_11.write_sphere_scene import scene_html, write_scene
 from course_lib.paths import REPOSITORY, data_path
 from course_lib.spherical_stereo.panorama import direction_from_angles, direction_to_pixel, pixel_to_direction
@@ -92,6 +92,9 @@ def test_the_stored_scene_is_what_the_command_writes(tmp_path):
     assert "http" not in scene_html().replace("http-equiv", ""), "the scene loads nothing"
 
 
+HEIGHT_OF_FRAME = scene().height
+
+
 @pytest.fixture(scope="module")
 def page():
     sync_api = pytest.importorskip("playwright.sync_api")
@@ -119,6 +122,18 @@ def test_the_scene_computes_as_the_library_does(page):
     directions = page.evaluate("pixels => pixels.map(([u, v]) => scene.pixelToDirection(u, v))", uv.tolist())
     assert np.allclose(directions, pixel_to_direction(uv, WIDTH, HEIGHT))
     assert np.allclose(page.evaluate("d => d.map(scene.directionToPixel)", directions), uv)
+
+
+@pytest.mark.parametrize("width", [530, 720, 1000])
+def test_the_scene_fits_its_frame_in_a_narrow_window_too(page, width):
+    page.set_viewport_size({"width": width, "height": HEIGHT_OF_FRAME})
+    try:
+        page_size = "() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
+        needed = page.evaluate(page_size)
+        assert needed[0] <= width
+        assert needed[1] <= HEIGHT_OF_FRAME
+    finally:
+        page.set_viewport_size({"width": 900, "height": 480})
 
 
 def test_dragging_past_the_edge_comes_in_at_the_other_and_the_sphere_follows(page):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 
 import numpy as np
@@ -16,7 +17,9 @@ from course_lib.lessons.lesson_19 import stages
 from course_lib.lessons.lesson_19.figures import (
     DEVIATIONS,
     basin_figure,
+    draw_room,
     ellipse,
+    named_together,
     sensors_figure,
     stages_figure,
     starts_figure,
@@ -25,6 +28,7 @@ from course_lib.lessons.lesson_19.figures import (
 from course_lib.lessons.lesson_19.stages import STAGES, is_reached, journey, plane_error, state_error
 from course_lib.lessons.lesson_19.trials import misplaced, random_places, stored_result, turn_and_look
 from course_lib.lessons.lesson_19.world import hidden, world
+from course_lib.plots import figures
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 
 STORY = (3.35, 3.30, 65)
@@ -173,6 +177,21 @@ def test_figures_have_titles_and_units(place, crowded):
         basin_figure(shares, shares, [(0.05, 0.5)]),
     ):
         require_labels(figure)
+
+
+def test_what_stands_at_one_place_gets_one_name_with_it():
+    labels = ["cabinet", "chair", "television", "chair"]
+    places = np.array([[1.0, 0.2], [3.0, 0.0], [1.05, 0.25], [3.5, 0.0]])
+    assert named_together(labels, places) == [(["cabinet", "television"], 0), (["chair"], 1), (["chair"], 3)]
+
+
+def test_no_name_on_the_plan_covers_another(here):
+    figure, axes = figures.new_figure(size=(3.3, 3.3))
+    draw_room(axes, "The room")
+    figure.canvas.draw()
+    boxes = [words.get_window_extent() for words in axes.texts]
+    assert sum(len(words.get_text().split("\n")) for words in axes.texts) == len(here.room.objects)
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
 
 
 def test_an_ellipse_is_so_many_deviations_wide():

@@ -26,6 +26,7 @@ from course_lib.lessons.lesson_20.readings import (
     Checker,
     MissingMapError,
     Recording,
+    compare_readings,
     misread_run,
     readings_table,
     recording,
@@ -93,6 +94,23 @@ def test_a_folder_without_a_map_is_named(stand_in, tmp_path):
         recording(tmp_path)
 
 
+def test_a_map_beside_its_materials_is_the_map_and_two_maps_are_named(stand_in, tmp_path):
+    write_sequence(tmp_path, stand_in.sequence.intrinsics, [0], [stand_in.sequence.depth(0)], np.eye(4)[None])
+    (tmp_path / "map.mtl").write_text("newmtl wall\n")
+    (tmp_path / "map.obj").write_text("mtllib map.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert len(recording(tmp_path).scene_map) == 1
+    (tmp_path / "map.ply").write_text("ply\n")
+    with pytest.raises(MissingMapError, match=r"2 maps in .*map\.obj and map\.ply"):
+        recording(tmp_path)
+
+
+def test_a_recording_of_few_frames_is_misread_as_far_as_it_goes(stand_in):
+    short = stand_in._replace(sequence=stand_in.sequence.thinned(60))
+    assert 1 < len(short.sequence) < 8
+    run = misread_run(short, "depth: 5000 units a metre", frames=8, n_particles=4, seed=1)
+    assert len(run.frames) == len(short.sequence)
+
+
 def test_a_folder_that_is_not_there_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match="nowhere"):
         recording(tmp_path / "nowhere")
@@ -107,7 +125,7 @@ def test_a_wrong_unit_gives_poses_and_a_low_score(stand_in):
 
 
 def test_the_table_of_readings_tells_numbers_with_their_spread(checker):
-    lines = readings_table(checker, [0, 8]).splitlines()
+    lines = readings_table(compare_readings(checker, [0, 8])).splitlines()
     assert len(lines) == 1 + len(READINGS)
     both = sorted(checker(frame).median for frame in (0, 8))
     assert f"{np.median(both):.3f} m ({both[0]:.3f} to {both[1]:.3f})" in lines[1]

@@ -1,0 +1,111 @@
+"""Predictions: typed in before anything runs, kept, and shown again beside what was measured.
+
+`predict("06", "How much more does it count?", ...)` shows a text box a question; `recall("06", "2.0 times", ...)` at
+the end of the lesson prints each question, what was typed, and what was measured. What was typed is in the student's
+record (`student_record`); where there is none, the boxes work and are forgotten.
+"""
+
+from __future__ import annotations
+
+import html
+
+import ipywidgets as widgets
+from IPython.display import display
+
+from course_lib.lessons.kit.progress_page import bring_up_to_date
+from course_lib.lessons.kit.student_record import RecordError, read_record, record_folder, record_prediction
+
+_ASKED: dict[str, tuple[str, ...]] = {}
+"""Questions of the lessons that this kernel has shown: `recall` repeats them."""
+
+
+class Predictions:
+    """One text box a question; what is typed is kept when the box is left.
+
+    lesson: "06". questions: each in a few words, in the order of the numbered list in the text above.
+    """
+
+    def __init__(self, lesson: str, questions: tuple[str, ...]) -> None:
+        if not questions or not all(question.strip() for question in questions):
+            raise ValueError(f"predict({lesson!r}, ...) needs a question in words for each box; got {questions!r}")
+        self.lesson, self.questions = lesson, questions
+        kept, said = _kept(lesson)
+        self.boxes = [self._box(number, question, kept) for number, question in enumerate(questions, start=1)]
+        self._state = widgets.HTML(f'<p role="status">{html.escape(said)}</p>')
+        self._state.add_class("course-numbers")  # what the lab's extension says aloud
+        self.view = widgets.VBox([*self.boxes, self._state])
+
+    def _box(self, number: int, question: str, kept: dict[str, str]) -> widgets.Textarea:
+        box = widgets.Textarea(
+            value=kept.get(str(number), ""),
+            description=f"{number}. {question}",
+            placeholder="your prediction, and why",
+            continuous_update=False,
+            rows=2,
+            tooltip=question,
+            layout=widgets.Layout(width="98%", max_width="56em", flex_flow="column"),
+            style={"description_width": "auto"},
+        )
+        box.observe(lambda change: self.keep(number, change["new"]), names="value")
+        return box
+
+    def keep(self, number: int, text: str) -> None:
+        """Keep what was typed for one question, and say so."""
+        try:
+            said = FORGOTTEN
+            if record_folder() is not None:
+                said = f"{record_prediction(self.lesson, number, text)} Prediction {number} is kept.".strip()
+        except OSError as error:
+            said = f"Prediction {number} could not be kept: {error}"
+        bring_up_to_date()
+        self._state.value = f'<p role="status">{html.escape(said)}</p>'
+
+    def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
+        view = self.view._repr_mimebundle_().get("application/vnd.jupyter.widget-view+json")
+        rows = "".join(f"<li>{html.escape(question)}</li>" for question in self.questions)
+        still = f"<p>Your predictions (run this cell to type them in):</p><ol>{rows}</ol>"
+        bundle = {"text/plain": repr(self), "text/html": still}
+        return bundle if view is None else bundle | {"application/vnd.jupyter.widget-view+json": view}
+
+    def __repr__(self) -> str:
+        return f"Predictions of lesson {self.lesson}: {len(self.questions)} questions"
+
+
+FORGOTTEN = "Noted, but not kept: `python3 course.py lab` keeps predictions in the folder work/."
+
+
+def predict(lesson: str, *questions: str) -> None:
+    """Display a text box for each question; the answers typed in earlier stand in them."""
+    _ASKED[lesson] = questions
+    display(Predictions(lesson, questions))
+
+
+def recall(lesson: str, *measured: str) -> None:
+    """Print each question of `predict`, what was typed (where a record is kept), and what was `measured`.
+
+    Where the cell with `predict` was not run, the questions are only numbered. Raises `ValueError` where the lesson
+    asked another number of questions.
+    """
+    questions = _ASKED.get(lesson, tuple(f"Prediction {number}" for number in range(1, len(measured) + 1)))
+    if len(questions) != len(measured):
+        raise ValueError(
+            f"recall({lesson!r}, ...) got {len(measured)} measured answers for {len(questions)} predictions: give one "
+            "answer for each question of predict(...)"
+        )
+    kept, said = _kept(lesson)
+    for number, (question, answer) in enumerate(zip(questions, measured, strict=True), start=1):
+        print(f"{number}. {question}")
+        if record_folder() is not None:
+            typed = " ".join(kept.get(str(number), "").split())
+            print(f"   you said: {typed or '(nothing yet: type it in under Predict)'}")
+        print(f"   measured: {answer}")
+    if said:
+        print(said)
+
+
+def _kept(lesson: str) -> tuple[dict[str, str], str]:
+    """What was typed in earlier, and a sentence where it cannot be read."""
+    try:
+        return read_record(lesson)["predictions"], ""
+    except (RecordError, OSError) as error:
+        return {}, str(error)
