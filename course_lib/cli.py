@@ -13,11 +13,13 @@ import importlib
 import os
 import sys
 import traceback
+import warnings
 
 # Name as typed -> (module of course_lib.commands, one line for the list of commands).
 COMMANDS: dict[str, tuple[str, str]] = {
     "lab": ("lab", "open the lessons in JupyterLab (on this computer only)"),
     "test": ("test", "run every test, the notebooks included; arguments go on to pytest"),
+    "progress": ("progress_page", "show how far you have come: predictions typed, checks right"),
     "check": ("check", "look at the environment: packages, OpenGL, one rendered depth image"),
     "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
     "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
@@ -46,6 +48,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "train-detector": ("train_detector", "train the room detector (needs PyTorch, which the course does not install)"),
     "score-detector": ("score_detector", "measure a detector's precision and recall on known rooms"),
     "score": ("score", "score a project that was handed in, on its hidden seeds"),
+    "handout": ("handout", "make a class's folder: lessons without solutions, and the teacher's with graded tests"),
+    "grade": ("grade", "grade a folder of submissions in a sandbox: points and hints as CSV and as a page"),
     "refresh": ("refresh", "run the lessons again and store their outputs"),
 }
 
@@ -81,6 +85,7 @@ def main(words: list[str]) -> int:
         print(f"error: there is no command {' '.join(words[:2])!r}; {meant}", file=sys.stderr)
         return EXIT_BAD_INPUT
     debug = os.environ.get("COURSE_DEBUG", "") not in ("", "0")
+    warnings.formatwarning = one_line
     try:
         name, rest = found
         module = importlib.import_module(f"course_lib.commands.{COMMANDS[name][0]}")
@@ -115,6 +120,11 @@ def parse(name: str, module, words: list[str]) -> argparse.Namespace:
         return parser.parse_args(words)
     arguments, arguments.passed_on = parser.parse_known_args(words)
     return arguments
+
+
+def one_line(message: Warning | str, *place: object, **told: object) -> str:
+    """What is doubtful, in one line, and not where in the library that was noticed."""
+    return f"warning: {message}\n"
 
 
 def report(error: Exception) -> int:

@@ -8,17 +8,22 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "course_lib"
 
 # Part of the library -> parts it may import besides itself. commands and cli stand above all of them, but for lessons.
-METHODS = {"geometry", "depth_mcl", "spherical_stereo"}
+BELOW = {"child", "geometry", "reading", "writing"}
+METHODS = BELOW | {"depth_mcl", "spherical_stereo"}
 ALLOWED = {
     "geometry": set(),
     "paths": set(),
+    "reading": set(),
+    "child": {"reading"},
+    "writing": set(),
     "processors": set(),
-    "depth_mcl": {"geometry", "processors"},
-    "spherical_stereo": {"geometry"},
+    "depth_mcl": BELOW | {"processors"},
+    "spherical_stereo": BELOW,
     "simulation": METHODS,
     "experiments": METHODS | {"processors", "simulation"},
     "plots": METHODS | {"experiments"},
     "lessons": METHODS | {"experiments", "paths", "plots", "simulation"},
+    "classroom": METHODS | {"experiments", "lessons", "paths"},
     "detector_training": METHODS | {"experiments", "simulation"},
 }
 
@@ -52,7 +57,7 @@ def modules_of(folder, part):
 
 def test_every_folder_of_the_library_has_its_arrows_drawn():
     folders = {path.name for path in PACKAGE.iterdir() if path.is_dir() and list(path.glob("*.py"))}
-    assert folders == (set(ALLOWED) - {"geometry", "paths", "processors"}) | {"commands"}
+    assert folders == (set(ALLOWED) - BELOW - {"paths", "processors"}) | {"commands"}
 
 
 @pytest.mark.parametrize("part", ALLOWED)

@@ -2,6 +2,7 @@
 
 import ast
 import os
+import runpy
 import signal
 import socket
 import subprocess
@@ -262,6 +263,14 @@ def test_a_module_of_the_callers_folder_neither_breaks_the_set_up_nor_runs(copy,
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="symbolic links of POSIX")
+def test_called_through_a_link_it_finds_the_course(copy, tmp_path):
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "course").symlink_to(copy / "course.py")
+    module = runpy.run_path(str(tmp_path / "bin" / "course"), run_name="imported")
+    assert module["ROOT"] == str(copy.resolve())
+
+
 def test_what_has_changed_is_told_and_repaired(copy):
     call(copy, "x")
     ready = copy / ".venv" / "course-ready.json"

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course_lib.commands.arguments import require_output_folder, require_positive, require_seed
+from course_lib.writing import replaced_outputs
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from course_lib.experiments.ambiguity import AmbiguityMap
@@ -61,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     require_seed(arguments.seed)
     require_output_folder(arguments.out)
     semantic_map = SemanticMap.load(arguments.map)
-    results = {}
+    results, figures = {}, {}
     for name in names:
         found = ambiguity_map(
             semantic_map,
@@ -76,16 +77,16 @@ def run(arguments: argparse.Namespace) -> int:
                 f"no place of {arguments.map} is free at steps of {arguments.step:g} m: give a smaller --step"
             )
         results[name] = ambiguity_numbers(found, semantic_map)
-        arguments.out.mkdir(parents=True, exist_ok=True)
-        figure = ambiguity_figure(semantic_map, found, f"{arguments.map.name}, matched by {name}")
-        figure.savefig(arguments.out / f"ambiguity_{name}.png", dpi=110)
+        figures[name] = ambiguity_figure(semantic_map, found, f"{arguments.map.name}, matched by {name}")
     summary = {"map": str(arguments.map), "step_m": arguments.step, "draws": arguments.draws, "seed": arguments.seed}
-    write_results(arguments.out / "ambiguity.json", summary | {"matchers": results})
-    if arguments.json:
-        print(json.dumps(summary | {"matchers": results}))
-        return 0
-    print("\n\n".join(ambiguity_text(name, numbers) for name, numbers in results.items()))
-    print(f"\nPictures: {arguments.out}/ambiguity_*.png")
+    text = "\n\n".join(ambiguity_text(name, numbers) for name, numbers in results.items())
+    print(json.dumps(summary | {"matchers": results}) if arguments.json else text, flush=True)
+    with replaced_outputs(arguments.out, "ambiguity") as out:
+        write_results(out / "ambiguity.json", summary | {"matchers": results})
+        for name, figure in figures.items():
+            figure.savefig(out / f"ambiguity_{name}.png", dpi=110)
+    if not arguments.json:
+        print(f"\nPictures: {arguments.out}/ambiguity_*.png")
     return 0
 
 

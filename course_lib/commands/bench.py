@@ -2,6 +2,7 @@
 
 The tools it is compared with (environment-bench.txt: Open3D with Embree) are installed by the first call into .bench, a
 folder of their own. Times are of this machine at this hour; the ratios are what to compare. Other programs should rest.
+`--lessons` measures something else instead: what a student's kernel costs in each lesson (lesson_costs.py).
 """
 
 from __future__ import annotations
@@ -41,9 +42,43 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where bench.json and bench.png go (default: results/bench)",
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+    parser.add_argument(
+        "--lessons",
+        nargs="*",
+        metavar="NN",
+        help="instead: memory and processor time of a student in these lessons and projects (default: all)",
+    )
+    parser.add_argument(
+        "--server",
+        nargs=2,
+        type=float,
+        default=(16.0, 4.0),
+        metavar=("GIB", "PROCESSORS"),
+        help="with --lessons: say how many students a server of this size carries (default: 16 4)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
+    """Measures what was asked for, and prints it."""
+    return run_tools(arguments) if arguments.lessons is None else run_lessons(arguments)
+
+
+def run_lessons(arguments: argparse.Namespace) -> int:
+    """Runs lessons in kernels of their own, and prints what they take; nothing is stored."""
+    from course_lib.commands import lesson_costs, lesson_costs_table
+    from course_lib.commands.refresh import select
+
+    if not all(size > 0 for size in arguments.server):
+        raise ValueError(f"--server must be two positive numbers, GiB and processors; got {arguments.server}")
+    result = lesson_costs.measure(
+        select(arguments.lessons),
+        lambda cost: print(f"{cost.name}: {cost.peak_mb:.0f} MB, {cost.processor_s:.0f} s", file=sys.stderr),
+    )
+    print(json.dumps(result) if arguments.json else lesson_costs_table.text(result, *arguments.server))
+    return 0
+
+
+def run_tools(arguments: argparse.Namespace) -> int:
     """Installs what is missing, measures in a process of its own, prints and saves."""
     from course_lib.commands.bench_table import table
 

@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
+from course_lib.writing import replaced_outputs
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -79,9 +80,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.icp:
         rows |= {name: pooled([run]) for name, run in icp_runs(arguments.map, arguments.sequence, everies).items()}
     result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
-    write_results(arguments.out / "compare.json", result)
-    covariance_figure(grouped).savefig(arguments.out / "covariance.png", dpi=110)
-    print(json.dumps(result) if arguments.json else six_degrees_table(rows))
+    print(json.dumps(result) if arguments.json else six_degrees_table(rows), flush=True)
+    with replaced_outputs(arguments.out, "compare") as out:
+        write_results(out / "compare.json", result)
+        covariance_figure(grouped).savefig(out / "covariance.png", dpi=110)
     return 0
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from course_lib.commands.arguments import add_backend_argument
 from course_lib.commands.corridor_tables import table_1, table_of_kindnesses, table_over_recordings
+from course_lib.writing import replaced_outputs
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
     from matplotlib.figure import Figure
@@ -114,14 +115,12 @@ def _run_seed(arguments: argparse.Namespace) -> int:
     with TemporaryDirectory() as temporary:
         maps, sequence, rows = _rows_of(arguments, arguments.seed, Path(temporary))
         summary = summarize(arguments, arguments.seed, rows)
-        figures = draw(maps, sequence, rows, arguments.backend)
-        scene = _write_scene(arguments.out, maps, sequence, rows)
-    write(arguments.out / "corridor.json", summary, rows)
-    written = [*write_figures(arguments.out, sequence, rows, figures), "corridor.json", "corridor.csv", scene]
-    if arguments.json:
-        print(json.dumps(summary))
-    else:
-        print(table_1(summary))
+        print(json.dumps(summary) if arguments.json else table_1(summary), flush=True)
+        with replaced_outputs(arguments.out, "demo corridor") as out:
+            write(out / "corridor.json", summary, rows)
+            figures = write_figures(out, sequence, rows, draw(maps, sequence, rows, arguments.backend))
+            written = [*figures, "corridor.json", "corridor.csv", _write_scene(out, maps, sequence, rows)]
+    if not arguments.json:
         print(f"\nWritten to {arguments.out}: " + ", ".join(written))
     return 0
 
@@ -151,8 +150,8 @@ def _run_seeds(arguments: argparse.Namespace, seeds: list[int]) -> int:
         "over_recordings": over_recordings(summaries),
         "recordings": summaries,
     }
+    print(json.dumps(result) if arguments.json else table_over_recordings(result), flush=True)
     write_results(arguments.out / "recordings.json", result)
-    print(json.dumps(result) if arguments.json else table_over_recordings(result))
     return 0
 
 
@@ -182,9 +181,10 @@ def _run_by_hand(arguments: argparse.Namespace, seeds: list[int]) -> int:
     }
     rows = {name: pooled(own) for name, own in by_row.items()}
     each = {name: [pooled([run]) for run in own] for name, own in by_row.items()}
-    write_results(arguments.out / "hand.json", {"seeds": seeds, "rows": rows, "recordings": each})
-    covariance_figure(by_row).savefig(arguments.out / "covariance.png", dpi=110)
-    print(json.dumps({"seeds": seeds, "rows": rows}) if arguments.json else six_degrees_table(rows))
+    print(json.dumps({"seeds": seeds, "rows": rows}) if arguments.json else six_degrees_table(rows), flush=True)
+    with replaced_outputs(arguments.out, "demo corridor --dof 6") as out:
+        write_results(out / "hand.json", {"seeds": seeds, "rows": rows, "recordings": each})
+        covariance_figure(by_row).savefig(out / "covariance.png", dpi=110)
     return 0
 
 

@@ -45,11 +45,8 @@ def run(arguments: argparse.Namespace) -> int:
     rows = sweep(finale_room, points, results=arguments.out / "finale.jsonl", progress=bar)
     places = [place for row in rows for place in row["result"]]
     result = {"seeds": seeds, **summarize(places)}
+    print(json.dumps(result) if arguments.json else finale_text(result), flush=True)
     write_results(arguments.out / "finale.json", result)
-    if arguments.json:
-        print(json.dumps(result))
-        return 0
-    print(finale_text(result))
     return 0
 
 

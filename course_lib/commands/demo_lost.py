@@ -54,8 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
     bar = progress_bar("lost and found", "trial")
     rows = sweep(function, points, results=arguments.out / "lost.jsonl", progress=bar)
     result = {"seeds": seeds, **summarize([row["result"] for row in rows])}
+    print(json.dumps(result) if arguments.json else lost_table(result), flush=True)
     write_results(arguments.out / "lost.json", result)
-    print(json.dumps(result) if arguments.json else lost_table(result))
     return 0
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.commands.make_room import SEED
 from course_lib.commands.room_tables import EXACT, FITS, WEIGHTED, tables
+from course_lib.writing import replaced_outputs
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from matplotlib.figure import Figure
@@ -160,15 +161,13 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
                 for answer in answers_of_places(results[f"experiment_{number}"]["images"], semantic_map, number)
             ]
         )
-    written = write(arguments.out, summary, results, draw(semantic_map, results))
-    scenes = _write_scenes(arguments.out, semantic_map, results)
-    if arguments.json:
-        print(json.dumps(summary))
-    else:
-        print(tables(summary))
-        if arguments.views > 1:
-            print("\n" + views_table(summary))
-        print(f"\nWritten to {arguments.out}: " + ", ".join([*written, *scenes]))
+    text = tables(summary) + ("\n\n" + views_table(summary) if arguments.views > 1 else "")
+    print(json.dumps(summary) if arguments.json else text, flush=True)
+    with replaced_outputs(arguments.out, "demo room") as out:
+        written = write(out, summary, results, draw(semantic_map, results))
+        written += _write_scenes(out, semantic_map, results)
+    if not arguments.json:
+        print(f"\nWritten to {arguments.out}: " + ", ".join(written))
     return 0
 
 

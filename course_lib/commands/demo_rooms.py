@@ -16,6 +16,7 @@ from pathlib import Path
 from course_lib.commands.arguments import parse_seeds, require_output_folder
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.processors import processors
+from course_lib.writing import replaced_outputs
 
 SEEDS = "1-20"
 NETWORK_FILES = (".cfg", ".weights", ".names", ".json")  # what makes a detector what it is
@@ -137,17 +138,15 @@ def run(arguments: argparse.Namespace) -> int:
         rooms = observe_rooms(seeds, tilted, load, arguments.out / f"rooms_tilt_{tilt:g}", processes, bar)
         both = rooms_summary(rooms, judge_rooms(rooms))["both"]
         summary.setdefault("tilts", {})[f"{tilt:g}"] = both
-    write_results(arguments.out / "rooms.json", summary, pose_rows(judged))
-    if "risk_coverage" in summary["answers"]:
-        figure = risk_coverage_figure({"consistent, one view": summary["answers"]["risk_coverage"]})
-        figure.savefig(arguments.out / "risk_coverage.png", dpi=110)
-    if arguments.json:
-        print(json.dumps(summary))
-    else:
-        print(tables(summary))
-        print("\n" + answer_tables(summary["answers"]))
-        if arguments.tilts:
-            print("\n" + tilt_table(summary["tilts"]))
+    text = f"{tables(summary)}\n\n{answer_tables(summary['answers'])}"
+    text += "\n\n" + tilt_table(summary["tilts"]) if arguments.tilts else ""
+    print(json.dumps(summary) if arguments.json else text, flush=True)
+    with replaced_outputs(arguments.out, "demo rooms") as out:
+        write_results(out / "rooms.json", summary, pose_rows(judged))
+        if "risk_coverage" in summary["answers"]:
+            figure = risk_coverage_figure({"consistent, one view": summary["answers"]["risk_coverage"]})
+            figure.savefig(out / "risk_coverage.png", dpi=110)
+    if not arguments.json:
         print(
             f"\nWritten to {arguments.out}: rooms.json, rooms.csv; the rooms' observations in {arguments.out / 'rooms'}"
         )

@@ -11,6 +11,7 @@ import json
 from pathlib import Path
 
 from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
+from course_lib.writing import replaced_outputs
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +59,8 @@ def run(arguments: argparse.Namespace) -> int:
             thinned = "" if one["method"] == "floor" else f", every {one['every']}"
             runs.setdefault(row_name(one["method"]) + thinned, []).append(one["run"])
     rows = {name: pooled(own) for name, own in runs.items()}
-    write_results(arguments.out / "walk.json", {"seeds": seeds, "rows": rows})
-    covariance_figure(runs).savefig(arguments.out / "covariance.png", dpi=110)
-    print(json.dumps({"seeds": seeds, "rows": rows}) if arguments.json else six_degrees_table(rows))
+    print(json.dumps({"seeds": seeds, "rows": rows}) if arguments.json else six_degrees_table(rows), flush=True)
+    with replaced_outputs(arguments.out, "demo walk") as out:
+        write_results(out / "walk.json", {"seeds": seeds, "rows": rows})
+        covariance_figure(runs).savefig(out / "covariance.png", dpi=110)
     return 0

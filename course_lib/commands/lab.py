@@ -1,29 +1,44 @@
 """Open the lessons in JupyterLab, on this computer only.
 
-The server listens on 127.0.0.1 with its token on. Its settings, the student's own included, live in a folder of the
-environment (`.venv/course-lab`), so that nothing in the user's home is read or changed.
+What opens are the student's own copies, in `work/` (course_lib/commands/working_copies.py). The server listens on
+127.0.0.1 with its token on. Its settings, the student's own included, live in a folder of the environment
+(`.venv/course-lab`), so that nothing in the user's home is read or changed.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from course_lib.commands.lesson_versions import NOTEBOOKS, lessons
+from course_lib.commands.saved_panels import HOOK
+from course_lib.commands.working_copies import WORK, copy_of, make_copies
+
 ROOT = Path(__file__).resolve().parents[2]
-FIRST_LESSON = "notebooks/00_start_here.ipynb"
+EXTENSION = Path(__file__).with_name("lab_extension")
+FIRST_LESSON = "work/00_start_here.ipynb"
 
 # Parts of JupyterLab that a student does not need: what other packages bring along, and what would ask or load things.
 DISABLED_SERVER_EXTENSIONS = (
     "jupyter_lsp",
     "jupyter_server_proxy",
     "jupyter_server_terminals",
+    "nbgrader.server_extensions.assignment_list",
+    "nbgrader.server_extensions.course_list",
+    "nbgrader.server_extensions.formgrader",
+    "nbgrader.server_extensions.validate_assignment",
+    "notebook",
     "trame_jupyter_extension",
 )
 DISABLED_LAB_EXTENSIONS = (
+    "@jupyter/nbgrader",
+    "@jupyter-notebook/lab-extension",
     "@jupyterhub/jupyter-server-proxy",
     "@jupyterlab/apputils-extension:announcements",
     "@jupyterlab/extensionmanager-extension",
@@ -37,7 +52,12 @@ DISABLED_LAB_EXTENSIONS = (
 SETTINGS = {
     "@jupyterlab/apputils-extension:notification": {"fetchNews": "false", "checkForUpdates": False},
     # Lessons bring their kernel; cells outside the view are drawn too, so that links and searches find them.
-    "@jupyterlab/notebook-extension:tracker": {"autoStartDefaultKernel": True, "windowingMode": "none"},
+    # Long lines of code go on in the next, as the text does: in a narrow or enlarged window nothing is out of sight.
+    "@jupyterlab/notebook-extension:tracker": {
+        "autoStartDefaultKernel": True,
+        "windowingMode": "none",
+        "codeCellConfig": {"lineNumbers": False, "lineWrap": True},
+    },
 }
 
 
@@ -45,20 +65,42 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=int, help="port to listen on (default: 8888, or the next one that is free)")
     parser.add_argument("--no-browser", action="store_true", help="open no browser, only print the address")
     parser.add_argument(
-        "--notebook", default=FIRST_LESSON, metavar="PATH", help="the notebook to open (default: lesson 00)"
+        "--notebook",
+        metavar="PATH",
+        help="the notebook to open: 06, P1 or a path; of a lesson it is your copy in work/ (default: lesson 00)",
+    )
+    parser.add_argument(
+        "--fresh",
+        nargs="+",
+        default=[],
+        metavar="NN",
+        help="begin these lessons or projects anew (06, P1); your earlier copies are renamed and stay beside the new",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
     if arguments.port is not None and not 1 <= arguments.port <= 65535:
         raise ValueError(f"--port must lie between 1 and 65535; got {arguments.port}")
-    if not (ROOT / arguments.notebook).is_file():
-        raise ValueError(f"there is no notebook {arguments.notebook} in {ROOT}; see the folder notebooks/")
-    command, environment = lab_command(arguments.port, not arguments.no_browser, arguments.notebook)
+    notebook = copy_of(arguments.notebook or "00", ROOT)
+    for sentence in make_copies(ROOT, arguments.fresh):
+        print(sentence, flush=True)
+    if arguments.fresh and not arguments.notebook:
+        notebook = copy_of(arguments.fresh[0], ROOT)
+    make_progress_page(ROOT)
+    command, environment = lab_command(arguments.port, not arguments.no_browser, notebook, root=ROOT)
     print("Starting JupyterLab. Keep this window open; Ctrl-C ends it. Its address:", flush=True)
     if os.name == "nt":  # execve does not wait there
         return subprocess.call(command, env=environment, cwd=ROOT)
     os.execve(command[0], command, environment)
+
+
+def make_progress_page(root: Path) -> None:
+    """Writes work/progress.html where there is none yet; `check` and `predict` bring it up to date."""
+    page = root / WORK / "progress.html"
+    if not page.exists():
+        environment = os.environ | {"COURSE_RECORD": str(root / WORK / "record")}
+        command = [sys.executable, "-P", "-m", "course_lib.lessons.kit.show_progress", "--out", str(page)]
+        subprocess.run(command, env=environment, capture_output=True)  # lessons run without a page as well
 
 
 def lab_command(
@@ -66,23 +108,26 @@ def lab_command(
     browser: bool = False,
     notebook: str = FIRST_LESSON,
     state_folder: str | os.PathLike | None = None,
+    root: Path = ROOT,
 ) -> tuple[list[str], dict[str, str]]:
     """Command and environment variables that start the lessons' JupyterLab; writes its settings into `state_folder`.
 
-    port: None takes 8888 or the next free one; a given port is taken or the start fails. notebook: path below the
-    repository root. state_folder: where settings, workspaces and the kernel's history are kept (None:
-    `.venv/course-lab`). JUPYTER_TOKEN in the environment, where it is set, is the token; else a random one is printed.
+    port: None takes 8888 or the next free one; a given port is taken or the start fails. notebook: path below `root`.
+    state_folder: where settings, workspaces and the kernel's history are kept (None: `.venv/course-lab`). root: the
+    folder that JupyterLab shows, with notebooks/ and work/ in it; predictions and checks are recorded in its
+    work/record. JUPYTER_TOKEN in the environment, where it is set, is the token; else a random one is printed.
     """
     state = Path(state_folder) if state_folder is not None else Path(sys.prefix) / "course-lab"
     write_settings(state)
-    trust_lessons(state)
+    install_extension(state)
+    trust_lessons(state, root)
     command = [
         *(sys.executable, "-P", "-m", "jupyterlab"),  # -P: no module of the folder that one stands in
         "--ServerApp.ip=127.0.0.1",
         f"--ServerApp.port={8888 if port is None else port}",
         f"--ServerApp.port_retries={50 if port is None else 0}",
         f"--ServerApp.open_browser={browser}",
-        f"--ServerApp.root_dir={ROOT}",
+        f"--ServerApp.root_dir={root}",
         f"--LabApp.default_url=/lab/tree/{notebook}",
         "--Application.log_level=ERROR",  # the address is printed all the same
         "--ServerApp.answer_yes=True",  # Ctrl-C ends it without a question
@@ -99,6 +144,7 @@ def lab_command(
         JUPYTERLAB_SETTINGS_DIR=str(state / "user-settings"),
         JUPYTERLAB_WORKSPACES_DIR=str(state / "workspaces"),
         IPYTHONDIR=str(state / "ipython"),
+        COURSE_RECORD=str(root / WORK / "record"),
     )
     return command, environment
 
@@ -108,6 +154,7 @@ def write_settings(state: Path) -> None:
     files = {
         "config/jupyter_server_config.json": {
             "ServerApp": {"jpserver_extensions": dict.fromkeys(DISABLED_SERVER_EXTENSIONS, False)},
+            "FileContentsManager": {"pre_save_hook": HOOK},
             "LabApp": {
                 "extension_manager": "readonly",
                 "news_url": None,
@@ -129,13 +176,25 @@ def write_settings(state: Path) -> None:
         path.write_text(json.dumps(content, indent=1), encoding="utf-8")
 
 
-def trust_lessons(state: Path) -> None:
-    """Signs the lessons, so that their stored 3D scenes show before a cell is run: they come with the course's code."""
+def install_extension(state: Path) -> None:
+    """Puts the course's extension where JupyterLab finds it: the names of a panel's controls, and its look."""
+    name = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))["name"]
+    shutil.copytree(EXTENSION, state / "data" / "labextensions" / name, dirs_exist_ok=True)
+
+
+def trust_lessons(state: Path, root: Path = ROOT) -> None:
+    """Signs the lessons, so that their stored 3D scenes show before a cell is run: they come with the course's code.
+
+    What is signed is the content: a copy in work/ is trusted for as long as it is the lesson's, and what a student runs
+    and saves is signed by JupyterLab. A file that somebody put into work/ is not.
+    """
     from nbformat import read
+    from nbformat.reader import NotJSONError
     from nbformat.sign import NotebookNotary
 
     data = state / "data"
     data.mkdir(parents=True, exist_ok=True)
     notary = NotebookNotary(data_dir=str(data))
-    for path in sorted([*(ROOT / "notebooks").glob("*.ipynb"), *(ROOT / "notebooks" / "projects").glob("*.ipynb")]):
-        notary.sign(read(path, as_version=4))
+    for name in lessons(root).values():
+        with contextlib.suppress(NotJSONError):  # a merge that stopped half-way; `make_copies` has said so
+            notary.sign(read(root / NOTEBOOKS / name, as_version=4))

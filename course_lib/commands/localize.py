@@ -16,6 +16,7 @@ import numpy as np
 from course_lib.commands.arguments import add_backend_argument
 from course_lib.commands.localize_report import believed, localize_table, write_localized
 from course_lib.commands.localize_start import found_start, given_start, join_words
+from course_lib.writing import replaced_outputs
 
 __all__ = ["add_arguments", "join_words", "run"]
 
@@ -96,6 +97,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (default: 2; xyyaw: 1.5)"
     )
+    parser.add_argument(
+        "--drop-far", action="store_true", help="leave out triangles more than 5 km from the middle of the map"
+    )
     add_backend_argument(parser)
     parser.add_argument(
         "--out",
@@ -137,7 +141,7 @@ def run(arguments: argparse.Namespace) -> int:
             "--dof xyyaw moves the camera on a horizontal plane, and which way is up in this world is unknown; give "
             "--up AXIS (x, -x, y, -y, z, -z) if you know it, else use --dof 6"
         )
-    scene_map = SceneMap.load(arguments.map)
+    scene_map = SceneMap.load(arguments.map, drop_far=arguments.drop_far)
     searched = {}
     if arguments.start == "unknown":
         sequence, start, searched = found_start(arguments, scene_map, sequence, up)
@@ -174,11 +178,12 @@ def run(arguments: argparse.Namespace) -> int:
         "most_renders": int(result.renders.max()),
         "ms_per_frame": result.ms_per_frame,
     }
+    print(json.dumps(summary) if arguments.json else localize_table(summary), flush=True)
     if arguments.out:
-        written = write_localized(arguments.out, summary, result, sequence, scene_map)
-    print(json.dumps(summary) if arguments.json else localize_table(summary))
-    if arguments.out and not arguments.json:
-        print(f"Written to {arguments.out}: " + ", ".join(written))
+        with replaced_outputs(arguments.out, "localize") as out:
+            written = write_localized(out, summary, result, sequence, scene_map)
+        if not arguments.json:
+            print(f"Written to {arguments.out}: " + ", ".join(written))
     if not arguments.json:
         print(summary["believes"])
     return 0
@@ -209,9 +214,9 @@ def _sigma(arguments: argparse.Namespace) -> tuple[float, float]:
     position, rotation_deg = SIGMA[arguments.dof]
     position = position if arguments.sigma_position is None else arguments.sigma_position
     rotation_deg = rotation_deg if arguments.sigma_rotation is None else arguments.sigma_rotation
-    for name, value in (("position", position), ("rotation", rotation_deg)):
-        if not (np.isfinite(value) and value >= 0):
-            raise ValueError(f"--sigma-{name} must be 0 or more; got {value:g}")
+    for name, value, most, unit in (("position", position, 10, "m"), ("rotation", rotation_deg, 180, "degrees")):
+        if not 0 <= value <= most:
+            raise ValueError(f"--sigma-{name} must be between 0 and {most} {unit} a frame; got {value:g}")
     return position, rotation_deg
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.commands.stereo import add_pair_arguments
+from course_lib.writing import replaced_outputs
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from course_lib.spherical_stereo.panorama import View
@@ -90,19 +91,17 @@ def run(arguments: argparse.Namespace) -> int:
         "classes_of_the_detector": None if detector is None else detector.labels,
         **localization_summary(found, localizer.semantic_map),
     }
-    if arguments.out:
-        written = _write(arguments.out, summary, views, found, localizer.semantic_map)
-    if arguments.json:
-        print(json.dumps(summary))
-        return 0
-    if detector is not None and arguments.detector is None:
+    if detector is not None and arguments.detector is None and not arguments.json:
         print(
             f"The course's detector looked for objects. It knows {len(detector.labels)} classes, from simulated rooms "
             f"only:\n{', '.join(detector.labels)}. Give yours with --detector, or draw --boxes.\n"
         )
-    print(_text(summary))
+    print(json.dumps(summary) if arguments.json else _text(summary), flush=True)
     if arguments.out:
-        print(f"\nWritten to {arguments.out}: " + ", ".join(written))
+        with replaced_outputs(arguments.out, "locate") as out:
+            written = _write(out, summary, views, found, localizer.semantic_map)
+        if not arguments.json:
+            print(f"\nWritten to {arguments.out}: " + ", ".join(written))
     return 0
 
 

@@ -31,7 +31,8 @@ from pathlib import Path
 
 from course_lib.commands import test as suite
 
-NOT_COPIED = (".git", ".venv", "results", "build", ".pytest_cache", ".ruff_cache", ".hypothesis")  # of the first level
+# Folders of the first level.
+NOT_COPIED = (".git", ".venv", "results", "work", "build", ".pytest_cache", ".ruff_cache", ".hypothesis")
 NO_PLUGINS = ("-p", "no:cacheprovider", "-p", "no:nbval")  # nbval's import alone takes seconds
 # A crash of the code's own making: OpenGL used from two threads may end so before it draws anything wrong. A process
 # that somebody else killed (SIGKILL where memory ran out, SIGTERM) proves nothing.

@@ -13,17 +13,20 @@ import os
 import re
 import tempfile
 import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
+from course_lib.commands.saved_panels import drop_widgets
 from course_lib.paths import REPOSITORY, STORE_SCENES, notebook_paths, project_paths
+from course_lib.writing import write_at_once
 
 MAX_BYTES = 400_000
 HANGS_S = 1800.0  # only what hangs takes so long
-WIDGET_VIEW = "application/vnd.jupyter.widget-view+json"
 METADATA = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
     "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
@@ -99,12 +102,21 @@ def refresh(path: Path, cell_timeout: float = HANGS_S) -> tuple[float, int]:
         raise RefreshError(
             f"{size / 1000:.0f} kB with its outputs, at most {MAX_BYTES / 1000:.0f}: use smaller pictures"
         )
+    json.loads(text)
     write_at_once(path, text)
     return seconds, size
 
 
-def execute(notebook: nbformat.NotebookNode, folder: Path, cell_timeout: float) -> float:
-    """Run all cells of `notebook` in place, in a fresh kernel; returns the seconds that the cells took."""
+def execute(
+    notebook: nbformat.NotebookNode,
+    folder: Path,
+    cell_timeout: float,
+    watch: Callable[[int], AbstractContextManager] = nullcontext,
+) -> float:
+    """Run all cells of `notebook` in place, in a fresh kernel; returns the seconds that the cells took.
+
+    watch: from the process id of the kernel, what is entered before its first cell and left after its last.
+    """
     with tempfile.TemporaryDirectory(prefix="course-refresh-") as home:
         startup = Path(home) / "profile_default" / "startup"
         startup.mkdir(parents=True)
@@ -123,7 +135,7 @@ def execute(notebook: nbformat.NotebookNode, folder: Path, cell_timeout: float) 
             allow_errors=False,
         )
         try:
-            with client.setup_kernel(env=environment):
+            with client.setup_kernel(env=environment), watch(client.km.provisioner.pid):
                 started = time.perf_counter()
                 for index, cell in enumerate(notebook.cells):
                     client.execute_cell(cell, index)
@@ -138,6 +150,7 @@ def normalize(notebook: nbformat.NotebookNode) -> None:
     """Bring a notebook to the one stored form: counts 1 to n, no widget views or state, no traces of a session."""
     notebook.metadata = nbformat.from_dict(METADATA)
     notebook.nbformat, notebook.nbformat_minor = 4, 5
+    drop_widgets(notebook)
     count = 0
     for cell in notebook.cells:
         cell.metadata = {key: cell.metadata[key] for key in KEPT_CELL_METADATA if key in cell.metadata}
@@ -146,7 +159,6 @@ def normalize(notebook: nbformat.NotebookNode) -> None:
         count += 1
         cell.execution_count = count
         for output in cell.outputs:
-            output.get("data", {}).pop(WIDGET_VIEW, None)
             output.pop("transient", None)
             if "execution_count" in output:
                 output["execution_count"] = count
@@ -163,19 +175,6 @@ def merge_streams(outputs: list) -> list:
         else:
             merged.append(output)
     return merged
-
-
-def write_at_once(path: Path, text: str) -> None:
-    """Replace a file in one step: a reader sees the old text or the new one, never half of it."""
-    json.loads(text)
-    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, suffix=".part", delete=False) as part:
-        part.write(text)
-    try:
-        os.chmod(part.name, path.stat().st_mode & 0o777 if path.exists() else 0o644)
-        os.replace(part.name, path)
-    except OSError:
-        Path(part.name).unlink(missing_ok=True)
-        raise
 
 
 def strip_colour(text: str) -> str:

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
+from course_lib.writing import replaced_outputs
+
 BOXES_FORMAT = """\
 the boxes file, in pixels (left, top, right, bottom) of images of that size; "name" may be left out:
   {"version": 1, "width": 1024, "height": 512, "upper": [{"label": "chair", "box": [420, 285, 498, 404]}],
@@ -85,13 +87,14 @@ def run(arguments: argparse.Namespace) -> int:
         "objects": [_row(measured, boxes) for measured in objects],
         "unmatched": [_unmatched_row(item, boxes) for item in matching.unmatched],
     }
-    if arguments.out:
-        _write(arguments.out, summary, (upper, lower), features, objects)
     # NaN is no JSON: what has no value is null.
-    print(json.dumps(_nan_to_none(summary)) if arguments.json else _table(summary, boxes is not None))
-    if arguments.out and not arguments.json:
-        drawn = "disparity.png" + (", distances.png, room.png" if objects else "")
-        print(f"\nWritten to {arguments.out}: stereo.json, {drawn}")
+    print(json.dumps(_nan_to_none(summary)) if arguments.json else _table(summary, boxes is not None), flush=True)
+    if arguments.out:
+        with replaced_outputs(arguments.out, "stereo") as out:
+            _write(out, summary, (upper, lower), features, objects)
+        if not arguments.json:
+            drawn = "disparity.png" + (", distances.png, room.png" if objects else "")
+            print(f"\nWritten to {arguments.out}: stereo.json, {drawn}")
     return 0
 
 

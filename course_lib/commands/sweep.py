@@ -70,9 +70,9 @@ def run(arguments: argparse.Namespace) -> int:
         "interval_percent": INTERVAL_PERCENT,
         "over_recordings": over_recordings([row["result"] for row in rows], median_interval),
     }
-    write_results(arguments.out / "corridor.json", result)
     told = f"{INTERVAL_PERCENT} % interval of the median"
-    print(json.dumps(result) if arguments.json else table_over_recordings(result, told))
+    print(json.dumps(result) if arguments.json else table_over_recordings(result, told), flush=True)
+    write_results(arguments.out / "corridor.json", result)
     return 0
 
 

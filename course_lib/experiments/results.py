@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
-import os
 import platform
 from importlib.metadata import version
 from pathlib import Path
 
 import course_lib
+from course_lib.writing import write_at_once
 
 
 def versions() -> dict[str, str]:
@@ -23,19 +24,16 @@ def versions() -> dict[str, str]:
 def write_results(path: str | Path, results: dict, rows: list[dict] | None = None) -> None:
     """Writes results as JSON, with the versions inside, and per-frame rows beside it as CSV of the same name.
 
-    A file is complete or not there: it is written under another name first. Raises `ValueError` for NaN or infinite
-    numbers, which JSON has not.
+    A file is complete or not there. Raises `ValueError` for NaN or infinite numbers, which JSON has not, `WriteError`
+    where it cannot be written.
     """
     path = Path(path)
     text = json.dumps(results | {"versions": versions()}, indent=2, allow_nan=False) + "\n"
     path.parent.mkdir(parents=True, exist_ok=True)
     if rows:
-        partial = path.with_suffix(".csv.partial")
-        with partial.open("w", newline="") as file:
-            writer = csv.DictWriter(file, fieldnames=list(rows[0]))
-            writer.writeheader()
-            writer.writerows(rows)
-        os.replace(partial, path.with_suffix(".csv"))
-    partial = path.with_suffix(".json.partial")
-    partial.write_text(text)
-    os.replace(partial, path)
+        table = io.StringIO(newline="")
+        writer = csv.DictWriter(table, fieldnames=list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+        write_at_once(path.with_suffix(".csv"), table.getvalue())
+    write_at_once(path, text)

@@ -14,13 +14,12 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 
 from course_lib.geometry import wrap_angle
+from course_lib.reading import read_image
 
 
 class PanoramaError(ValueError):
@@ -254,13 +253,7 @@ def read_panorama(path: str | os.PathLike) -> np.ndarray:
 
     Raises `PanoramaError`: no such file, not an image, or one that `open_view` refuses.
     """
-    path = Path(path)
-    if not path.is_file():
-        raise PanoramaError(f"there is no image file {path}")
-    data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
-    if image is None:
-        raise PanoramaError(f"{path} cannot be read as an image; PNG or JPEG is expected")
+    image = read_image(path, "image", PanoramaError)
     if image.ndim == 3 and image.shape[2] == 4:
         image = np.ascontiguousarray(image[..., :3])
     open_view(image, str(path))

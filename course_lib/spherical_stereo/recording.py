@@ -6,12 +6,12 @@ upper and the lower image, the file and the exact boxes of the objects that can 
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from course_lib.reading import read_json
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, read_panorama
 
 VERSION = 1
@@ -69,12 +69,7 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
     """
     folder = Path(folder)
     path = folder / POSES_FILE
-    try:
-        content = json.loads(path.read_text())
-    except OSError as error:
-        raise PanoramaError(f"cannot read {path}: {error.strerror}; expected a folder with {POSES_FILE}") from None
-    except json.JSONDecodeError as error:
-        raise PanoramaError(f"{path} is not JSON: {error}") from None
+    content = read_json(path, "list of pairs", PanoramaError)
     version = content.get("version") if isinstance(content, dict) else None
     if version != VERSION:
         raise PanoramaError(f"{path} has version {version!r}; this program reads version {VERSION}")

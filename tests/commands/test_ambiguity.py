@@ -36,7 +36,7 @@ def test_what_is_confused_is_told_with_its_places(map_file, tmp_path, capsys):
     assert first < second
     assert one["confused"][0]["labels"][0] == one["confused"][0]["labels"][1]
     assert [list(SYMMETRIC.positions[first]), list(SYMMETRIC.positions[second])] == [a, b]
-    assert sorted(path.name for path in out.iterdir()) == [
+    assert sorted(path.name for path in out.glob("[!.]*")) == [
         "ambiguity.json",
         "ambiguity_consistent.png",
         "ambiguity_greedy.png",

@@ -314,7 +314,7 @@ def test_near_and_far_bound_what_is_seen(corridor_folder, capsys):
     [
         ({"start": "1 2 3"}, "six finite numbers"),
         ({"start": "1 2 nan 0 0 0"}, "six finite numbers"),
-        ({"start": "nowhere.txt"}, "no file nowhere.txt"),
+        ({"start": "nowhere.txt"}, "nowhere.txt is missing"),
         ({"start": "500 0 1 0 0 0"}, "outside the map"),
         ({"depth-scale": "0"}, "--depth-scale"),
         ({"depth-scale": "nan"}, "--depth-scale"),
@@ -322,11 +322,13 @@ def test_near_and_far_bound_what_is_seen(corridor_folder, capsys):
         ({"far": "inf"}, "--far"),
         ({"near": "5", "far": "2"}, "--near must be below --far"),
         ({"sigma-rotation": "nan"}, "--sigma-rotation"),
-        ({"map": "nowhere.ply"}, "no map at"),
+        ({"map": "nowhere.ply"}, "nowhere.ply is missing"),
         ({"sequence": "nowhere"}, "no sequence at"),
         ({"particles": "0"}, "particles"),
         ({"frames": "0"}, "frames"),
         ({"sigma-position": "-1"}, "sigma"),
+        ({"sigma-position": "1e300"}, "--sigma-position must be between 0 and 10 m a frame; got 1e+300"),
+        ({"sigma-rotation": "181"}, "--sigma-rotation must be between 0 and 180 degrees"),
         ({"seed": "-1"}, "--seed"),
     ],
 )

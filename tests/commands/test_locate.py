@@ -136,8 +136,8 @@ def test_without_boxes_a_detector_finds_the_objects_and_the_course_s_says_what_i
 @pytest.mark.parametrize(
     ("more", "other", "message"),
     [
-        ((), {"upper": "none.png"}, "there is no image file"),
-        ((), {"map": "none.json"}, "there is no such file"),
+        ((), {"upper": "none.png"}, "none.png is missing"),
+        ((), {"map": "none.json"}, "none.json is missing"),
         ((), {"baseline": 300}, "Is it in millimetres?"),
         ((), {"baseline": -0.3}, "baseline must be a positive number of metres"),
         (("--detector", "somewhere"), {}, "give one of the two"),

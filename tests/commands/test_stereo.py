@@ -139,11 +139,11 @@ def test_images_without_features_are_valid_json_too(plain_pair, tmp_path, capsys
     [
         ({"baseline": "0"}, "baseline must be a positive number"),
         ({"baseline": "-0.3"}, "--baseline must be a positive number"),
-        ({"upper": "missing.png"}, "there is no image file"),
-        ({"upper": "boxes.json"}, "cannot be read as an image"),
+        ({"upper": "missing.png"}, "missing.png is missing"),
+        ({"upper": "boxes.json"}, "PNG or JPEG is expected"),
         ({"upper": "lower.png", "lower": "upper.png"}, "swapped"),
         ({"lower": "half.png"}, "one size"),
-        ({"boxes": "missing.json"}, "no boxes file"),
+        ({"boxes": "missing.json"}, "missing.json is missing"),
     ],
 )
 def test_bad_input_is_told_in_one_line(pair, change, message, capsys):

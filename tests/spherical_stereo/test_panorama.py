@@ -200,9 +200,9 @@ def test_files_that_hold_no_colour_panorama_are_named(tmp_path, rng):
     cv2.imwrite(str(tmp_path / "grey3.png"), cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR))
     cv2.imwrite(str(tmp_path / "square.png"), rng.integers(0, 255, (8, 8, 3), dtype=np.uint8))
     expected = {
-        "missing.png": "no image file",
-        "text.png": "cannot be read",
-        "nothing.png": "cannot be read",
+        "missing.png": "image .* is missing",
+        "text.png": "begins with b'no image'; PNG or JPEG is expected",
+        "nothing.png": "is empty, not complete",
         "grey.png": "grey image",
         "grey3.png": "grey image",
         "square.png": "twice as wide",

@@ -8,12 +8,12 @@ Boxes are in edge coordinates of images of that size; u_max passes the width whe
 left out; the same name in "upper" and "lower" says that the two boxes show one object, for checking a matcher.
 """
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from course_lib.reading import read_json
 from course_lib.spherical_stereo.detection.boxes import DetectionError, checked_boxes, wrapped_box
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection
@@ -82,12 +82,7 @@ def read_stereo_boxes(path: str | Path) -> StereoBoxes:
     kind, a box that is none or leaves the image, a name that is given twice on one side or to two classes.
     """
     path = Path(path)
-    if not path.is_file():
-        raise DetectionError(f"there is no boxes file {path}")
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise DetectionError(f"{path} is not JSON: {error}") from None
+    content = read_json(path, "boxes file", DetectionError)
     if not isinstance(content, dict) or content.get("version") != VERSION:
         version = content.get("version") if isinstance(content, dict) else None
         raise DetectionError(f"{path} must be an object with version {VERSION}; got version {version!r}")

@@ -15,13 +15,13 @@ Source: paper 2, section 2.2 (its detector is YOLOv4).
 import struct
 from pathlib import Path
 
+from course_lib.reading import read_text
 from course_lib.spherical_stereo.detection.darknet_cfg import (
     DETECTION_KINDS,
     DetectorError,
     Section,
     parse_cfg,
     read_cfg,
-    read_text,
     render_cfg,
 )
 
@@ -182,7 +182,7 @@ def read_names(path: str | Path) -> list[str]:
 
     Raises DetectorError: the file is missing or not text, or an empty line stands between names.
     """
-    names = [line.strip() for line in read_text(path, "names file").rstrip().splitlines()]
+    names = [line.strip() for line in read_text(path, "names file", DetectorError).rstrip().splitlines()]
     for number, name in enumerate(names, start=1):
         if not name:
             raise DetectorError(f"names file {path}, line {number} is empty: every line names one class")

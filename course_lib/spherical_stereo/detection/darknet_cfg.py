@@ -10,6 +10,8 @@ would make the count of weights wrong. Source: paper 2, section 2.2 (YOLOv4 is p
 from dataclasses import dataclass
 from pathlib import Path
 
+from course_lib.reading import read_text
+
 INPUT_KINDS = ("net", "network")
 DETECTION_KINDS = ("yolo", "region")
 SAME_CHANNELS = ("maxpool", "avgpool", "upsample", "dropout", "softmax", "shortcut", "sam", *DETECTION_KINDS)
@@ -55,24 +57,13 @@ class Section:
         return numbers
 
 
-def read_text(path: str | Path, what: str) -> str:
-    """The text of a file. Raises DetectorError: missing, a folder, or not text; `what` names it in the message."""
-    path = Path(path)
-    if not path.is_file():
-        raise DetectorError(f"{what} {path} is missing: give the path of an existing file")
-    try:
-        return path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise DetectorError(f"{what} {path} is not a text file: was another file given in its place?") from None
-
-
 def read_cfg(path: str | Path) -> list[Section]:
     """Read a Darknet cfg: the `[net]` section first, then one section per layer, in order.
 
     Raises DetectorError: the file is missing or not text, a line is neither `[kind]`, `key=value` nor a comment, a
     section is unknown or empty, or the file does not start with `[net]`. Messages give the line number.
     """
-    return parse_cfg(read_text(path, "cfg file"), str(path))
+    return parse_cfg(read_text(path, "cfg file", DetectorError), str(path))
 
 
 def parse_cfg(text: str, name: str = "cfg") -> list[Section]:

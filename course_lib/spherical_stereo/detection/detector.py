@@ -7,13 +7,13 @@ The order: extend the panorama past its seam (`seam`), fit it into the network's
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Protocol
 
 import cv2
 import numpy as np
 
+from course_lib.reading import read_json
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.darknet import DetectorError, read_names
 from course_lib.spherical_stereo.detection.darknet_network import DarknetNetwork
@@ -200,7 +200,7 @@ def _trained_options(path: Path) -> dict[str, float]:
     if not path.is_file():
         return {}
     try:
-        threshold = float(json.loads(path.read_text(encoding="utf-8"))["score_threshold"])
+        threshold = float(read_json(path, "training report", DetectorError)["score_threshold"])
     except (ValueError, TypeError, KeyError):
         raise DetectorError(
             f"{path} must be JSON with a number score_threshold; mend or remove it, or give score_threshold yourself"

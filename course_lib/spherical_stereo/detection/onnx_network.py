@@ -15,7 +15,12 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from course_lib.child import ChildError, ChildStopped, run_apart
+from course_lib.reading import MEGABYTE, require_file
 from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
+
+MEMORY = 1_500 * MEGABYTE
+"""What a small network may take, of which most is for its intermediate results."""
 
 LAYOUTS = ("yolov5", "yolov8", "yolov4")
 
@@ -53,6 +58,29 @@ def decode_onnx(
     return np.concatenate([centre - half, centre + half], axis=1), scores
 
 
+# OpenCV's reader follows what a file says without looking: of 496 files with a changed byte four ended the process.
+_PROBE = """
+import sys
+import cv2
+import numpy as np
+net = cv2.dnn.readNetFromONNX(sys.argv[1])
+net.setInput(np.zeros((1, 3, {1}, {0}), np.float32))
+net.forward(net.getUnconnectedOutLayersNames())
+"""
+
+
+def _require_no_crash(path: Path, input_size: tuple[int, int]) -> None:
+    """Raises DetectorError where reading the file and running it once crashes, hangs or takes all memory elsewhere."""
+    try:
+        run_apart(_PROBE.format(*input_size), str(path.resolve()), MEMORY + 20 * path.stat().st_size)
+    except ChildStopped:  # an error that OpenCV itself tells below
+        return
+    except ChildError as reason:
+        raise DetectorError(
+            f"ONNX file {path} cannot be used: reading and running it {reason}. Is it damaged?"
+        ) from None
+
+
 class OnnxNetwork:
     """A loaded network. `infer` takes one blob at a time, from one thread."""
 
@@ -63,9 +91,9 @@ class OnnxNetwork:
         file, an input size that the file does not take, or what `decode_onnx` refuses. Source: paper 2, section 2.2.
         """
         path = Path(path)
-        if not path.is_file():
-            raise DetectorError(f"ONNX file {path} is missing: give the path of an existing file")
+        require_file(path, "ONNX file", DetectorError)
         self.input_size: tuple[int, int] = (int(input_size[0]), int(input_size[1]))
+        _require_no_crash(path, self.input_size)
         self.n_classes = n_classes
         self._layout = layout
         try:

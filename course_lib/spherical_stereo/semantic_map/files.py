@@ -7,9 +7,9 @@ JSON, version 1; `name` and `walls` may be left out, hue is null for grey:
      "walls": [[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [0.0, 6.0]]}
 
 CSV, version 1: the version in a comment on the first line, a header, a row for each object, hue empty for grey. It has
-no place for walls and name:
+no place for walls and name. The number of landmarks may be left out; where it stands, a cut-off file is noticed:
 
-    # semantic map, version 1
+    # semantic map, version 1, 1 landmarks
     label,x,y,hue,saturation
     sofa,1.5,0.4,210.0,55.0
 """
@@ -20,12 +20,12 @@ import csv
 import io
 import json
 import math
-import os
 import re
-import tempfile
 from pathlib import Path
 
+from course_lib.reading import read_json, read_text
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
+from course_lib.writing import write_at_once
 
 VERSION = 1
 _FIELDS = ("label", "x", "y", "hue", "saturation")
@@ -39,18 +39,12 @@ def read_semantic_map(path: str | Path) -> SemanticMap:
     version, lacks fields, or holds values that no map may have.
     """
     path = Path(path)
-    read = {".json": _from_json, ".csv": _from_csv}.get(path.suffix.lower())
-    if read is None:
+    if path.suffix.lower() not in (".json", ".csv"):
         raise SemanticMapError(f"{path}: a semantic map is a .json or a .csv file")
+    parse, make = (read_json, _from_json) if path.suffix.lower() == ".json" else (read_text, _from_csv)
+    content = parse(path, "semantic map", SemanticMapError)
     try:
-        # Spreadsheets put a byte order mark in front; utf-8-sig takes it away where there is one.
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise SemanticMapError(f"{path}: there is no such file") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise SemanticMapError(f"{path}: cannot be read as text ({error})") from None
-    try:
-        return read(text)
+        return make(content)
     except SemanticMapError as error:
         raise SemanticMapError(f"{path}: {error}") from None
 
@@ -58,26 +52,13 @@ def read_semantic_map(path: str | Path) -> SemanticMap:
 def write_semantic_map(semantic_map: SemanticMap, path: str | Path) -> None:
     """Writes `.json` (everything) or `.csv` (landmarks only).
 
-    The text goes to a new file beside it that takes the old one's place at the end, so nothing is ever half-written.
-    Raises `SemanticMapError` for another ending, or a folder that cannot be written to.
+    Nothing is ever half-written. Raises `SemanticMapError` for another ending, `WriteError` where it cannot be written.
     """
     path = Path(path)
     as_text = {".json": _to_json, ".csv": _to_csv}.get(path.suffix.lower())
     if as_text is None:
         raise SemanticMapError(f"{path}: a semantic map is saved as .json or .csv")
-    text = as_text(semantic_map)
-    try:
-        handle, unfinished = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    except OSError as error:
-        raise SemanticMapError(f"{path}: cannot be written ({error})") from None
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-        os.chmod(unfinished, 0o644)  # mkstemp's own is for one user only
-        os.replace(unfinished, path)
-    except OSError as error:
-        Path(unfinished).unlink(missing_ok=True)
-        raise SemanticMapError(f"{path}: cannot be written ({error})") from None
+    write_at_once(path, as_text(semantic_map))
 
 
 def _to_json(semantic_map: SemanticMap) -> str:
@@ -94,14 +75,7 @@ def _null_if_nan(value: str | float) -> str | float | None:
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
-def _from_json(text: str) -> SemanticMap:
-    def refuse_constant(name: str):
-        raise SemanticMapError(f"{name} is no JSON number; the hue of grey is written null")
-
-    try:
-        content = json.loads(text, parse_constant=refuse_constant)
-    except json.JSONDecodeError as error:
-        raise SemanticMapError(f"is not JSON ({error})") from None
+def _from_json(content: object) -> SemanticMap:
     if not isinstance(content, dict):
         raise SemanticMapError(f"the file must hold a JSON object with version and landmarks; got {_kind(content)}")
     _check_version(content.get("version"))
@@ -116,7 +90,7 @@ def _from_json(text: str) -> SemanticMap:
 
 def _to_csv(semantic_map: SemanticMap) -> str:
     text = io.StringIO()
-    text.write(_CSV_FIRST_LINE + "\n")
+    text.write(f"{_CSV_FIRST_LINE}, {len(semantic_map.landmarks)} landmarks\n")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(_FIELDS)
     for landmark in semantic_map.landmarks:
@@ -128,7 +102,7 @@ def _to_csv(semantic_map: SemanticMap) -> str:
 def _from_csv(text: str) -> SemanticMap:
     first, _, rest = text.partition("\n")
     # A spreadsheet fills the comment's row up with commas and may put it in quotes.
-    found = re.fullmatch(r'"?#\s*semantic map,\s*version\s+(\S+?)"?,*\s*', first)
+    found = re.fullmatch(r'"?#\s*semantic map,\s*version\s+([^\s,"]+)(?:,\s*(\d+) landmarks)?"?,*\s*', first)
     if found is None:
         raise SemanticMapError(f"the first line must be '{_CSV_FIRST_LINE}'; got {first[:60]!r}")
     _check_version(int(found[1]) if found[1].isdecimal() else found[1])
@@ -144,6 +118,12 @@ def _from_csv(text: str) -> SemanticMap:
                 " write numbers with a decimal point, and a label with a comma in quotes"
             )
         landmarks.append(_landmark(_csv_row(row), number))
+    if found[2] is not None and (len(landmarks) != int(found[2]) or not text.endswith("\n")):
+        raise SemanticMapError(
+            f"the first line announces {found[2]} landmarks, the file holds {len(landmarks)}"
+            f"{'' if text.endswith(chr(10)) else ', and its last line has no end'}: was it cut off? If you took some "
+            "out or added some, change that number, or leave it out"
+        )
     return SemanticMap(landmarks)
 
 

@@ -70,7 +70,7 @@ def test_images_of_another_size_are_refused(tmp_path):
 
 
 def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(DetectionError, match="no boxes file"):
+    with pytest.raises(DetectionError, match=r"boxes file .* is missing"):
         read_stereo_boxes(tmp_path / "none.json")
 
 

@@ -149,7 +149,7 @@ def test_a_missing_cfg_and_one_that_is_no_text_are_named(tmp_path):
     with pytest.raises(DetectorError, match=r"nothing\.cfg is missing"):
         read_cfg(tmp_path / "nothing.cfg")
     (tmp_path / "weights.cfg").write_bytes(bytes([0xFF, 0xFE, 0x80]))
-    with pytest.raises(DetectorError, match="not a text file"):
+    with pytest.raises(DetectorError, match="not UTF-8 text: byte 0xff in line 1"):
         read_cfg(tmp_path / "weights.cfg")
 
 

@@ -1,0 +1,17 @@
+"""Show how far you have come: predictions typed and checks right in every lesson, and the same as a page."""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--out", metavar="PAGE", help="where to write the page (default: work/progress.html)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    # A process of its own: commands import nothing of what only the notebooks use.
+    words = ["--out", arguments.out] if arguments.out else []
+    return subprocess.run([sys.executable, "-P", "-m", "course_lib.lessons.kit.show_progress", *words]).returncode

@@ -1,0 +1,192 @@
+"""TEACHING.md: plans whose minutes add up, an entry for every lesson and project, commands, links and hints that exist,
+a table of costs for every notebook, and an example exercise that really is one."""
+
+from __future__ import annotations
+
+import functools
+import re
+import types
+from importlib import import_module
+
+import nbformat
+import numpy as np
+import pytest
+
+from course_lib.cli import COMMANDS, find_command, parse
+from course_lib.commands.lesson_costs_table import capacity_sentence, table
+from course_lib.lessons.kit import exercises as kit
+from course_lib.lessons.kit.exercises import Exercise, Mistake, find_exercise, judge, lesson_exercises
+from course_lib.paths import REPOSITORY, notebook_paths, project_paths
+
+TEACHING = (REPOSITORY / "TEACHING.md").read_text(encoding="utf-8")
+PATHS = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
+PARTS = ["Before", "Together", "After", "Mistakes"]
+
+
+@functools.cache
+def title_of(number: str) -> str:
+    return nbformat.read(PATHS[number], as_version=4).cells[0].source
+
+
+def minutes_of(number: str) -> int:
+    """Minutes of a lesson, or of a project whose title says hours, as its first cell says."""
+    found = re.search(r"\*\*([\d.]+) (minutes|hours)", title_of(number))
+    return round(float(found[1]) * (60 if found[2] == "hours" else 1))
+
+
+def section(heading: str) -> str:
+    """Text below a heading that begins so, up to the next heading of its level or above."""
+    marks, text = re.search(rf"^(#+) {re.escape(heading)}.*\n((?:.*\n)*)", TEACHING, re.M).groups()
+    return re.split(rf"^#{{1,{len(marks)}}} ", text, maxsplit=1, flags=re.M)[0]
+
+
+def cells_of(rows: list[str]) -> list[list[str]]:
+    return [[cell.strip() for cell in row.split("|")[1:-1]] for row in rows]
+
+
+PLANS = re.findall(r"^### ((\w+) meetings of (\d+) minutes.*)$", TEACHING, re.M)
+COUNTS = {"Two": 2, "Eight": 8, "Fifteen": 15}
+
+
+def rows_of(plan: str) -> list[list[str]]:
+    return [
+        [cell.strip() for cell in row.split("|")[1:-1]] for row in re.findall(r"^\| \d+ \|.*$", section(plan), re.M)
+    ]
+
+
+def test_there_are_plans_of_fifteen_eight_and_two_meetings():
+    assert [COUNTS[count] for _, count, _ in PLANS] == [15, 8, 2]
+
+
+@pytest.mark.parametrize(("plan", "count", "length"), PLANS, ids=lambda value: str(value)[:8])
+def test_the_minutes_of_a_plan_are_those_of_the_titles_and_add_up(plan, count, length):
+    rows = rows_of(plan)
+    assert [int(row[0]) for row in rows] == list(range(1, COUNTS[count] + 1))
+    for _, in_class, lessons, talk, at_home in rows:
+        assert sum(minutes_of(number) for number in in_class.split(", ")) == int(lessons)
+        assert int(lessons) + int(talk) == int(length)
+        for number, minutes in re.findall(r"lesson (\d\d) \((\d+) min\)", at_home):
+            assert minutes_of(number) == int(minutes)
+        for number, hours in re.findall(r"(P\d) \(([\d.]+) h\)", at_home):
+            assert minutes_of(number) == 60 * float(hours)
+        for number in re.findall(r"\b\d\d\.\d\b", at_home):
+            assert find_exercise(number).level == "challenge"
+
+
+@pytest.mark.parametrize(("plan", "count", "length"), PLANS, ids=lambda value: str(value)[:8])
+def test_a_plan_has_each_lesson_once_and_in_order(plan, count, length):
+    lessons = re.findall(r"\b(\d\d)\b(?![.\d])", " ".join(f"{row[1]} {row[4]}" for row in rows_of(plan)))
+    lessons = [number for number in lessons if number in PATHS]
+    assert len(lessons) == len(set(lessons))
+    in_class = [number for row in rows_of(plan) for number in row[1].split(", ")]
+    assert in_class == sorted(in_class)
+    left_out = re.search(r"^Left out: ([\d, ]+)\.", section(plan), re.M)
+    if left_out or count == "Fifteen":
+        missing = left_out[1].split(", ") if left_out else []
+        assert sorted(lessons + missing) == [path.name[:2] for path in notebook_paths()]
+
+
+@pytest.mark.parametrize("number", PATHS)
+def test_every_lesson_and_project_has_its_entry_with_its_time_and_a_question(number):
+    heading = re.search(rf"^### {number} · .* \(([\d.]+) (min|h)\)$", TEACHING, re.M)
+    assert float(heading[1]) * (60 if heading[2] == "h" else 1) == minutes_of(number)
+    entry = section(f"{number} · ")
+    assert re.findall(r"^\* \*\*(\w+)\.\*\*", entry, re.M) == PARTS
+    before = entry.partition("* **Together")[0]
+    assert re.search(r"\*[^*]+\?[^*]*\*", before), "the question that opens the lesson stands in italics"
+    assert len(re.findall(rf"\b{number}\.\d \"", entry)) >= 2
+
+
+@pytest.mark.parametrize(("number", "quoted"), re.findall(r"\b(\d\d\.\d|P\d\.\d) \"([^\"]+)\"", TEACHING))
+def test_a_quoted_mistake_is_a_hint_of_that_exercise(number, quoted):
+    hints = [mistake.hint for mistake in find_exercise(number).mistakes]
+    assert any(" ".join(quoted.split()) in hint for hint in hints), hints
+
+
+def test_points_are_those_of_the_exercises():
+    points = {level: int(full) for level, full in re.findall(r"^\| ([a-z-]+) \| (\d) \| \d \| 0 \|$", TEACHING, re.M)}
+    assert set(points) == {"warm-up", "core", "challenge"}
+    halves = re.findall(r"^\| [a-z-]+ \| (\d) \| (\d) \| 0 \|$", TEACHING, re.M)
+    assert all(int(full) == 2 * int(half) for full, half in halves)
+    sums = {path.name[:2]: [points[e.level] for e in lesson_exercises(path.name[:2])] for path in notebook_paths()}
+    told = re.search(r"(\d+) lessons have (\d+) exercises, (\d+) points", TEACHING).groups()
+    assert [int(n) for n in told] == [len(sums), sum(map(len, sums.values())), sum(map(sum, sums.values()))]
+    assert "12 in lesson 00, 20 in lessons 05 and 16, 16 in each of the others" in TEACHING
+    unlike = {"00": 12, "05": 20, "16": 20}
+    assert {number: sum(values) for number, values in sums.items()} == {
+        number: unlike.get(number, 16) for number in sums
+    }
+
+
+def test_every_command_is_one_with_these_options():
+    lines = re.findall(r"(?:python3 )?course\.py ([a-z][^`\n]*)", TEACHING)
+    assert len(lines) >= 6
+    for line in lines:
+        words = line.partition(" -->")[0].split()
+        found = find_command(words)
+        assert found, f"course.py {line}: {', '.join(COMMANDS)}"
+        name, rest = found
+        module = import_module(f"course_lib.commands.{COMMANDS[name][0]}")
+        if rest:
+            parse(name, module, rest)
+
+
+def test_every_link_leads_somewhere():
+    for target in re.findall(r"\]\(([^)#]+)\)", TEACHING):
+        assert (REPOSITORY / target).exists(), target
+    assert "(TEACHING.md)" in (REPOSITORY / "README.md").read_text(encoding="utf-8")
+
+
+def test_sections_that_are_referred_to_exist():
+    headings = re.findall(r"^## (\d+)\. ", TEACHING, re.M)
+    assert headings == [str(n) for n in range(1, len(headings) + 1)]
+    assert set(re.findall(r"\(?section (\d+)\)?", TEACHING)) <= set(headings)
+
+
+COSTS = re.search(r"<!-- costs: measured on \S+, \d+ processors, by (.*?) -->\n(.*?)<!-- end", TEACHING, re.S)
+
+
+def test_the_costs_have_a_row_for_every_lesson_and_project_and_say_where_from():
+    assert COSTS[1] == "python3 course.py bench --lessons"
+    lines = re.findall(r"^\|.*$", COSTS[2], re.M)
+    _, _, *rows, greatest, together, server = cells_of(lines)
+    assert [row[0] for row in rows] == list(PATHS)
+    numbers = np.array([[float(cell) for cell in row[1:]] for row in rows])
+    assert (numbers[:, 1] < numbers[:, 0]).all(), "the student's own memory is a part of all"
+    assert [float(cell) for cell in greatest[1:]] == numbers.max(axis=0).tolist()
+    assert [float(cell) for cell in together[1:]] == pytest.approx(numbers.sum(axis=0), abs=len(rows) / 2)
+    keys = ("peak_mb", "own_mb", "processor_s")
+    named = [dict(zip(keys, map(float, row[1:]), strict=True)) | {"name": row[0]} for row in [*rows, server]]
+    printed = table({"lessons": named[:-1], "server": named[-1]})
+    assert printed[:2] == lines[:2], "the heading is the command's"
+    sentences = re.findall(r"^One server of (\d+) GiB and (\d+) processors.*$", COSTS[2], re.M)
+    assert len(sentences) >= 1
+    for gib, processors in sentences:
+        said = capacity_sentence({"lessons": named[:-1], "server": named[-1]}, float(gib), float(processors))
+        assert said in COSTS[2]
+
+
+def test_the_example_exercise_is_one():
+    """The code and the cells of section 10: the stub is not passed, the solution is, mistakes get their own hints."""
+    code = re.search(r"```python\n(.*?)```", TEACHING, re.S)[1]
+    cells = dict(
+        part.partition("\n")[::2]
+        for part in re.split(r"^%% ", re.search(r"```\n(%% .*?)```", TEACHING, re.S)[1], flags=re.M)[1:]
+    )
+    assert list(cells) == ["task", "exercise", "check", "hint", "solution"]
+    names = {"np": np, "Exercise": Exercise, "Mistake": Mistake}
+    exec(code, names)
+    (exercise,) = [value for value in names.values() if isinstance(value, Exercise)]
+    assert exercise.number not in [known.number for known in lesson_exercises(exercise.number[:2])], "it is an example"
+    student: dict = {}
+    exec(cells["exercise"] + cells["solution"], {"np": np}, student)
+    stub, solution = student.values()
+    assert isinstance(stub, types.FunctionType)
+    assert judge(exercise, stub).status == "not attempted"
+    assert all(judge(exercise, solution, seed).status == "right" for seed in range(3))
+    for mistake in exercise.mistakes:
+        assert mistake.hint in judge(exercise, mistake.function).message
+        assert len(mistake.hint) <= 140
+    assert cells["check"].strip() == f'check("{exercise.number}", {stub.__name__})'
+    assert kit.N_INPUTS == int(re.search(r"special cases and (\d+) random inputs", TEACHING)[1])
+    np.testing.assert_allclose(exercise.reference(np.array([0.012, 0.12]), 220, 1.32), [2, 20])
