@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import itertools
 import json
 import os
 import shutil
@@ -97,7 +98,13 @@ def run_renders(arguments: argparse.Namespace) -> int:
         arguments.renders,
         arguments.renderers,
     )
-    print(json.dumps(told) if arguments.json else bench_renders.table(told))
+    if arguments.json:
+        print(json.dumps(dict(told)))
+        return 0
+    first = next(told)  # what cannot be measured is said before any heading
+    print(bench_renders.heading())
+    for backend, row in itertools.chain([first], told):
+        print(bench_renders.rows(backend, row), flush=True)
     return 0
 
 

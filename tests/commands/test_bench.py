@@ -200,8 +200,10 @@ def test_the_table_of_renders_tells_memory_other_images_and_what_is_missing():
         "raster": {"views": 4, "renders": RENDERS, "renderers": RENDERS | {"calls": 300, "grew_mb": -0.5}},
         "vtk": {"missing": "OpenGL could not start"},
     }
-    head, renders, renderers, missing = bench_renders.table(told).splitlines()
-    assert head.split() == "memory held [MB] before after 10 % greatest end grew [MB] other images".split()
+    rows = [line for backend, row in told.items() for line in bench_renders.rows(backend, row).splitlines()]
+    renders, renderers, missing = rows
+    heads = "memory held [MB] before after 10 % greatest end grew [MB] other images"
+    assert bench_renders.heading().split() == heads.split()
     assert renders.split() == "raster, 10,000 renders, one renderer 270.0 360.0 361.5 361.0 +1.0 3".split()
     assert renderers.split() == "raster, 300 renderers, a render each 270.0 360.0 361.5 361.0 -0.5 3".split()
     assert missing.split(maxsplit=1) == ["vtk", "not here: OpenGL could not start"]
@@ -217,7 +219,7 @@ def test_a_measurement_that_dies_is_named(tmp_path, capfd):
     script = tmp_path / "renders.py"
     script.write_text("raise SystemExit(7)")
     with pytest.raises(RuntimeError, match="of vtk ended with code 7"):
-        bench_renders.measure(script, dict(os.environ), ["vtk"], 20, 20)
+        list(bench_renders.measure(script, dict(os.environ), ["vtk"], 20, 20))
 
 
 @pytest.mark.parametrize("backend", ["raster", "vtk", "ray"])
