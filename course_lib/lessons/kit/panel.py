@@ -86,14 +86,21 @@ EM_PER_LETTER = 0.55  # measured in JupyterLab: up to 0.52; a label that is long
 
 
 def _pair(slider: widgets.FloatSlider, number: widgets.BoundedFloatText, control: Slider) -> None:
-    """Slider and number box move together. A browser's slider says 0.15000000000000002: the box holds 0.15."""
+    """Slider and number box move together. A browser's slider says 0.15000000000000002: the box holds 0.15.
+
+    The slider is not told what it said itself: on a slow machine it has moved on by then, and would be set back.
+    """
     digits = max(_decimals(control.step), _decimals(control.least))
 
     def to_number(change: dict) -> None:
         number.value = round(change["new"], digits)
 
+    def to_slider(change: dict) -> None:
+        if round(slider.value, digits) != change["new"]:
+            slider.value = round(change["new"], digits)
+
     slider.observe(to_number, names="value")
-    widgets.dlink((number, "value"), (slider, "value"))
+    number.observe(to_slider, names="value")
 
 
 def _numbers(text: str, role: str = "") -> str:

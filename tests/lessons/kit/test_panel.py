@@ -60,6 +60,17 @@ def test_what_a_browser_adds_to_a_number_is_dropped_and_draws_once():
     assert widget_of(panel, ipywidgets.FloatSlider).value == 0.61
 
 
+def test_a_slider_is_not_told_what_it_said_itself():
+    """By the time it hears of it the reader may have moved it on: it would jump back and stay there."""
+    panel = Panel("A title", [Slider("a", "a", 0, 1, 0.1, 0.05)], lambda **values: _any())
+    slider, box = widget_of(panel, ipywidgets.FloatSlider), widget_of(panel, ipywidgets.BoundedFloatText)
+    slider.set_state({"value": 0.15000000000000002})  # a message of the browser
+    assert box.value == 0.15
+    assert slider.value == 0.15000000000000002
+    box.value = 0.123  # typed, finer than the steps
+    assert slider.value == box.value == 0.12
+
+
 def test_a_moved_slider_redraws_picture_and_numbers():
     panel = make()
     slider = widget_of(panel, ipywidgets.FloatSlider)
