@@ -33,7 +33,7 @@ class FrameOrder:
 
     def __init__(self, period: float | None = None) -> None:
         if period is not None and not (np.isfinite(period) and period > 0):
-            raise ValueError(f"period must be a positive number of seconds, or None where it is unknown; got {period!r}")
+            raise ValueError(f"period must be a positive number of seconds, or None where unknown; got {period!r}")
         self.period = period
         self._latest: float | None = None
         self._behind: list[float] = []

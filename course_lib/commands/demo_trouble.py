@@ -13,7 +13,7 @@ from pathlib import Path
 from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
 
 FRAMES = 100  # of a depth recording
-PAIRS = 20  # of a walk with panoramas
+PAIRS = 24  # of a walk with panoramas
 GREATEST_SHARE = 20  # percent: with more there are hardly good frames to recover in
 
 
@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seeds",
         default="1-5",
         metavar="A-B",
-        help="a recording, or a room and a walk, each (default: 1-5). 1 to 99 are for reporting; tune on 10000 and above",
+        help="a recording, or a room and a walk, each (default: 1-5); tune on 10000 and above",
     )
     parser.add_argument(
         "--share", default="1,5,20", metavar="PERCENT", help="of the frames that are troubled (default: 1,5,20)"
@@ -99,19 +99,24 @@ def _result(arguments: argparse.Namespace, name: str, seeds: list[int], percents
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments import sweep
     from course_lib.experiments.sensor_trouble import depth_run, stereo_run
+    from course_lib.experiments.sensor_trouble.depth_frames import LONGEST_RUN
+    from course_lib.experiments.sensor_trouble.placing import require_fits
     from course_lib.experiments.sensor_trouble.score import summary
     from course_lib.paths import data_path
     from course_lib.processors import processors
+    from course_lib.spherical_stereo.detection.detector import YoloDetector
 
     common = {"shares": [percent / 100 for percent in percents]}
     if name == "stereo":
         detector = (arguments.detector or data_path("detector")).absolute()
         function, gate = stereo_run.room_trouble, stereo_run.GATE
         common |= {"detector": str(detector), "frames": arguments.frames or PAIRS}
+        YoloDetector.load(detector)  # what is wrong with it is told now, not after the first room
     else:
         function, gate = depth_run.corridor_trouble, depth_run.GATE
         data = (arguments.data or data_path("corridor")).absolute()
         common |= {"data": str(data), "frames": arguments.frames or FRAMES, "dof": arguments.dof}
+    require_fits(common["frames"], common["shares"], [1] if name == "stereo" else [1, LONGEST_RUN])
     points = [{**common, "seed": seed} for seed in seeds]
     bar = progress_bar(name, "seed")
     workers = min(arguments.processes or processors(), len(points))

@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from course_lib.experiments.sensor_trouble.placing import Arrival, troubled_runs
+from course_lib.simulation.corridor.recorded_runs import FRAME_RATE
 from course_lib.simulation.sensors.time_of_flight import SPEED_OF_LIGHT, TimeOfFlightModel
 
 LIGHT_LEFT = 1 / 16  # share of the exposure that is left after a jump: four stops; chosen
@@ -76,6 +77,10 @@ SPOILS: dict[str, Spoil] = {
     "exposure jump": underexposed,
 }
 TROUBLES = ("dropped", *SPOILS, "time backwards")
+
+
+LONGEST_RUN = round(SECOND * FRAME_RATE)
+"""Frames of the longest trouble in recordings of the corridor."""
 
 
 def run_length(trouble: str, period: float) -> int:

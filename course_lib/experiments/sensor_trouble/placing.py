@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +40,13 @@ def troubled_runs(n_frames: int, share: float, length: int, rng: np.random.Gener
     gaps = np.sort(rng.choice(spare + count, count, replace=False)) - np.arange(count)
     firsts = 1 + gaps + np.arange(count) * (length + 1)
     return [(int(first), int(first) + length) for first in firsts]
+
+
+def require_fits(n_frames: int, shares: Sequence[float], lengths: Sequence[int]) -> None:
+    """Raises `ValueError`, before anything is run, where one of the troubles does not fit (`troubled_runs`)."""
+    for length in lengths:
+        for share in shares:
+            troubled_runs(n_frames, share, length, np.random.default_rng(0))
 
 
 def troubled_frames(runs: list[tuple[int, int]], n_frames: int) -> np.ndarray:

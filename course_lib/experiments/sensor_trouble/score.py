@@ -35,7 +35,7 @@ class Usual(NamedTuple):
 
 
 def usual_error(frames: Sequence[dict]) -> Usual:
-    """Of undisturbed frames: {"position_m", "rotation_deg"}, both None where no pose was given, which is not counted."""
+    """Of undisturbed frames: {"position_m", "rotation_deg"}; without a pose both are None, which is not counted."""
     known = [(one["position_m"], one["rotation_deg"]) for one in frames if one["position_m"] is not None]
     return Usual(*np.quantile(known, USUAL_QUANTILE, axis=0).tolist())
 
