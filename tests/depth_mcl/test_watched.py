@@ -56,7 +56,7 @@ def off(watched, true):
 
 @pytest.mark.parametrize("kind", ["paper", "annealed"])
 def test_where_nothing_is_wrong_it_is_the_filter_to_the_last_bit(renderer, walk, kind):
-    true, images = walk
+    images = walk[1]
     alone = filters(renderer)[kind]
     alone.initialize(START)
     plain = [alone.step(image) for image in images[:12]]
