@@ -22,19 +22,20 @@ def trouble_table(result: dict) -> str:
         f"undisturbed: {told(calm['good_frames'])}; {calm['confident_wrong']} confident and wrong; "
         f"{calm['false_alarms']} of {calm['frames']} called troubled",
         "",
-        f"{'trouble':20} {'share':>6} {'frames':>7} {'back':>6} {'beside':>7} {'confident':>10}   what became of the "
-        "troubled frames",
-        f"{'':20} {'[%]':>6} {'':>7} {'[%]':>6} {'[%]':>7} {'wrong':>10}",
+        f"{'trouble':20} {'share':>6} {'frames':>7} {'judged':>7} {'back':>6} {'beside':>7} {'confident':>10}   "
+        "what became of the troubled frames",
+        f"{'':20} {'[%]':>6} {'':>7} {'':>7} {'[%]':>6} {'[%]':>7} {'wrong':>10}",
     ]
     for row in result["rows"]:
         lines.append(
-            f"{row['trouble']:20} {100 * row['share']:>6.0f} {row['frames']:>7} {percent(row, 'recovered'):>6} "
-            f"{percent(row, 'undisturbed'):>7} {row['confident_wrong']:>10}   {told(row['outcomes'])}"
+            f"{row['trouble']:20} {100 * row['share']:>6.0f} {row['frames']:>7} {row['judged']:>7} "
+            f"{percent(row, 'recovered'):>6} {percent(row, 'undisturbed'):>7} {row['confident_wrong']:>10}   "
+            f"{told(row['outcomes'])}"
         )
     lines += [
         "",
-        f"back: frames within the usual error when {GOOD_FRAMES} good frames have come after a trouble; beside: the "
-        "same frames undisturbed.",
+        f"judged: frames with which {GOOD_FRAMES} good ones have come after a trouble; back: of them, within the usual "
+        "error; beside: undisturbed.",
     ]
     return "\n".join(lines)
 

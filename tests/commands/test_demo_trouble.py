@@ -54,10 +54,10 @@ def test_it_prints_a_row_for_each_trouble_and_share_of_both_methods(finished, ca
     assert main([*WORDS, "--out", str(finished)]) == 0
     text = capsys.readouterr().out
     for trouble in TROUBLES:
-        assert len(re.findall(rf"^{trouble} +(1|20) +60 +0 +100 +0   repeated 2$", text, re.M)) == 2, trouble
+        assert len(re.findall(rf"^{trouble} +(1|20) +60 +2 +0 +100 +0   repeated 2$", text, re.M)) == 2, trouble
     assert "seeds 10001, 10002, 100 frames each" in text
     assert "undisturbed: tracked 60; 0 confident and wrong; 0 of 60 called troubled" in text
-    assert len(re.findall(r"^dropped +(1|20) +48 +0 +100 +0   no image 2$", text, re.M)) == 2
+    assert len(re.findall(r"^dropped +(1|20) +48 +2 +0 +100 +0   no image 2$", text, re.M)) == 2
     assert {"depth_xyyaw.json", "stereo.json", "trouble.png"} <= {path.name for path in finished.iterdir()}
 
 
@@ -107,5 +107,5 @@ def test_a_row_without_a_frame_to_judge_has_no_percentage_and_no_bar(finished, c
     result = json.loads(capsys.readouterr().out)["stereo"]
     for row in result["rows"]:
         row["judged"] = row["recovered"] = row["undisturbed"] = 0
-    assert re.search(r"^dropped +1 +48 +- +- +0 ", trouble_table(result), re.M)
+    assert re.search(r"^dropped +1 +48 +0 +- +- +0 ", trouble_table(result), re.M)
     assert [len(axes.patches) for axes in trouble_figure({"stereo": result}).axes] == [0]
