@@ -16,7 +16,8 @@ def trouble_table(result: dict) -> str:
     gate, usual, calm = result["gate"], result["usual"], result["undisturbed"]
     seeds = result["seeds"]
     lines = [
-        f"{TITLES[result['method']]}: seeds {', '.join(map(str, seeds))}, {result['frames']} frames each",
+        f"{TITLES[result['method']]}: {'seed' if len(seeds) == 1 else 'seeds'} {', '.join(map(str, seeds))}, "
+        f"{result['frames']} frames each",
         f"usual error {usual['metres']:.3f} m and {usual['degrees']:.2f} degrees; wrong: beyond {gate['metres']:g} m "
         f"or {gate['degrees']:g} degrees",
         f"undisturbed: {told(calm['good_frames'])}; {calm['confident_wrong']} confident and wrong; "
