@@ -133,7 +133,7 @@ def test_sensor_trouble_is_what_the_command_prints_of_its_stored_numbers(path):
     printed = trouble_table(stored)
     assert "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in section
     wrong = sum(row["confident_wrong"] for row in [stored["undisturbed"], *stored["rows"]])
-    assert f"{stored['method']}: {wrong} confident and wrong" in section.replace("`", "")
+    assert f"{stored['method']}: {wrong} confident and wrong" in " ".join(section.replace("`", "").split())
 
 
 def test_the_speed_is_what_the_benchmark_printed():
