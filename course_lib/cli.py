@@ -26,6 +26,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo rooms": ("demo_rooms", "run paper 2's experiment in generated rooms that nobody shaped, with intervals"),
     "demo walk": ("demo_walk", "carry a depth camera through generated rooms: errors in six degrees of freedom"),
     "demo lost": ("demo_lost", "kidnap the camera, start it anywhere, and count how often it finds itself"),
+    "demo trouble": (
+        "demo_trouble",
+        "trouble the sensors: what becomes of each frame, recovery, confident wrong poses",
+    ),
     "demo finale": (
         "demo_finale",
         "both papers in one world: panoramas find the robot, the depth camera makes it exact",

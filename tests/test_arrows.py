@@ -8,9 +8,10 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "course_lib"
 
 # Part of the library -> parts it may import besides itself. commands and cli stand above all of them, but for lessons.
-BELOW = {"child", "geometry", "reading", "writing"}
+BELOW = {"child", "frame_order", "geometry", "reading", "writing"}
 METHODS = BELOW | {"depth_mcl", "spherical_stereo"}
 ALLOWED = {
+    "frame_order": set(),
     "geometry": set(),
     "paths": set(),
     "reading": set(),

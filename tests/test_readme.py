@@ -13,6 +13,7 @@ from course_lib.commands.demo_corridor import table_1
 from course_lib.commands.demo_finale import finale_text
 from course_lib.commands.demo_lost import lost_table
 from course_lib.commands.six_degrees_table import six_degrees_table
+from course_lib.commands.trouble_table import trouble_table
 from course_lib.experiments.lost_and_found import summarize
 from course_lib.experiments.rooms_summary import wilson_percent
 
@@ -116,6 +117,23 @@ def test_the_finale_is_what_the_command_prints_of_its_stored_numbers():
     assert "\n".join(f"    {line}" for line in finale_text(stored).splitlines()) in RESULTS
     low, high = wilson_percent(stored["reached"], stored["places"])
     assert f"of {stored['places']} places {stored['reached']} mean {low:.0f} to {high:.0f} % (Wilson)" in RESULTS
+
+
+TROUBLE = [
+    CORRIDOR_RESULTS / "trouble_wagon.json",
+    CORRIDOR_RESULTS / "trouble_hand.json",
+    ROOM_RESULTS / "trouble.json",
+]
+
+
+@pytest.mark.parametrize("path", TROUBLE, ids=lambda path: path.stem)
+def test_sensor_trouble_is_what_the_command_prints_of_its_stored_numbers(path):
+    section = RESULTS.partition("### 4.1 Sensor trouble")[2].partition("\n### ")[0].partition("\n## ")[0]
+    stored = json.loads(path.read_text())
+    printed = trouble_table(stored)
+    assert "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in section
+    wrong = sum(row["confident_wrong"] for row in [stored["undisturbed"], *stored["rows"]])
+    assert f"{stored['method']}: {wrong} confident and wrong" in " ".join(section.replace("`", "").split())
 
 
 def test_the_speed_is_what_the_benchmark_printed():

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections import Counter
 from functools import partial
 from pathlib import Path
 
@@ -164,6 +165,7 @@ def run(arguments: argparse.Namespace) -> int:
         exact=arguments.exact,
         near=arguments.near,
         far=arguments.far,
+        watched=True,
         progress=progress_bar("localizing"),
     )
     summary = {
@@ -171,6 +173,7 @@ def run(arguments: argparse.Namespace) -> int:
         **searched,
         "frames": len(result.frames),
         "frames_without_measurement": result.frames_without_measurement,
+        "frames_at_fault": dict(Counter(fault for fault in result.faults if fault not in (None, "no return"))),
         **{f"frames_{status}": result.statuses.count(status) for status in ("tracked", "doubtful", "lost")},
         "believes": believed(result.frames, result.statuses),
         **(pose_error_summary(result, sequence) if sequence.has_poses else {}),

@@ -53,6 +53,9 @@ def localize_table(s: dict) -> str:
         lines += ["no poses.txt: errors are not known", ""]
     if s["frames_without_measurement"]:
         lines.append(f"{s['frames_without_measurement']} frames held no measurement between --near and --far")
+    if s["frames_at_fault"]:
+        told = ", ".join(f"{fault} {count}" for fault, count in sorted(s["frames_at_fault"].items()))
+        lines.append(f"{sum(s['frames_at_fault'].values())} frames were at fault and not used: {told}")
     lines.append(f"{s['renders_per_frame']:.0f} renders and {s['ms_per_frame']:.0f} ms a frame")
     return "\n".join(lines)
 
@@ -79,12 +82,13 @@ def write_localized(
         {
             "frame": frame,
             "status": status,
+            "fault": fault or "",
             "score": round(float(score), 5),
             **{f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", position, strict=True)},
             **{name: round(value, 4) for name, value in agreement._asdict().items()},
         }
-        for frame, status, score, position, agreement in zip(
-            result.frames, result.statuses, result.scores, positions, result.agreements, strict=True
+        for frame, status, fault, score, position, agreement in zip(
+            result.frames, result.statuses, result.faults, result.scores, positions, result.agreements, strict=True
         )
     ]
     true = sequence.camera_to_world[:count] if sequence.has_poses else None

@@ -15,6 +15,7 @@
   beyond the paper
     uncertainty          how far off the estimate may be, which the paper's weights cannot say
     tracking             whether the filter still holds the track
+    frame_check, watched whether a frame is one to be used, and what becomes of each
     annealed/            section 5: six degrees of freedom
     lost_and_found/      from an unknown start, and after the camera was carried away
 
@@ -40,6 +41,7 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer, OpenGLError, 
 from course_lib.depth_mcl.scene_map import SceneMap, SceneMapError
 from course_lib.depth_mcl.sensor import depth_image_from_points
 from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.depth_mcl.watched import Watched, WatchedLocalizer
 
 __all__ = [
     "BODY_AXES",
@@ -62,6 +64,8 @@ __all__ = [
     "SceneMap",
     "SceneMapError",
     "SequenceError",
+    "Watched",
+    "WatchedLocalizer",
     "depth_image_from_points",
     "effective_sample_size",
     "initial_particles",

@@ -17,6 +17,7 @@ import numpy as np
 from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
+from course_lib.depth_mcl.frame_check import Fault, FrameCheck
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, Estimate, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.lost_and_found.global_search import TILT_SIGMA, GlobalSearch, Places
 from course_lib.depth_mcl.lost_and_found.recovery import UNKNOWN_TILT_SIGMA, RecoveringLocalizer
@@ -64,6 +65,8 @@ class Run(NamedTuple):
     ms_per_frame: float
     """Milliseconds, the mean over steps; reading the images is not counted."""
     frames_without_measurement: int
+    faults: tuple[Fault | None, ...] = ()
+    """Why frames were not used (frame_check.py), None where they were; empty where nobody looked."""
 
 
 def system_noise(dof: Literal["6", "xyyaw"], position: float, rotation_deg: float) -> dict:
@@ -192,6 +195,7 @@ def run_localizer(
     exact: bool = False,
     near: float = NEAR,
     far: float = FAR,
+    watched: bool = False,
     progress: Callable = iter,
 ) -> tuple[Run, list[Estimate] | list[AnnealedEstimate]]:
     """Localizes a recording; every frame's estimate, and all of them as plain arrays, judged as `judge_track` does.
@@ -201,9 +205,12 @@ def run_localizer(
     true pose; `SequenceError` where it has none).
     up: the axis of map and recording that points up (None: what the recording says, else z); the filter works in a
     world turned to z up. coarse: compare 20 x 15 pixels instead of all. frames: only so many from the start.
+    watched: look at each frame before it is used, and let the filter take one at fault as without measurement.
     progress: wraps the frame indices (tqdm). Other arguments as in `DepthRenderer`.
     """
     to_z_up = rotation_to_z_up(up or sequence.up or "z")
+    check = FrameCheck(near, far) if watched else None
+    faults: list[Fault | None] = []
     camera = used = sequence.camera(near, far)
     if coarse:
         used = camera.resized(COARSE_WIDTH, COARSE_HEIGHT)
@@ -221,6 +228,10 @@ def run_localizer(
             warnings.simplefilter("ignore", NoMeasurementWarning)
             for index in progress(range(count)):
                 depth = sequence.depth(index)
+                if check is not None:
+                    time_of_frame = None if sequence.times is None else float(sequence.times[index])
+                    faults.append(check.look(depth, time_of_frame).fault)
+                    depth = depth if faults[-1] is None else np.full_like(depth, np.nan)
                 if coarse:
                     depth = subsample_depth(depth, camera, used)
                 begun = time.perf_counter()
@@ -246,7 +257,11 @@ def run_localizer(
         error_sigmas=np.sqrt([np.diag(c) for c in covariances]),
         renders=np.array([getattr(e, "renders", len(e.particles)) for e in estimates]),
         ms_per_frame=1000 * seconds / count,
-        frames_without_measurement=sum(e.status == "no measurement" for e in estimates),
+        frames_without_measurement=sum(
+            e.status == "no measurement" and (not faults or faults[k] in (None, "no return"))
+            for k, e in enumerate(estimates)
+        ),
+        faults=tuple(faults),
     )
     return run, estimates
 

@@ -74,6 +74,7 @@ from course_lib.spherical_stereo.semantic_map.association import (
     penalty_table,
 )
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
+from course_lib.spherical_stereo.watched import WatchedPair, WatchedRig
 
 __all__ = [
     "Association",
@@ -103,6 +104,8 @@ __all__ = [
     "Track",
     "TriangulationError",
     "View",
+    "WatchedPair",
+    "WatchedRig",
     "YoloDetector",
     "associate_consistent",
     "associate_greedy",

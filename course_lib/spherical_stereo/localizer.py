@@ -14,7 +14,7 @@ import numpy as np
 from course_lib.spherical_stereo.detection.boxes import boxes_on
 from course_lib.spherical_stereo.detection.detector import find_objects
 from course_lib.spherical_stereo.detection.labels import canonical_label
-from course_lib.spherical_stereo.matching.alignment import GREATEST_TURN, camera_turn
+from course_lib.spherical_stereo.matching.alignment import GREATEST_TURN, camera_alignment
 from course_lib.spherical_stereo.matching.features import find_features
 from course_lib.spherical_stereo.matching.object_matching import match_views, matched_indices
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
@@ -49,8 +49,9 @@ class SemanticLocalizer:
     covariance of its observation. image_size: (width, height) of the panoramas that detections given without their
     images come from; boxes are in pixels and mean nothing without it.
     reject_implausible: True, and what the paper does not ask is asked: whether the cameras are turned against each
-    other (`camera_turn`), an object has at least three matched features and stands nearer than `greatest_range`, and
-    the residuals can be those of a right pose (`residual_statistics`). False is the paper's method.
+    other, or their images of different moments (`camera_alignment`), an object has at least three matched features and
+    stands nearer than `greatest_range`, and the residuals can be those of a right pose (`residual_statistics`). False
+    is the paper's method.
     Raises `LocalizerError` for a name that does not exist or a size that is no panorama's.
     Source: paper 2, figure 2.
     """
@@ -115,7 +116,14 @@ class SemanticLocalizer:
         turn = None
         if self.reject_implausible and upper.detections and lower.detections:
             upper, lower = find_features(upper), find_features(lower)
-            turn = camera_turn(upper.features, lower.features)
+            alignment = camera_alignment(upper.features, lower.features)
+            if not alignment.of_one_moment:
+                explanation = (
+                    f"only {alignment.agreeing:.0%} of the features matched between the two images agree on how the "
+                    "cameras stand to each other: were they taken at one moment, with the rig standing still?"
+                )
+                return replace(seen, reason=outcomes.MOMENTS, explanation=explanation)
+            turn = alignment.turn
         if turn is not None and np.linalg.norm(turn) > GREATEST_TURN:
             explanation = (
                 "the lower camera is turned against the upper one, by {:.1f} degrees of roll, {:.1f} of pitch and "

@@ -30,6 +30,8 @@ GREATEST_BASELINE = 10.0
 """Metres: no rig that is carried is longer, and a baseline in millimetres or centimetres is."""
 BLANK_LEVEL = 12
 """Brightest value, of 255, of a frame that shows nothing: the noise of a covered lens stays below it."""
+HOT_SHARE = 1e-4
+"""Share of the pixels that may be brighter all the same: a sensor's hot pixels (chosen)."""
 
 
 @dataclass(frozen=True)
@@ -226,7 +228,7 @@ def open_view(image: np.ndarray | View, name: str = "image") -> View:
             f"{name} is {width} x {height} pixels; an equirectangular panorama is twice as wide as high"
             f" ({2 * height} x {height})"
         )
-    is_blank = int(image.max()) <= BLANK_LEVEL
+    is_blank = bool((image > BLANK_LEVEL).any(axis=-1).mean() <= HOT_SHARE)
     # Nearly every colour image shows its colour in a few pixels; only what may be grey is looked at as a whole.
     if _is_grey(image[::16, ::16]) and _is_grey(image) and not is_blank:
         raise PanoramaError(f"{name} is a grey image (its three channels are equal); a colour image is needed")

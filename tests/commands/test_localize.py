@@ -47,6 +47,26 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, capsys)
     assert len(page) < 1_300_000
 
 
+def test_frames_at_fault_are_named_and_not_used(corridor_folder, tmp_path, capsys):
+    """A frame that came twice, one at its stop and a dark one; the frames before them are localized as ever."""
+    wagon = read_sequence(corridor_folder / "wagon")
+    depths = [wagon.depth(k) for k in range(9)]
+    depths[4], depths[6] = depths[3], np.full_like(depths[6], 9.9)
+    depths[7] = np.full_like(depths[7], np.nan)
+    write_sequence(tmp_path / "seen", wagon.intrinsics, list(range(9)), depths, wagon.camera_to_world[:9], up="z")
+    words = ["--map", str(corridor_folder / "map.ply"), "--dof", "xyyaw", "--particles", "60", "--seed", "1"]
+    assert main(["localize", *words, "--sequence", str(tmp_path / "seen"), "--out", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().out
+    assert "2 frames were at fault and not used: repeated 1, saturated 1" in said
+    assert "1 frames held no measurement" in said
+    rows = list(csv.DictReader((tmp_path / "out" / "localize.csv").open()))
+    assert [row["fault"] for row in rows] == ["", "", "", "", "repeated", "", "saturated", "no return", ""]
+    assert all(rows[k]["status"] != "tracked" for k in (4, 6, 7))
+    assert main(arguments(corridor_folder, dof="xyyaw", frames=4, particles=60, seed=1, out=tmp_path / "good")) == 0
+    good = list(csv.DictReader((tmp_path / "good" / "localize.csv").open()))
+    assert [row["x_m"] for row in rows[:4]] == [row["x_m"] for row in good]
+
+
 def test_a_hand_carried_run_is_followed_in_six_degrees(corridor_folder, capsys):
     """By the paper's filter roughly, annealed to a few centimetres: no other tests measure so with so little."""
     found = {}
