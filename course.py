@@ -11,14 +11,29 @@ goes to standard error, so that `--json` output stays clean.
 This file must be readable by an old Python (3.6), which has to get as far as saying that it is too old.
 """
 
+import os
+import sys
+
+if __name__ == "__main__":
+    # Python's own modules, and no json.py beside this file, in the folder that one stands in, or in PYTHONPATH.
+    try:
+        HERE = os.getcwd()
+    except OSError:  # it is gone
+        HERE = ""
+    OTHERS = {"", HERE, os.path.dirname(__file__), os.path.dirname(os.path.realpath(__file__))}
+    OTHERS.update(
+        os.path.normpath(os.path.join(HERE, folder)) for folder in os.getenv("PYTHONPATH", "").split(os.pathsep)
+    )
+    sys.path[:] = [
+        folder for folder in sys.path if folder.startswith(os.path.dirname(os.__file__)) or folder not in OTHERS
+    ]
+
 import contextlib
 import hashlib
 import importlib.util
 import json
-import os
 import shutil
 import subprocess
-import sys
 import time
 
 ROOT = os.path.dirname(os.path.realpath(__file__))
@@ -30,6 +45,16 @@ INCOMPLETE = os.path.join(VENV, "course-incomplete")
 OPENGL_READY = os.path.join(VENV, "course-opengl-ready")
 OPENGL_FAILED = os.path.join(VENV, "course-opengl-failed")
 OPENGL_PACKAGES = ["libegl1", "libgl1-mesa-dri", "libgl1"]
+
+KEPT = (  # the same as in course_lib/child.py
+    "PYTHONDONTWRITEBYTECODE",
+    "PYTHONFAULTHANDLER",
+    "PYTHONHASHSEED",
+    "PYTHONIOENCODING",
+    "PYTHONPYCACHEPREFIX",
+    "PYTHONUNBUFFERED",
+    "PYTHONUTF8",
+)
 
 HINT = """
 Options of one command: python3 course.py COMMAND --help
@@ -102,7 +127,7 @@ def main(arguments):
 
 def usage():
     """The list of commands. course_lib.cli imports nothing but the standard library, so it is there before .venv is."""
-    sys.path.insert(0, ROOT)
+    sys.path.append(ROOT)
     sys.dont_write_bytecode = True  # help leaves no file behind
     from course_lib import cli
 
@@ -112,9 +137,14 @@ def usage():
 def hand_over(arguments):
     command = [PYTHON, "-P", "-m", "course_lib", *arguments]
     if os.name == "nt":  # execv does not wait there
-        return subprocess.call(command)
+        return subprocess.call(command, env=clean_environment())
     sys.stdout.flush()
-    os.execv(PYTHON, command)
+    os.execve(PYTHON, command, clean_environment())
+
+
+def clean_environment():
+    """The environment without Python's variables that say what code it runs: PYTHONPATH, PYTHONHOME and their like."""
+    return {name: value for name, value in os.environ.items() if name in KEPT or not name.startswith("PYTHON")}
 
 
 def wanted():
@@ -261,7 +291,12 @@ def run(command, lock, each_line=None):
     """Exit code and output lines of a command. It inherits the lock: an orphan of a killed course.py keeps it."""
     inherited = {} if os.name == "nt" or lock is None else {"pass_fds": [lock.fileno()]}
     process = subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **inherited
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        env=clean_environment(),
+        **inherited,
     )
     lines = []
     try:

@@ -16,6 +16,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from course_lib.child import KERNEL_PATH, clean_environment, course_module
+from course_lib.child import run as run_child
 from course_lib.commands.lesson_versions import NOTEBOOKS, lessons
 from course_lib.commands.saved_panels import HOOK
 from course_lib.commands.working_copies import WORK, copy_of, make_copies
@@ -98,9 +100,9 @@ def make_progress_page(root: Path) -> None:
     """Writes work/progress.html where there is none yet; `check` and `predict` bring it up to date."""
     page = root / WORK / "progress.html"
     if not page.exists():
-        environment = os.environ | {"COURSE_RECORD": str(root / WORK / "record")}
-        command = [sys.executable, "-P", "-m", "course_lib.lessons.kit.show_progress", "--out", str(page)]
-        subprocess.run(command, env=environment, capture_output=True)  # lessons run without a page as well
+        command = course_module("course_lib.lessons.kit.show_progress", "--out", page)
+        record = {"COURSE_RECORD": str(root / WORK / "record")}
+        run_child(command, record, capture_output=True)  # lessons run without a page as well
 
 
 def lab_command(
@@ -122,7 +124,7 @@ def lab_command(
     install_extension(state)
     trust_lessons(state, root)
     command = [
-        *(sys.executable, "-P", "-m", "jupyterlab"),  # -P: no module of the folder that one stands in
+        *course_module("jupyterlab"),
         "--ServerApp.ip=127.0.0.1",
         f"--ServerApp.port={8888 if port is None else port}",
         f"--ServerApp.port_retries={50 if port is None else 0}",
@@ -134,7 +136,7 @@ def lab_command(
     ]
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         command.append("--ServerApp.allow_root=True")  # containers run as root; the server still listens here only
-    environment = dict(os.environ)
+    environment = clean_environment()
     if not environment.get("JUPYTER_TOKEN"):
         environment.pop("JUPYTER_TOKEN", None)  # set but empty, it would switch the token off
     environment.update(
@@ -168,7 +170,9 @@ def write_settings(state: Path) -> None:
         },
         "config/labconfig/default_setting_overrides.json": SETTINGS,
         # Every kernel would warn that it talks to the server unencrypted; both are on this computer.
-        "ipython/profile_default/ipython_kernel_config.json": {"IPKernelApp": {"log_level": "ERROR"}},
+        "ipython/profile_default/ipython_kernel_config.json": {
+            "IPKernelApp": {"log_level": "ERROR", "exec_lines": [KERNEL_PATH]}
+        },
     }
     for name, content in files.items():
         path = state / name
