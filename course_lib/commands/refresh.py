@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import re
 import tempfile
 import time
@@ -66,7 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    if not arguments.cell_timeout > 0:
+    if not 0 < arguments.cell_timeout < math.inf:
         raise ValueError(f"--cell-timeout must be a positive number of seconds; got {arguments.cell_timeout:g}")
     failed = 0
     for path in select(arguments.lessons):
@@ -126,7 +127,7 @@ def execute(
         environment = clean_environment({"IPYTHONDIR": home, STORE_SCENES: "1"})
         client = NotebookClient(
             notebook,
-            timeout=cell_timeout,
+            timeout=math.ceil(cell_timeout),  # 0 would be no limit
             startup_timeout=int(HANGS_S),
             kernel_name="python3",
             resources={"metadata": {"path": str(folder)}},

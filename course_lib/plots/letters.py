@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import functools
 import re
+import unicodedata
 import warnings
+from collections.abc import Iterable
 
 from matplotlib import font_manager
 from matplotlib.backend_bases import RendererBase
@@ -51,6 +53,24 @@ def make_readable(figure: Figure) -> None:
         "With a font such as Noto Sans CJK JP installed, figures show the names",
         stacklevel=2,
     )
+
+
+def plain_labels(labels: Iterable[str]) -> dict[str, str]:
+    """Each label in the letters that a scene's texts have, which is ASCII alone.
+
+    Marks on letters are left out (é becomes e); for a label in another script a number stands, which one warning tells.
+    """
+    plain = {}
+    for label in sorted(set(labels)):
+        letters = [letter for letter in unicodedata.normalize("NFKD", label) if not unicodedata.combining(letter)]
+        readable = all(letter.isascii() and letter.isprintable() for letter in letters) and "".join(letters).strip()
+        plain[label] = "".join(letters) if readable else None
+    others = [label for label, drawn in plain.items() if drawn is None]
+    plain |= {label: f"[{number}]" for number, label in enumerate(others, start=1)}
+    if others:
+        told = ", ".join(f"{plain[label]} {label}" for label in others)
+        warnings.warn(f"scenes are lettered in ASCII; in them numbers stand for some names: {told}", stacklevel=2)
+    return plain
 
 
 def missing_letters(text: Text) -> frozenset[str]:

@@ -181,6 +181,20 @@ def test_what_fails_leaves_the_file_as_it_was(tmp_path, sources, timeout, words)
     assert [p.name for p in tmp_path.iterdir() if p.suffix == ".part"] == []
 
 
+@pytest.mark.parametrize("timeout", ["0", "-5", "nan", "inf"])
+def test_a_time_that_limits_nothing_is_refused(timeout, capsys):
+    from course_lib.cli import main
+
+    assert main(["refresh", "03", f"--cell-timeout={timeout}"]) == 2
+    assert "--cell-timeout must be a positive number of seconds" in capsys.readouterr().err
+
+
+def test_a_part_of_a_second_limits_too(tmp_path):
+    path = written(tmp_path, "import time\ntime.sleep(600)")
+    with pytest.raises(RefreshError, match=r"longer than 0\.5 s"):
+        refresh.refresh(path, cell_timeout=0.5)
+
+
 def test_numbers_choose_lessons_and_unknown_ones_are_named():
     assert [path.name[:2] for path in refresh.select(["3"])] == ["03"]
     assert [path.name[:2] for path in refresh.select(["P1", "07"])] == ["P1", "07"]

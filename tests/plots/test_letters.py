@@ -68,6 +68,19 @@ def test_a_font_file_that_is_gone_is_passed_over(monkeypatch):
     assert font_with(frozenset("é")) not in (None, "A gone font")
 
 
+def test_a_scene_gets_labels_that_it_can_draw_and_one_warning_tells_the_others():
+    from course_lib.plots.scenes import text
+
+    with pytest.warns(UserWarning, match=r"\[1\] 机, \[2\] 椅子$") as told:
+        plain = letters.plain_labels(["椅子", "chair", "café", "机", "椅子"])
+    assert len(told) == 1
+    assert plain == {"椅子": "[2]", "机": "[1]", "chair": "chair", "café": "cafe"}
+    assert all(text(drawn, np.zeros(3)).n_points for drawn in plain.values())
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert letters.plain_labels(["chair"]) == {"chair": "chair"}
+
+
 def test_figures_without_such_words_are_drawn_as_before(monkeypatch):
     def drawn():
         figure, _ = figure_with("é")
