@@ -46,6 +46,25 @@ OPENGL_READY = os.path.join(VENV, "course-opengl-ready")
 OPENGL_FAILED = os.path.join(VENV, "course-opengl-failed")
 OPENGL_PACKAGES = ["libegl1", "libgl1-mesa-dri", "libgl1"]
 
+# What Python's venv, pip and the lessons' JupyterLab put there, beside our own files, whose names begin with "course-".
+IN_VENV = (
+    "bin",
+    "include",
+    "lib",
+    "lib64",
+    "share",
+    "etc",
+    "man",
+    "pyvenv.cfg",
+    ".lock",
+    ".DS_Store",
+    "CACHEDIR.TAG",
+    ".gitignore",
+    "Include",
+    "Lib",
+    "Scripts",
+)
+
 KEPT = (  # the same as in course_lib/child.py
     "PYTHONDONTWRITEBYTECODE",
     "PYTHONFAULTHANDLER",
@@ -202,8 +221,29 @@ def refuse_what_is_not_ours():
         )
     if not os.path.isdir(VENV):
         raise SetupError(f"{VENV} is not a folder. Move it away and call course.py again.")
-    if os.listdir(VENV) and not any(os.path.isfile(mark) for mark in (MADE, READY, INCOMPLETE)):
+    marks = [mark for mark in (MADE, READY, INCOMPLETE) if os.path.isfile(mark) and not os.path.islink(mark)]
+    if os.listdir(VENV) and not marks:
         raise SetupError(f"{VENV} was not made by course.py. Move it away and call course.py again.")
+
+
+def refuse_to_delete_what_is_not_ours():
+    """Raises SetupError where `.venv` has to be made anew and holds what no set-up puts there."""
+    others = sorted(name for name in os.listdir(VENV) if name not in IN_VENV and not name.startswith("course-"))
+    if others:
+        raise SetupError(
+            f"{VENV} must be made anew and holds what course.py did not put there: {', '.join(others[:5])}. Move that "
+            "away and call course.py again."
+        )
+
+
+def put(path, text=""):
+    """Writes a file of ours in `.venv` in one step; a link in its place is replaced, not followed."""
+    part = path + ".part"
+    if os.path.lexists(part):
+        os.remove(part)
+    with open(part, "x", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(part, path)
 
 
 def set_up():
@@ -216,23 +256,22 @@ def set_up():
         if state is None:
             return
         sentence, anew = state
-        say(sentence)
         os.makedirs(VENV, exist_ok=True)
-        with open(MADE, "w", encoding="utf-8") as file:
-            file.write("course.py made this folder, and deletes what is in it where it has to be made anew.\n")
+        if anew:
+            refuse_to_delete_what_is_not_ours()
+        say(sentence)
+        put(MADE, "course.py made this folder, and deletes what is in it where it has to be made anew.\n")
         if not anew and run([PYTHON, "-P", "-c", "import pip, sys; sys.exit(sys.version_info < (3, 11))"], lock)[0]:
             say("Its Python is too old or has no pip: making .venv anew.")
+            refuse_to_delete_what_is_not_ours()
             anew = True
-        with open(INCOMPLETE, "w", encoding="utf-8"):
-            pass
+        put(INCOMPLETE)
         if anew:
             make_venv(lock)
         install(lock)
         stamp = wanted()
         stamp["packages"] = count_packages()
-        with open(READY + ".part", "w", encoding="utf-8") as file:
-            json.dump(stamp, file, indent=1)
-        os.replace(READY + ".part", READY)
+        put(READY, json.dumps(stamp, indent=1))
         os.remove(INCOMPLETE)
 
 
@@ -411,8 +450,8 @@ def see_to_opengl():
 
 
 def remember(path):
-    with contextlib.suppress(OSError), open(path, "w", encoding="utf-8"):
-        pass
+    with contextlib.suppress(OSError):
+        put(path)
 
 
 def tried_today(path):

@@ -221,6 +221,26 @@ def put_a_foreign_environment(venv):
     return venv / "thesis.txt"
 
 
+def put_a_mark_that_is_a_link(venv):
+    kept = put_a_link_to_a_folder(venv.parent / "a_link")
+    venv.mkdir()
+    (venv / "course-made").symlink_to(kept)
+    return kept
+
+
+def put_a_forged_mark(venv):
+    kept = put_a_foreign_folder(venv)
+    (venv / "a").mkdir()
+    (venv / "course-made").touch()
+    return kept
+
+
+def put_a_mark_of_an_earlier_version(venv):
+    kept = put_a_foreign_folder(venv)
+    (venv / "course-incomplete").touch()
+    return kept
+
+
 def put_a_file(venv):
     venv.write_text("mine")
     return venv
@@ -233,6 +253,9 @@ def put_a_file(venv):
         (put_a_link_to_an_environment_of_ours, "is a link to"),
         (put_a_foreign_folder, "was not made by course.py"),
         (put_a_foreign_environment, "was not made by course.py"),
+        (put_a_mark_that_is_a_link, "was not made by course.py"),
+        (put_a_forged_mark, "holds what course.py did not put there: a, thesis.txt"),
+        (put_a_mark_of_an_earlier_version, "holds what course.py did not put there: thesis.txt"),
         (put_a_file, "is not a folder"),
     ],
 )
@@ -246,6 +269,17 @@ def test_what_course_py_did_not_make_is_refused_and_left_as_it_is(copy, put, sai
     assert "course.py again" in done.stderr
     assert kept.read_text() == "mine"
     assert sorted((path, path.lstat().st_mtime_ns) for path in copy.parent.rglob("*")) == before
+
+
+@pytest.mark.slow
+def test_a_link_with_the_name_of_our_files_is_replaced_and_not_written_through(copy):
+    kept = put_a_link_to_a_folder(copy / "a_link")
+    (copy / ".venv").mkdir()
+    (copy / ".venv" / "course-made").touch()
+    for name in ("course-incomplete", "course-ready.json", "course-ready.json.part", "course-opengl-ready"):
+        (copy / ".venv" / name).symlink_to(kept)
+    assert call(copy, "x").stdout.startswith("handed over")
+    assert kept.read_text() == "mine"
 
 
 @pytest.mark.slow
