@@ -34,8 +34,7 @@ def worker_pool(
             yield pool
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
-            held.close()
-            raise
+            raise  # and with it the pipe is closed
         pool.shutdown()
 
 

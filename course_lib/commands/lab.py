@@ -18,6 +18,7 @@ from pathlib import Path
 
 from course_lib.child import KERNEL_PATH, clean_environment, course_module
 from course_lib.child import run as run_child
+from course_lib.commands.lab_port import FIRST, reserve_port
 from course_lib.commands.lesson_versions import NOTEBOOKS, lessons
 from course_lib.commands.saved_panels import HOOK
 from course_lib.commands.working_copies import WORK, copy_of, make_copies
@@ -89,7 +90,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.fresh and not arguments.notebook:
         notebook = copy_of(arguments.fresh[0], ROOT)
     make_progress_page(ROOT)
-    command, environment = lab_command(arguments.port, not arguments.no_browser, notebook, root=ROOT)
+    near, _ = (arguments.port, None) if arguments.port else reserve_port()  # its lock is the server's to keep
+    command, environment = lab_command(arguments.port, not arguments.no_browser, notebook, root=ROOT, near=near)
     print("Starting JupyterLab. Keep this window open; Ctrl-C ends it. Its address:", flush=True)
     if os.name == "nt":  # execve does not wait there
         return subprocess.call(command, env=environment, cwd=ROOT)
@@ -111,10 +113,11 @@ def lab_command(
     notebook: str = FIRST_LESSON,
     state_folder: str | os.PathLike | None = None,
     root: Path = ROOT,
+    near: int = FIRST,
 ) -> tuple[list[str], dict[str, str]]:
     """Command and environment variables that start the lessons' JupyterLab; writes its settings into `state_folder`.
 
-    port: None takes 8888 or the next free one; a given port is taken or the start fails. notebook: path below `root`.
+    port: None takes `near` or the next free one; a given port is taken or the start fails. notebook: path below `root`.
     state_folder: where settings, workspaces and the kernel's history are kept (None: `.venv/course-lab`). root: the
     folder that JupyterLab shows, with notebooks/ and work/ in it; predictions and checks are recorded in its
     work/record. JUPYTER_TOKEN in the environment, where it is set, is the token; else a random one is printed.
@@ -126,7 +129,7 @@ def lab_command(
     command = [
         *course_module("jupyterlab"),
         "--ServerApp.ip=127.0.0.1",
-        f"--ServerApp.port={8888 if port is None else port}",
+        f"--ServerApp.port={near if port is None else port}",
         f"--ServerApp.port_retries={50 if port is None else 0}",
         f"--ServerApp.open_browser={browser}",
         f"--ServerApp.root_dir={root}",
