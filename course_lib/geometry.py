@@ -111,14 +111,16 @@ def circular_mean(angles: np.ndarray, weights: np.ndarray | None = None) -> np.n
 
     angles `(N, ...)` radians; weights `(N,)`, not negative, not all zero (None: equal). Result `(...)`.
     A sum that vanishes (two opposite angles) has no direction; the result is then NaN.
-    Raises `ValueError` for no angles or weights that do not fit.
+    Raises `ValueError` for no angles, angles that are not finite, or weights that do not fit.
     """
     angles = np.asarray(angles, dtype=np.float64)
     if angles.ndim == 0 or len(angles) == 0:
         raise ValueError(f"angles must have at least one element along the first axis; got shape {angles.shape}")
+    if not np.isfinite(angles).all():
+        raise ValueError(f"angles must be finite numbers of radians; {np.sum(~np.isfinite(angles))} are not")
     w = np.ones(len(angles)) if weights is None else np.asarray(weights, dtype=np.float64)
     if w.shape != angles.shape[:1] or not np.isfinite(w).all() or (w < 0).any() or w.sum() == 0:
-        raise ValueError(f"weights must be {len(angles)} numbers, none negative, not all zero; got {w.shape}")
+        raise ValueError(f"weights must be {len(angles)} finite numbers, none negative, not all zero; got {w.shape}")
     w = w / w.sum()
     sine, cosine = np.tensordot(w, np.sin(angles), 1), np.tensordot(w, np.cos(angles), 1)
     mean = np.where(np.hypot(sine, cosine) < 1e-12, np.nan, wrap_angle(np.arctan2(sine, cosine)))

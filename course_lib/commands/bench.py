@@ -2,13 +2,15 @@
 
 The tools it is compared with (environment-bench.txt: Open3D with Embree) are installed by the first call into .bench, a
 folder of their own. Times are of this machine at this hour; the ratios are what to compare. Other programs should rest.
-`--lessons` measures something else instead: what a student's kernel costs in each lesson (lesson_costs.py).
+`--lessons` measures something else instead: what a student's kernel costs in each lesson (lesson_costs.py); `--renders`
+memory over very many renders, and whether the same pose gives the same image each time (bench_renders.py).
 """
 
 from __future__ import annotations
 
 import argparse
 import hashlib
+import itertools
 import json
 import os
 import shutil
@@ -58,11 +60,54 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar=("GIB", "PROCESSORS"),
         help="with --lessons: say how many students a server of this size carries (default: 16 4)",
     )
+    parser.add_argument(
+        "--renders",
+        type=int,
+        metavar="N",
+        help="instead: memory over N renders of each backend, and whether images stay the same to the last bit",
+    )
+    parser.add_argument(
+        "--renderers",
+        type=int,
+        default=300,
+        metavar="N",
+        help="with --renders: and over N new renderers (default: 300)",
+    )
+    parser.add_argument(
+        "--backends",
+        nargs="+",
+        choices=["raster", "vtk", "ray"],
+        default=["raster", "vtk", "ray"],
+        help="with --renders: of these backends alone",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Measures what was asked for, and prints it."""
+    if arguments.renders is not None:
+        return run_renders(arguments)
     return run_tools(arguments) if arguments.lessons is None else run_lessons(arguments)
+
+
+def run_renders(arguments: argparse.Namespace) -> int:
+    """Renders very often, and prints what became of memory and of the images; nothing is stored."""
+    from course_lib.commands import bench_renders
+
+    told = bench_renders.measure(
+        ROOT / "benchmarks" / "renders.py",
+        tools_environment(),
+        arguments.backends,
+        arguments.renders,
+        arguments.renderers,
+    )
+    if arguments.json:
+        print(json.dumps(dict(told)))
+        return 0
+    first = next(told)  # what cannot be measured is said before any heading
+    print(bench_renders.heading())
+    for backend, row in itertools.chain([first], told):
+        print(bench_renders.rows(backend, row), flush=True)
+    return 0
 
 
 def run_lessons(arguments: argparse.Namespace) -> int:

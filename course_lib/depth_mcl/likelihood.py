@@ -21,15 +21,15 @@ def valid_pixels(measured: np.ndarray) -> np.ndarray:
 def paired_pixels(measured: np.ndarray, simulated: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The mask of pixels that were measured, `(H, W)`, and the simulated images `(N, H, W)`, both checked.
 
-    Raises `DepthImageError` for images of other sizes, or simulated values that are NaN (a miss is `inf`).
+    Raises `DepthImageError` for images of other sizes, or simulated values that are NaN or negative (a miss is `inf`).
     """
     measured, simulated = np.asarray(measured), np.asarray(simulated)
     if measured.ndim != 2 or simulated.ndim != 3 or simulated.shape[1:] != measured.shape:
         raise DepthImageError(
             f"measured must have shape (H, W) and simulated (N, H, W); got {measured.shape} and {simulated.shape}"
         )
-    if simulated.size and np.isnan(simulated.min()):
-        raise DepthImageError("simulated images must not hold NaN: a pixel where nothing is hit is inf")
+    if simulated.size and not simulated.min() >= 0:  # NaN is neither
+        raise DepthImageError("simulated images must not hold NaN or what is negative: where nothing is hit is inf")
     return valid_pixels(measured), simulated
 
 

@@ -56,8 +56,14 @@ def weighted_mean_pose(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 
 def effective_sample_size(w: np.ndarray) -> float:
-    """How many equally weighted particles the weights `(N,)` are worth: 1 / sum w~^2, from 1 to N."""
-    return float(1.0 / np.sum(np.asarray(w, dtype=np.float64) ** 2))
+    """How many equally weighted particles the weights `(N,)`, which sum to one, are worth: 1 / sum w~^2, from 1 to N.
+
+    Raises `ValueError` for weights that are not finite, negative or all zero.
+    """
+    w = np.asarray(w, dtype=np.float64)
+    if not np.isfinite(w).all() or (w < 0).any() or not w.any():
+        raise ValueError("weights must be finite numbers, none negative, not all zero")
+    return float(1.0 / np.sum(w**2))
 
 
 def resample(

@@ -5,6 +5,7 @@ How fast anything is, is no test: the numbers here are made up, and what is meas
 
 import copy
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +14,7 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands import bench
+from course_lib.commands import bench, bench_renders
 from course_lib.commands.bench_table import table
 from course_lib.depth_mcl import DepthRenderer, SceneMap
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
@@ -181,3 +182,72 @@ def test_a_step_is_timed_from_the_pose_that_is_asked(benchmarks, corridor_folder
     assert seconds > 0
     assert particles.shape == (7, 6)
     assert np.linalg.norm(particles[:, :2].mean(axis=0) - scene.sequence.camera_to_world[40, :2, 3]) < 0.5
+
+
+RENDERS = {
+    "before_the_first_mb": 270.0,
+    "calls": 10_000,
+    "settled_mb": 360.0,
+    "greatest_mb": 361.5,
+    "end_mb": 361.0,
+    "grew_mb": 1.0,
+    "other_images": 3,
+}
+
+
+def test_the_table_of_renders_tells_memory_other_images_and_what_is_missing():
+    told = {
+        "raster": {"views": 4, "renders": RENDERS, "renderers": RENDERS | {"calls": 300, "grew_mb": -0.5}},
+        "vtk": {"missing": "OpenGL could not start"},
+    }
+    rows = [line for backend, row in told.items() for line in bench_renders.rows(backend, row).splitlines()]
+    renders, renderers, missing = rows
+    heads = "memory held [MB] before after 10 % greatest end grew [MB] other images"
+    assert bench_renders.heading().split() == heads.split()
+    assert renders.split() == "raster, 10,000 renders, one renderer 270.0 360.0 361.5 361.0 +1.0 3".split()
+    assert renderers.split() == "raster, 300 renderers, a render each 270.0 360.0 361.5 361.0 -0.5 3".split()
+    assert missing.split(maxsplit=1) == ["vtk", "not here: OpenGL could not start"]
+
+
+@pytest.mark.parametrize("words", [["--renders", "19"], ["--renders", "300", "--renderers", "0"]])
+def test_too_few_renders_are_refused_before_any_is_made(words, capsys):
+    assert main(["bench", *words]) == 2
+    assert "at least 20" in capsys.readouterr().err
+
+
+def test_a_measurement_that_dies_is_named(tmp_path, capfd):
+    script = tmp_path / "renders.py"
+    script.write_text("raise SystemExit(7)")
+    with pytest.raises(RuntimeError, match="of vtk ended with code 7"):
+        list(bench_renders.measure(script, dict(os.environ), ["vtk"], 20, 20))
+
+
+@pytest.mark.parametrize("backend", ["raster", "vtk", "ray"])
+def test_memory_is_flat_and_images_stay_over_hundreds_of_renders(backend, capsys):
+    """10,000 of them are for the command; if each of these kept its images, or one of them, that would be 27 MB."""
+    assert main(["bench", "--renders", "300", "--renderers", "40", "--backends", backend, "--json"]) == 0
+    (told,) = json.loads(capsys.readouterr().out).values()
+    assert "missing" not in told
+    for what, calls in (("renders", 300), ("renderers", 40)):
+        assert told[what]["calls"] == calls
+        assert told[what]["other_images"] == 0
+        assert not told[what]["grew_mb"] > 8.0, told[what]
+
+
+@pytest.mark.parametrize("kept", ["nothing", "one image in twenty", "an image is another"])
+def test_what_a_call_leaves_behind_or_changes_is_told(benchmarks, kept):
+    from renders import CLOUDS, _over
+
+    images, left, calls = np.zeros((CLOUDS, 4, 144, 176), dtype=np.float32), [], 0
+
+    def render(k):
+        nonlocal calls
+        calls += 1
+        if kept == "one image in twenty" and calls % 20 == 0:
+            left.append(np.ones(2_000_000))
+        return images[k] + (kept == "an image is another" and calls == 70)
+
+    told = _over(100, render, images)
+    assert told["other_images"] == (kept == "an image is another")
+    # Four of five lie in the part that counts: 64 MB.
+    assert (told["grew_mb"] > 40) == (kept == "one image in twenty") or np.isnan(told["grew_mb"])

@@ -145,7 +145,10 @@ class SemanticTracker:
         self.belief = Belief()
 
     def step(self, observations: Sequence[Observation], motion: Motion | None = None) -> Track:
-        """The answer with one more view. motion: since the view before; None: there is no odometry."""
+        """The answer with one more view. motion: since the view before; None: there is no odometry.
+
+        Raises `ValueError` for a motion whose numbers are not finite: a robot that does not know says None.
+        """
         self.belief = updated(
             self.belief, observations, self.semantic_map, UNKNOWN_MOTION if motion is None else motion, self.evidence
         )
@@ -162,8 +165,11 @@ def updated(
     """The belief after one more view: predicted, joined with the view's own poses, and cut to the best few.
 
     Every carried hypothesis is joined with every pose of the view; those far apart weigh nothing. Beside them each pose
-    of the view stands for itself, as one that the rig was carried to from elsewhere.
+    of the view stands for itself, as one that the rig was carried to from elsewhere. Raises `ValueError` for a motion
+    whose numbers are not finite.
     """
+    if not (np.isfinite(motion[:3]).all() and np.isfinite(motion.covariance).all()):
+        raise ValueError(f"motion must be finite metres and radians with a finite covariance; got {motion}")
     predicted = [carried_on(one, motion) for one in belief.hypotheses]
     views = list(rank_poses(observations, semantic_map, evidence, SHORT_LIST))
     if predicted and len(observations):
