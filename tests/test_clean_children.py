@@ -43,6 +43,7 @@ STARTERS = {
     "course_lib/commands/lesson_costs.py": "the type of a process; starts by child.py",
     "course_lib/commands/check.py": "constants of subprocess; starts by child.py",
     "course_lib/commands/bench.py": "constants of subprocess; starts by child.py",
+    "course_lib/commands/bench_renders.py": "constants of subprocess; starts by child.py",
     "course_lib/commands/compare.py": "constants of subprocess; starts by child.py",
     "course_lib/commands/lesson_versions.py": "git, no Python",
     "course_lib/commands/test.py": "pytest in this checkout's folder: what it runs is the checkout",
