@@ -11,14 +11,29 @@ goes to standard error, so that `--json` output stays clean.
 This file must be readable by an old Python (3.6), which has to get as far as saying that it is too old.
 """
 
+import os
+import sys
+
+if __name__ == "__main__":
+    # Python's own modules, and no json.py beside this file, in the folder that one stands in, or in PYTHONPATH.
+    try:
+        HERE = os.getcwd()
+    except OSError:  # it is gone
+        HERE = ""
+    OTHERS = {"", HERE, os.path.dirname(__file__), os.path.dirname(os.path.realpath(__file__))}
+    OTHERS.update(
+        os.path.normpath(os.path.join(HERE, folder)) for folder in os.getenv("PYTHONPATH", "").split(os.pathsep)
+    )
+    sys.path[:] = [
+        folder for folder in sys.path if folder.startswith(os.path.dirname(os.__file__)) or folder not in OTHERS
+    ]
+
 import contextlib
 import hashlib
 import importlib.util
 import json
-import os
 import shutil
 import subprocess
-import sys
 import time
 
 ROOT = os.path.dirname(os.path.realpath(__file__))
@@ -30,6 +45,35 @@ INCOMPLETE = os.path.join(VENV, "course-incomplete")
 OPENGL_READY = os.path.join(VENV, "course-opengl-ready")
 OPENGL_FAILED = os.path.join(VENV, "course-opengl-failed")
 OPENGL_PACKAGES = ["libegl1", "libgl1-mesa-dri", "libgl1"]
+
+# What Python's venv, pip and the lessons' JupyterLab put there, beside our own files, whose names begin with "course-".
+IN_VENV = (
+    "bin",
+    "include",
+    "lib",
+    "lib64",
+    "share",
+    "etc",
+    "man",
+    "pyvenv.cfg",
+    ".lock",
+    ".DS_Store",
+    "CACHEDIR.TAG",
+    ".gitignore",
+    "Include",
+    "Lib",
+    "Scripts",
+)
+
+KEPT = (  # the same as in course_lib/child.py
+    "PYTHONDONTWRITEBYTECODE",
+    "PYTHONFAULTHANDLER",
+    "PYTHONHASHSEED",
+    "PYTHONIOENCODING",
+    "PYTHONPYCACHEPREFIX",
+    "PYTHONUNBUFFERED",
+    "PYTHONUTF8",
+)
 
 HINT = """
 Options of one command: python3 course.py COMMAND --help
@@ -102,7 +146,7 @@ def main(arguments):
 
 def usage():
     """The list of commands. course_lib.cli imports nothing but the standard library, so it is there before .venv is."""
-    sys.path.insert(0, ROOT)
+    sys.path.append(ROOT)
     sys.dont_write_bytecode = True  # help leaves no file behind
     from course_lib import cli
 
@@ -112,9 +156,14 @@ def usage():
 def hand_over(arguments):
     command = [PYTHON, "-P", "-m", "course_lib", *arguments]
     if os.name == "nt":  # execv does not wait there
-        return subprocess.call(command)
+        return subprocess.call(command, env=clean_environment())
     sys.stdout.flush()
-    os.execv(PYTHON, command)
+    os.execve(PYTHON, command, clean_environment())
+
+
+def clean_environment():
+    """The environment without Python's variables that say what code it runs: PYTHONPATH, PYTHONHOME and their like."""
+    return {name: value for name, value in os.environ.items() if name in KEPT or not name.startswith("PYTHON")}
 
 
 def wanted():
@@ -172,8 +221,29 @@ def refuse_what_is_not_ours():
         )
     if not os.path.isdir(VENV):
         raise SetupError(f"{VENV} is not a folder. Move it away and call course.py again.")
-    if os.listdir(VENV) and not any(os.path.isfile(mark) for mark in (MADE, READY, INCOMPLETE)):
+    marks = [mark for mark in (MADE, READY, INCOMPLETE) if os.path.isfile(mark) and not os.path.islink(mark)]
+    if os.listdir(VENV) and not marks:
         raise SetupError(f"{VENV} was not made by course.py. Move it away and call course.py again.")
+
+
+def refuse_to_delete_what_is_not_ours():
+    """Raises SetupError where `.venv` has to be made anew and holds what no set-up puts there."""
+    others = sorted(name for name in os.listdir(VENV) if name not in IN_VENV and not name.startswith("course-"))
+    if others:
+        raise SetupError(
+            f"{VENV} must be made anew and holds what course.py did not put there: {', '.join(others[:5])}. Move that "
+            "away and call course.py again."
+        )
+
+
+def put(path, text=""):
+    """Writes a file of ours in `.venv` in one step; a link in its place is replaced, not followed."""
+    part = path + ".part"
+    if os.path.lexists(part):
+        os.remove(part)
+    with open(part, "x", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(part, path)
 
 
 def set_up():
@@ -186,23 +256,22 @@ def set_up():
         if state is None:
             return
         sentence, anew = state
-        say(sentence)
         os.makedirs(VENV, exist_ok=True)
-        with open(MADE, "w", encoding="utf-8") as file:
-            file.write("course.py made this folder, and deletes what is in it where it has to be made anew.\n")
+        if anew:
+            refuse_to_delete_what_is_not_ours()
+        say(sentence)
+        put(MADE, "course.py made this folder, and deletes what is in it where it has to be made anew.\n")
         if not anew and run([PYTHON, "-P", "-c", "import pip, sys; sys.exit(sys.version_info < (3, 11))"], lock)[0]:
             say("Its Python is too old or has no pip: making .venv anew.")
+            refuse_to_delete_what_is_not_ours()
             anew = True
-        with open(INCOMPLETE, "w", encoding="utf-8"):
-            pass
+        put(INCOMPLETE)
         if anew:
             make_venv(lock)
         install(lock)
         stamp = wanted()
         stamp["packages"] = count_packages()
-        with open(READY + ".part", "w", encoding="utf-8") as file:
-            json.dump(stamp, file, indent=1)
-        os.replace(READY + ".part", READY)
+        put(READY, json.dumps(stamp, indent=1))
         os.remove(INCOMPLETE)
 
 
@@ -261,7 +330,12 @@ def run(command, lock, each_line=None):
     """Exit code and output lines of a command. It inherits the lock: an orphan of a killed course.py keeps it."""
     inherited = {} if os.name == "nt" or lock is None else {"pass_fds": [lock.fileno()]}
     process = subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **inherited
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        env=clean_environment(),
+        **inherited,
     )
     lines = []
     try:
@@ -376,8 +450,8 @@ def see_to_opengl():
 
 
 def remember(path):
-    with contextlib.suppress(OSError), open(path, "w", encoding="utf-8"):
-        pass
+    with contextlib.suppress(OSError):
+        put(path)
 
 
 def tried_today(path):

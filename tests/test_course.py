@@ -41,36 +41,33 @@ def build_editable(folder, config_settings=None, metadata_directory=None):
 build_wheel = build_editable
 """
 HANGS_S = 1200  # no call takes so long, however busy the machine is
-# Stands for Python's module venv, which unpacks and compiles pip anew for seconds: links one that is ready.
-QUICK_VENV = """
-import importlib.util, os, pathlib, sys, sysconfig
-path = os.path.join(sysconfig.get_path("stdlib"), "venv", "__init__.py")
-spec = importlib.util.spec_from_file_location("venv", path)
-venv = sys.modules["venv"] = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(venv)
-venv.main(["--without-pip", *sys.argv[1:]])
+# Stands for the Python that makes environments, whose pip is unpacked and compiled for seconds: links a ready one.
+QUICK_VENV = """#!{} -P
+import os, pathlib, sys, venv
+venv.main(["--without-pip", sys.argv[-1]])
 for entry in map(pathlib.Path, {!r}):
     for library in pathlib.Path(sys.argv[-1]).glob("lib/*/site-packages"):
         os.symlink(entry, library / entry.name)
 """
-QUICK = {}  # what the environment of every call holds while a copy is tried
+QUICK = []  # the Python that makes environments while a copy is tried
 HANDED_OVER = 'import os, sys\nprint("handed over", sys.argv[1:], sys.prefix, os.getcwd())\n'
 
 
 @pytest.fixture(scope="module")
 def quick_pip(tmp_path_factory):
-    """A folder for PYTHONPATH with which environments get their pip at once."""
-    folder = tmp_path_factory.mktemp("quick")
+    """A program that makes environments which get their pip at once, called as Python is."""
+    program = tmp_path_factory.mktemp("quick") / "python"
     pip = [str(path) for path in Path(sysconfig.get_path("purelib")).glob("pip*") if path.is_dir()]
     assert pip
-    (folder / "venv.py").write_text(QUICK_VENV.format(pip))
-    return str(folder)
+    program.write_text(QUICK_VENV.format(getattr(sys, "_base_executable", sys.executable), pip))
+    program.chmod(0o755)
+    return str(program)
 
 
 @pytest.fixture
 def copy(tmp_path, quick_pip, monkeypatch):
     """A folder with course.py, an environment of no package, and a package that says that it was called."""
-    monkeypatch.setitem(QUICK, "PYTHONPATH", quick_pip)
+    monkeypatch.setattr(f"{__name__}.QUICK", [quick_pip])
     folder = tmp_path / "course"
     (folder / "course_lib").mkdir(parents=True)
     (folder / "course.py").write_bytes(COURSE.read_bytes())
@@ -87,14 +84,20 @@ def environment(**more):
     """The user's environment without pip's settings: an address that nobody answers stands for every index."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith(("PIP_", "UV_", "PYTHON"))}
     pip = {"PIP_CONFIG_FILE": os.devnull, "PIP_INDEX_URL": "http://127.0.0.1:9/simple", "PIP_RETRIES": "0"}
-    return {**kept, **pip, **QUICK, "PIP_NO_CACHE_DIR": "1", **more}
+    return {**kept, **pip, "PIP_NO_CACHE_DIR": "1", **more}
+
+
+def course_command(folder, prelude=""):
+    """The copy's course.py, run after `prelude` has changed the Python that it finds."""
+    quick = f"sys._base_executable = {QUICK[0]!r}\n" if QUICK else ""
+    runner = f"import sys, os, runpy\n{quick}{prelude}\nsys.argv = ['course.py', *sys.argv[1:]]\n"
+    runner += f"runpy.run_path({str(folder / 'course.py')!r}, run_name='__main__')"
+    return [sys.executable, "-c", runner] if quick or prelude else [sys.executable, str(folder / "course.py")]
 
 
 def call(folder, *arguments, prelude="", cwd=None, **more):
     """Runs the copy's course.py, after `prelude` has changed the Python that it finds; no traceback is ever shown."""
-    runner = f"import sys, os, runpy\n{prelude}\nsys.argv = ['course.py', *sys.argv[1:]]\n"
-    runner += f"runpy.run_path({str(folder / 'course.py')!r}, run_name='__main__')"
-    command = [sys.executable, "-c", runner] if prelude else [sys.executable, str(folder / "course.py")]
+    command = course_command(folder, prelude)
     done = subprocess.run(
         [*command, *arguments], capture_output=True, text=True, env=environment(**more), cwd=cwd, timeout=HANGS_S
     )
@@ -149,7 +152,8 @@ def test_no_command_shows_the_usage_and_fails(copy):
 
 @pytest.mark.slow
 def test_first_call_sets_up_and_hands_over_and_the_second_is_quiet(copy, tmp_path):
-    first = call(copy, "demo", "corridor", "--json", cwd=tmp_path, PYTHONPATH="")  # with Python's own ensurepip
+    QUICK.clear()  # with Python's own ensurepip
+    first = call(copy, "demo", "corridor", "--json", cwd=tmp_path)
     # Only the command writes to standard output, or --json would be spoilt; the folder one is in stays.
     assert first.stdout == f"handed over ['demo', 'corridor', '--json'] {copy / '.venv'} {tmp_path}\n"
     assert "setting it up" in first.stderr
@@ -217,6 +221,26 @@ def put_a_foreign_environment(venv):
     return venv / "thesis.txt"
 
 
+def put_a_mark_that_is_a_link(venv):
+    kept = put_a_link_to_a_folder(venv.parent / "a_link")
+    venv.mkdir()
+    (venv / "course-made").symlink_to(kept)
+    return kept
+
+
+def put_a_forged_mark(venv):
+    kept = put_a_foreign_folder(venv)
+    (venv / "a").mkdir()
+    (venv / "course-made").touch()
+    return kept
+
+
+def put_a_mark_of_an_earlier_version(venv):
+    kept = put_a_foreign_folder(venv)
+    (venv / "course-incomplete").touch()
+    return kept
+
+
 def put_a_file(venv):
     venv.write_text("mine")
     return venv
@@ -229,6 +253,9 @@ def put_a_file(venv):
         (put_a_link_to_an_environment_of_ours, "is a link to"),
         (put_a_foreign_folder, "was not made by course.py"),
         (put_a_foreign_environment, "was not made by course.py"),
+        (put_a_mark_that_is_a_link, "was not made by course.py"),
+        (put_a_forged_mark, "holds what course.py did not put there: a, thesis.txt"),
+        (put_a_mark_of_an_earlier_version, "holds what course.py did not put there: thesis.txt"),
         (put_a_file, "is not a folder"),
     ],
 )
@@ -245,6 +272,17 @@ def test_what_course_py_did_not_make_is_refused_and_left_as_it_is(copy, put, sai
 
 
 @pytest.mark.slow
+def test_a_link_with_the_name_of_our_files_is_replaced_and_not_written_through(copy):
+    kept = put_a_link_to_a_folder(copy / "a_link")
+    (copy / ".venv").mkdir()
+    (copy / ".venv" / "course-made").touch()
+    for name in ("course-incomplete", "course-ready.json", "course-ready.json.part", "course-opengl-ready"):
+        (copy / ".venv" / name).symlink_to(kept)
+    assert call(copy, "x").stdout.startswith("handed over")
+    assert kept.read_text() == "mine"
+
+
+@pytest.mark.slow
 def test_a_link_inside_an_environment_is_removed_and_not_what_it_leads_to(copy):
     precious = put_a_link_to_a_folder(copy / "a_link")
     (copy / ".venv").mkdir()
@@ -256,10 +294,30 @@ def test_a_link_inside_an_environment_is_removed_and_not_what_it_leads_to(copy):
 
 @pytest.mark.slow
 def test_a_module_of_the_callers_folder_neither_breaks_the_set_up_nor_runs(copy, tmp_path):
-    for name in ("random", "ctypes", "venv", "pip", "shutil"):
-        (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\nraise SystemExit(3)\n")
-    assert call(copy, "x", cwd=tmp_path).stdout.startswith("handed over")
+    for name in ("random", "ctypes", "venv", "pip", "shutil", "json"):
+        for folder in (tmp_path, copy):  # the folder that one stands in, and the course's own
+            (folder / f"{name}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\nraise SystemExit(3)\n")
+    for python_path in ("", "x:", f".:{tmp_path}"):  # an empty part is the folder that one stands in
+        more = {"PYTHONPATH": python_path, "PYTHONSTARTUP": str(tmp_path / "random.py"), "PYTHONSAFEPATH": ""}
+        command = [sys.executable, str(copy / "course.py"), "x"]
+        done = subprocess.run(command, capture_output=True, text=True, env=environment(**more), cwd=tmp_path)
+        assert done.stdout.startswith("handed over"), done.stderr
+        assert call(copy, "--help", cwd=copy, **more).stdout.startswith("usage")
     assert not (tmp_path / "ran").exists()
+
+
+def test_the_command_gets_no_variable_that_says_what_code_python_runs(copy):
+    (copy / "course_lib" / "__main__.py").write_text("import os, sys\nprint(sorted(os.environ), sys.flags.safe_path)\n")
+    given = {
+        "PYTHONPATH": "/x",
+        "PYTHONSTARTUP": "/x",
+        "PYTHONUSERBASE": "/x",
+        "PYTHONUTF8": "1",
+        "COURSE_RECORD": "/x",
+    }
+    names, safe = call(copy, "x", **given).stdout.rsplit(maxsplit=1)
+    assert safe == "True"
+    assert given.keys() & set(ast.literal_eval(names)) == {"PYTHONUTF8", "COURSE_RECORD"}
 
 
 @pytest.mark.slow
@@ -335,7 +393,7 @@ def start_hanging_installation(copy, silent_index):
     address, server = silent_index
     (copy / "environment.txt").write_text("not-to-be-had==1\n")
     process = subprocess.Popen(
-        [sys.executable, str(copy / "course.py"), "x"],
+        [*course_command(copy), "x"],
         env=environment(PIP_INDEX_URL=address),
         stderr=subprocess.PIPE,
         text=True,
@@ -375,7 +433,7 @@ def test_control_c_stops_with_a_sentence(copy, silent_index):
 
 @pytest.mark.slow
 def test_two_at_once_wait_for_each_other(copy):
-    command = [sys.executable, str(copy / "course.py"), "x"]
+    command = [*course_command(copy), "x"]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": environment()}
     first = subprocess.Popen(command, **pipes)
     while not (copy / ".venv").exists():

@@ -18,6 +18,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from course_lib.child import python
+from course_lib.child import run as run_child
 from course_lib.commands.arguments import require_output_folder
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -137,9 +139,9 @@ def run_tools(arguments: argparse.Namespace) -> int:
     arguments.out.mkdir(parents=True, exist_ok=True)
     words = ["--quick"] if arguments.quick else ["--figure", str((arguments.out / "bench.png").resolve())]
     words += ["--recording", str(arguments.recording.resolve())] if arguments.recording else []
-    done = subprocess.run(
-        [sys.executable, "-P", str(ROOT / "benchmarks" / "measure.py"), *words],
-        env=tools_environment(),
+    done = run_child(
+        python(ROOT / "benchmarks" / "measure.py", *words),
+        tools_environment(),
         stdout=subprocess.PIPE,
         text=True,
     )
@@ -153,9 +155,8 @@ def run_tools(arguments: argparse.Namespace) -> int:
 
 
 def tools_environment() -> dict[str, str]:
-    """The environment of a process that finds benchmarks/ and the tools in `.bench`."""
-    path = os.pathsep.join([str(ROOT), str(ROOT / "benchmarks"), str(TOOLS), os.environ.get("PYTHONPATH", "")])
-    environment = os.environ | {"PYTHONPATH": path.rstrip(os.pathsep)}
+    """What the environment of a process that finds benchmarks/ and the tools in `.bench` has besides."""
+    environment = {"PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "benchmarks"), str(TOOLS)])}
     if sys.platform.startswith("linux"):
         environment["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
     return environment
@@ -173,8 +174,8 @@ def install_tools() -> str | None:
     shutil.rmtree(TOOLS, ignore_errors=True)
     TOOLS.mkdir()
     stamp.write_text("unfinished", encoding="utf-8")
-    pip = [sys.executable, "-P", "-m", "pip", "install", "--quiet", "--no-deps", "--disable-pip-version-check"]
-    done = subprocess.run([*pip, "--target", str(TOOLS), "-r", str(LOCK)], capture_output=True, text=True)
+    pip = python("-m", "pip", "install", "--quiet", "--no-deps", "--disable-pip-version-check")
+    done = run_child([*pip, "--target", str(TOOLS), "-r", str(LOCK)], capture_output=True, text=True)
     if done.returncode:
         lines = [line for line in done.stderr.splitlines() if line.startswith("ERROR")] or done.stderr.splitlines()
         return " / ".join(lines[-2:]) or f"pip ended with code {done.returncode}"

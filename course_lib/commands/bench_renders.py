@@ -8,6 +8,9 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from course_lib.child import python
+from course_lib.child import run as run_child
+
 LEAST = 20  # fewer leave nothing to compare after a tenth of them
 WHAT = {"renders": "renders, one renderer", "renderers": "renderers, a render each"}
 
@@ -25,8 +28,8 @@ def measure(
             raise ValueError(f"{option} must be a whole number, at least {LEAST}; got {n}")
     for backend in backends:
         print(f"measuring: {backend}", file=sys.stderr, flush=True)
-        command = [sys.executable, "-P", str(script), backend, str(n_renders), str(n_renderers)]
-        done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True)
+        command = python(script, backend, str(n_renders), str(n_renderers))
+        done = run_child(command, environment, stdout=subprocess.PIPE, text=True)
         if done.returncode:
             raise RuntimeError(
                 f"the measurement of {backend} ended with code {done.returncode}; what it said stands above"

@@ -16,6 +16,8 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from course_lib.child import course_module, python
+from course_lib.child import run as run_child
 from course_lib.commands.depth_image_probe import LARGEST_ERROR_MM, read_result
 from course_lib.processors import processors
 
@@ -27,7 +29,6 @@ NOT_BY_A_NEW_ENVIRONMENT = (
     "the system?), or send this line to whoever gave you the course"
 )
 INSTALL_OPENGL = "as root: apt-get install -y --no-install-recommends libegl1 libgl1-mesa-dri libgl1"
-APART = ("-P",)  # Python's option: no module of the folder that one stands in
 IMPORT_TIMEOUT_S = 600  # only what hangs takes so long
 RENDER_TIMEOUT_S = 600
 LEAST_FREE_MEMORY_GB = 1.0  # chosen: a kernel with the corridor's map and one batch of tiles, with room to spare
@@ -157,7 +158,7 @@ def find_broken_imports(modules: list[str]) -> dict[str, str]:
     broken: dict[str, str] = {}
     rest = list(modules)
     while rest:
-        code, output = run_apart([sys.executable, *APART, "-c", IMPORT_SCRIPT, *rest], IMPORT_TIMEOUT_S)
+        code, output = run_apart(python("-c", IMPORT_SCRIPT, *rest), IMPORT_TIMEOUT_S)
         begun = [line.split()[1] for line in output.splitlines() if line.startswith("importing ")]
         for line in output.splitlines():
             if line.startswith("broken "):
@@ -174,7 +175,7 @@ def find_broken_imports(modules: list[str]) -> dict[str, str]:
 def check_depth_images() -> Iterator[Finding]:
     """OpenGL's renderer, and one depth image of a tilted plane by each backend beside its closed form."""
     for backend, name in (("raster", "z-buffer"), ("vtk", "OpenGL's z-buffer"), ("ray", "ray casting")):
-        command = [sys.executable, *APART, "-m", "course_lib.commands.depth_image_probe", backend]
+        command = course_module("course_lib.commands.depth_image_probe", backend)
         code, output = run_apart(command, RENDER_TIMEOUT_S)
         result = read_result(output) if code == 0 else None
         cure = INSTALL_OPENGL if backend == "vtk" else MAKE_ANEW
@@ -217,7 +218,7 @@ def free_memory_gb() -> float | None:
 def run_apart(command: list[str], timeout_s: float) -> tuple[int | None, str]:
     """Exit code and output of a command in a process of its own; the code is None when it ran out of time."""
     try:
-        done = subprocess.run(
+        done = run_child(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=timeout_s
         )
     except subprocess.TimeoutExpired as expired:

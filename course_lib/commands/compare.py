@@ -9,9 +9,10 @@ from __future__ import annotations
 import argparse
 import json
 import subprocess
-import sys
 from pathlib import Path
 
+from course_lib.child import python
+from course_lib.child import run as run_child
 from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
 from course_lib.writing import replaced_outputs
 
@@ -98,9 +99,9 @@ def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, di
     if why:
         raise RuntimeError(f"--icp needs Open3D, which could not be installed: {why}")
     words = ["--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
-    done = subprocess.run(
-        [sys.executable, "-P", ROOT / "benchmarks" / "icp.py", *words],
-        env=tools_environment(),
+    done = run_child(
+        python(ROOT / "benchmarks" / "icp.py", *words),
+        tools_environment(),
         stdout=subprocess.PIPE,
         text=True,
     )

@@ -16,6 +16,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+from course_lib.child import KERNEL_PATH, clean_environment, course_module
+from course_lib.child import run as run_child
+from course_lib.commands.lab_port import FIRST, reserve_port
 from course_lib.commands.lesson_versions import NOTEBOOKS, lessons
 from course_lib.commands.saved_panels import HOOK
 from course_lib.commands.working_copies import WORK, copy_of, make_copies
@@ -87,7 +90,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.fresh and not arguments.notebook:
         notebook = copy_of(arguments.fresh[0], ROOT)
     make_progress_page(ROOT)
-    command, environment = lab_command(arguments.port, not arguments.no_browser, notebook, root=ROOT)
+    near, _ = (arguments.port, None) if arguments.port else reserve_port()  # its lock is the server's to keep
+    command, environment = lab_command(arguments.port, not arguments.no_browser, notebook, root=ROOT, near=near)
     print("Starting JupyterLab. Keep this window open; Ctrl-C ends it. Its address:", flush=True)
     if os.name == "nt":  # execve does not wait there
         return subprocess.call(command, env=environment, cwd=ROOT)
@@ -98,9 +102,9 @@ def make_progress_page(root: Path) -> None:
     """Writes work/progress.html where there is none yet; `check` and `predict` bring it up to date."""
     page = root / WORK / "progress.html"
     if not page.exists():
-        environment = os.environ | {"COURSE_RECORD": str(root / WORK / "record")}
-        command = [sys.executable, "-P", "-m", "course_lib.lessons.kit.show_progress", "--out", str(page)]
-        subprocess.run(command, env=environment, capture_output=True)  # lessons run without a page as well
+        command = course_module("course_lib.lessons.kit.show_progress", "--out", page)
+        record = {"COURSE_RECORD": str(root / WORK / "record")}
+        run_child(command, record, capture_output=True)  # lessons run without a page as well
 
 
 def lab_command(
@@ -109,10 +113,11 @@ def lab_command(
     notebook: str = FIRST_LESSON,
     state_folder: str | os.PathLike | None = None,
     root: Path = ROOT,
+    near: int = FIRST,
 ) -> tuple[list[str], dict[str, str]]:
     """Command and environment variables that start the lessons' JupyterLab; writes its settings into `state_folder`.
 
-    port: None takes 8888 or the next free one; a given port is taken or the start fails. notebook: path below `root`.
+    port: None takes `near` or the next free one; a given port is taken or the start fails. notebook: path below `root`.
     state_folder: where settings, workspaces and the kernel's history are kept (None: `.venv/course-lab`). root: the
     folder that JupyterLab shows, with notebooks/ and work/ in it; predictions and checks are recorded in its
     work/record. JUPYTER_TOKEN in the environment, where it is set, is the token; else a random one is printed.
@@ -122,9 +127,9 @@ def lab_command(
     install_extension(state)
     trust_lessons(state, root)
     command = [
-        *(sys.executable, "-P", "-m", "jupyterlab"),  # -P: no module of the folder that one stands in
+        *course_module("jupyterlab"),
         "--ServerApp.ip=127.0.0.1",
-        f"--ServerApp.port={8888 if port is None else port}",
+        f"--ServerApp.port={near if port is None else port}",
         f"--ServerApp.port_retries={50 if port is None else 0}",
         f"--ServerApp.open_browser={browser}",
         f"--ServerApp.root_dir={root}",
@@ -134,7 +139,7 @@ def lab_command(
     ]
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         command.append("--ServerApp.allow_root=True")  # containers run as root; the server still listens here only
-    environment = dict(os.environ)
+    environment = clean_environment()
     if not environment.get("JUPYTER_TOKEN"):
         environment.pop("JUPYTER_TOKEN", None)  # set but empty, it would switch the token off
     environment.update(
@@ -168,7 +173,9 @@ def write_settings(state: Path) -> None:
         },
         "config/labconfig/default_setting_overrides.json": SETTINGS,
         # Every kernel would warn that it talks to the server unencrypted; both are on this computer.
-        "ipython/profile_default/ipython_kernel_config.json": {"IPKernelApp": {"log_level": "ERROR"}},
+        "ipython/profile_default/ipython_kernel_config.json": {
+            "IPKernelApp": {"log_level": "ERROR", "exec_lines": [KERNEL_PATH]}
+        },
     }
     for name, content in files.items():
         path = state / name

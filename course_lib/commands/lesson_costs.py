@@ -21,6 +21,7 @@ from urllib.request import urlopen
 import nbformat
 import psutil
 
+from course_lib.child import start
 from course_lib.commands.lab import lab_command
 from course_lib.commands.refresh import HANGS_S, execute
 
@@ -134,8 +135,8 @@ def server_cost() -> Cost:
     """What the server of `course.py lab` takes once it has shown its first page, without a kernel."""
     with tempfile.TemporaryDirectory(prefix="course-bench-") as folder:
         command, environment = lab_command(port=0, state_folder=folder)
-        server = subprocess.Popen(
-            command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        server = start(
+            command, environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
         )
         try:
             with ProcessWatch(server.pid, "server") as watch:

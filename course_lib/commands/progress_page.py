@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import subprocess
-import sys
+
+from course_lib.child import course_module
+from course_lib.child import run as run_child
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -14,4 +15,4 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     # A process of its own: commands import nothing of what only the notebooks use.
     words = ["--out", arguments.out] if arguments.out else []
-    return subprocess.run([sys.executable, "-P", "-m", "course_lib.lessons.kit.show_progress", *words]).returncode
+    return run_child(course_module("course_lib.lessons.kit.show_progress", *words)).returncode

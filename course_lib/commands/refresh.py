@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
+import math
 import re
 import tempfile
 import time
@@ -18,11 +18,13 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 import nbformat
+from jupyter_client.kernelspec import KernelSpecManager
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
+from course_lib.child import KERNEL_PATH, clean_environment
 from course_lib.commands.saved_panels import drop_widgets
-from course_lib.paths import REPOSITORY, STORE_SCENES, notebook_paths, project_paths
+from course_lib.paths import STORE_SCENES, notebook_paths, project_paths
 from course_lib.writing import write_at_once
 
 MAX_BYTES = 400_000
@@ -65,7 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    if not arguments.cell_timeout > 0:
+    if not 0 < arguments.cell_timeout < math.inf:
         raise ValueError(f"--cell-timeout must be a positive number of seconds; got {arguments.cell_timeout:g}")
     failed = 0
     for path in select(arguments.lessons):
@@ -121,12 +123,11 @@ def execute(
         startup = Path(home) / "profile_default" / "startup"
         startup.mkdir(parents=True)
         (startup / "00-offline.py").write_text(OFFLINE_STARTUP, encoding="utf-8")
-        environment = os.environ | {"IPYTHONDIR": home, STORE_SCENES: "1"}
-        search = [str(REPOSITORY), *filter(None, [os.environ.get("PYTHONPATH")])]
-        environment["PYTHONPATH"] = os.pathsep.join(search)
+        (startup / "01-path.py").write_text(KERNEL_PATH, encoding="utf-8")
+        environment = clean_environment({"IPYTHONDIR": home, STORE_SCENES: "1"})
         client = NotebookClient(
             notebook,
-            timeout=cell_timeout,
+            timeout=math.ceil(cell_timeout),  # 0 would be no limit
             startup_timeout=int(HANGS_S),
             kernel_name="python3",
             resources={"metadata": {"path": str(folder)}},
@@ -134,6 +135,8 @@ def execute(
             extra_arguments=["--IPKernelApp.log_level=ERROR"],  # it listens on this computer only; no need to warn
             allow_errors=False,
         )
+        client.km = client.create_kernel_manager()
+        client.km.kernel_spec_manager = KernelSpecManager(kernel_dirs=[])  # this environment's, no other of its name
         try:
             with client.setup_kernel(env=environment), watch(client.km.provisioner.pid):
                 started = time.perf_counter()

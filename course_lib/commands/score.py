@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import subprocess
-import sys
+
+from course_lib.child import course_module
+from course_lib.child import run as run_child
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,4 +21,4 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     # A process of its own: what a student's file does to it ends with it.
     words = [arguments.project, arguments.file, *(["--seeds", *arguments.seeds] if arguments.seeds else [])]
-    return subprocess.run([sys.executable, "-m", "course_lib.lessons.kit.score", *words]).returncode
+    return run_child(course_module("course_lib.lessons.kit.score", *words)).returncode

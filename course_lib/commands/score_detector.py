@@ -52,7 +52,8 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.detector_evaluation import labelled_panoramas, score_detector
     from course_lib.paths import data_path
-    from course_lib.simulation.room.training_images import labelled_images, make_room_images
+    from course_lib.reading import require_file
+    from course_lib.simulation.room.training_images import labelled_images, make_room_images, read_image_list
     from course_lib.spherical_stereo.recording import read_stereo_recording
 
     if arguments.rooms < 1:
@@ -60,6 +61,9 @@ def run(arguments: argparse.Namespace) -> int:
     detector = chosen_detector(arguments)
     if arguments.voting:
         return _compare_voting(arguments, detector)
+    if arguments.images is not None:  # what is wrong with it is told before minutes of scoring
+        for image in read_image_list(arguments.images):
+            require_file(arguments.images / image["file"], "image", ValueError)
     folder = arguments.data or data_path("room")
     recordings = [read_stereo_recording(folder / f"experiment_{number}") for number in (1, 2)]
     scores = {

@@ -15,6 +15,7 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
+from course_lib.child import JUPYTER
 from course_lib.processors import processors
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -151,9 +152,8 @@ def write_offline_startup(home: Path) -> None:
 
 def suite_environment(home: Path, environment: Mapping[str, str] = os.environ) -> dict[str, str]:
     """Environment variables of a run: no display, off-screen OpenGL, and none of the user's own Jupyter settings."""
-    result = {
-        key: value for key, value in environment.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY", "MPLBACKEND")
-    }
+    dropped = ("DISPLAY", "WAYLAND_DISPLAY", "MPLBACKEND", *JUPYTER)
+    result = {key: value for key, value in environment.items() if key not in dropped}
     if sys.platform.startswith("linux"):
         result["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
     result["PYVISTA_OFF_SCREEN"] = "true"

@@ -11,7 +11,6 @@ least half of it is visible and its box is at least 30 px high in an image 1280 
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +18,7 @@ import cv2
 import numpy as np
 
 from course_lib.experiments.room import LEAST_HEIGHT, LEAST_VISIBLE
+from course_lib.reading import read_json
 
 # Width of a whole panorama in memory: a 1280 x 512 network input is one and a quarter panorama, 1.25 * 1024 columns.
 STORED_WIDTH = 1024
@@ -92,12 +92,12 @@ def read_boxes(folder: str | Path) -> list[dict]:
     path = Path(folder) / "boxes.json"
     if not path.is_file():
         raise TrainingDataError(f"{path} is missing: give a folder made by `course.py make-data training-rooms`")
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise TrainingDataError(f"{path} is not JSON ({error}): make the folder again") from None
+    content = read_json(path, "list of images", TrainingDataError)
     if not isinstance(content, dict) or content.get("version") != 1 or not isinstance(content.get("images"), list):
         raise TrainingDataError(f'{path}: expected {{"version": 1, "images": [...]}}: make the folder again')
+    for number, entry in enumerate(content["images"]):
+        if not (isinstance(entry, dict) and isinstance(entry.get("file"), str)):
+            raise TrainingDataError(f"{path}, image {number} has no file: make the folder again")
     return content["images"]
 
 
@@ -105,8 +105,19 @@ def labelled_panorama(entry: dict, image: np.ndarray, names: list[str], width: i
     """One entry of boxes.json with its image, scaled to `width` columns (and half as many rows).
 
     Objects whose label is not among `names` are left out: they are background. Raises `TrainingDataError` when the
-    image has another size than the entry says, or a box is malformed.
+    image has another size than the entry says, or a field is missing or malformed.
     """
+    try:
+        return _labelled_panorama(entry, image, names, width)
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
+        if isinstance(error, TrainingDataError):
+            raise
+        raise TrainingDataError(
+            f"{entry['file']}: a field of boxes.json is missing or of the wrong kind ({error!r}): make the folder again"
+        ) from None
+
+
+def _labelled_panorama(entry: dict, image: np.ndarray, names: list[str], width: int) -> LabelledPanorama:
     if image.shape[:2] != (entry["height"], entry["width"]):
         raise TrainingDataError(
             f"{entry['file']} is {image.shape[1]} x {image.shape[0]}, boxes.json says {entry['width']} x "

@@ -15,6 +15,8 @@ import torch.distributed
 import torch.multiprocessing
 from torch import nn
 
+from course_lib.worker_pool import end_with_parent
+
 # Loading some thousand images on a busy machine takes minutes; a process that is silent for longer is dead.
 LONGEST_SILENCE = timedelta(minutes=10)
 
@@ -90,11 +92,16 @@ def average_statistics(network: nn.Module, workers: Alone | Together) -> None:
         b.copy_(part.view_as(b))
 
 
+def _work_beside(work: Callable, *arguments: object) -> None:
+    end_with_parent()  # a process without its first one would wait for its part of the gradients
+    work(*arguments)
+
+
 def start_others(count: int, meeting_file: Path, work: Callable, arguments: tuple) -> list:
     """Starts processes 1 .. count - 1, each running work(rank, count, meeting_file, *arguments); returns them."""
     context = torch.multiprocessing.get_context("spawn")
     processes = [
-        context.Process(target=work, args=(rank, count, meeting_file, *arguments), daemon=True)
+        context.Process(target=_work_beside, args=(work, rank, count, meeting_file, *arguments), daemon=True)
         for rank in range(1, count)
     ]
     for process in processes:

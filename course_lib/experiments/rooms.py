@@ -9,11 +9,9 @@ the same observations.
 from __future__ import annotations
 
 import json
-import multiprocessing
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -29,6 +27,7 @@ from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+from course_lib.worker_pool import worker_pool
 
 
 @dataclass(frozen=True)
@@ -162,16 +161,11 @@ def observe_rooms(
         for seed in progress(missing):
             rooms[seed] = _keep(folder, observe(seed, options, detector))
         return [rooms[seed] for seed in seeds]
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(processes, len(missing)), context, _start_worker, (load_detector,)) as pool:
-        try:
-            jobs = [pool.submit(_observe_in_worker, observe, seed, options) for seed in missing]
-            for job in progress(finished(jobs)):
-                room = _keep(folder, job.result())
-                rooms[room["seed"]] = room
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+    with worker_pool(min(processes, len(missing)), _start_worker, (load_detector,)) as pool:
+        jobs = [pool.submit(_observe_in_worker, observe, seed, options) for seed in missing]
+        for job in progress(finished(jobs)):
+            room = _keep(folder, job.result())
+            rooms[room["seed"]] = room
     return [rooms[seed] for seed in seeds]
 
 

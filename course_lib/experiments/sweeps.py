@@ -13,15 +13,15 @@ from __future__ import annotations
 
 import contextlib
 import json
-import multiprocessing
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor, Executor, Future, as_completed
 from itertools import product
 from pathlib import Path
 from typing import BinaryIO
 
 from course_lib.processors import processors
+from course_lib.worker_pool import worker_pool
 
 VERSION = 1
 
@@ -71,8 +71,7 @@ def sweep(
         missing = {key: point for key, point in points.items() if key not in rows}
         if missing and executor is None:
             workers = min(processors(), len(missing))
-            # A fresh process each: a fork would inherit windows and threads that it cannot use.
-            with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
+            with worker_pool(workers) as pool:
                 rows |= _run(function, missing, pool, file, progress)
         elif missing:
             rows |= _run(function, missing, executor, file, progress)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from course_lib.plots.figures import BLACK, BLUE, ORANGE, VERMILION
+from course_lib.plots.letters import plain_labels
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.scenes import body_axes, ellipsoid, new_plotter, path, post, text
 from course_lib.spherical_stereo.pose.localization import Localization
@@ -40,11 +41,13 @@ def location_scene(
     if semantic_map.walls is not None:
         corners = np.column_stack([semantic_map.walls, np.full(len(semantic_map.walls), floor)])
         plotter.add_mesh(path(np.vstack([corners, corners[:1]])), color="grey", line_width=2)
+    labels = plain_labels(landmark.label for landmark in semantic_map.landmarks)
     for landmark in semantic_map.landmarks:
         colour = class_style(landmark.label)[0]
         foot = np.array([landmark.x, landmark.y, floor])
         plotter.add_mesh(post(foot, -floor), color=colour)
-        plotter.add_mesh(text(landmark.label, foot + np.array([0.08, -0.5 * _LETTERS, 0.0]), _LETTERS), color=colour)
+        words = text(labels[landmark.label], foot + np.array([0.08, -0.5 * _LETTERS, 0.0]), _LETTERS)
+        plotter.add_mesh(words, color=colour)
     words = "Landmarks: posts with their class"
     if true_pose is not None:
         x, y, theta = true_pose

@@ -101,11 +101,12 @@ def _pair(folder: Path, entry: dict) -> StereoPair:
 
 
 def true_object(entry: dict) -> TrueObject:
-    """One object from its entry in poses.json or boxes.json."""
-    return TrueObject(
-        int(entry["object"]),
-        str(entry["label"]),
-        tuple(float(value) for value in entry["visible_box"]),
-        tuple(float(value) for value in entry["unoccluded_box"]),
-        float(entry["visible_fraction"]),
-    )
+    """One object from its entry in poses.json or boxes.json. Raises `KeyError`, `TypeError` or `PanoramaError`."""
+    try:
+        boxes = [tuple(float(value) for value in entry[name]) for name in ("visible_box", "unoccluded_box")]
+        number, fraction = int(entry["object"]), float(entry["visible_fraction"])
+    except ValueError as error:
+        raise PanoramaError(f"an object has a number that is none: {error}") from None
+    if any(len(box) != 4 for box in boxes):
+        raise PanoramaError(f"a box has four edges (u_min, v_min, u_max, v_max); got {[list(box) for box in boxes]}")
+    return TrueObject(number, str(entry["label"]), *boxes, fraction)

@@ -5,7 +5,6 @@ import base64
 import hashlib
 import importlib.metadata
 import importlib.util
-import os
 import sys
 from pathlib import Path
 
@@ -19,13 +18,19 @@ from course_lib.commands import check, depth_image_probe
 LOCK = Path(__file__).resolve().parents[2] / "environment.txt"
 
 
+def install_for_children(monkeypatch, folder):
+    """Lets the import check's own process find the modules of a folder, as if they were installed."""
+    script = f"import sys\nsys.path.insert(0, {str(folder)!r})\n" + check.IMPORT_SCRIPT
+    monkeypatch.setattr(check, "IMPORT_SCRIPT", script)
+
+
 @pytest.fixture
 def broken_modules(tmp_path, monkeypatch):
     """Modules for the import check's own process: one that crashes, one that raises, one that is right."""
     (tmp_path / "crashes_at_import.py").write_text("import os; os.abort()")
     (tmp_path / "raises_at_import.py").write_text("raise OSError('libsomething.so: cannot open')")
     (tmp_path / "is_right.py").write_text("")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    install_for_children(monkeypatch, tmp_path)
 
 
 def test_each_broken_import_is_named_and_the_others_are_still_tried(broken_modules):
@@ -106,7 +111,7 @@ def fake_distribution(tmp_path, monkeypatch):
         if top_level:
             (info / "top_level.txt").write_text("of_another_name\n")
         monkeypatch.syspath_prepend(tmp_path)
-        monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(tmp_path), os.environ.get("PYTHONPATH")])))
+        install_for_children(monkeypatch, tmp_path)
         monkeypatch.setattr(importlib.metadata, "requires", lambda name: ["course-fake>=1"])
         return tmp_path / "of_another_name.py"
 

@@ -77,7 +77,7 @@ def test_icp_stands_beside_them_pooled_as_they_are(short, tmp_path, capsys, monk
     told = {"ICP 0.15, 0.05 m": {"1": {"position_m": [0.01, 0.02, 0.5], "rotation_deg": [1.0, 1.0, 1.0]}}}
     monkeypatch.setattr("course_lib.commands.bench.install_tools", lambda: None)
     monkeypatch.setattr(
-        "course_lib.commands.compare.subprocess.run",
+        "course_lib.commands.compare.run_child",
         lambda *words, **options: CompletedProcess(words, 0, stdout=json.dumps(told) + "\n"),
     )
     words = ["compare", *short, "--methods", "floor", "--icp", "--out", str(tmp_path / "out"), "--json"]

@@ -19,6 +19,7 @@ from nbformat.sign import NotebookNotary
 
 from course_lib.commands import lab
 from course_lib.commands.saved_panels import WIDGET_VIEW
+from course_lib.paths import REPOSITORY
 
 
 @pytest.fixture(scope="module")
@@ -250,4 +251,6 @@ def test_it_starts_beside_a_module_of_a_known_name_and_control_c_ends_it_without
 
 
 def test_the_command_runs_in_this_environment_and_imports_nothing_of_the_callers_folder(tmp_path):
-    assert lab.lab_command(state_folder=tmp_path)[0][:4] == [sys.executable, "-P", "-m", "jupyterlab"]
+    command = lab.lab_command(state_folder=tmp_path)[0]
+    assert command[:2] == [sys.executable, "-P"]
+    assert command[4:6] == [str(REPOSITORY), "jupyterlab"]

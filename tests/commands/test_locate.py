@@ -157,3 +157,21 @@ def test_the_help_shows_the_format_of_the_boxes(capsys):
     with pytest.raises(SystemExit):
         main(["locate", "--help"])
     assert BOXES_FORMAT in capsys.readouterr().out
+
+
+def test_names_in_any_script_are_located_drawn_and_told_once(pair, tmp_path, capsys):
+    """Without the right font figure and scene show numbers; every file is there, whatever the names."""
+    for name in ("boxes.json", "map.json"):
+        content = json.loads((pair / name).read_text())
+        for item in [*content.get("landmarks", []), *content.get("upper", []), *content.get("lower", [])]:
+            item["label"] = f"物 {item['label']}"
+        (tmp_path / name).write_text(json.dumps(content, ensure_ascii=False))
+    for side in ("upper", "lower"):
+        (tmp_path / f"{side}.png").write_bytes((pair / f"{side}.png").read_bytes())
+    with pytest.warns(UserWarning, match="scenes are lettered in ASCII"):
+        assert main(words(tmp_path, "--out", str(tmp_path / "out"))) == 0
+    told = capsys.readouterr()
+    assert "物 " in told.out
+    assert {"locate.json", "locate.csv", "locate.png", "locate.html"} <= {p.name for p in (tmp_path / "out").iterdir()}
+    assert "物" in str(json.loads((tmp_path / "out" / "locate.json").read_text(encoding="utf-8")))
+    assert "Glyph" not in told.err

@@ -94,6 +94,9 @@ def truncate_an_image(f):
         (lambda f: (f / "depth" / "000002.png").write_bytes(b""), "complete"),
         (lambda f: (f / "groundtruth.txt").write_text("0 0 0 0 0 0 0 1\n"), "same"),
         (lambda f: (f / "path_on_floor.txt").write_text("1 2\n"), "x y z"),
+        (lambda f: (f / "path_on_floor.txt").write_text("# x y z, metres; 2 rows\n1 2 3\n"), "announces 2 rows"),
+        (lambda f: (f / "path_on_floor.txt").write_text("# x y z, metres; 1 rows\n1 2 3"), "is not complete"),
+        (lambda f: (f / "up.txt").write_bytes(b"z\xff"), r"up\.txt is not UTF-8 text"),
     ],
 )
 def test_a_damaged_recording_is_named(folder, damage, said):

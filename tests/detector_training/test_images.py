@@ -164,6 +164,12 @@ def test_bad_folders_are_named(tmp_path):
     (tmp_path / "boxes.json").write_text('{"version": 1, "images"')
     with pytest.raises(TrainingDataError, match="not JSON"):
         read_boxes(tmp_path)
+    (tmp_path / "boxes.json").write_text("[" * 100_000)
+    with pytest.raises(TrainingDataError, match="levels"):
+        read_boxes(tmp_path)
+    (tmp_path / "boxes.json").write_text('{"version": 1, "images": [5]}')
+    with pytest.raises(TrainingDataError, match="image 0 has no file"):
+        read_boxes(tmp_path)
     (tmp_path / "boxes.json").write_text('{"version": 1, "images": []}')
     with pytest.raises(TrainingDataError, match="no image that is there"):
         PanoramaFolders([tmp_path], NAMES)
@@ -173,3 +179,6 @@ def test_bad_folders_are_named(tmp_path):
         PanoramaFolders([tmp_path], NAMES)
     with pytest.raises(TrainingDataError, match="a box that is none"):
         labelled_panorama(entry([thing([50, 100, 50, 130])], 64), np.zeros((32, 64, 3), np.uint8), NAMES, 64)
+    for spoilt in ({}, 5, thing(5), thing([1, 2, 3]), thing(["a", 2, 3, 4]), {"label": NAMES[0]}):
+        with pytest.raises(TrainingDataError, match="missing or of the wrong kind"):
+            labelled_panorama(entry([spoilt], 64), np.zeros((32, 64, 3), np.uint8), NAMES, 64)

@@ -181,6 +181,12 @@ def test_what_fails_leaves_the_file_as_it_was(tmp_path, sources, timeout, words)
     assert [p.name for p in tmp_path.iterdir() if p.suffix == ".part"] == []
 
 
+def test_a_part_of_a_second_limits_too(tmp_path):
+    path = written(tmp_path, "import time\ntime.sleep(600)")
+    with pytest.raises(RefreshError, match=r"longer than 0\.5 s"):
+        refresh.refresh(path, cell_timeout=0.5)
+
+
 def test_numbers_choose_lessons_and_unknown_ones_are_named():
     assert [path.name[:2] for path in refresh.select(["3"])] == ["03"]
     assert [path.name[:2] for path in refresh.select(["P1", "07"])] == ["P1", "07"]
@@ -189,7 +195,7 @@ def test_numbers_choose_lessons_and_unknown_ones_are_named():
         refresh.select(["03", "77"])
 
 
-@pytest.mark.parametrize("seconds", [0.0, -5.0, float("nan")])
+@pytest.mark.parametrize("seconds", [0.0, -5.0, float("nan"), float("inf")])
 def test_a_time_out_that_is_none_is_refused(seconds):
     with pytest.raises(ValueError, match="positive number of seconds"):
         refresh.run(argparse.Namespace(lessons=["03"], cell_timeout=seconds))

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from course_lib.reading import read_json
 from course_lib.simulation.room.footprints import free_places
 from course_lib.simulation.room.object_boxes import object_boxes
 from course_lib.simulation.room.random_room import make_room
@@ -77,11 +78,26 @@ def make_room_images(
 
 
 def read_image_list(folder: str | Path) -> list[dict]:
-    """The images of a folder with their objects, from its boxes.json. Raises `ValueError` for another version."""
+    """The images of a folder with their objects, from its boxes.json.
+
+    Raises `FileNotFoundError` where there is none, `ValueError` for another version, and for a field that is missing or
+    of another kind: the message says of which image.
+    """
     path = Path(folder) / BOXES_FILE
-    content = json.loads(path.read_text())
-    if content.get("version") != VERSION:
-        raise ValueError(f"{path} has version {content.get('version')!r}; this program reads version {VERSION}.")
+    content = read_json(path, "list of images", ValueError, missing=FileNotFoundError)
+    version = content.get("version") if isinstance(content, dict) else None
+    if version != VERSION:
+        raise ValueError(f"{path} has version {version!r}; this program reads version {VERSION}.")
+    if not isinstance(content.get("images"), list):
+        raise ValueError(f"{path} must have a list of images; got {content.get('images')!r}")
+    for number, image in enumerate(content["images"]):
+        try:
+            if not isinstance(image["file"], str):
+                raise TypeError(f"file must be a name; got {image['file']!r}")
+            for entry in image["objects"]:
+                true_object(entry)
+        except (KeyError, TypeError, ValueError) as error:
+            raise ValueError(f"{path}, image {number}: a field is missing or of the wrong kind ({error!r})") from None
     return content["images"]
 
 

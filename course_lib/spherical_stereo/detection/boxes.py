@@ -22,7 +22,7 @@ def checked_boxes(boxes: np.ndarray, width: float, name: str = "boxes") -> np.nd
     array = np.asarray(boxes, dtype=np.float64)
     if array.size == 0:
         return array.reshape(0, 4)
-    if array.shape[-1] != 4:
+    if array.ndim == 0 or array.shape[-1] != 4:
         raise DetectionError(f"{name} must have shape (..., 4) [u_min, v_min, u_max, v_max]; got {array.shape}")
     if not np.isfinite(array).all():
         raise DetectionError(

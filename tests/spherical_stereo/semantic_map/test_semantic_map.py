@@ -184,6 +184,17 @@ def test_csv_that_is_no_map_is_named(tmp_path, text, says):
         SemanticMap.load(tmp_path / "map.csv")
 
 
+@pytest.mark.parametrize("ending", [".csv", ".json"])
+def test_a_saved_map_that_was_cut_anywhere_is_refused(tmp_path, ending):
+    path = tmp_path / f"map{ending}"
+    SemanticMap([Landmark("sofa", 1, 2, 3, 4), Landmark("chair", 3, 4, 50, 60)]).save(path)
+    whole = path.read_bytes()
+    for length in range(len(whole.rstrip())):
+        path.write_bytes(whole[:length])
+        with pytest.raises(SemanticMapError):
+            SemanticMap.load(path)
+
+
 def test_a_file_that_cannot_be_read_is_named(tmp_path):
     with pytest.raises(SemanticMapError, match="is missing"):
         SemanticMap.load(tmp_path / "map.json")
