@@ -4,6 +4,7 @@ import contextlib
 import ctypes
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -148,6 +149,102 @@ def test_what_a_list_of_outputs_names_outside_its_folder_is_never_removed(tmp_pa
     assert names(out) == ["b.json"]
 
 
+def test_without_a_command_no_list_is_kept_and_the_products_are_replaced_folders_and_all(tmp_path):
+    out = tmp_path / "out"
+    (out / "lessons" / "old").mkdir(parents=True)
+    (out / "lessons" / "old" / "03.ipynb").write_text("old")
+    (out / "mine").mkdir()
+    (out / "notes.txt").write_text("mine")
+    with replaced_outputs(out, None, ("lessons",)) as new:
+        (new / "lessons").mkdir()
+        (new / "lessons" / "06.ipynb").write_text("new")
+    found = sorted(path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*"))
+    assert found == ["out", "out/lessons", "out/lessons/06.ipynb", "out/mine", "out/notes.txt"]
+
+
+def test_a_folder_that_is_kept_keeps_its_mode(tmp_path):
+    out = tmp_path / "out"
+    make(out, {"a.json": "1"})
+    (out / "private").mkdir(mode=0o700)
+    (out / "private" / "notes.txt").write_text("mine")
+    make(out, {"a.json": "2"})
+    assert (out / "private").stat().st_mode & 0o777 == 0o700
+
+
+def test_interrupted_while_files_change_places_what_was_made_whole_is_moved_whole(tmp_path, monkeypatch):
+    """Ctrl-C between two of the files: neither half of the one run nor half of the other."""
+    monkeypatch.setattr(writing, "_exchange", lambda one, other: False)
+    out = tmp_path / "out"
+    make(out, {"a.json": "1", "b.json": "1"})
+    replace, moved = os.replace, []
+
+    def interrupted(old, new):
+        if str(new).endswith("b.json") and not moved:
+            moved.append(new)
+            raise KeyboardInterrupt
+        replace(old, new)
+
+    monkeypatch.setattr(os, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        make(out, {"a.json": "2", "b.json": "2"})
+    assert moved
+    assert {(out / name).read_text() for name in ("a.json", "b.json")} == {"2"}
+    assert left_over(tmp_path) == []
+
+
+@pytest.mark.skipif(not hasattr(signal, "raise_signal") or os.name == "nt", reason="Ctrl-C at a step of the system")
+@pytest.mark.parametrize("step", ["os.mkdir", "open", "fcntl.flock"])
+def test_ctrl_c_between_making_and_knowing_leaves_nothing(tmp_path, step):
+    (tmp_path / "alone.txt").write_text("old")
+    program = f"""
+import signal, sys
+from pathlib import Path
+from course_lib.writing import replaced_outputs, staged, write_at_once
+disk, armed = Path({str(tmp_path)!r}), []
+def hook(event, arguments):
+    if armed and event == {step!r} and (event != "open" or UNFINISHED in str(arguments[0])):
+        armed.clear()
+        signal.raise_signal(signal.SIGINT)
+from course_lib.writing import UNFINISHED
+sys.addaudithook(hook)
+def folder():
+    with replaced_outputs(disk / "out", "demo") as new: (new / "a").write_text("new")
+def stage():
+    with staged(disk): pass
+for act in (lambda: write_at_once(disk / "alone.txt", "new"), folder, stage):
+    armed.append(1)
+    try:
+        act()
+    except KeyboardInterrupt:
+        print("stopped")
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.count("stopped") >= 2
+    assert left_over(tmp_path) == []
+    assert not any((tmp_path / "out").glob("*"))
+
+
+def test_files_are_staged_beside_their_places_and_nothing_is_left(tmp_path):
+    left = tmp_path / f".{tmp_path.name}{UNFINISHED}abcdefgh"
+    left.mkdir()
+    (left / "0").write_text("of a killed run")
+    with writing.staged(tmp_path) as stage:
+        assert not left.exists()
+        write_at_once(stage / "0", "new")
+        os.replace(stage / "0", tmp_path / "a.txt")
+        write_at_once(stage / "1", "not moved")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_what_cannot_be_written_is_refused_before_the_work(tmp_path):
+    writing.require_writable(tmp_path / "new" / "deep")
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "file").write_text("x")
+    for folder in (tmp_path / "file", tmp_path / "file" / "deep", "/proc/nope") if os.path.isdir("/proc") else ():
+        with pytest.raises(WriteError, match=re.escape(str(folder))):
+            writing.require_writable(folder)
+
+
 @pytest.mark.parametrize("text", ["", "[", "[1]", '{"demo": 3}', '{"demo": [3]}', "\udc80"])
 def test_a_damaged_list_of_outputs_costs_nothing(tmp_path, text):
     out = tmp_path / "out"
@@ -186,7 +283,7 @@ while True:
 
 @pytest.mark.skipif(os.name == "nt", reason="kill -9")
 def test_killed_at_any_moment_the_old_or_the_new_is_there_whole(tmp_path):
-    """40 moments here; `course.py fuzz --kill` has 200 over the commands."""
+    """40 moments here; `course.py interrupt` has 200 over the commands."""
     out, draw = tmp_path / "in" / "out", random.Random(14)
     out.parent.mkdir()
     for kill in range(40):

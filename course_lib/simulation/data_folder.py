@@ -7,15 +7,18 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from course_lib.writing import replaced_outputs
+from course_lib.writing import replaced_outputs, require_writable
 
 
 def require_folder(out: str | Path) -> Path:
-    """`out` as an absolute path. Raises `ValueError` where it cannot be a folder: now, not after minutes of work."""
+    """`out` as an absolute path. Raises `ValueError` where it cannot be a folder, `WriteError` where nothing
+    can be written there: now, not after minutes of work.
+    """
     out = Path(out).resolve()
     existing = next(path for path in (out, *out.parents) if path.exists())
     if not existing.is_dir():
         raise ValueError(f"cannot make the folder {out}: {existing} is a file; give a folder, or a new name")
+    require_writable(out)
     return out
 
 
