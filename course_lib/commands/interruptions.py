@@ -1,0 +1,146 @@
+"""One case of `interrupt`: its two undisturbed runs, then as many that are stopped on the way from old to new."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+from pathlib import Path
+
+import numpy as np
+
+from course_lib.commands.interrupt_cases import Case
+from course_lib.commands.stopped_runs import Ended, Moment, Runs
+from course_lib.commands.whole_outputs import Tree, left_over, put_back, state, tree
+from course_lib.paths import REPOSITORY, data_path
+
+LONGEST_DELAY_S = 0.005  # after a step: a file of some megabytes is being written then
+STOPPED = 130  # exit code after Ctrl-C
+
+
+class InterruptionError(RuntimeError):
+    """A case that tells nothing: its run fails undisturbed, or makes the same twice."""
+
+
+class Staged:
+    """A case with its folders, its undisturbed outputs, and a process to run it in; a context manager.
+
+    old, new: its files after its first and its second run.
+    """
+
+    def __init__(self, case: Case, folder: Path) -> None:
+        self.case, self.given = case, folder / "given"
+        self.stage = folder / "stage"
+        self.out = self.stage / "out"
+        self.out.mkdir(parents=True)
+        self.given.mkdir()
+        case.prepare(self.given, self.out)
+
+    def __enter__(self) -> Staged:
+        with Runs(self.stage, {}) as cold:
+            self.old = self._undisturbed(cold, 1)[0]
+            self.new, ended = self._undisturbed(cold, 2)
+        if self.old == self.new:
+            raise InterruptionError(f"{self.case.name}: both runs made the same: nothing could be told apart")
+        self.steps = ended.steps
+        self._context = contextlib.ExitStack()
+        self.runs = self._context.enter_context(Runs(self.stage, {}, ended.modules))
+        self.seconds = self._timed()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._context.close()
+
+    def words(self, which: int, out: Path | None = None) -> list[str]:
+        """The words of its first or second run."""
+        return [word.format(**self._places(which, out)) for word in self.case.words.split()]
+
+    def environment(self, which: int) -> dict[str, str]:
+        """The environment variables of a run."""
+        name, _, value = self.case.environment.format(**self._places(which)).partition("=")
+        return {name: value} if name else {}
+
+    def run(self, which: int, moment: Moment | None = None) -> Ended:
+        """Runs it, and stops it at a moment."""
+        return self.runs.run(self.case.program, self.words(which), self.environment(which), moment)
+
+    def begin_anew(self) -> None:
+        """The old, and nothing beside it."""
+        for path in self.stage.iterdir():
+            if path != self.out:
+                put_back(path, {}) if path.is_dir() else path.unlink()
+                path.rmdir() if path.is_dir() else None
+        put_back(self.out, self.old)
+
+    def _places(self, which: int, out: Path | None = None) -> dict[str, object]:
+        data = data_path("corridor").parent
+        return {"out": out or self.out, "given": self.given, "data": data, "which": which, "root": REPOSITORY}
+
+    def _undisturbed(self, runs: Runs, which: int) -> tuple[Tree, Ended]:
+        ended = runs.run(self.case.program, self.words(which), self.environment(which))
+        if ended.code != 0 or left_over(self.stage, self.out):
+            raise InterruptionError(
+                f"{self.case.name} undisturbed: exit code {ended.code}, left {left_over(self.stage, self.out)}; "
+                f"{ended.complained[-1000:]}"
+            )
+        return tree(self.out), ended
+
+    def _timed(self) -> float:
+        """Seconds that a run takes in a fork, from the old to the new."""
+        import time
+
+        self.begin_anew()
+        self.run(2)
+        self.begin_anew()
+        began = time.monotonic()
+        self.run(2)
+        return time.monotonic() - began
+
+
+def interruptions(staged: Staged, count: int, random: np.random.Generator, number: int = signal.SIGKILL) -> dict:
+    """Stops a case at `count` moments, each on its way from the old to the new; what was found, counted.
+
+    Half of the moments are of the clock, half are steps, with and without a delay; Ctrl-C comes at steps alone. After
+    one that left something, or stands between, the next run must clear and complete it.
+    """
+    counts = dict.fromkeys(("moments", "old", "new", "between", "broken", "cleared", "left"), 0)
+    faults = []
+    for index in range(count):
+        moment = drawn_moment(staged, index, random, number)
+        staged.begin_anew()
+        ended = staged.run(2, moment)
+        found = state(tree(staged.out), staged.old, staged.new, staged.case.by_file)
+        left = left_over(staged.stage, staged.out)
+        counts["moments"] += 1
+        counts[found] += 1
+        where = f"{staged.case.name}, {'kill -9' if number != signal.SIGINT else 'Ctrl-C'} at {moment}"
+        if found == "broken":
+            faults.append(f"{where}: broken: {sorted(tree(staged.out))}")
+        if number == signal.SIGINT:
+            faults += [f"{where}: {what}" for what in wrong_end(ended, left)]
+        if left or found in ("between", "broken"):
+            staged.run(2)
+            still = left_over(staged.stage, staged.out)
+            counts["cleared"] += bool(left) and not still
+            if still or state(tree(staged.out), staged.old, staged.new) != "new":
+                counts["left"] += 1
+                faults.append(f"{where}: the next run left {still}, {sorted(tree(staged.out))}")
+    return counts | {"seconds": round(staged.seconds, 2), "steps": staged.steps, "faults": faults}
+
+
+def wrong_end(ended: Ended, left: list[str]) -> list[str]:
+    """What is wrong about the end of a run after Ctrl-C: it says so in a line, ends with 130, and leaves nothing."""
+    wrong = [f"left {left}"] if left else []
+    if ended.code == 0:  # it was done before
+        return wrong
+    if ended.code not in (STOPPED, -signal.SIGINT) or "Traceback" in ended.complained:
+        wrong.append(f"exit code {ended.code}, {ended.complained[-2000:]}")
+    return wrong
+
+
+def drawn_moment(staged: Staged, index: int, random: np.random.Generator, number: int) -> Moment:
+    """The moment of run `index`: by the clock, at a step, shortly after one, by turns."""
+    step = int(random.integers(1, max(staged.steps, 1) + 1))
+    delay, share = random.uniform(0, LONGEST_DELAY_S), random.uniform()
+    if number == signal.SIGKILL and index % 2:
+        return Moment(seconds=share * staged.seconds)
+    return Moment(step=step, delay=delay if index % 4 == 2 else 0.0, signal=number)
