@@ -51,7 +51,7 @@ def write_at_once(path: str | Path, content: bytes | str) -> None:
     """
     path = Path(os.path.realpath(path))
     data = content.encode("utf-8") if isinstance(content, str) else content
-    with _told(path), _cleared_if_stopped(path):
+    with told(path), _cleared_if_stopped(path):
         _clear(path)
         handle, unfinished = _begun(lambda: tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}{UNFINISHED}"))
         try:
@@ -80,7 +80,7 @@ def replaced_outputs(out: str | Path, command: str | None, products: Sequence[st
     """
     out = Path(os.path.realpath(out))
     with _cleared_if_stopped(out):
-        with _told(out):
+        with told(out):
             out.parent.mkdir(parents=True, exist_ok=True)
             inside = out.is_dir() and (os.path.ismount(out) or _stands_in(out))
             _complete(out)
@@ -88,7 +88,7 @@ def replaced_outputs(out: str | Path, command: str | None, products: Sequence[st
             lock, beside = _begun_folder(out if inside else out.parent, out.name)
         with _removed_at_the_end(lock, beside, out):
             new = beside / "new"
-            with _told(out):
+            with told(out):
                 new.mkdir()
                 new.chmod(_mode(out, 0o777))
             try:
@@ -97,7 +97,7 @@ def replaced_outputs(out: str | Path, command: str | None, products: Sequence[st
                 if error.errno in _FULL:  # matplotlib and others do not say of which file
                     raise _write_error(out, error) from error
                 raise
-            with _told(out), _alone_in(out.parent):
+            with told(out), _alone_in(out.parent):
                 _put_in_place(new, out, command, inside, products)
 
 
@@ -109,7 +109,7 @@ def staged(folder: str | Path) -> Iterator[Path]:
     """
     folder = Path(os.path.realpath(folder))
     with _cleared_if_stopped(folder):
-        with _told(folder):
+        with told(folder):
             _clear(folder)
             lock, within = _begun_folder(folder, folder.name)
         with _removed_at_the_end(lock, within, folder):
@@ -125,7 +125,7 @@ def require_writable(folder: str | Path) -> None:
     missing = [path for path in (folder, *folder.parents) if not path.exists()]
     nearest = missing[-1].parent if missing else folder
     name = missing[-1].name if missing else folder.name
-    with _told(folder), _cleared_if_stopped(nearest / name if missing else folder):
+    with told(folder), _cleared_if_stopped(nearest / name if missing else folder):
         _clear(nearest / name if missing else folder)
         lock, within = _begun_folder(nearest, name)
         with _removed_at_the_end(lock, within, folder):
@@ -403,8 +403,8 @@ def _write_error(path: Path, error: OSError) -> WriteError:
 
 
 @contextlib.contextmanager
-def _told(path: Path) -> Iterator[None]:
-    """An error of the system as a `WriteError` that says which file, why, and that nothing is lost."""
+def told(path: Path) -> Iterator[None]:
+    """An error of the system as a `WriteError` that says which file, why, and that nothing is lost: around a write."""
     try:
         yield
     except WriteError:

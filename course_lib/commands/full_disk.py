@@ -6,27 +6,44 @@ The disk is a tmpfs in a mount namespace of its own (`unshare`): no other proces
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 from course_lib.commands.interruptions import Staged
-from course_lib.commands.whole_outputs import left_over, put_back, state, tree
-from course_lib.paths import REPOSITORY
+from course_lib.commands.stopped_runs import COMMAND, Ended, Runs
+from course_lib.commands.whole_outputs import Tree, state
 
 PAGE = 4096  # bytes: what the smallest file takes on a tmpfs
 FILLED = (0.0, 0.2, 0.5, 0.8, 0.95, 1.1, 2.5)
 """Room beside the old, in sizes of the new."""
 
-_ON_A_DISK = """
-import json, subprocess, sys
-call = json.loads(sys.argv[1])
-sys.path.insert(0, call["root"])
+BAD_INPUT = 2  # exit code
+REFUSED_BEFORE_STEPS = 12
+"""A run that did no more than so many things to files was refused before its work: there is nothing to print."""
+
+
+class DiskError(RuntimeError):
+    """A disk that could not be mounted or looked at."""
+
+
+_MOUNT = """
+import subprocess, sys
 from pathlib import Path
-from course_lib.commands.full_disk import on_a_disk
-print("\\n" + json.dumps(on_a_disk(**call)))
+from course_lib.commands.whole_outputs import put_back, tree
+stage, size = sys.argv[1:]
+old = tree(Path(stage) / "out")
+subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", stage], check=True)
+put_back(Path(stage) / "out", old)
+"""
+_LOOK = """
+import json, subprocess, sys
+from pathlib import Path
+from course_lib.commands.whole_outputs import left_over, tree
+stage = Path(sys.argv[1])
+found = {name: content.decode("latin-1") for name, content in tree(stage / "out").items()}
+print(json.dumps([found, left_over(stage, stage / "out")]))
+subprocess.run(["umount", "--lazy", str(stage)], check=True)
 """
 
 
@@ -47,71 +64,43 @@ def full_disks(staged: Staged) -> dict:
     counts = dict.fromkeys(("moments", "old", "new", "between", "broken", "cleared", "left"), 0)
     faults = []
     taken = {which: sum(PAGE + len(content) for content in getattr(staged, which).values()) for which in ("old", "new")}
-    for share in FILLED:
-        staged.begin_anew()
-        size = taken["old"] + int(share * taken["new"]) + 4 * PAGE
-        found = _run_on_a_disk(staged, size)
-        counts["moments"] += 1
-        where = f"{staged.case.name} on a disk of {size:,} bytes"
-        held = state(_texts(found["tree"]), staged.old, staged.new, staged.case.by_file)
-        counts[held] += 1
-        said = found["error"]
-        if held == "broken":
-            faults.append(f"{where}: broken: {sorted(found['tree'])}; {said[-500:]}")
-        if found["left"]:
-            counts["left"] += 1
-            faults.append(f"{where}: left {found['left']}")
-        if found["code"] != 0 and not (str(staged.stage) in said and "disk is full" in said):
-            faults.append(f"{where}: exit code {found['code']} without naming the full disk: {said[-500:]}")
-        if found["code"] == 0 and held != "new":
-            faults.append(f"{where}: exit code 0, and the new is not there")
-        if staged.case.prints and not found["printed"].strip() and "before" not in said:
-            faults.append(f"{where}: nothing was printed before the disk was full: {said[-500:]}")
+    with Runs(staged.stage, staged.modules, ("unshare", "-rm")) as runs:
+        for share in FILLED:
+            staged.begin_anew()
+            size = taken["old"] + int(share * taken["new"]) + 4 * PAGE
+            ended, files, left = _run_on_a_disk(staged, runs, size)
+            held = state(files, staged.old, staged.new, staged.case.by_file)
+            counts["moments"] += 1
+            counts[held] += 1
+            counts["left"] += bool(left)
+            wrong = [f"{held}: {sorted(files)}"] * (held == "broken") + [f"left {left}"] * bool(left)
+            wrong += wrong_end(ended, held, staged)
+            faults += [f"{staged.case.name} on a disk of {size:,} bytes: {what}" for what in wrong]
     return counts | {"faults": faults}
 
 
-def _run_on_a_disk(staged: Staged, size: int) -> dict:
-    call = {
-        "root": str(REPOSITORY),
-        "stage": str(staged.stage),
-        "size": size,
-        "program": staged.case.program,
-        "words": staged.words(2),
-        "environment": staged.environment(2),
-    }
-    done = subprocess.run(
-        ["unshare", "-rm", sys.executable, "-P", "-c", _ON_A_DISK, json.dumps(call)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if done.returncode != 0:
-        raise RuntimeError(f"{staged.case.name} on a disk of its own: {done.stderr[-1000:]}")
-    return json.loads(done.stdout.splitlines()[-1])
+def _run_on_a_disk(staged: Staged, runs: Runs, size: int) -> tuple[Ended, Tree, list[str]]:
+    """How a run on a disk of so many bytes ended, the files that are there then, and what it left."""
+    stage = str(staged.stage)
+    mounted = runs.run(_MOUNT, [stage, str(size)], {})
+    ended = runs.run(staged.case.program, staged.words(2), staged.environment(2))
+    looked = runs.run(_LOOK, [stage], {})
+    if mounted.code or looked.code:
+        raise DiskError(f"a disk of {size:,} bytes at {stage}: {mounted.complained}{looked.complained}")
+    found, left = json.loads(looked.printed)
+    return ended, {name: text.encode("latin-1") for name, text in found.items()}, left
 
 
-def on_a_disk(root: str, stage: str, size: int, program: str, words: list[str], environment: dict[str, str]) -> dict:
-    """In a namespace of its own: puts what stands in `stage`/out on a disk of `size` bytes, runs, tells what became."""
-    out = Path(stage) / "out"
-    old = tree(out)
-    subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", stage], check=True)
-    put_back(out, old)
-    done = subprocess.run(
-        [sys.executable, "-P", "-c", program, *words],
-        cwd=stage,
-        env=os.environ | {"PYTHONPATH": root} | environment,
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        check=False,
-    )
-    return {
-        "code": done.returncode,
-        "printed": done.stdout.decode("utf-8", "replace"),
-        "error": done.stderr.decode("utf-8", "replace"),
-        "tree": {name: content.decode("latin-1") for name, content in tree(out).items()},
-        "left": left_over(Path(stage), out),
-    }
-
-
-def _texts(found: dict[str, str]) -> dict[str, bytes]:
-    return {name: text.encode("latin-1") for name, text in found.items()}
+def wrong_end(ended: Ended, held: str, staged: Staged) -> list[str]:
+    """What is wrong about what a run said of its disk."""
+    said = ended.complained
+    if ended.code == 0:
+        return ["exit code 0, and the new is not there"] * (held != "new")
+    wrong = []
+    if str(staged.stage) not in said or "disk is full" not in said:
+        wrong.append(f"exit code {ended.code}, and the full disk is not named: {said[-1000:]}")
+    if staged.case.program == COMMAND and (ended.code != BAD_INPUT or "Traceback" in said):
+        wrong.append(f"exit code {ended.code}: {said[-1000:]}")
+    if staged.case.prints and not ended.printed.strip() and ended.steps > REFUSED_BEFORE_STEPS:
+        wrong.append(f"nothing was printed before the disk was full: {said[-1000:]}")
+    return wrong

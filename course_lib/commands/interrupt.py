@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise RuntimeError("interrupt needs Linux or macOS: it forks, and kills groups of processes")
     from course_lib.commands.full_disk import full_disks, why_no_disk
     from course_lib.commands.interrupt_cases import CASES
-    from course_lib.commands.interruptions import Staged, interruptions
+    from course_lib.commands.interruptions import InterruptionError, Staged, interruptions
     from course_lib.experiments.results import write_results
     from course_lib.writing import replaced_outputs
 
@@ -56,19 +56,30 @@ def run(arguments: argparse.Namespace) -> int:
     no_disk = "not asked for" if arguments.no_disk else why_no_disk()
     rows = []
     for case, count, random in zip(cases, counts, np.random.default_rng(arguments.seed).spawn(len(cases)), strict=True):
-        with tempfile.TemporaryDirectory(prefix="course-interrupt-") as folder:
-            with Staged(case, Path(folder).resolve()) as staged:
-                row = {"name": case.name, "kill": interruptions(staged, count, random)}
-                stops = max(1, count // 10)
-                row["ctrl_c"] = interruptions(staged, stops, random, signal.SIGINT)
-                row["full_disk"] = None if no_disk else full_disks(staged)
+        row = {"name": case.name, **dict.fromkeys(WAYS), "not_run": None}
+        try:
+            with tempfile.TemporaryDirectory(prefix="course-interrupt-") as folder:
+                with Staged(case, Path(folder).resolve()) as staged:
+                    row["kill"] = interruptions(staged, count, random)
+                    row["ctrl_c"] = interruptions(staged, max(1, count // 10), random, signal.SIGINT)
+                    row["full_disk"] = None if no_disk else full_disks(staged)
+        except InterruptionError as error:
+            row["not_run"] = str(error)
         rows.append(row)
         print(row_text(row), file=sys.stderr, flush=True)
-    result = {"seed": arguments.seed, "moments": sum(counts), "no_disk": no_disk, "rows": rows, "sum": total(rows)}
+    result = {
+        "seed": arguments.seed,
+        "moments": arguments.moments,
+        "no_disk": no_disk,
+        "rows": rows,
+        "sum": total(rows),
+    }
     print(json.dumps(result) if arguments.json else table(result), flush=True)
     with replaced_outputs(arguments.out, "interrupt") as out:
         write_results(out / "interrupt.json", result)
-    return 1 if any(said["faults"] for said in result["sum"].values() if said) else 0
+    return (
+        1 if any(row["not_run"] for row in rows) or any(one["faults"] for one in result["sum"].values() if one) else 0
+    )
 
 
 def shares(moments: int, weights: list[int]) -> list[int]:
@@ -105,7 +116,7 @@ def table(result: dict) -> str:
     head = f"{'old / new / between / broken':<26}" + "".join(f"{name:<22}" for name in WAYS.values())
     sums = {"name": "all"} | result["sum"]
     lines = [head, *(row_text(row) for row in result["rows"]), row_text(sums), ""]
-    kill = result["sum"]["kill"]
+    kill = result["sum"]["kill"] or dict.fromkeys(COUNTED, 0)
     lines.append(
         f"between: whole files of both, where a command puts each in place by itself, and completed by the next run\n"
         f"{kill['cleared']} of {kill['moments']} kills left something unfinished beside the outputs, which the next "
@@ -113,5 +124,6 @@ def table(result: dict) -> str:
     )
     if result["no_disk"]:
         lines.append(f"no disk was filled: {result['no_disk']}")
+    lines += [f"not run: {row['not_run']}" for row in result["rows"] if row["not_run"]]
     lines += [fault for found in result["sum"].values() if found for fault in found["faults"]]
     return "\n".join(lines)

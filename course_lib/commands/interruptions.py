@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from course_lib.commands.interrupt_cases import Case
-from course_lib.commands.stopped_runs import Ended, Moment, Runs
+from course_lib.commands.stopped_runs import COMMAND, Ended, Moment, Runs
 from course_lib.commands.whole_outputs import Tree, left_over, put_back, state, tree
 from course_lib.paths import REPOSITORY, data_path
 
@@ -36,14 +36,14 @@ class Staged:
         case.prepare(self.given, self.out)
 
     def __enter__(self) -> Staged:
-        with Runs(self.stage, {}) as cold:
+        with Runs(self.stage) as cold:
             self.old = self._undisturbed(cold, 1)[0]
             self.new, ended = self._undisturbed(cold, 2)
         if self.old == self.new:
             raise InterruptionError(f"{self.case.name}: both runs made the same: nothing could be told apart")
-        self.steps = ended.steps
+        self.steps, self.modules = ended.steps, ended.modules
         self._context = contextlib.ExitStack()
-        self.runs = self._context.enter_context(Runs(self.stage, {}, ended.modules))
+        self.runs = self._context.enter_context(Runs(self.stage, self.modules))
         self.seconds = self._timed()
         return self
 
@@ -116,7 +116,8 @@ def interruptions(staged: Staged, count: int, random: np.random.Generator, numbe
         if found == "broken":
             faults.append(f"{where}: broken: {sorted(tree(staged.out))}")
         if number == signal.SIGINT:
-            faults += [f"{where}: {what}" for what in wrong_end(ended, left)]
+            faults += [f"{where}: left {left}"] * bool(left)
+            faults += [f"{where}: {what}" for what in wrong_end(ended) if staged.case.program == COMMAND]
         if left or found in ("between", "broken"):
             staged.run(2)
             still = left_over(staged.stage, staged.out)
@@ -127,14 +128,13 @@ def interruptions(staged: Staged, count: int, random: np.random.Generator, numbe
     return counts | {"seconds": round(staged.seconds, 2), "steps": staged.steps, "faults": faults}
 
 
-def wrong_end(ended: Ended, left: list[str]) -> list[str]:
-    """What is wrong about the end of a run after Ctrl-C: it says so in a line, ends with 130, and leaves nothing."""
-    wrong = [f"left {left}"] if left else []
+def wrong_end(ended: Ended) -> list[str]:
+    """What is wrong about a command's end after Ctrl-C: it says so in a line, without a traceback; exit code 130."""
     if ended.code == 0:  # it was done before
-        return wrong
-    if ended.code not in (STOPPED, -signal.SIGINT) or "Traceback" in ended.complained:
-        wrong.append(f"exit code {ended.code}, {ended.complained[-2000:]}")
-    return wrong
+        return []
+    if ended.code != STOPPED or "Traceback" in ended.complained:
+        return [f"exit code {ended.code}, {ended.complained[-2000:]}"]
+    return []
 
 
 def drawn_moment(staged: Staged, index: int, random: np.random.Generator, number: int) -> Moment:

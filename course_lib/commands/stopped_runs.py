@@ -130,14 +130,14 @@ class Ended(NamedTuple):
 class Runs:
     """A process whose forks run programs in the folder `stage`; a context manager.
 
-    modules: names of what is imported once, before the forks. environment: added to this process's.
+    modules: names of what is imported once, before the forks. before: words before the interpreter's.
     """
 
-    def __init__(self, stage: Path, environment: dict[str, str], modules: Sequence[str] = ()) -> None:
+    def __init__(self, stage: Path, modules: Sequence[str] = (), before: Sequence[str] = ()) -> None:
         self.stage, self.modules = stage, list(modules)
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-c", _FORKING, str(REPOSITORY)],
-            env=os.environ | {"PYTHONPATH": str(REPOSITORY)} | environment,
+            [*before, sys.executable, "-P", "-c", _FORKING, str(REPOSITORY)],
+            env=os.environ | {"PYTHONPATH": str(REPOSITORY)},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             bufsize=0,  # a line waits in the pipe, where `select` sees it, until it is read

@@ -37,5 +37,8 @@ def move_products(folder: Path, out: Path, products: Sequence[str]) -> None:
     """Puts the finished products in the place of the earlier ones, all at once; what else is in `out` stays."""
     with replaced_outputs(out, "make-data", products) as new:
         for name in products:
-            copy = shutil.copytree if (folder / name).is_dir() else shutil.copy2
-            copy(folder / name, new / name)
+            for path in sorted((folder / name, *(folder / name).rglob("*"))):
+                if path.is_dir():
+                    (new / path.relative_to(folder)).mkdir(parents=True)
+                else:  # one by one: `copytree` would collect a full disk's errors, and tell none of them
+                    shutil.copy2(path, new / path.relative_to(folder))
