@@ -27,8 +27,8 @@ class Case(NamedTuple):
     """Each file is put in place by itself, and the next run goes on: not all of a run's outputs at once."""
     prints: bool = True
     """It prints what it found, and must do so before it writes."""
-    share: int = 2
-    """How many of the moments are its own, beside the other cases."""
+    share: int = 1
+    """How many of the moments are its own, beside the other cases: more where a run takes a fraction of a second."""
     environment: str = ""
     """NAME=value that its run gets."""
     prepare: Callable[[Path, Path], None] = lambda given, out: None
@@ -75,25 +75,34 @@ _PAIR = "--upper {data}/room/experiment_1/01_a_upper.jpg --lower {data}/room/exp
 _RUN = "--particles 20 --frames 3 --seed {which} --out {out}"
 
 CASES: tuple[Case, ...] = (
+    writer("made_data", share=6),
+    writer("recording", share=6),
+    writer("semantic_map", share=6),
+    writer("simplified_map", share=6),
+    writer("checkpoint", share=6),
+    writer("sweep", by_file=True, share=6),
+    writer("lab_settings", by_file=True, share=6),
+    writer("working_copies", by_file=True, share=6, prepare=prepare_courses),
+    writer("notebook"),
     Case("demo corridor", f"demo corridor --recording shipped {_RUN}"),
-    Case("demo room", "demo room --poses {which} --out {out}", share=1),
+    Case("demo room", "demo room --poses {which} --out {out}"),
     Case(
         "localize",
         "localize --map {data}/corridor/map.ply --sequence {data}/corridor/wagon --dof xyyaw --method paper " + _RUN,
     ),
     Case("locate", f"locate {_PAIR} --map {{data}}/room/semantic_map.json --score-threshold 0.{{which}} --out {{out}}"),
-    Case("stereo", f"stereo {_PAIR} --sigma-pixels {{which}} --out {{out}}"),
+    Case("stereo", f"stereo {_PAIR} --sigma-pixels {{which}} --out {{out}}", share=2),
     Case(
         "ambiguity",
         "ambiguity --map {data}/finale/semantic_map.json --association greedy --step 3 --draws 2 --seed {which} "
         "--out {out}",
+        share=2,
     ),
     Case(
         "make-data training-rooms",
         "make-data training-rooms --rooms 1 --images-per-room 1 --first-room {which} --out {out}",
         by_file=True,
         prints=False,
-        share=1,
     ),
     Case("handout", "handout 03 --seed {which} --out {out}", prints=False),
     Case(
@@ -104,16 +113,8 @@ CASES: tuple[Case, ...] = (
     Case(
         "progress",
         "progress --out {out}/page.html",
+        share=2,
         environment="COURSE_RECORD={given}/record_{which}",
         prepare=prepare_records,
     ),
-    writer("made_data", share=3),
-    writer("recording", share=3),
-    writer("semantic_map", share=2),
-    writer("simplified_map", share=2),
-    writer("checkpoint", share=3),
-    writer("sweep", by_file=True, share=3),
-    writer("lab_settings", by_file=True, share=3),
-    writer("working_copies", by_file=True, share=3, prepare=prepare_courses),
-    writer("notebook", share=1),
 )
