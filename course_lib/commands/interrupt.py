@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import signal
 import sys
 import tempfile
 from pathlib import Path
@@ -41,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise RuntimeError("interrupt needs Linux or macOS: it forks, and kills groups of processes")
     from course_lib.commands.full_disk import full_disks, why_no_disk
     from course_lib.commands.interrupt_cases import CASES
-    from course_lib.commands.interruptions import InterruptionError, Staged, interruptions
+    from course_lib.commands.interruptions import InterruptionError, Staged, drawn_ctrl_c, drawn_kills, interruptions
     from course_lib.experiments.results import write_results
     from course_lib.writing import replaced_outputs
 
@@ -60,8 +59,8 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             with tempfile.TemporaryDirectory(prefix="course-interrupt-") as folder:
                 with Staged(case, Path(folder).resolve()) as staged:
-                    row["kill"] = interruptions(staged, count, random)
-                    row["ctrl_c"] = interruptions(staged, max(1, count // 10), random, signal.SIGINT)
+                    row["kill"] = interruptions(staged, drawn_kills(staged, count, random))
+                    row["ctrl_c"] = interruptions(staged, drawn_ctrl_c(staged, max(1, count // 10), random))
                     row["full_disk"] = None if no_disk else full_disks(staged)
         except InterruptionError as error:
             row["not_run"] = str(error)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import signal
 import time
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -93,35 +94,31 @@ class Staged:
         return time.monotonic() - began
 
 
-def interruptions(staged: Staged, count: int, random: np.random.Generator, number: int = signal.SIGKILL) -> dict:
-    """Stops a case at `count` moments, each on its way from the old to the new; what was found, counted.
+def interruptions(staged: Staged, moments: Iterable[Moment]) -> dict:
+    """Stops a case at these moments, each on its way from the old to the new; what was found, counted.
 
-    Half of the moments are of the clock, half are steps, with and without a delay; Ctrl-C comes at steps alone. After
-    one that left something, or stands between, the next run must clear and complete it.
+    After one that left something, or stands between, the next run must clear and complete it.
     """
     counts = dict.fromkeys(("moments", "old", "new", "between", "broken", "cleared", "left"), 0)
     faults = []
-    for index in range(count):
-        moment = drawn_moment(staged, index, random, number)
+    for moment in moments:
         staged.begin_anew()
         ended = staged.run(2, moment)
-        found = state(tree(staged.out), staged.old, staged.new, staged.case.by_file)
-        left = left_over(staged.stage, staged.out)
+        files, left = tree(staged.out), left_over(staged.stage, staged.out)
+        found = state(files, staged.old, staged.new, staged.case.by_file)
         counts["moments"] += 1
         counts[found] += 1
-        where = f"{staged.case.name}, {'kill -9' if number != signal.SIGINT else 'Ctrl-C'} at {moment}"
-        if found == "broken":
-            faults.append(f"{where}: broken: {sorted(tree(staged.out))}")
-        if number == signal.SIGINT:
-            faults += [f"{where}: left {left}"] * bool(left)
-            faults += [f"{where}: {what}" for what in wrong_end(ended) if staged.case.program == COMMAND]
+        wrong = [f"broken: {sorted(files)}"] * (found == "broken")
+        if moment.signal == signal.SIGINT:
+            wrong += [f"left {left}"] * bool(left) + (wrong_end(ended) if staged.case.program == COMMAND else [])
         if left or found in ("between", "broken"):
             staged.run(2)
             still = left_over(staged.stage, staged.out)
             counts["cleared"] += bool(left) and not still
             if still or state(tree(staged.out), staged.old, staged.new) != "new":
                 counts["left"] += 1
-                faults.append(f"{where}: the next run left {still}, {sorted(tree(staged.out))}")
+                wrong.append(f"the next run left {still}, {sorted(tree(staged.out))}")
+        faults += [f"{staged.case.name}, {moment}: {what}" for what in wrong]
     return counts | {"seconds": round(staged.seconds, 2), "steps": staged.steps, "faults": faults}
 
 
@@ -134,10 +131,18 @@ def wrong_end(ended: Ended) -> list[str]:
     return []
 
 
-def drawn_moment(staged: Staged, index: int, random: np.random.Generator, number: int) -> Moment:
-    """The moment of run `index`: by the clock, at a step, shortly after one, by turns."""
-    step = int(random.integers(1, max(staged.steps, 1) + 1))
-    delay, share = random.uniform(0, LONGEST_DELAY_S), random.uniform()
-    if number == signal.SIGKILL and index % 2:
-        return Moment(seconds=share * staged.seconds)
-    return Moment(step=step, delay=delay if index % 4 == 2 else 0.0, signal=number)
+def drawn_kills(staged: Staged, count: int, random: np.random.Generator) -> list[Moment]:
+    """Moments of kill -9, by turns at a step, by the clock, shortly after a step, by the clock."""
+    kills = []
+    for index in range(count):
+        at_a_step = Moment(step=int(random.integers(1, staged.steps + 1)))
+        delay, share = random.uniform(0, LONGEST_DELAY_S), random.uniform()
+        by_the_clock = Moment(seconds=share * staged.seconds)
+        kills.append((at_a_step, by_the_clock, at_a_step._replace(delay=delay), by_the_clock)[index % 4])
+    return kills
+
+
+def drawn_ctrl_c(staged: Staged, count: int, random: np.random.Generator) -> list[Moment]:
+    """Moments of Ctrl-C, at steps."""
+    steps = random.integers(1, staged.steps + 1, count)
+    return [Moment(step=int(step), signal=signal.SIGINT) for step in steps]

@@ -112,7 +112,10 @@ class Moment(NamedTuple):
     signal: int = getattr(signal, "SIGKILL", signal.SIGTERM)
 
     def __str__(self) -> str:
-        return f"{self.seconds:.3f} s" if self.seconds is not None else f"step {self.step} + {self.delay * 1000:.1f} ms"
+        how = "Ctrl-C" if self.signal == signal.SIGINT else "kill -9"
+        if self.seconds is not None:
+            return f"{how} after {self.seconds:.3f} s"
+        return f"{how} at step {self.step}" + f" + {self.delay * 1000:.1f} ms" * bool(self.delay)
 
 
 class Ended(NamedTuple):
