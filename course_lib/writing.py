@@ -52,7 +52,7 @@ def write_at_once(path: str | Path, content: bytes | str) -> None:
     path = Path(os.path.realpath(path))
     data = content.encode("utf-8") if isinstance(content, str) else content
     with told(path), _cleared_if_stopped(path):
-        _clear(path)
+        clear_unfinished(path)
         handle, unfinished = _begun(lambda: tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}{UNFINISHED}"))
         try:
             with os.fdopen(handle, "wb") as file:
@@ -84,7 +84,7 @@ def replaced_outputs(out: str | Path, command: str | None, products: Sequence[st
             out.parent.mkdir(parents=True, exist_ok=True)
             inside = out.is_dir() and (os.path.ismount(out) or _stands_in(out))
             _complete(out)
-            _clear(out)
+            clear_unfinished(out)
             lock, beside = _begun_folder(out if inside else out.parent, out.name)
         with _removed_at_the_end(lock, beside, out):
             new = beside / "new"
@@ -110,7 +110,7 @@ def staged(folder: str | Path) -> Iterator[Path]:
     folder = Path(os.path.realpath(folder))
     with _cleared_if_stopped(folder):
         with told(folder):
-            _clear(folder)
+            clear_unfinished(folder)
             lock, within = _begun_folder(folder, folder.name)
         with _removed_at_the_end(lock, within, folder):
             yield within
@@ -126,7 +126,7 @@ def require_writable(folder: str | Path) -> None:
     nearest = missing[-1].parent if missing else folder
     name = missing[-1].name if missing else folder.name
     with told(folder), _cleared_if_stopped(nearest / name if missing else folder):
-        _clear(nearest / name if missing else folder)
+        clear_unfinished(nearest / name if missing else folder)
         lock, within = _begun_folder(nearest, name)
         with _removed_at_the_end(lock, within, folder):
             (within / "trial").write_bytes(bytes(_TRIAL_BYTES))
@@ -224,8 +224,9 @@ def _made(out: Path) -> dict[str, list[str]]:
         return {}
 
 
-def _clear(path: Path) -> None:
-    """Removes what killed runs left of `path`."""
+def clear_unfinished(path: Path) -> None:
+    """Removes what killed runs left of `path`, or completes it: as every write does first, for who has none to do."""
+    path = Path(os.path.realpath(path))
     for folder in (path.parent, path):
         for left in folder.glob(f".{glob.escape(path.name)}{UNFINISHED}*") if folder.is_dir() else ():
             with _held(left) as orphaned:
@@ -262,7 +263,7 @@ def _cleared_if_stopped(path: Path) -> Iterator[None]:
         yield
     except BaseException:
         with contextlib.suppress(OSError):
-            _clear(path)
+            clear_unfinished(path)
         raise
 
 

@@ -97,7 +97,8 @@ def wrong_end(ended: Ended, held: str, staged: Staged) -> list[str]:
     if ended.code == 0:
         return ["exit code 0, and the new is not there"] * (held != "new")
     wrong = []
-    if str(staged.stage) not in said or "disk is full" not in said:
+    full = "disk is full" in said or "No space left on device" in said
+    if not full or not any(str(place) in said for place in (staged.stage, staged.given)):
         wrong.append(f"exit code {ended.code}, and the full disk is not named: {said[-1000:]}")
     if staged.case.program == COMMAND and (ended.code != BAD_INPUT or "Traceback" in said):
         wrong.append(f"exit code {ended.code}: {said[-1000:]}")

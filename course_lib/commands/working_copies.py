@@ -25,7 +25,7 @@ from course_lib.commands.lesson_versions import (
     text_version,
     whole_version,
 )
-from course_lib.writing import flush_below, staged
+from course_lib.writing import clear_unfinished, flush_below, staged
 
 WORK, MEMORY = "work", ".copies.json"
 _EARLIER = "earlier"  # in an entry of the memory: the entry before it, until the copy has changed as well
@@ -220,7 +220,7 @@ class _Copies:
         copies go to their places the earlier beside it, for a run that is killed then. Last the new alone.
         """
         if not self.contents:
-            return
+            return clear_unfinished(self.work)
         empty = not self.work.exists()
         self.work.mkdir(exist_ok=True)
         try:

@@ -216,9 +216,11 @@ def write_sequence(
         raise ValueError("frame numbers must ascend, each once")
     if len({np.shape(depth) for depth in depths}) > 1:
         raise ValueError(f"images must have one size; got {sorted({np.shape(depth) for depth in depths})}")
-    if (folder / "poses.txt").exists() or any((folder / "depth").glob("*.png")):
-        raise ValueError(f"{folder} already holds a recording, or part of one: give a new folder, or delete it first")
     with replaced_outputs(folder, None) as new:  # as a whole: without its last files it would pass for another one
+        if (folder / "poses.txt").exists() or any((folder / "depth").glob("*.png")):
+            raise ValueError(
+                f"{folder} already holds a recording, or part of one: give a new folder, or delete it first"
+            )
         (new / "depth").mkdir()
         for frame, depth in zip(frames, depths, strict=True):
             write_depth_png(new / "depth" / f"{frame:06d}.png", depth)
