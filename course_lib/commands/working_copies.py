@@ -96,6 +96,7 @@ class _Copies:
         self.contents: dict[str, bytes] = {}  # path below work/ -> what is to be written there
         self.set_aside: dict[str, str] = {}  # path below work/ -> new name of what stands there
         self.in_place = changed_in_place(root)
+        self.unsettled = False  # whether a run was killed while the copies went to their places
         self.memory = self._remembered()
         self.earlier = dict(self.memory)
 
@@ -139,7 +140,7 @@ class _Copies:
             )
         for name in below_notebooks(self.root, COMPANIONS):
             self._follow(name)
-        if json.dumps(self.memory) != remembered or MEMORY in self.set_aside:
+        if json.dumps(self.memory) != remembered or MEMORY in self.set_aside or self.unsettled:
             self.contents[MEMORY] = json.dumps(self.memory, indent=1).encode()
 
     def _version(self, name: str) -> dict[str, str]:
@@ -190,6 +191,7 @@ class _Copies:
             memory = json.loads((self.work / MEMORY).read_text(encoding="utf-8"))
             entries = [*memory.values(), *(entry[_EARLIER] for entry in memory.values() if entry.get(_EARLIER))]
             if all(isinstance(entry["whole"] + entry.get("text", ""), str) for entry in entries):
+                self.unsettled = any(_EARLIER in entry for entry in memory.values())
                 return {name: self._settled(name, entry) for name, entry in memory.items()}
         except FileNotFoundError:
             return {}
