@@ -39,14 +39,18 @@ class Staged:
 
     def __enter__(self) -> Staged:
         with Runs(self.stage) as cold:
-            self.old = self._undisturbed(cold, 1)[0]
-            self.new, ended = self._undisturbed(cold, 2)
-        if self.old == self.new:
-            raise InterruptionError(f"{self.case.name}: both runs made the same: nothing could be told apart")
-        self.steps, self.modules = ended.steps, ended.modules
-        self._context = contextlib.ExitStack()
-        self.runs = self._context.enter_context(Runs(self.stage, self.modules))
-        self.seconds = self._timed()
+            self.old, ended = self._undisturbed(cold, 1)
+        with contextlib.ExitStack() as context:
+            self.modules = ended.modules
+            self.runs = context.enter_context(Runs(self.stage, self.modules))
+            self.begin_anew()
+            self.runs.run("", [], {})  # imports what the others need
+            began = time.monotonic()
+            self.new, ended = self._undisturbed(self.runs, 2)
+            self.seconds, self.steps = time.monotonic() - began, ended.steps
+            if self.old == self.new:
+                raise InterruptionError(f"{self.case.name}: both runs made the same: nothing could be told apart")
+            self._context = context.pop_all()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -85,13 +89,6 @@ class Staged:
                 f"{ended.complained[-1000:]}"
             )
         return tree(self.out), ended
-
-    def _timed(self) -> float:
-        """Seconds that a run takes in a fork, from the old to the new."""
-        self.begin_anew()
-        began = time.monotonic()
-        self.run(2)
-        return time.monotonic() - began
 
 
 def interruptions(staged: Staged, moments: Iterable[Moment]) -> dict:
