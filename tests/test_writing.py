@@ -14,6 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from course_lib import writing
+from course_lib.simulation.data_folder import move_products
 from course_lib.writing import MADE, UNFINISHED, WriteError, replaced_outputs, write_at_once
 
 
@@ -236,6 +237,20 @@ def test_files_are_staged_beside_their_places_and_nothing_is_left(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
 
 
+def test_copies_of_made_data_name_the_full_disk(tmp_path, monkeypatch):
+    """`copytree` would collect what every file said, and the number of the error would be lost."""
+    (tmp_path / "made" / "wagon").mkdir(parents=True)
+    (tmp_path / "made" / "wagon" / "0.png").write_text("x")
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("shutil.copy2", full)
+    with pytest.raises(WriteError, match="data cannot be written: the disk is full"):
+        move_products(tmp_path / "made", tmp_path / "data", ["wagon"])
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["made"]
+
+
 def test_what_cannot_be_written_is_refused_before_the_work(tmp_path):
     writing.require_writable(tmp_path / "new" / "deep")
     assert list(tmp_path.iterdir()) == []
@@ -318,7 +333,7 @@ def can_mount():
 FULL = """
 import sys
 from pathlib import Path
-from course_lib.writing import WriteError, replaced_outputs, write_at_once
+from course_lib.writing import WriteError, replaced_outputs, require_writable, write_at_once
 disk = Path(sys.argv[1])
 write_at_once(disk / "alone.txt", "old")
 for out in (disk / "out", disk):
@@ -334,6 +349,18 @@ for act in ("file", "folder", "mount"):
                 (new / "b").write_text("x" * 2_000_000)
     except WriteError as error:
         print(error)
+(disk / "rest").write_bytes(b"")
+try:
+    with (disk / "rest").open("wb", buffering=0) as file:
+        while file.write(bytes(4096)):
+            pass
+except OSError:
+    pass
+try:
+    require_writable(disk / "results")
+except WriteError as error:
+    print(error)
+(disk / "rest").unlink()
 files = [p for p in disk.rglob("*") if p.is_file() and p.name[0] != "."]
 print(sorted((p.relative_to(disk).as_posix(), p.read_text()) for p in files))
 """
@@ -350,7 +377,7 @@ def test_on_a_full_disk_the_old_stays_and_the_message_names_the_file(tmp_path):
     assert done.returncode == 0, done.stderr
     *told, found = done.stdout.splitlines()
     assert [line.split(": ")[0] for line in told] == [
-        f"{disk / name} cannot be written" for name in ("alone.txt", "out")
-    ] + [f"{disk} cannot be written"]
+        f"{place} cannot be written" for place in (disk / "alone.txt", disk / "out", disk, disk / "results")
+    ]
     assert all("disk is full" in line for line in told)
     assert found == str([("a", "old"), ("alone.txt", "old"), ("out/a", "old")])

@@ -15,6 +15,8 @@ _WRITER = (
     "import sys\nfrom pathlib import Path\nfrom course_lib.commands.interrupt_writers import WRITERS\n"
     "WRITERS[sys.argv[1]](Path(sys.argv[2]), int(sys.argv[3]))"
 )
+# What `progress` runs in a process of its own, whose steps would not be seen.
+_PROGRESS = "import runpy\nrunpy.run_module('course_lib.lessons.kit.show_progress', run_name='__main__')"
 
 
 class Case(NamedTuple):
@@ -112,7 +114,8 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "progress",
-        "progress --out {out}/page.html",
+        "--out {out}/page.html",
+        _PROGRESS,
         share=2,
         environment="COURSE_RECORD={given}/record_{which}",
         prepare=prepare_records,

@@ -131,8 +131,9 @@ def wrong_end(ended: Ended) -> list[str]:
 def drawn_kills(staged: Staged, count: int, random: np.random.Generator) -> list[Moment]:
     """Moments of kill -9, by turns at a step, by the clock, shortly after a step, by the clock."""
     kills = []
+    steps = max(staged.steps, 1)  # none are seen where a command's own child writes: then the clock alone stops it
     for index in range(count):
-        at_a_step = Moment(step=int(random.integers(1, staged.steps + 1)))
+        at_a_step = Moment(step=int(random.integers(1, steps + 1)))
         delay, share = random.uniform(0, LONGEST_DELAY_S), random.uniform()
         by_the_clock = Moment(seconds=share * staged.seconds)
         kills.append((at_a_step, by_the_clock, at_a_step._replace(delay=delay), by_the_clock)[index % 4])
@@ -141,5 +142,5 @@ def drawn_kills(staged: Staged, count: int, random: np.random.Generator) -> list
 
 def drawn_ctrl_c(staged: Staged, count: int, random: np.random.Generator) -> list[Moment]:
     """Moments of Ctrl-C, at steps."""
-    steps = random.integers(1, staged.steps + 1, count)
+    steps = random.integers(1, max(staged.steps, 1) + 1, count)
     return [Moment(step=int(step), signal=signal.SIGINT) for step in steps]
