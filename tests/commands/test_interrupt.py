@@ -48,6 +48,12 @@ def test_old_and_new_are_told_from_anything_else(now, expected):
     assert state(now, OLD, NEW) == expected
 
 
+def test_a_page_of_the_old_among_the_new_is_broken_however_alike_both_are():
+    old, new = OLD | {"page.html": b"1</html>"}, NEW | {"page.html": b"2</html>"}
+    assert state(new | {"page.html": b"3</html>"}, old, new) == "new", "pages tell the time"
+    assert state(new | {"page.html": b"1</html>"}, old, new) == "broken"
+
+
 def test_file_by_file_whole_ones_of_both_are_between_and_halves_are_not():
     mixed = NEW | {"a.json": OLD["a.json"]}
     assert state(mixed, OLD, NEW, by_file=True) == "between"
