@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import shutil
 import signal
 import time
 from collections.abc import Iterable
@@ -13,7 +14,7 @@ import numpy as np
 from course_lib.commands.interrupt_cases import Case
 from course_lib.commands.stopped_runs import COMMAND, Ended, Moment, Runs
 from course_lib.commands.whole_outputs import Tree, left_over, put_back, state, tree
-from course_lib.paths import REPOSITORY, data_path
+from course_lib.paths import data_path
 
 LONGEST_DELAY_S = 0.005  # after a step: a file of some megabytes is being written then
 STOPPED = 130  # exit code after Ctrl-C
@@ -56,9 +57,9 @@ class Staged:
     def __exit__(self, *_: object) -> None:
         self._context.close()
 
-    def words(self, which: int, out: Path | None = None) -> list[str]:
+    def words(self, which: int) -> list[str]:
         """The words of its first or second run."""
-        return [word.format(**self._places(which, out)) for word in self.case.words.split()]
+        return [word.format(**self._places(which)) for word in self.case.words.split()]
 
     def environment(self, which: int) -> dict[str, str]:
         """The environment variables of a run."""
@@ -72,14 +73,14 @@ class Staged:
     def begin_anew(self) -> None:
         """The old, and nothing beside it."""
         for path in self.stage.iterdir():
-            if path != self.out:
-                put_back(path, {}) if path.is_dir() else path.unlink()
-                path.rmdir() if path.is_dir() else None
+            if path.is_dir():
+                shutil.rmtree(path)
+            else:
+                path.unlink()
         put_back(self.out, self.old)
 
-    def _places(self, which: int, out: Path | None = None) -> dict[str, object]:
-        data = data_path("corridor").parent
-        return {"out": out or self.out, "given": self.given, "data": data, "which": which, "root": REPOSITORY}
+    def _places(self, which: int) -> dict[str, object]:
+        return {"out": self.out, "given": self.given, "data": data_path("corridor").parent, "which": which}
 
     def _undisturbed(self, runs: Runs, which: int) -> tuple[Tree, Ended]:
         ended = runs.run(self.case.program, self.words(which), self.environment(which))
