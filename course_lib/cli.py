@@ -55,6 +55,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "handout": ("handout", "make a class's folder: lessons without solutions, and the teacher's with graded tests"),
     "grade": ("grade", "grade a folder of submissions in a sandbox: points and hints as CSV and as a page"),
     "refresh": ("refresh", "run the lessons again and store their outputs"),
+    "interrupt": ("interrupt", "kill every writing command at random moments, fill its disk: old or new, never half"),
 }
 
 EXIT_BAD_INPUT = 2

@@ -4,6 +4,7 @@ import contextlib
 import ctypes
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from course_lib import writing
+from course_lib.simulation.data_folder import move_products
 from course_lib.writing import MADE, UNFINISHED, WriteError, replaced_outputs, write_at_once
 
 
@@ -148,6 +150,116 @@ def test_what_a_list_of_outputs_names_outside_its_folder_is_never_removed(tmp_pa
     assert names(out) == ["b.json"]
 
 
+def test_without_a_command_no_list_is_kept_and_the_products_are_replaced_folders_and_all(tmp_path):
+    out = tmp_path / "out"
+    (out / "lessons" / "old").mkdir(parents=True)
+    (out / "lessons" / "old" / "03.ipynb").write_text("old")
+    (out / "mine").mkdir()
+    (out / "notes.txt").write_text("mine")
+    with replaced_outputs(out, None, ("lessons",)) as new:
+        (new / "lessons").mkdir()
+        (new / "lessons" / "06.ipynb").write_text("new")
+    found = sorted(path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*"))
+    assert found == ["out", "out/lessons", "out/lessons/06.ipynb", "out/mine", "out/notes.txt"]
+
+
+def test_a_folder_that_is_kept_keeps_its_mode(tmp_path):
+    out = tmp_path / "out"
+    make(out, {"a.json": "1"})
+    (out / "private").mkdir(mode=0o700)
+    (out / "private" / "notes.txt").write_text("mine")
+    make(out, {"a.json": "2"})
+    assert (out / "private").stat().st_mode & 0o777 == 0o700
+
+
+def test_interrupted_while_files_change_places_what_was_made_whole_is_moved_whole(tmp_path, monkeypatch):
+    """Ctrl-C between two of the files: neither half of the one run nor half of the other."""
+    monkeypatch.setattr(writing, "_exchange", lambda one, other: False)
+    out = tmp_path / "out"
+    make(out, {"a.json": "1", "b.json": "1"})
+    replace, moved = os.replace, []
+
+    def interrupted(old, new):
+        if str(new).endswith("b.json") and not moved:
+            moved.append(new)
+            raise KeyboardInterrupt
+        replace(old, new)
+
+    monkeypatch.setattr(os, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        make(out, {"a.json": "2", "b.json": "2"})
+    assert moved
+    assert {(out / name).read_text() for name in ("a.json", "b.json")} == {"2"}
+    assert left_over(tmp_path) == []
+
+
+@pytest.mark.skipif(not hasattr(signal, "raise_signal") or os.name == "nt", reason="Ctrl-C at a step of the system")
+@pytest.mark.parametrize("step", ["os.mkdir", "open", "fcntl.flock"])
+def test_ctrl_c_between_making_and_knowing_leaves_nothing(tmp_path, step):
+    (tmp_path / "alone.txt").write_text("old")
+    program = f"""
+import signal, sys
+from pathlib import Path
+from course_lib.writing import replaced_outputs, staged, write_at_once
+disk, armed = Path({str(tmp_path)!r}), []
+def hook(event, arguments):
+    if armed and event == {step!r} and (event != "open" or UNFINISHED in str(arguments[0])):
+        armed.clear()
+        signal.raise_signal(signal.SIGINT)
+from course_lib.writing import UNFINISHED
+sys.addaudithook(hook)
+def folder():
+    with replaced_outputs(disk / "out", "demo") as new: (new / "a").write_text("new")
+def stage():
+    with staged(disk): pass
+for act in (lambda: write_at_once(disk / "alone.txt", "new"), folder, stage):
+    armed.append(1)
+    try:
+        act()
+    except KeyboardInterrupt:
+        print("stopped")
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.count("stopped") >= 2
+    assert left_over(tmp_path) == []
+    assert not any((tmp_path / "out").glob("*"))
+
+
+def test_files_are_staged_beside_their_places_and_nothing_is_left(tmp_path):
+    left = tmp_path / f".{tmp_path.name}{UNFINISHED}abcdefgh"
+    left.mkdir()
+    (left / "0").write_text("of a killed run")
+    with writing.staged(tmp_path) as stage:
+        assert not left.exists()
+        write_at_once(stage / "0", "new")
+        os.replace(stage / "0", tmp_path / "a.txt")
+        write_at_once(stage / "1", "not moved")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_copies_of_made_data_name_the_full_disk(tmp_path, monkeypatch):
+    """`copytree` would collect what every file said, and the number of the error would be lost."""
+    (tmp_path / "made" / "wagon").mkdir(parents=True)
+    (tmp_path / "made" / "wagon" / "0.png").write_text("x")
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("shutil.copy2", full)
+    with pytest.raises(WriteError, match="data cannot be written: the disk is full"):
+        move_products(tmp_path / "made", tmp_path / "data", ["wagon"])
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["made"]
+
+
+def test_what_cannot_be_written_is_refused_before_the_work(tmp_path):
+    writing.require_writable(tmp_path / "new" / "deep")
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "file").write_text("x")
+    for folder in (tmp_path / "file", tmp_path / "file" / "deep", "/proc/nope") if os.path.isdir("/proc") else ():
+        with pytest.raises(WriteError, match=re.escape(str(folder))):
+            writing.require_writable(folder)
+
+
 @pytest.mark.parametrize("text", ["", "[", "[1]", '{"demo": 3}', '{"demo": [3]}', "\udc80"])
 def test_a_damaged_list_of_outputs_costs_nothing(tmp_path, text):
     out = tmp_path / "out"
@@ -186,7 +298,7 @@ while True:
 
 @pytest.mark.skipif(os.name == "nt", reason="kill -9")
 def test_killed_at_any_moment_the_old_or_the_new_is_there_whole(tmp_path):
-    """40 moments here; `course.py fuzz --kill` has 200 over the commands."""
+    """40 moments here; `course.py interrupt` has 200 over the commands."""
     out, draw = tmp_path / "in" / "out", random.Random(14)
     out.parent.mkdir()
     for kill in range(40):
@@ -221,7 +333,7 @@ def can_mount():
 FULL = """
 import sys
 from pathlib import Path
-from course_lib.writing import WriteError, replaced_outputs, write_at_once
+from course_lib.writing import WriteError, replaced_outputs, require_writable, write_at_once
 disk = Path(sys.argv[1])
 write_at_once(disk / "alone.txt", "old")
 for out in (disk / "out", disk):
@@ -237,6 +349,18 @@ for act in ("file", "folder", "mount"):
                 (new / "b").write_text("x" * 2_000_000)
     except WriteError as error:
         print(error)
+(disk / "rest").write_bytes(b"")
+try:
+    with (disk / "rest").open("wb", buffering=0) as file:
+        while file.write(bytes(4096)):
+            pass
+except OSError:
+    pass
+try:
+    require_writable(disk / "results")
+except WriteError as error:
+    print(error)
+(disk / "rest").unlink()
 files = [p for p in disk.rglob("*") if p.is_file() and p.name[0] != "."]
 print(sorted((p.relative_to(disk).as_posix(), p.read_text()) for p in files))
 """
@@ -253,7 +377,7 @@ def test_on_a_full_disk_the_old_stays_and_the_message_names_the_file(tmp_path):
     assert done.returncode == 0, done.stderr
     *told, found = done.stdout.splitlines()
     assert [line.split(": ")[0] for line in told] == [
-        f"{disk / name} cannot be written" for name in ("alone.txt", "out")
-    ] + [f"{disk} cannot be written"]
+        f"{place} cannot be written" for place in (disk / "alone.txt", disk / "out", disk, disk / "results")
+    ]
     assert all("disk is full" in line for line in told)
     assert found == str([("a", "old"), ("alone.txt", "old"), ("out/a", "old")])

@@ -14,11 +14,7 @@ The same seed makes the same folder, letter by letter.
 from __future__ import annotations
 
 import ast
-import contextlib
 import json
-import os
-import shutil
-import tempfile
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
@@ -29,6 +25,7 @@ from course_lib.classroom.model_answers import model_solution_path
 from course_lib.classroom.nbgrader_course import canary_of, write_course, write_grading_module
 from course_lib.classroom.rubric import rubric
 from course_lib.classroom.student_copies import solved_notebook, write_copies
+from course_lib.writing import UNFINISHED, replaced_outputs
 
 MARKER = "handout.json"
 MADE_BY = "course.py handout"
@@ -129,18 +126,15 @@ def make_handout(
     """
     out = out.absolute()
     require_place(out)
-    out.parent.mkdir(parents=True, exist_ok=True)
     canary = canary_of(seed)
-    with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as temporary:
-        made = Path(temporary) / "handout"
-        made.mkdir()
+    with replaced_outputs(out, None, [path.name for path in out.glob("*")]) as made:
         for step in progress(steps(made, assignments, seed, canary, solved)):
             step()
         leaks = find_leaks(made / "student", teachers_words(seed, canary) | solutions(assignments))
         if leaks:
             raise LeakError(f"nothing is handed out: {leaks[0]}" + (f", and {len(leaks) - 1} more" * (len(leaks) > 1)))
         (made / "teacher").chmod(0o700)
-        put_in_place(made, out, Path(temporary))
+        require_place(out)  # somebody may have begun to work there while it was made
     return out
 
 
@@ -203,7 +197,7 @@ def require_place(out: Path) -> None:
         return
     if out.is_symlink() or not out.is_dir():
         raise HandoutError(f"--out {out} is no folder: name one that is new, or a handout to be replaced")
-    if any(out.iterdir()) and not is_handout(out):
+    if any(UNFINISHED not in path.name for path in out.iterdir()) and not is_handout(out):
         raise HandoutError(
             f"--out {out} holds something that is no handout of ours: name a new folder, or an empty one"
         )
@@ -221,18 +215,3 @@ def is_handout(folder: Path) -> bool:
         return json.loads((folder / MARKER).read_text(encoding="utf-8"))["made_by"] == MADE_BY
     except (OSError, ValueError, KeyError, TypeError):
         return False
-
-
-def put_in_place(made: Path, out: Path, temporary: Path) -> None:
-    """Put a whole folder where an older one may stand; if that fails, the older one stands there again."""
-    old = temporary / "old"
-    if out.exists():
-        os.replace(out, old)
-    try:
-        os.replace(made, out)
-    except OSError:
-        if old.exists():
-            os.replace(old, out)
-        raise
-    with contextlib.suppress(OSError):
-        shutil.rmtree(old, ignore_errors=True)

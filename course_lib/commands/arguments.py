@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import math
 import re
-import tempfile
 from pathlib import Path
+
+from course_lib.writing import WriteError, require_writable
 
 
 def add_backend_argument(parser: argparse.ArgumentParser) -> None:
@@ -63,11 +64,7 @@ def require_output_folder(folder: Path) -> None:
     """Raises `ValueError` unless `folder` is a folder that can be written, or one can be made there."""
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"--out {folder} is a file: give a folder")
-    nearest = folder.absolute()
-    while not nearest.exists():
-        nearest = nearest.parent
     try:
-        # Tried, not asked: a root user is told yes where even root may not write.
-        tempfile.TemporaryDirectory(dir=nearest).cleanup()
-    except OSError as error:
-        raise ValueError(f"--out {folder}: {nearest} cannot be written to; give a folder of your own") from error
+        require_writable(folder)
+    except WriteError as error:
+        raise ValueError(f"--out {error}") from error

@@ -21,11 +21,16 @@ from pathlib import Path
 from course_lib.child import python
 from course_lib.child import run as run_child
 from course_lib.commands.arguments import require_output_folder
+from course_lib.writing import replaced_outputs
 
 ROOT = Path(__file__).resolve().parents[2]
 LOCK = ROOT / "environment-bench.txt"
 TOOLS = ROOT / ".bench"
 STAMP = "course-bench.txt"
+
+
+class MeasurementError(RuntimeError):
+    """The measurement's own process failed."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -127,8 +132,6 @@ def run_lessons(arguments: argparse.Namespace) -> int:
 
 def run_tools(arguments: argparse.Namespace) -> int:
     """Installs what is missing, measures in a process of its own, prints and saves."""
-    from course_lib.commands.bench_table import table
-
     require_output_folder(arguments.out)
     if arguments.recording and not (arguments.recording / "map.ply").is_file():
         raise ValueError(f"--recording {arguments.recording} holds no map.ply: see data/README.md for the format")
@@ -136,8 +139,15 @@ def run_tools(arguments: argparse.Namespace) -> int:
         why = install_tools()
         if why:
             print(f"The tools to compare with could not be installed, and are left out: {why}", file=sys.stderr)
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    words = ["--quick"] if arguments.quick else ["--figure", str((arguments.out / "bench.png").resolve())]
+    with replaced_outputs(arguments.out, "bench") as out:
+        return measure(arguments, out)
+
+
+def measure(arguments: argparse.Namespace, out: Path) -> int:
+    """Measures in a process of its own, prints, then saves into `out`; returns the exit code."""
+    from course_lib.commands.bench_table import table
+
+    words = ["--quick"] if arguments.quick else ["--figure", str(out / "bench.png")]
     words += ["--recording", str(arguments.recording.resolve())] if arguments.recording else []
     done = run_child(
         python(ROOT / "benchmarks" / "measure.py", *words),
@@ -146,11 +156,10 @@ def run_tools(arguments: argparse.Namespace) -> int:
         text=True,
     )
     if done.returncode:
-        print(f"The measurement ended with code {done.returncode}; what it said stands above.", file=sys.stderr)
-        return 1
+        raise MeasurementError(f"the measurement ended with code {done.returncode}; what it said stands above")
     result = json.loads(done.stdout.splitlines()[-1])
-    (arguments.out / "bench.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
-    print(json.dumps(result) if arguments.json else table(result))
+    print(json.dumps(result) if arguments.json else table(result), flush=True)
+    (out / "bench.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     return 0
 
 

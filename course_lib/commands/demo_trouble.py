@@ -93,9 +93,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _result(arguments: argparse.Namespace, name: str, seeds: list[int], percents: list[int]) -> dict:
     """All seeds of one method; those that --out holds are not run again."""
-    from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
-
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments import sweep
     from course_lib.experiments.sensor_trouble import depth_run, stereo_run
@@ -105,6 +102,7 @@ def _result(arguments: argparse.Namespace, name: str, seeds: list[int], percents
     from course_lib.paths import data_path
     from course_lib.processors import processors
     from course_lib.spherical_stereo.detection.detector import YoloDetector
+    from course_lib.worker_pool import worker_pool
 
     common = {"shares": [percent / 100 for percent in percents]}
     if name == "stereo":
@@ -120,8 +118,7 @@ def _result(arguments: argparse.Namespace, name: str, seeds: list[int], percents
     points = [{**common, "seed": seed} for seed in seeds]
     bar = progress_bar(name, "seed")
     workers = min(arguments.processes or processors(), len(points))
-    # A fresh process each: a fork would inherit windows and threads that it cannot use.
-    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+    with worker_pool(workers) as pool:
         rows = sweep(function, points, pool, results=arguments.out / f"{name}.jsonl", progress=bar)
     told = summary([row["result"] for row in rows], gate)
     return {"method": name, "seeds": seeds, "frames": common["frames"], **told}

@@ -9,8 +9,9 @@ import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from course_lib.commands.arguments import require_output_folder
 from course_lib.processors import processors
-from course_lib.writing import write_at_once
+from course_lib.writing import replaced_outputs
 
 TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"
 
@@ -66,14 +67,15 @@ def run(arguments: argparse.Namespace) -> int:
             raise ValueError(f"{name} {value}: it must be more than 0")
     if arguments.seed is not None and arguments.seed < 0:
         raise ValueError(f"--seed {arguments.seed}: it must be 0 or more")
+    require_output_folder(out)
     seed = secrets.randbelow(2**48) if arguments.seed is None else arguments.seed
     limits = Limits(arguments.call_seconds, arguments.seconds, arguments.memory)
     started = time.monotonic()
     jobs, trusted, scores = arguments.jobs or processors(), arguments.trusted, arguments.scores
     results = grade_folder(arguments.folder, seed, jobs, limits, trusted, scores, progress_bar)
     pages = {TABLE: answers_table(results), TOTALS: totals_table(results), PAGE: grade_page(results)}
+    print(summary(results, time.monotonic() - started), flush=True)  # before the disk can be full
     write(out, pages)
-    print(summary(results, time.monotonic() - started))
     print("\n".join(f"{out / name}" for name in pages))
     return 0
 
@@ -94,10 +96,10 @@ def progress_bar(graded: Iterable, total: int) -> Iterator:
 
 
 def write(out: Path, pages: dict[str, str]) -> None:
-    """Every file written beside its place and then put there, so that none is ever half a file."""
-    out.mkdir(parents=True, exist_ok=True)
-    for name, text in pages.items():
-        write_at_once(out / name, text)
+    """All the files in the place of an earlier grading's, at once: the table and the page are of one grading."""
+    with replaced_outputs(out, "grade") as new:
+        for name, text in pages.items():
+            (new / name).write_bytes(text.encode("utf-8"))
 
 
 def summary(results, seconds: float) -> str:

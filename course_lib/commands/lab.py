@@ -11,7 +11,6 @@ import argparse
 import contextlib
 import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -22,6 +21,7 @@ from course_lib.commands.lab_port import FIRST, reserve_port
 from course_lib.commands.lesson_versions import NOTEBOOKS, lessons
 from course_lib.commands.saved_panels import HOOK
 from course_lib.commands.working_copies import WORK, copy_of, make_copies
+from course_lib.writing import write_at_once
 
 ROOT = Path(__file__).resolve().parents[2]
 EXTENSION = Path(__file__).with_name("lab_extension")
@@ -180,13 +180,17 @@ def write_settings(state: Path) -> None:
     for name, content in files.items():
         path = state / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(content, indent=1), encoding="utf-8")
+        write_at_once(path, json.dumps(content, indent=1))  # another lab may be reading it
 
 
 def install_extension(state: Path) -> None:
     """Puts the course's extension where JupyterLab finds it: the names of a panel's controls, and its look."""
     name = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))["name"]
-    shutil.copytree(EXTENSION, state / "data" / "labextensions" / name, dirs_exist_ok=True)
+    for path in sorted(EXTENSION.rglob("*")):
+        if path.is_file():
+            target = state / "data" / "labextensions" / name / path.relative_to(EXTENSION)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            write_at_once(target, path.read_bytes())
 
 
 def trust_lessons(state: Path, root: Path = ROOT) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from course_lib.commands.arguments import require_output_folder
 from course_lib.commands.detector_options import chosen_detector
 from course_lib.processors import processors
+from course_lib.writing import replaced_outputs
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "projects"
 
@@ -39,15 +40,14 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments.project_rooms import make_project_rooms
     from course_lib.simulation.data_folder import checksums
 
-    out.mkdir(parents=True, exist_ok=True)
-    counts = make_project_rooms(
-        out,
-        partial(chosen_detector, arguments),
-        arguments.work,
-        arguments.processes or processors(),
-        progress_bar("rooms", "room"),
-    )
-    files = [f"rooms_{name}.json" for name in counts]
-    (out / "SHA256SUMS").write_text(checksums(out, files))
+    with replaced_outputs(out, "make-data projects") as new:
+        counts = make_project_rooms(
+            new,
+            partial(chosen_detector, arguments),
+            arguments.work,
+            arguments.processes or processors(),
+            progress_bar("rooms", "room"),
+        )
+        (new / "SHA256SUMS").write_text(checksums(new, [f"rooms_{name}.json" for name in counts]))
     print(f"wrote {' and '.join(f'{n} views ({name})' for name, n in counts.items())} to {out}")
     return 0

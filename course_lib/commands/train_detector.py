@@ -8,9 +8,10 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import json
-import shutil
 import sys
 from pathlib import Path
+
+from course_lib.writing import write_at_once
 
 DATA = Path(__file__).parents[2] / "data" / "detector"
 
@@ -99,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     for path in (arguments.cfg, arguments.names):
         if path.resolve().parent != arguments.out.resolve():
-            shutil.copy(path, arguments.out)
+            write_at_once(arguments.out / path.name, path.read_bytes())
     cfg, names = arguments.out / arguments.cfg.name, arguments.out / arguments.names.name
     _log("measuring the finished detector (OpenCV) on the validation images")
     validation = measure_detector(cfg, result.weights, names, arguments.validation)

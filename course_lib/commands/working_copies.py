@@ -12,7 +12,6 @@ import contextlib
 import datetime
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -26,8 +25,10 @@ from course_lib.commands.lesson_versions import (
     text_version,
     whole_version,
 )
+from course_lib.writing import clear_unfinished, flush_below, staged
 
 WORK, MEMORY = "work", ".copies.json"
+_EARLIER = "earlier"  # in an entry of the memory: the entry before it, until the copy has changed as well
 # What lessons show and link to. Not among it: projects/solutions, and scenes/yours, where a student's own scenes go.
 COMPANIONS = ("*.md", "pictures/*", "scenes/*.html", "projects/*.md")
 
@@ -95,7 +96,9 @@ class _Copies:
         self.contents: dict[str, bytes] = {}  # path below work/ -> what is to be written there
         self.set_aside: dict[str, str] = {}  # path below work/ -> new name of what stands there
         self.in_place = changed_in_place(root)
+        self.unsettled = False  # whether a run was killed while the copies went to their places
         self.memory = self._remembered()
+        self.earlier = dict(self.memory)
 
     def decide(self, fresh: set[str]) -> None:
         """Compares the course with the copies: afterwards all that is to be written and said is known."""
@@ -137,7 +140,7 @@ class _Copies:
             )
         for name in below_notebooks(self.root, COMPANIONS):
             self._follow(name)
-        if json.dumps(self.memory) != remembered or MEMORY in self.set_aside:
+        if json.dumps(self.memory) != remembered or MEMORY in self.set_aside or self.unsettled:
             self.contents[MEMORY] = json.dumps(self.memory, indent=1).encode()
 
     def _version(self, name: str) -> dict[str, str]:
@@ -186,8 +189,10 @@ class _Copies:
         """What `.copies.json` says. One that cannot be read is set aside; copies then count as the present lessons'."""
         try:
             memory = json.loads((self.work / MEMORY).read_text(encoding="utf-8"))
-            if all(isinstance(entry["whole"] + entry.get("text", ""), str) for entry in memory.values()):
-                return memory
+            entries = [*memory.values(), *(entry[_EARLIER] for entry in memory.values() if entry.get(_EARLIER))]
+            if all(isinstance(entry["whole"] + entry.get("text", ""), str) for entry in entries):
+                self.unsettled = any(_EARLIER in entry for entry in memory.values())
+                return {name: self._settled(name, entry) for name, entry in memory.items()}
         except FileNotFoundError:
             return {}
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
@@ -199,20 +204,43 @@ class _Copies:
         )
         return {}
 
+    def _settled(self, name: str, entry: dict) -> dict:
+        """What is remembered of a copy, also where a run was killed between remembering it and putting it there."""
+        earlier = entry.pop(_EARLIER, None)
+        if not earlier:
+            return entry
+        with contextlib.suppress(NotANotebookError, OSError):
+            content = (self.work / name).read_bytes()
+            if (whole_version(content) if name.endswith(".ipynb") else checksum(content)) == entry["whole"]:
+                return entry
+        return earlier
+
     def write(self) -> None:
-        """Writes all files beside their places, then puts each there in one step."""
+        """Writes all files beside their places, then puts each there in one step.
+
+        First of all goes what is remembered, so that a copy never stands there unremembered: the new, and while the
+        copies go to their places the earlier beside it, for a run that is killed then. Last the new alone.
+        """
         if not self.contents:
-            return
+            return clear_unfinished(self.work)
         empty = not self.work.exists()
         self.work.mkdir(exist_ok=True)
         try:
-            with tempfile.TemporaryDirectory(prefix=".being-made-", dir=self.work) as staging:
-                staged = {name: Path(staging) / str(index) for index, name in enumerate(self.contents)}
-                for name, path in staged.items():
+            with staged(self.work) as stage:
+                beside = {name: stage / str(index) for index, name in enumerate(self.contents)}
+                for name, path in beside.items():
                     path.write_bytes(self.contents[name])
-                for name in sorted(staged, key=lambda name: name != MEMORY):  # a copy never stands there unremembered
+                meanwhile = {
+                    name: entry | ({_EARLIER: self.earlier[name]} if self.earlier.get(name, entry) != entry else {})
+                    for name, entry in self.memory.items()
+                }
+                (stage / MEMORY).write_text(json.dumps(meanwhile, indent=1), encoding="utf-8")
+                flush_below(stage)
+                if MEMORY in self.contents:
+                    self._put(stage / MEMORY, MEMORY)
+                for name in sorted(beside, key=lambda name: name == MEMORY):
                     (self.work / name).parent.mkdir(exist_ok=True)
-                    self._put(staged[name], name)
+                    self._put(beside[name], name)
         except OSError:
             if empty:
                 with contextlib.suppress(OSError):
@@ -222,7 +250,7 @@ class _Copies:
     def _put(self, path: Path, name: str) -> None:
         target = self.work / name
         if name in self.set_aside:
-            _link(target, self.work / self.set_aside[name])
+            _link(target, self.work / self.set_aside.pop(name))
             os.replace(path, target)
         elif name.endswith(".ipynb"):
             with contextlib.suppress(FileExistsError):  # another lab, started at the same time, was faster

@@ -5,6 +5,7 @@ Matrices are camera-to-world in the optical convention (x right, y down, z forwa
 
 from __future__ import annotations
 
+import io
 import re
 import warnings
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 
 from course_lib.geometry import is_rotation, rotation_mean
 from course_lib.reading import read_text
+from course_lib.writing import write_at_once
 
 
 class SequenceError(ValueError):
@@ -42,7 +44,9 @@ def write_tum(path: str | Path, times: np.ndarray, poses: np.ndarray) -> None:
     poses = np.asarray(poses, dtype=np.float64)
     quaternions = Rotation.from_matrix(poses[:, :3, :3]).as_quat(canonical=True)
     rows = np.column_stack([times, poses[:, :3, 3], quaternions])
-    np.savetxt(path, rows, fmt="%.9f", header="t tx ty tz qx qy qz qw")
+    text = io.StringIO()
+    np.savetxt(text, rows, fmt="%.9f", header="t tx ty tz qx qy qz qw")
+    write_at_once(path, text.getvalue())
 
 
 def read_pose(path: str | Path) -> np.ndarray:

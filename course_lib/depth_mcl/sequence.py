@@ -27,6 +27,7 @@ from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_poses, read_tum, write_tum
 from course_lib.geometry import UP_AXES
 from course_lib.reading import read_image, read_text
+from course_lib.writing import replaced_outputs, write_at_once
 
 NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
 
@@ -215,25 +216,28 @@ def write_sequence(
         raise ValueError("frame numbers must ascend, each once")
     if len({np.shape(depth) for depth in depths}) > 1:
         raise ValueError(f"images must have one size; got {sorted({np.shape(depth) for depth in depths})}")
-    if (folder / "poses.txt").exists() or any((folder / "depth").glob("*.png")):
-        raise ValueError(f"{folder} already holds a recording, or part of one: give a new folder, or delete it first")
-    (folder / "depth").mkdir(parents=True, exist_ok=True)
-    for frame, depth in zip(frames, depths, strict=True):
-        write_depth_png(folder / "depth" / f"{frame:06d}.png", depth)
-    np.savetxt(folder / "intrinsics.txt", intrinsics, fmt="%.6f", header="K, pixel centres at integer coordinates")
-    if up is not None:
-        (folder / "up.txt").write_text(up + "\n")
-    if times is not None:
-        write_tum(folder / "groundtruth.txt", times, camera_to_world)
-    if path_on_floor is not None:
-        told = f"x y z, metres; {len(path_on_floor)} rows"
-        np.savetxt(folder / "path_on_floor.txt", path_on_floor, fmt="%.4f", header=told)
-    np.savetxt(
-        folder / "poses.txt",
-        np.column_stack([frames, camera_to_world.reshape(-1, 16)]),
-        fmt=["%d"] + ["%.9g"] * 16,
-        header="frame  T_world_cam row-major 4x4 (camera-to-world, metres)",
-    )
+    with replaced_outputs(folder, None) as new:  # as a whole: without its last files it would pass for another one
+        if (folder / "poses.txt").exists() or any((folder / "depth").glob("*.png")):
+            raise ValueError(
+                f"{folder} already holds a recording, or part of one: give a new folder, or delete it first"
+            )
+        (new / "depth").mkdir()
+        for frame, depth in zip(frames, depths, strict=True):
+            write_depth_png(new / "depth" / f"{frame:06d}.png", depth)
+        np.savetxt(new / "intrinsics.txt", intrinsics, fmt="%.6f", header="K, pixel centres at integer coordinates")
+        if up is not None:
+            (new / "up.txt").write_text(up + "\n")
+        if times is not None:
+            write_tum(new / "groundtruth.txt", times, camera_to_world)
+        if path_on_floor is not None:
+            told = f"x y z, metres; {len(path_on_floor)} rows"
+            np.savetxt(new / "path_on_floor.txt", path_on_floor, fmt="%.4f", header=told)
+        np.savetxt(
+            new / "poses.txt",
+            np.column_stack([frames, camera_to_world.reshape(-1, 16)]),
+            fmt=["%d"] + ["%.9g"] * 16,
+            header="frame  T_world_cam row-major 4x4 (camera-to-world, metres)",
+        )
 
 
 def read_depth_png(path: str | Path, units_per_metre: float = UNITS_PER_METRE) -> np.ndarray:
@@ -256,7 +260,7 @@ def write_depth_png(path: str | Path, depth: np.ndarray) -> None:
     ok, encoded = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 9])
     if not ok:
         raise SequenceError(f"{path}: the image of shape {depth.shape} could not be encoded as PNG")
-    Path(path).write_bytes(encoded.tobytes())
+    write_at_once(path, encoded.tobytes())
 
 
 def _depth_files(folder: Path) -> dict[int, Path]:

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import io
 import os
-import tempfile
 import warnings
 from functools import lru_cache
 from pathlib import Path
@@ -23,6 +23,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStaticCe
 from vtkmodules.vtkFiltersCore import vtkQuadricDecimation, vtkStaticCleanPolyData
 
 from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.writing import write_at_once
 
 # Metres. A pixel that is off by so much still counts seven eighths in the likelihood (alpha = 0.1 m).
 TOLERANCE = 0.015
@@ -139,10 +140,6 @@ def _keep(path: Path, found: SceneMap) -> None:
     """Writes the map, whole or not at all; where nothing can be written, the next process makes it again."""
     with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".partial", delete=False) as file:
-            try:
-                np.savez(file, vertices=found.vertices, faces=found.faces)
-            except OSError:
-                os.unlink(file.name)
-                raise
-        os.replace(file.name, path)
+        packed = io.BytesIO()
+        np.savez(packed, vertices=found.vertices, faces=found.faces)
+        write_at_once(path, packed.getvalue())

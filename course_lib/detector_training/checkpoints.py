@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import torch
 from torch import nn
 
 from course_lib.detector_training.schedule import AveragedNetwork
+from course_lib.writing import write_at_once
 
 FILE = "checkpoint.pt"
 
@@ -35,7 +37,6 @@ def save_checkpoint(
 ) -> Path:
     """Writes `checkpoint.pt` in `folder`, whole or not at all; returns its path."""
     path = folder / FILE
-    part = folder / (FILE + ".part")
     content = {
         "network": network.state_dict(),
         "average": average.network.state_dict(),
@@ -43,8 +44,9 @@ def save_checkpoint(
         "optimiser": optimiser.state_dict(),
         "position": asdict(position),
     }
-    torch.save(content, part)
-    part.replace(path)
+    packed = io.BytesIO()
+    torch.save(content, packed)
+    write_at_once(path, packed.getvalue())
     return path
 
 

@@ -14,6 +14,7 @@ from torch import nn
 
 from course_lib.detector_training.network import TrainableNetwork
 from course_lib.spherical_stereo.detection.darknet import check_weights, header_bytes
+from course_lib.writing import write_at_once
 
 VERSION = (0, 2, 5)
 
@@ -25,13 +26,10 @@ def write_weights(network: TrainableNetwork, path: str | Path, images_seen: int 
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(path.name + ".part")
-    with part.open("wb") as file:
-        file.write(np.array(VERSION, "<i4").tobytes())
-        file.write(np.array([images_seen], "<i8").tobytes())
-        for tensor in _tensors_in_file_order(network):
-            file.write(tensor.detach().cpu().contiguous().numpy().astype("<f4").tobytes())
-    part.replace(path)
+    parts = [np.array(VERSION, "<i4"), np.array([images_seen], "<i8")]
+    for tensor in _tensors_in_file_order(network):
+        parts.append(tensor.detach().cpu().contiguous().numpy().astype("<f4"))
+    write_at_once(path, b"".join(part.tobytes() for part in parts))
     return path
 
 

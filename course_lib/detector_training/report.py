@@ -19,6 +19,7 @@ from course_lib.detector_training.validation import LEAST_SCORE, Validation, val
 from course_lib.experiments.detection_scores import Boxes
 from course_lib.spherical_stereo.detection.darknet import read_names
 from course_lib.spherical_stereo.detection.detector import YoloDetector
+from course_lib.writing import write_at_once
 
 # Width of the recorded panoramas; the detector sees them as they are, not scaled as the training keeps them.
 PANORAMA_WIDTH = 1280
@@ -68,5 +69,5 @@ def write_report(
             "numpy": np.__version__,
         },
     }
-    path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    write_at_once(path, json.dumps(content, indent=1) + "\n")
     return path

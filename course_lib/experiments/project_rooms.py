@@ -32,6 +32,7 @@ from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from course_lib.writing import write_at_once
 
 RoomSet = Literal["practice", "hidden"]
 SEEDS: dict[RoomSet, tuple[int, ...]] = {"practice": tuple(range(10_601, 10_605)), "hidden": tuple(range(6101, 6113))}
@@ -121,7 +122,7 @@ def make_project_rooms(
         rooms = observe_rooms(seeds, options, load_detector, work, processes, progress, record_room)
         kept = [{key: value for key, value in room.items() if key != "options"} for room in rooms]
         text = json.dumps({"version": 1, "rooms": kept}, separators=(",", ":"))
-        (Path(out) / f"rooms_{name}.json").write_text(text.replace('{"seed"', '\n{"seed"') + "\n")
+        write_at_once(Path(out) / f"rooms_{name}.json", text.replace('{"seed"', '\n{"seed"') + "\n")
         counts[name] = sum(len(room["views"]) for room in rooms)
     return counts
 

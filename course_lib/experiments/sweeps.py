@@ -22,6 +22,7 @@ from typing import BinaryIO
 
 from course_lib.processors import processors
 from course_lib.worker_pool import worker_pool
+from course_lib.writing import told
 
 VERSION = 1
 
@@ -67,7 +68,8 @@ def sweep(
     points = grid_points(grid)
     name = f"{function.__module__}.{function.__qualname__}"
     with _open_for_one(Path(results)) as file:
-        rows = _read_rows(file, Path(results), name)
+        with told(Path(results)):
+            rows = _read_rows(file, Path(results), name)
         missing = {key: point for key, point in points.items() if key not in rows}
         if missing and executor is None:
             workers = min(processors(), len(missing))
@@ -114,7 +116,7 @@ def _run(
             key = futures[future]
             try:
                 row = {"point": points[key], "result": future.result()}
-                _write_line(file, row)
+                _require_text(row)
             except BrokenExecutor as error:
                 raise SweepError(
                     f"a process of the sweep ended without a word (out of memory, killed?) after {len(rows)} of "
@@ -123,6 +125,8 @@ def _run(
             except Exception as error:
                 failed[key] = error
             else:
+                with told(Path(file.name)):
+                    _write_line(file, row)
                 rows[key] = json.loads(json.dumps(row))
     except BaseException:
         for future in futures:
@@ -138,10 +142,16 @@ def _run(
 
 
 def _write_line(file: BinaryIO, content: dict) -> None:
-    """Adds a line, whole and on its way to the disk. Raises `ValueError` or `TypeError` for what JSON cannot hold."""
-    file.write(_line(content))
-    file.flush()
+    """Adds a line, whole and on its way to the disk."""
+    left = _line(content)
+    while left:  # not through the file's buffer, which on a full disk would fail once more when it is closed
+        left = left[os.write(file.fileno(), left) :]
     os.fsync(file.fileno())
+
+
+def _require_text(row: dict) -> None:
+    """Raises `ValueError` or `TypeError` for what JSON cannot hold."""
+    _line(row)
 
 
 def _line(content: dict) -> bytes:
@@ -151,8 +161,10 @@ def _line(content: dict) -> bytes:
 @contextlib.contextmanager
 def _open_for_one(path: Path) -> Iterator[BinaryIO]:
     """The results file, open for adding lines, while no other process sweeps into it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("a+b") as file:
+    with told(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        opened = path.open("a+b")
+    with opened as file:
         try:
             import fcntl
         except ImportError:  # Windows: nothing keeps a second sweep out

@@ -7,15 +7,18 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from course_lib.writing import replaced_outputs
+from course_lib.writing import replaced_outputs, require_writable
 
 
 def require_folder(out: str | Path) -> Path:
-    """`out` as an absolute path. Raises `ValueError` where it cannot be a folder: now, not after minutes of work."""
+    """`out` as an absolute path. Raises `ValueError` where it cannot be a folder, `WriteError` where nothing
+    can be written there: now, not after minutes of work.
+    """
     out = Path(out).resolve()
     existing = next(path for path in (out, *out.parents) if path.exists())
     if not existing.is_dir():
         raise ValueError(f"cannot make the folder {out}: {existing} is a file; give a folder, or a new name")
+    require_writable(out)
     return out
 
 
@@ -34,5 +37,8 @@ def move_products(folder: Path, out: Path, products: Sequence[str]) -> None:
     """Puts the finished products in the place of the earlier ones, all at once; what else is in `out` stays."""
     with replaced_outputs(out, "make-data", products) as new:
         for name in products:
-            copy = shutil.copytree if (folder / name).is_dir() else shutil.copy2
-            copy(folder / name, new / name)
+            for path in sorted((folder / name, *(folder / name).rglob("*"))):
+                if path.is_dir():
+                    (new / path.relative_to(folder)).mkdir(parents=True)
+                else:  # one by one: `copytree` would collect a full disk's errors, and tell none of them
+                    shutil.copy2(path, new / path.relative_to(folder))

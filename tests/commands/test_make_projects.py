@@ -13,7 +13,7 @@ def made(monkeypatch):
     calls = []
 
     def note(out, load_detector, work, processes, progress):
-        calls.append((out, work, processes))
+        calls.append((work, processes))
         (out / "rooms_practice.json").write_text("{}")
         (out / "rooms_hidden.json").write_text("{}")
         return {"practice": 32, "hidden": 96}
@@ -25,7 +25,8 @@ def made(monkeypatch):
 def test_the_files_get_their_checksums(made, tmp_path, capsys):
     out, work = tmp_path / "out", tmp_path / "work"
     assert main(["make-data", "projects", "--out", str(out), "--work", str(work), "--processes", "1"]) == 0
-    assert made == [(out, work, 1)]
+    assert made == [(work, 1)]
+    assert sorted(path.name for path in out.glob("[!.]*")) == ["SHA256SUMS", "rooms_hidden.json", "rooms_practice.json"]
     assert (out / "SHA256SUMS").read_text() == checksums(out, ["rooms_practice.json", "rooms_hidden.json"])
     assert "32 views (practice) and 96 views (hidden)" in capsys.readouterr().out
 

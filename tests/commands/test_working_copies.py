@@ -247,6 +247,49 @@ def test_a_full_disk_is_named_and_leaves_things_as_they_were(small, monkeypatch)
     assert checksums(small) == before
 
 
+def killed_after(puts, monkeypatch):
+    """A run that ends after so many files were put in place, as kill -9 ends it: nothing clears up."""
+    done = []
+
+    def put(self, path, name, really=working_copies._Copies._put):
+        if len(done) == puts:
+            os._exit(9)
+        done.append(name)
+        really(self, path, name)
+
+    monkeypatch.setattr(working_copies._Copies, "_put", put)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="a process of its own to be killed")
+@pytest.mark.parametrize("puts", range(6))
+def test_a_run_that_is_killed_between_two_files_is_gone_on_with(small, monkeypatch, puts):
+    """What follows the course goes on following it; what the student changed is never taken for the course's."""
+    make_copies(small, today=DAY)
+    begin(small / "work" / LESSON_06)
+    mine = (small / "work" / LESSON_06).read_bytes()
+    (small / "work" / "GLOSSARY.md").write_text("with my notes")
+    for name in ("scenes/06_weights.html", "GLOSSARY.md"):
+        (small / "notebooks" / name).write_text("the course's next")
+    write_lesson(small / "notebooks" / LESSON_06, "another text")
+    child = os.fork()
+    if not child:
+        killed_after(puts, monkeypatch)
+        make_copies(small, ["00"], today=DAY)
+        os._exit(0)
+    os.waitpid(child, 0)
+    (small / "notebooks" / "scenes" / "06_weights.html").write_text("the course's second next")
+    told = make_copies(small, today=DAY)
+    assert (small / "work" / "scenes" / "06_weights.html").read_text() == "the course's second next"
+    assert (small / "work" / "GLOSSARY.md").read_text() == "with my notes"
+    assert (small / "work" / LESSON_06).read_bytes() == mine
+    assert any(sentence.startswith("work/GLOSSARY.md is changed by you") for sentence in told)
+    assert any(sentence.startswith("Lesson 06 has changed") for sentence in told)
+    assert not any("scenes" in sentence for sentence in told)
+    assert not list((small / "work").rglob("*.course-unfinished-*"))
+    assert "earlier" not in (small / "work" / ".copies.json").read_text()
+    assert make_copies(small, today=DAY) == told
+
+
 def test_a_folder_that_may_not_be_written_is_named(small, monkeypatch):
     def refused(self, **_):
         raise PermissionError(13, "Permission denied", str(self))

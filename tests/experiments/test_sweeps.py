@@ -14,6 +14,7 @@ import pytest
 
 from course_lib.experiments import sweep
 from course_lib.experiments.sweeps import SweepError
+from course_lib.writing import WriteError
 
 ROOT = Path(__file__).parents[2]
 HANGS_S = 1200
@@ -146,6 +147,25 @@ def test_what_json_cannot_hold_fails_and_leaves_no_half_line(tmp_path):
     with ThreadPoolExecutor(1) as pool, pytest.raises(SweepError, match="1 of 1 points failed"):
         sweep(give_nan, {"seed": [1]}, pool, results=tmp_path / "rows.jsonl")
     assert lines_of(tmp_path / "rows.jsonl") == []
+
+
+def test_a_full_disk_is_named_keeps_the_rows_and_the_next_sweep_goes_on(tmp_path, monkeypatch):
+    results, write = tmp_path / "rows.jsonl", os.write
+
+    def full(handle, content):
+        if b'"seed": 3' in content:
+            write(handle, content[:9])  # what still went in
+            raise OSError(28, "No space left on device")
+        return write(handle, content)
+
+    with ThreadPoolExecutor(1) as pool:
+        with monkeypatch.context() as disk:
+            disk.setattr(os, "write", full)
+            with pytest.raises(WriteError, match=r"rows\.jsonl cannot be written.*disk is full"):
+                sweep(draw, {"seed": [1, 2, 3, 4]}, pool, results=results)
+        assert results.read_bytes().count(b"\n") == 3
+        sweep(draw, {"seed": [1, 2, 3, 4]}, pool, results=results)
+    assert [row["point"]["seed"] for row in lines_of(results)] == [1, 2, 3, 4]
 
 
 @pytest.mark.parametrize(

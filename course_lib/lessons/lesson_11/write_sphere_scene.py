@@ -15,6 +15,7 @@ from pathlib import Path
 
 from course_lib.lessons.lesson_11.views import SCENE
 from course_lib.paths import REPOSITORY, data_path
+from course_lib.writing import write_at_once
 
 PICTURE = "room/experiment_1/05_b_upper.jpg"
 """A panorama with a sofa across its seam."""
@@ -33,7 +34,7 @@ def scene_html() -> str:
 def write_scene(path: Path) -> Path:
     """Write the scene to `path` and return it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(scene_html(), encoding="utf-8")
+    write_at_once(path, scene_html())
     return path
 
 
