@@ -44,6 +44,7 @@ ALLOWED = {
     "course_lib/commands/demo_corridor.py": NEW,
     "course_lib/commands/demo_room.py": NEW,
     "course_lib/commands/demo_rooms.py": NEW,
+    "course_lib/commands/demo_trouble.py": NEW,
     "course_lib/commands/demo_walk.py": NEW,
     "course_lib/commands/grade.py": NEW,
     "course_lib/commands/interrupt_cases.py": TEMPORARY,

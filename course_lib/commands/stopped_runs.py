@@ -18,6 +18,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from course_lib.child import python, start
 from course_lib.paths import REPOSITORY
 
 HANGS_S = 1800.0
@@ -138,9 +139,9 @@ class Runs:
 
     def __init__(self, stage: Path, modules: Sequence[str] = (), before: Sequence[str] = ()) -> None:
         self.stage, self.modules = stage, list(modules)
-        self._process = subprocess.Popen(
-            [*before, sys.executable, "-P", "-c", _FORKING, str(REPOSITORY)],
-            env=os.environ | {"PYTHONPATH": str(REPOSITORY)},
+        self._process = start(
+            [*before, *python("-c", _FORKING, REPOSITORY)],
+            {"PYTHONPATH": str(REPOSITORY)},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             bufsize=0,  # a line waits in the pipe, where `select` sees it, until it is read
