@@ -185,6 +185,7 @@ REFUSED = {
     "demo lost": "demo lost",
     "demo room": "demo room",
     "demo rooms": "demo rooms",
+    "demo trouble": "demo trouble",
     "demo walk": "demo walk",
     "grade": "grade {data}/room",
     "handout": "handout 03",
