@@ -1,0 +1,170 @@
+"""One file, read in a child process with limits of time and memory; what became of it is the verdict.
+
+The child is forked from a process that has imported everything: that costs milliseconds, and what crashes, hangs or
+takes all memory there can only be the one file that it was given. Nothing is drawn with OpenGL in either.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import signal
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from course_lib.fuzzing.readings import Reading, same
+from course_lib.reading import MEGABYTE
+
+CLASSES = ("refused", "same", "changed", "unexplained", "unnamed", "crash", "hang", "memory")
+"""Refused by name; read with the same result; with another one that is explained, or is not; an error without a name;
+the process died; it took too long; it took too much memory."""
+
+DEFECTS = ("unexplained", "unnamed", "crash", "hang", "memory")
+
+SECONDS = 120.0
+"""After which a file is held to hang; the slowest valid one takes two, on a machine that is idle."""
+
+MEMORY = 1_000 * MEGABYTE
+"""Bytes in memory at once, the libraries included, that reading one file may take."""
+
+SPACE = 4_000 * MEGABYTE
+"""Bytes that the child may ask for: above it is told that there are none, and the machine goes on."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of one file."""
+
+    outcome: str
+    """One of `CLASSES`."""
+    told: str
+    """The error's text, or why a changed result is right."""
+    memory_mb: float
+    seconds: float
+
+
+def try_file(
+    path: Path,
+    read: Callable[[Path], Reading],
+    errors: tuple[type[Exception], ...],
+    explain: Callable[[bytes, Reading, Reading], str | None],
+    original: Reading,
+    seconds: float = SECONDS,
+    memory: int = MEMORY,
+) -> Verdict:
+    """Read `path` in a child and judge it. errors: those by which the reader may refuse, with the file's name in them.
+
+    original: what `read` makes of the valid file. explain: why a changed result is right, or None.
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    reading_end, writing_end = os.pipe()
+    start = time.monotonic()
+    child = os.fork()
+    if child == 0:
+        _judge_and_leave(writing_end, path, read, errors, explain, original)
+    os.close(writing_end)
+    said = _said_within(reading_end, start + seconds)
+    hangs = said is None
+    if hangs:
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(child, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(child, signal.SIGKILL)
+    _, status, used = os.wait4(child, 0)
+    taken = time.monotonic() - start
+    peak = used.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    outcome, told = _outcome(said, status, hangs, seconds)
+    if peak > memory and outcome != "hang":
+        outcome, told = "memory", f"{peak / MEGABYTE:,.0f} MB; {told}"
+    return Verdict(outcome, told[:400], round(peak / MEGABYTE, 1), round(taken, 3))
+
+
+def _said_within(handle: int, until: float) -> bytes | None:
+    """All that the child writes, None where it does not end in time."""
+    said = b""
+    with os.fdopen(handle, "rb", buffering=0) as pipe:
+        while (left := until - time.monotonic()) > 0:
+            if select.select([pipe], [], [], left)[0]:
+                piece = pipe.read(65536)
+                if not piece:
+                    return said
+                said += piece
+    return None
+
+
+def _outcome(said: bytes | None, status: int, hangs: bool, seconds: float) -> tuple[str, str]:
+    if hangs:
+        return "hang", f"not done after {seconds:g} s"
+    if os.WIFSIGNALED(status):
+        return "crash", f"died by {signal.Signals(os.WTERMSIG(status)).name}"
+    try:
+        verdict = json.loads(said or b"")
+        return verdict["outcome"], verdict["told"]
+    except (ValueError, KeyError):
+        return "crash", f"ended without a word, with exit code {os.waitstatus_to_exitcode(status)}"
+
+
+def _judge_and_leave(handle: int, *arguments: object) -> None:
+    """The child: says what it found, and ends without running anything of its parent's."""
+    try:
+        os.setsid()
+        silent = os.open(os.devnull, os.O_RDWR)
+        for stream in (0, 1, 2):
+            os.dup2(silent, stream)
+        with contextlib.suppress(ImportError, ValueError, OSError):
+            import resource
+
+            resource.setrlimit(resource.RLIMIT_DATA, (SPACE, SPACE))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        outcome, told = judge(*arguments)
+        os.write(handle, json.dumps({"outcome": outcome, "told": told[:2000]}).encode())
+    finally:
+        os._exit(0)
+
+
+def judge(
+    path: Path,
+    read: Callable[[Path], Reading],
+    errors: tuple[type[Exception], ...],
+    explain: Callable[[bytes, Reading, Reading], str | None],
+    original: Reading,
+) -> tuple[str, str]:
+    """(class, what is told) of a file that is read in this process."""
+    try:
+        found = read(path)
+    except BaseException as error:
+        told = f"{type(error).__name__}: {error}"
+        if _lacked_memory(error):
+            return "memory", told
+        named = isinstance(error, errors) and path.name in str(error)
+        return ("refused" if named else "unnamed"), told
+    if same(found, original):
+        return "same", ""
+    try:
+        why = explain(path.read_bytes(), found, original)
+    except Exception as error:  # the second reading does not accept what the first did
+        return "unexplained", f"the second reading fails: {type(error).__name__}: {error}"
+    if why is None:
+        changed = [name for name, value in found.items() if name not in original or not same(value, original[name])]
+        return "unexplained", f"changed: {', '.join(changed)}"
+    return "changed", why
+
+
+def _lacked_memory(error: BaseException | None) -> bool:
+    """Whether there was no memory left, however the reader wrapped it."""
+    while error is not None:
+        if isinstance(error, MemoryError) or "insufficient memory" in str(error).lower():
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def as_row(verdict: Verdict) -> dict:
+    """A verdict for JSON."""
+    return asdict(verdict)
