@@ -49,6 +49,18 @@ def read_bytes(
         raise error(f"{what} {path} cannot be read: {reason.strerror}") from reason
 
 
+def is_given(path: Path) -> bool:
+    """Whether something stands at `path`: a file that may be left out is missing only where nothing does.
+
+    A broken link, a link to itself, a folder or a pipe in its place is no file left out, but one that cannot be read.
+    """
+    try:
+        path.lstat()
+    except (OSError, ValueError):
+        return False
+    return True
+
+
 def require_file(path: Path, what: str, error: type[Exception]) -> None:
     """Raises `error` unless `path` is a file that can be read."""
     try:
@@ -126,7 +138,8 @@ def read_json(
 def _levels(text: str) -> int:
     """How deep lists and objects are nested in a JSON text; brackets inside strings do not count."""
     deepest = level = 0
-    for bracket in re.findall(r'"(?:[^"\\]|\\.)*"|[\[\]{}]', text):
+    # Possessive, and to the end where a string is not closed: else every quotation mark begins a search to the end.
+    for bracket in re.findall(r'"(?:[^"\\]|\\.)*+"?|[\[\]{}]', text, re.DOTALL):
         if bracket in "[{":
             level += 1
             deepest = max(deepest, level)

@@ -23,6 +23,7 @@ from course_lib.fuzzing.mutators import BYTES, mutators_for
 from course_lib.fuzzing.readings import Reading
 from course_lib.fuzzing.samples import room_mesh, write_samples
 from course_lib.fuzzing.trial import CLASSES, DEFECTS, MEMORY, SECONDS, Verdict, try_file
+from course_lib.reading import is_given
 
 SHARES = {"bytes": 0.35, "inside": 0.45, "both": 0.08, "link": 0.06, "bomb": 0.06}
 """How often which kind of damage is done."""
@@ -101,10 +102,21 @@ class Bench:
 
     def try_damage(self, name: str, done: Damage, seconds: float = SECONDS, memory: int = MEMORY) -> Verdict:
         """Puts the damaged file in place, has it read, and puts the valid one back."""
+        return self._tried(name, lambda path: put(done, path, self._whole[name]), seconds, memory)
+
+    def try_file(self, name: str, file: Path, seconds: float = SECONDS, memory: int = MEMORY) -> Verdict:
+        """The same with a file that lies elsewhere. Raises `FileNotFoundError` where nothing is."""
+        if not is_given(file):
+            raise FileNotFoundError(f"there is no {file}")
+        if file.is_file() and not file.is_symlink():
+            return self._tried(name, lambda path: shutil.copyfile(file, path), seconds, memory)
+        return self._tried(name, lambda path: path.symlink_to(file.absolute()), seconds, memory)
+
+    def _tried(self, name: str, place: Callable[[Path], object], seconds: float, memory: int) -> Verdict:
         one, path = FORMATS[name], self.folder / FORMATS[name].file
         path.unlink()
         try:
-            put(done, path, self._whole[name])
+            place(path)
             return try_file(path, one.read, one.errors, one.explain, self._original[name], seconds, memory)
         finally:
             for left in (path, path.with_name("elsewhere")):
@@ -121,6 +133,17 @@ def put(done: Damage, path: Path, whole: bytes) -> None:
         put_link(done.link, path, whole)
     else:
         path.write_bytes(done.content)
+
+
+def put_damaged(name: str, seed: int, number: int, folder: Path) -> str:
+    """Puts file `number` of a format into a new folder; returns its name, that of the sample."""
+    with tempfile.TemporaryDirectory(prefix="course-fuzz-") as samples:
+        write_samples(Path(samples))
+        whole = (Path(samples) / FORMATS[name].file).read_bytes()
+    folder.mkdir(parents=True)
+    path = folder / Path(FORMATS[name].file).name
+    put(damage(FORMATS[name], whole, seed, number), path, whole)
+    return path.name
 
 
 def plan(names: Sequence[str], files: int | None) -> Iterator[tuple[str, int]]:

@@ -12,75 +12,31 @@ import csv
 import io
 import json
 import re
-import struct
+from collections.abc import Callable
 
 import numpy as np
 
-from course_lib.fuzzing.depth_oracle import depths_agree
 from course_lib.fuzzing.readings import Reading, same
 
 PAYLOAD = "payload: what the file says"
-SMALL = "payload within 10 mm, the map's own noise"
-NOISE = 0.01
-"""Metres: the noise of the surveyed maps (data/corridor/PARAMETERS.md has 8 mm and more)."""
+MISSING = "the file is missing, as it may be"
 ROUNDING = 2e-3
 """What making a rotation exact may change in one of its numbers: files may be wrong by 1e-3."""
-
-
-def of_map(data: bytes, found: Reading, original: Reading, kind: str) -> str | None:
-    """As many vertices and triangles as the file says, and depths that are those of its triangles."""
-    vertices, faces = np.asarray(found["vertices"]), np.asarray(found["faces"])
-    counts = _mesh_counts(data, kind)
-    if counts is None or not (len(vertices) <= counts[0] and len(faces) <= counts[1]):
-        return None
-    if len(vertices) < counts[0] and kind != "glb":
-        return None  # triangles without area are left out, vertices never
-    if not depths_agree(vertices, faces):
-        return None
-    before = np.asarray(original["vertices"])
-    moved = vertices.shape == before.shape and same(found["faces"], original["faces"])
-    return SMALL if moved and np.abs(vertices - before).max() <= NOISE else PAYLOAD
-
-
-def _mesh_counts(data: bytes, kind: str) -> tuple[int, int] | None:
-    """How many vertices and, at most, triangles are in a mesh file."""
-    if kind == "ply":
-        header, _, body = data.partition(b"end_header")
-        counts = {name: int(n) for name, n in re.findall(rb"^\s*element\s+(\S+)\s+(\d+)", header, re.M)}
-        vertices, faces = counts.get(b"vertex", 0), counts.get(b"face", 0)
-        if b"format ascii" in header:
-            rows = [line.split() for line in body.splitlines() if line.strip()][vertices : vertices + faces]
-            return vertices, sum(int(float(row[0])) - 2 for row in rows)
-        return vertices, faces
-    if kind == "stl":
-        if data[:5] == b"solid" and b"facet" in data[:1000]:
-            triangles = len(re.findall(rb"\bouter\s+loop\b", data, re.I))
-        else:
-            triangles = struct.unpack("<I", data[80:84])[0]
-        return 3 * triangles, triangles
-    if kind == "off":
-        rows = [part.split() for line in data.splitlines() if (part := line.partition(b"#")[0]).strip()]
-        rows = rows[1:] if rows[0] == [b"OFF"] else [rows[0][1:], *rows[1:]]
-        vertices, faces = int(rows[0][0]), int(rows[0][1])
-        return vertices, sum(int(row[0]) - 2 for row in rows[1 + vertices : 1 + vertices + faces])
-    if kind == "obj":
-        rows = [line.split() for line in data.replace(b"\\\n", b" ").splitlines() if line.strip()]
-        corners = [row for row in rows if row[0] == b"f"]
-        # A reader may take apart vertices that have two normals or places on a texture.
-        vertices = sum(row[0] == b"v" for row in rows)
-        plain = not any(b"/" in part for row in corners for part in row)
-        return vertices if plain else 3 * vertices, sum(len(row) - 3 for row in corners)
-    length = struct.unpack("<I", data[12:16])[0]
-    accessors = json.loads(data[20 : 20 + length].rstrip(b"\0 "))["accessors"]
-    triples = sum(one["count"] for one in accessors if one.get("type") == "VEC3")
-    indices = sum(one["count"] for one in accessors if one.get("type") == "SCALAR")
-    return triples, max(indices, triples) // 3
 
 
 def _rows(data: bytes) -> np.ndarray:
     text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     rows = [line.partition("#")[0].split() for line in text.split("\n")]
     return np.array([[float(part) for part in row] for row in rows if row])
+
+
+def optional(explain: Callable) -> Callable:
+    """For a file that may be left out: without it, the rest is read."""
+
+    def or_missing(data: bytes | None, found: Reading, original: Reading) -> str | None:
+        return MISSING if data is None else explain(data, found, original)
+
+    return or_missing
 
 
 def _only(found: Reading, original: Reading, *names: str) -> bool:
@@ -132,9 +88,10 @@ def of_image_list(data: bytes, found: Reading, original: Reading) -> str | None:
     text = data.decode("utf-8-sig").replace("\r", "\n")
     rows = [line.split() for line in text.split("\n") if line.strip() and line.strip()[0] != "#"]
     said = [(float(time), name.rpartition("/")[2]) for time, name in rows]
-    kept = list(zip(np.asarray(found["times"]).tolist(), found["files"], strict=True))
-    near = [one for one in said if any(abs(one[0] - time) <= 0.02 for time in np.asarray(original["times"]))]
-    return PAYLOAD if kept == near and found["frames"] == [said.index(one) + 1 for one in kept] else None
+    kept = list(zip(found["frames"], np.asarray(found["times"]).tolist(), found["files"], strict=True))
+    times = np.asarray(original["times"])
+    near = [(row, *one) for row, one in enumerate(said, start=1) if np.abs(times - one[0]).min() <= 0.02]
+    return PAYLOAD if kept == near else None
 
 
 def of_up(data: bytes, found: Reading, original: Reading) -> str | None:
@@ -144,7 +101,7 @@ def of_up(data: bytes, found: Reading, original: Reading) -> str | None:
     return PAYLOAD if legal and _only(found, original, "up") else None
 
 
-def of_numbers(name: str):
+def of_numbers(name: str) -> Callable:
     """Rows of finite numbers, as the file says; for `gravity`, those that follow the frame numbers."""
 
     def explain(data: bytes, found: Reading, original: Reading) -> str | None:

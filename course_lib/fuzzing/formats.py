@@ -11,6 +11,7 @@ from course_lib.classroom.submissions import SubmissionError
 from course_lib.depth_mcl.poses import SequenceError
 from course_lib.depth_mcl.scene_map import SceneMapError
 from course_lib.fuzzing import explanations, readings
+from course_lib.fuzzing.mesh_explanation import of_map
 from course_lib.fuzzing.readings import Reading
 from course_lib.spherical_stereo.detection.boxes import DetectionError
 from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
@@ -32,7 +33,7 @@ class Format:
     """The commands' own reader."""
     errors: tuple[type[Exception], ...]
     """Those that its documentation names."""
-    explain: Callable[[bytes, Reading, Reading], str | None]
+    explain: Callable[[bytes | None, Reading, Reading], str | None]
     """Why a changed result is right; None: it is not (`explanations`)."""
     slow: bool = False
     """Its reader starts a process of its own: fewer files of it are tried."""
@@ -47,7 +48,7 @@ def _format(name: str, file: str, traits: str, read: Callable, errors: object, e
 
 def _map(name: str, file: str, traits: str) -> Format:
     kind = Path(file).suffix[1:]
-    return _format(name, f"maps/{file}", traits, readings.read_map, SceneMapError, partial(explanations.of_map, kind=kind))
+    return _format(name, f"maps/{file}", traits, readings.read_map, SceneMapError, partial(of_map, kind=kind))
 
 
 def _recording(name: str, file: str, traits: str, explain: Callable) -> Format:
@@ -69,14 +70,14 @@ FORMATS: dict[str, Format] = {
         _map("glb", "room.glb", "glb floats slow"),
         _map("off", "room.off", "text numbers"),
         _recording("depth-png", "sequence/depth/000002.png", "png", explanations.of_depth_image),
-        _recording("poses", "sequence/poses.txt", "text numbers", explanations.of_poses),
+        _recording("poses", "sequence/poses.txt", "text numbers", explanations.optional(explanations.of_poses)),
         _recording("intrinsics", "sequence/intrinsics.txt", "text numbers", explanations.of_intrinsics),
-        _recording("up", "sequence/up.txt", "text", explanations.of_up),
-        _recording("gravity", "sequence/gravity.txt", "text numbers", explanations.of_numbers("gravity")),
-        _recording("floor", "sequence/path_on_floor.txt", "text numbers", explanations.of_numbers("path_on_floor")),
-        _recording("times", "sequence/groundtruth.txt", "text numbers", explanations.of_trajectory),
-        _recording("tum", "tum/groundtruth.txt", "text numbers", explanations.of_trajectory),
-        _recording("tum-images", "tum/depth.txt", "text numbers", explanations.of_image_list),
+        _recording("up", "sequence/up.txt", "text", explanations.optional(explanations.of_up)),
+        _recording("gravity", "sequence/gravity.txt", "text numbers", explanations.optional(explanations.of_numbers("gravity"))),
+        _recording("floor", "sequence/path_on_floor.txt", "text numbers", explanations.optional(explanations.of_numbers("path_on_floor"))),
+        _recording("times", "sequence/groundtruth.txt", "text numbers", explanations.optional(explanations.of_trajectory)),
+        _recording("tum", "tum/groundtruth.txt", "text numbers", explanations.optional(explanations.of_trajectory)),
+        _recording("tum-images", "tum/depth.txt", "text numbers", explanations.optional(explanations.of_image_list)),
         _format("start", "pose/start.txt", "text numbers", readings.read_start, SequenceError, explanations.of_start),
         _format("panorama-png", "panoramas/upper.png", "png", readings.read_picture, PanoramaError, explanations.of_picture),
         _format("panorama-jpeg", "panoramas/upper.jpg", "jpeg", readings.read_picture, PanoramaError, explanations.of_picture),
@@ -93,7 +94,7 @@ FORMATS: dict[str, Format] = {
         _detector("cfg", "net.cfg", "text numbers", explanations.of_cfg),
         _detector("weights", "net.weights", "floats", explanations.of_weights),
         _detector("names", "net.names", "text", explanations.of_names),
-        _detector("training", "training.json", "text json", explanations.of_training),
+        _detector("training", "training.json", "text json", explanations.optional(explanations.of_training)),
         _format("onnx", "onnx/net.onnx", "onnx floats slow", readings.read_onnx, DetectorError, explanations.of_onnx),
         _format(
             "notebook", f"notebook/alice/{readings.LESSON}.ipynb", "text json", readings.read_handed_in, SubmissionError,

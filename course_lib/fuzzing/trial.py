@@ -18,7 +18,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from course_lib.fuzzing.readings import Reading, same
-from course_lib.reading import MEGABYTE
+from course_lib.reading import MEGABYTE, is_given
 
 CLASSES = ("refused", "same", "changed", "unexplained", "unnamed", "crash", "hang", "memory")
 """Refused by name; read with the same result; with another one that is explained, or is not; an error without a name;
@@ -52,7 +52,7 @@ def try_file(
     path: Path,
     read: Callable[[Path], Reading],
     errors: tuple[type[Exception], ...],
-    explain: Callable[[bytes, Reading, Reading], str | None],
+    explain: Callable[[bytes | None, Reading, Reading], str | None],
     original: Reading,
     seconds: float = SECONDS,
     memory: int = MEMORY,
@@ -132,7 +132,7 @@ def judge(
     path: Path,
     read: Callable[[Path], Reading],
     errors: tuple[type[Exception], ...],
-    explain: Callable[[bytes, Reading, Reading], str | None],
+    explain: Callable[[bytes | None, Reading, Reading], str | None],
     original: Reading,
 ) -> tuple[str, str]:
     """(class, what is told) of a file that is read in this process."""
@@ -146,8 +146,12 @@ def judge(
         return ("refused" if named else "unnamed"), told
     if same(found, original):
         return "same", ""
+    if path.is_file() or not is_given(path):
+        data = path.read_bytes() if path.is_file() else None
+    else:
+        return "unexplained", "what is no file was read as if it were one, or as if nothing were there"
     try:
-        why = explain(path.read_bytes(), found, original)
+        why = explain(data, found, original)
     except Exception as error:  # the second reading does not accept what the first did
         return "unexplained", f"the second reading fails: {type(error).__name__}: {error}"
     if why is None:

@@ -78,7 +78,9 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
         heights = {entry["rig"]["upper_height"] for entry in content["pairs"]}
         rig = StereoRig(float(content["baseline"]), float(min(heights, default=np.nan)))
         width, height = int(content["width"]), int(content["height"])
-    except (KeyError, TypeError, IndexError) as error:
+    except PanoramaError as error:
+        raise PanoramaError(f"{path}: {error}") from None
+    except (KeyError, TypeError, IndexError, ValueError, OverflowError) as error:
         raise PanoramaError(f"{path}: a field is missing or of the wrong kind ({error!r})") from None
     if len(heights) != 1:
         raise PanoramaError(f"{path}: pairs with upper cameras at {sorted(heights)} m; expected one height")
