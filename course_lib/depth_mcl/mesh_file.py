@@ -70,6 +70,9 @@ def read_mesh(path: str | Path, error: type[Exception]) -> tuple[np.ndarray, np.
         raise error(f"map {path} holds neither vertices nor triangles: is the file complete?")
     if len(faces) == 0:
         raise error(f"map {path} holds no triangles ({len(vertices)} vertices): mesh it first")
+    for what, array in (("vertices", vertices), ("faces", faces)):
+        if np.ndim(array) != 2 or np.shape(array)[1] != 3:
+            raise error(f"map {path} has {what} that are no rows of three numbers: got {np.shape(array)}")
     return vertices, faces
 
 

@@ -35,6 +35,16 @@ stride=2
 pad=1
 activation=leaky
 
+[maxpool]
+size=2
+stride=2
+
+[upsample]
+stride=2
+
+[route]
+layers=-1,-3
+
 [convolutional]  # anchors * (5 + classes)
 filters=21
 size=1
@@ -195,7 +205,7 @@ def _write_networks(folder: Path) -> None:
     (folder / "detector").mkdir()
     write_at_once(folder / "detector" / "net.cfg", CFG)
     first = [rng.normal(0, 0.1, 4), rng.uniform(0.5, 1, 4), rng.normal(0, 0.1, 4), rng.uniform(0.5, 1, 4)]
-    floats = np.concatenate([*first, rng.normal(0, 0.3, 4 * 27), rng.normal(0, 0.3, 21), rng.normal(0, 0.3, 21 * 4)])
+    floats = np.concatenate([*first, rng.normal(0, 0.3, 4 * 27), rng.normal(0, 0.3, 21), rng.normal(0, 0.3, 21 * 8)])
     header = np.array([0, 2, 5, 0, 0], dtype="<i4").tobytes()
     write_at_once(folder / "detector" / "net.weights", header + floats.astype("<f4").tobytes())
     names = "\n".join(NETWORK_CLASSES) + "\n"

@@ -7,6 +7,7 @@ takes all memory there can only be the one file that it was given. Nothing is dr
 from __future__ import annotations
 
 import contextlib
+import faulthandler
 import json
 import os
 import select
@@ -113,6 +114,7 @@ def _outcome(said: bytes | None, status: int, hangs: bool, seconds: float) -> tu
 def _judge_and_leave(handle: int, *arguments: object) -> None:
     """The child: says what it found, and ends without running anything of its parent's."""
     try:
+        faulthandler.disable()
         os.setsid()
         silent = os.open(os.devnull, os.O_RDWR)
         for stream in (0, 1, 2):
@@ -142,7 +144,9 @@ def judge(
         told = f"{type(error).__name__}: {error}"
         if _lacked_memory(error):
             return "memory", told
-        named = isinstance(error, errors) and path.name in str(error)
+        # Of a file that is not there, a reader that looks for it can only name the folder.
+        name = path.name if is_given(path) else str(path.parent)
+        named = isinstance(error, errors) and name in str(error)
         return ("refused" if named else "unnamed"), told
     if same(found, original):
         return "same", ""

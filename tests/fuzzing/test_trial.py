@@ -155,3 +155,13 @@ def test_the_next_file_is_judged_alone(file):
         found = told(lambda path: {"numbers": np.arange(3)}, file)
         assert found.outcome == "same"
         assert found.memory_mb < 1_000
+
+
+def test_of_a_file_that_is_not_there_the_folder_is_named(tmp_path):
+    def reader(path):
+        raise NamedError(f"{path.parent} holds no poses")
+
+    path = tmp_path / "poses.txt"
+    assert told(reader, path).outcome == "refused"
+    path.write_bytes(b"damaged")
+    assert told(reader, path).outcome == "unnamed"

@@ -167,12 +167,21 @@ def class_count(sections: list[Section]) -> int:
     return classes
 
 
+MOST_INPUT_PIXELS = 1 << 24
+"""Pixels of a network's input, 4096 x 4096: YOLOv4 has 608 x 608, and needs a hundred times as many numbers inside."""
+
+
 def input_size(sections: list[Section]) -> tuple[int, int]:
-    """(width, height) of the network's input in pixels. Raises DetectorError: missing or not positive."""
+    """(width, height) of the network's input in pixels. Raises DetectorError: missing, not positive or too large."""
     width, height = sections[0].integer("width"), sections[0].integer("height")
     if width < 1 or height < 1:
         raise DetectorError(
             f"[{sections[0].kind}] at line {sections[0].line}: input {width} x {height} is not positive"
+        )
+    if width * height > MOST_INPUT_PIXELS:
+        raise DetectorError(
+            f"[{sections[0].kind}] at line {sections[0].line}: input {width} x {height} is more than "
+            f"{MOST_INPUT_PIXELS:,} pixels"
         )
     return width, height
 

@@ -56,7 +56,7 @@ class DarknetNetwork:
             self.infer(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
         except cv2.error as error:
             raise DetectorError(
-                f"OpenCV cannot run {cfg} at an input of {self.input_size[0]} x {self.input_size[1]}: {error.err}. "
+                f"OpenCV cannot run {self._told} at an input of {self.input_size[0]} x {self.input_size[1]}: {error.err}. "
                 "Width and height must be multiples of the network's stride (32 for YOLOv4)"
             ) from error
 
