@@ -16,6 +16,7 @@ import numpy as np
 import trimesh
 
 from course_lib.child import ChildError, run_apart
+from course_lib.depth_mcl.mesh_rows import row_fault
 from course_lib.reading import MEGABYTE, read_bytes
 
 MOST_TIMES = 40
@@ -56,6 +57,8 @@ def read_mesh(path: str | Path, error: type[Exception]) -> tuple[np.ndarray, np.
     if kind not in mesh_endings():
         raise error(f"map {path} ends in {path.suffix!r}, which is no mesh: PLY, OBJ, STL, OFF or GLB is expected")
     _require_complete(data, kind, path, error)
+    if fault := row_fault(data, kind):
+        raise error(f"map {path}, {fault}")
     read = _read_here if kind in _SIZED else _read_apart
     try:
         vertices, faces = read(path, data, kind)

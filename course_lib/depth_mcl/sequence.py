@@ -241,7 +241,8 @@ def read_depth_png(path: str | Path, units_per_metre: float = UNITS_PER_METRE) -
     image = read_image(path, "depth image", SequenceError, kinds=("PNG",), missing=FileNotFoundError)
     if image.dtype != np.uint16 or image.ndim != 2:
         raise SequenceError(f"{path} must be a 16-bit single-channel PNG; got {image.dtype} with shape {image.shape}")
-    depth = image.astype(np.float32) * np.float32(1 / units_per_metre)
+    depth = image.astype(np.float32)
+    depth *= np.float32(1 / units_per_metre)
     depth[image == 0] = np.nan
     return depth
 

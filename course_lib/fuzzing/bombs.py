@@ -46,12 +46,13 @@ def zeros(count: int) -> bytes:
     return b"\x78\xda" + block * times + b"\x03\x00" + struct.pack(">I", checksum)
 
 
-def _png_of_zeros(side: int, bits: int, colour: int) -> bytes:
-    """A PNG of `side` x `side` zeros; of 20,000 x 20,000 pixels of 16 bits it has 0.8 MB."""
+def _png_of_zeros(width: int, bits: int, colour: int, height: int | None = None) -> bytes:
+    """A PNG of zeros, square unless `height` is given; of 20,000 x 20,000 pixels of 16 bits it has 0.8 MB."""
+    height = width if height is None else height
     channels = {0: 1, 2: 3, 6: 4}[colour]
-    row = 1 + side * channels * bits // 8
-    header = struct.pack(">IIBBBBB", side, side, bits, colour, 0, 0, 0)
-    return png([(b"IHDR", header), (b"IDAT", zeros(side * row)), (b"IEND", b"")])
+    row = 1 + width * channels * bits // 8
+    header = struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, 0)
+    return png([(b"IHDR", header), (b"IDAT", zeros(height * row)), (b"IEND", b"")])
 
 
 def _glb(accessor: dict, **more: object) -> bytes:
@@ -114,6 +115,8 @@ def make_bombs(of: str) -> dict[str, Callable[[], bytes]]:
         "png": {
             "20,000 x 20,000": lambda: _png_of_zeros(20_000, 16, 0),
             "9,900 x 9,900 in four channels of 16 bits": lambda: _png_of_zeros(9_900, 16, 6),
+            "9,900 x 9,900 in grey of 16 bits": lambda: _png_of_zeros(9_900, 16, 0),
+            "14,000 x 7,000 in three colours": lambda: _png_of_zeros(14_000, 8, 2, 7_000),
             "2^31 x 2^31": lambda: png([(b"IHDR", struct.pack(">IIBBBBB", 2**31 - 1, 2**31 - 1, 16, 0, 0, 0, 0)), (b"IEND", b"")]),
             "10,000 x 10,000 of no bytes": lambda: png(
                 [(b"IHDR", struct.pack(">IIBBBBB", 10_000, 10_000, 16, 0, 0, 0, 0)), (b"IDAT", b""), (b"IEND", b"")]

@@ -70,10 +70,12 @@ def of_trajectory(data: bytes, found: Reading, original: Reading) -> str | None:
     if not _only(found, original, "times", "poses", "frames", "files", "depth"):
         return None
     nearest = [int(np.abs(rows[:, 0] - time).argmin()) for time in times]
-    placed = np.array_equal(rows[nearest, 1:4], poses[:, :3, 3])
     first = np.asarray(original["times"])
     kept = [row for row, time in enumerate(first) if np.abs(rows[:, 0] - time).min() <= 0.02]
-    return PAYLOAD if placed and np.array_equal(first[kept], times) and _are_rotations(poses, rows[nearest, 4:]) else None
+    placed = np.array_equal(rows[nearest, 1:4], poses[:, :3, 3]) and np.array_equal(first[kept], times)
+    placed = placed and all(found[name] == [original[name][row] for row in kept] for name in ("frames", "files"))
+    placed = placed and same(found["depth"], np.asarray(original["depth"])[kept])
+    return PAYLOAD if placed and _are_rotations(poses, rows[nearest, 4:]) else None
 
 
 def _are_rotations(poses: np.ndarray, quaternions: np.ndarray) -> bool:
@@ -91,7 +93,11 @@ def of_image_list(data: bytes, found: Reading, original: Reading) -> str | None:
     kept = list(zip(found["frames"], np.asarray(found["times"]).tolist(), found["files"], strict=True))
     times = np.asarray(original["times"])
     near = [(row, *one) for row, one in enumerate(said, start=1) if np.abs(times - one[0]).min() <= 0.02]
-    return PAYLOAD if kept == near else None
+    nearest = [int(np.abs(times - time).argmin()) for time in np.asarray(found["times"])]
+    files = [original["files"].index(name) for name in found["files"]]
+    belongs = same(found["poses"], np.asarray(original["poses"])[nearest])
+    belongs = belongs and same(found["depth"], np.asarray(original["depth"])[files])
+    return PAYLOAD if kept == near and belongs else None
 
 
 def of_up(data: bytes, found: Reading, original: Reading) -> str | None:
@@ -177,6 +183,7 @@ def of_stereo(data: bytes, found: Reading, original: Reading) -> str | None:
         and np.array_equal(np.asarray(found["rig"]), [content["baseline"], pairs[0]["rig"]["upper_height"]])
         and found["size"] == np.asarray(found["pixels"]).shape[2:0:-1]
         and found["seed"] == content.get("seed")
+        and same(found["pixels"], np.asarray(original["pixels"])[[original["files"].index(one) for one in found["files"]]])
     )
     return PAYLOAD if legal and said else None
 
@@ -198,7 +205,7 @@ def of_objects_csv(data: bytes, found: Reading, original: Reading) -> str | None
          if name in ("label", "x", "y", "hue", "saturation")}
         for row in csv.DictReader(io.StringIO(text))
     ]  # fmt: skip
-    return PAYLOAD if _are_landmarks(rows, found) else None
+    return PAYLOAD if _are_landmarks(rows, found) and found["name"] == "" and found["walls"] is None else None
 
 
 def _are_landmarks(rows: list[dict], found: Reading) -> bool:
@@ -257,7 +264,8 @@ def of_cfg(data: bytes, found: Reading, original: Reading) -> str | None:
             sections[-1][1][key.strip()] = value.strip()
     said = [(kind, tuple(options.items())) for kind, options in sections]
     width, height = int(sections[0][1]["width"]), int(sections[0][1]["height"])
-    fits = found["sections"] == said and found["input"] == (width, height) and found["labels"] == original["labels"]
+    fits = found["sections"] == said and found["input"] == (width, height)
+    fits = fits and _only(found, original, "sections", "input", "boxes", "scores", "found")
     return PAYLOAD if fits and _finite_network(found) else None
 
 

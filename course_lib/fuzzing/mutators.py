@@ -19,7 +19,7 @@ def place(size: int, rng: np.random.Generator) -> int:
 
 def flip_bits(data: bytes, rng: np.random.Generator) -> bytes:
     """One to eight bits become their opposite."""
-    out = bytearray(data)
+    out = bytearray(data or b"\0")
     for _ in range(int(rng.integers(1, 9))):
         out[place(len(out), rng)] ^= 1 << int(rng.integers(0, 8))
     return bytes(out)

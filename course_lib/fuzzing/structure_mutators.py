@@ -217,8 +217,8 @@ def png_chunks(data: bytes, rng: np.random.Generator) -> bytes:
         (b"iCCP", b"x\0\0" + zlib.compress(bytes(10**6))), (b"zTXt", b"x\0\0" + zlib.compress(bytes(10**6))),
         (b"eXIf", rng.bytes(30)), (b"ABCD", rng.bytes(9)), (b"IEND", b""), (b"sBIT", rng.bytes(3)), (b"IDAT", rng.bytes(20)),
     )  # fmt: skip
-    at = int(rng.integers(0, len(parts)))
-    kind = int(rng.integers(0, 4))
+    at = int(rng.integers(0, max(1, len(parts))))
+    kind = int(rng.integers(0, 4)) if parts else 2
     if kind == 0:
         del parts[at]
     elif kind == 1:

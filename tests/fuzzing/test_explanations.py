@@ -16,7 +16,6 @@ EDITS = {
     "obj": (b"v ", b"v 0.25 0.5 0.5\nv "),
     "stl-ascii": (b"vertex 3.0 ", b"vertex 2.5 "),
     "off": (b"-3.0000 -2.5000 -1.5000", b"-3.5000 -2.5000 -1.5000"),
-    "poses": (b" 0 0 0 1\n2 ", b" 0 0 0 1\n2 "),
     "intrinsics": (b"40.000000", b"41.500000"),
     "up": (b"z", b"-y"),
     "gravity": (b"9.7000", b"9.6000"),
@@ -32,7 +31,12 @@ EDITS = {
     "notebook": (b"x = 1 +", b"x = 2 +"),
     "python": (b"BETA = 0.1", b"BETA = 0.2"),
 }
-del EDITS["poses"]
+
+
+# What follows from the rest of a reading, and stands in no file.
+DERIVED = {"notebook": ("needed", "problems"), "python": ("needed", "problems")} | dict.fromkeys(
+    ("cfg", "names", "training"), ("found", "boxes", "scores")
+)
 
 
 @pytest.fixture
@@ -65,6 +69,8 @@ def test_no_changed_part_of_a_reading_is_explained_by_the_valid_file(name, sampl
     data = (samples / one.file).read_bytes()
     original = one.read(samples / one.file)
     for part, value in original.items():
+        if part in DERIVED.get(name, ()):
+            continue
         for other in changed(value):
             found = original | {part: other}
             assert not same(found, original)
