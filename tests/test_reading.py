@@ -147,4 +147,4 @@ def test_a_progressive_jpeg_with_a_comment_has_its_size():
     image = np.zeros((30, 60, 3), np.uint8)
     data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_PROGRESSIVE, 1])[1].tobytes()
     commented = data[:2] + b"\xff\xfe" + struct.pack(">H", 9) + b"comment" + data[2:]
-    assert image_header(commented) == ("JPEG", 60, 30, 1)
+    assert image_header(commented) == ("JPEG", 60, 30, 1, 3)

@@ -95,7 +95,8 @@ def of_image_list(data: bytes, found: Reading, original: Reading) -> str | None:
     near = [(row, *one) for row, one in enumerate(said, start=1) if np.abs(times - one[0]).min() <= 0.02]
     nearest = [int(np.abs(times - time).argmin()) for time in np.asarray(found["times"])]
     files = [original["files"].index(name) for name in found["files"]]
-    belongs = same(found["poses"], np.asarray(original["poses"])[nearest])
+    belongs = _only(found, original, "frames", "files", "times", "poses", "depth")
+    belongs = belongs and same(found["poses"], np.asarray(original["poses"])[nearest])
     belongs = belongs and same(found["depth"], np.asarray(original["depth"])[files])
     return PAYLOAD if kept == near and belongs else None
 

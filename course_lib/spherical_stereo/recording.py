@@ -75,9 +75,9 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
         raise PanoramaError(f"{path} has version {version!r}; this program reads version {VERSION}")
     try:
         pairs = tuple(_pair(folder, entry) for entry in content["pairs"])
-        heights = {entry["rig"]["upper_height"] for entry in content["pairs"]}
-        rig = StereoRig(float(content["baseline"]), float(min(heights, default=np.nan)))
-        width, height = int(content["width"]), int(content["height"])
+        heights = {_number(entry["rig"]["upper_height"]) for entry in content["pairs"]}
+        rig = StereoRig(_number(content["baseline"]), float(min(heights, default=np.nan)))
+        width, height = _whole(content["width"]), _whole(content["height"])
     except PanoramaError as error:
         raise PanoramaError(f"{path}: {error}") from None
     except (KeyError, TypeError, IndexError, ValueError, OverflowError) as error:
@@ -93,8 +93,8 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
 def _pair(folder: Path, entry: dict) -> StereoPair:
     rig = entry["rig"]
     return StereoPair(
-        str(entry["name"]),
-        np.array([rig["x"], rig["y"], rig["heading"]], float),
+        _text(entry["name"]),
+        np.array([_number(rig[name]) for name in ("x", "y", "heading")]),
         folder / entry["upper"]["file"],
         folder / entry["lower"]["file"],
         tuple(map(true_object, entry["upper"]["objects"])),
@@ -103,11 +103,35 @@ def _pair(folder: Path, entry: dict) -> StereoPair:
 
 
 def true_object(entry: dict) -> TrueObject:
-    """One object from its entry in poses.json or boxes.json."""
+    """One object from its entry in poses.json or boxes.json. Raises `KeyError`, `TypeError` for another kind of entry."""
     return TrueObject(
-        int(entry["object"]),
-        str(entry["label"]),
-        tuple(float(value) for value in entry["visible_box"]),
-        tuple(float(value) for value in entry["unoccluded_box"]),
-        float(entry["visible_fraction"]),
+        _whole(entry["object"]),
+        _text(entry["label"]),
+        _box(entry["visible_box"]),
+        _box(entry["unoccluded_box"]),
+        _number(entry["visible_fraction"]),
     )
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"a text is expected, found {str(value)[:40]}")
+    return value
+
+
+def _number(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise TypeError(f"a number is expected, found {str(value)[:40]}")
+    return float(value)
+
+
+def _whole(value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise TypeError(f"a whole number is expected, found {str(value)[:40]}")
+    return value
+
+
+def _box(value: object) -> tuple[float, float, float, float]:
+    if not isinstance(value, list) or len(value) != 4:
+        raise TypeError(f"a box of four numbers is expected, found {str(value)[:40]}")
+    return tuple(map(_number, value))
