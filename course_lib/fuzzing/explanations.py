@@ -248,13 +248,15 @@ def of_boxes(data: bytes, found: Reading, original: Reading) -> str | None:
     return PAYLOAD if legal and same_texts and counted and np.allclose(said, boxes, atol=1e-9) else None
 
 
-def _finite_network(found: Reading) -> bool:
-    """Whether what the network gives for a picture is finite."""
-    return bool(np.isfinite(np.asarray(found["boxes"])).all() and np.isfinite(np.asarray(found["scores"])).all())
+def _gives_numbers(found: Reading) -> bool:
+    """Whether what the network gives for a picture are numbers; what it finds in one, finite ones."""
+    boxes = [box for _, _, *box in found["found"]]
+    finite = np.isfinite(np.asarray(found["scores"])).all() and np.isfinite(np.array(boxes)).all()
+    return bool(finite and not np.isnan(np.asarray(found["boxes"])).any())
 
 
 def of_cfg(data: bytes, found: Reading, original: Reading) -> str | None:
-    """The sections and options of the file, in their order, and finite results."""
+    """The sections and options of the file, in their order, and results that are numbers."""
     sections: list[tuple[str, dict]] = []
     for line in data.decode("utf-8-sig").splitlines():
         line = re.split("[#;]", line)[0].strip()
@@ -267,12 +269,12 @@ def of_cfg(data: bytes, found: Reading, original: Reading) -> str | None:
     width, height = int(sections[0][1]["width"]), int(sections[0][1]["height"])
     fits = found["sections"] == said and found["input"] == (width, height)
     fits = fits and _only(found, original, "sections", "input", "boxes", "scores", "found")
-    return PAYLOAD if fits and _finite_network(found) else None
+    return PAYLOAD if fits and _gives_numbers(found) else None
 
 
 def of_weights(data: bytes, found: Reading, original: Reading) -> str | None:
     """As many numbers as before, all finite."""
-    if not _only(found, original, "boxes", "scores", "found") or not _finite_network(found):
+    if not _only(found, original, "boxes", "scores", "found") or not _gives_numbers(found):
         return None
     return PAYLOAD if np.asarray(found["boxes"]).shape == np.asarray(original["boxes"]).shape else None
 

@@ -31,8 +31,8 @@ class DarknetNetwork:
         """Check and load a network.
 
         size: (width, height) of the input in pixels instead of the cfg's; YOLOv4 takes any multiples of 32.
-        Raises DetectorError: what `read_cfg`, `class_count` and `check_weights` refuse, weights or results that are
-        not finite, or a size that does not suit.
+        Raises DetectorError: what `read_cfg`, `class_count` and `check_weights` refuse, weights that are not
+        finite, results that are NaN, or a size that does not suit.
         Source: paper 2, section 2.2.
         """
         sections = read_cfg(cfg)
@@ -65,20 +65,23 @@ class DarknetNetwork:
 
         OpenCV's rows are cx, cy, w, h as shares of the input, objectness, and the classes' scores, which are already
         multiplied by the objectness. Nothing is thresholded or suppressed. Raises DetectorError for results that are
-        not finite. Source: paper 2, section 2.2.
+        NaN. Source: paper 2, section 2.2.
         """
         self._net.setInput(blob)
         rows = np.concatenate([output.reshape(-1, 5 + self.n_classes) for output in self._net.forward(self._outputs)])
         centre, half = rows[:, 0:2], rows[:, 2:4] / 2
         boxes = np.concatenate([centre - half, centre + half], axis=1) * np.tile(self.input_size, 2)
-        require_finite(boxes, rows[:, 5:], self._told)
+        require_numbers(boxes, rows[:, 5:], self._told)
         return boxes, rows[:, 5:]
 
 
-def require_finite(boxes: np.ndarray, scores: np.ndarray, told: str) -> None:
-    """Raises DetectorError where a network, `told` by its files, gives boxes or scores that are no numbers."""
-    if not (np.isfinite(boxes).all() and np.isfinite(scores).all()):
-        raise DetectorError(f"the network {told} gives NaN or infinite boxes or scores: are its numbers damaged?")
+def require_numbers(boxes: np.ndarray, scores: np.ndarray, told: str) -> None:
+    """Raises DetectorError where a network, `told` by its files, gives boxes or scores that are no numbers.
+
+    A box may be infinitely wide, as an untrained network's are: it is cut at the image's edges as any other.
+    """
+    if np.isnan(boxes).any() or not np.isfinite(scores).all():
+        raise DetectorError(f"the network {told} gives boxes or scores that are NaN: are its numbers damaged?")
 
 
 def require_finite_weights(weights: str | Path) -> None:

@@ -199,11 +199,14 @@ def _trained_options(path: Path) -> dict[str, float]:
     """The constructor's options that a training wrote down."""
     if not is_given(path):
         return {}
-    report = read_json(path, "training report", DetectorError)
+    expected = "must be JSON with a number score_threshold; mend or remove it, or give score_threshold yourself"
+    try:
+        report = read_json(path, "training report", DetectorError)
+    except DetectorError as error:
+        raise DetectorError(f"{path} {expected} ({error})") from None
     threshold = report.get("score_threshold") if isinstance(report, dict) else None
-    if isinstance(threshold, bool) or not isinstance(threshold, (int, float)) or not 0 <= threshold <= 1:
-        raise DetectorError(
-            f"{path} must be JSON with a number score_threshold from 0 to 1; got {str(threshold)[:40]!r}. Mend or remove "
-            "it, or give score_threshold yourself"
-        )
+    if isinstance(threshold, bool) or not isinstance(threshold, (int, float)):
+        raise DetectorError(f"{path} {expected} (found {str(threshold)[:40]!r})")
+    if not 0 <= threshold <= 1:
+        raise DetectorError(f"{path}: score_threshold must be between 0 and 1; got {threshold}")
     return {"score_threshold": float(threshold)}

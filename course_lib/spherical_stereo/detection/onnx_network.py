@@ -18,7 +18,7 @@ import numpy as np
 from course_lib.child import ChildError, ChildStopped, run_apart
 from course_lib.reading import MEGABYTE, require_file
 from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
-from course_lib.spherical_stereo.detection.darknet_network import require_finite
+from course_lib.spherical_stereo.detection.darknet_network import require_numbers
 
 MEMORY = 1_500 * MEGABYTE
 """What a small network may take, of which most is for its intermediate results."""
@@ -115,10 +115,10 @@ class OnnxNetwork:
     def infer(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Boxes (n, 4) in edge coordinates of the input, scores (n, classes), for a blob (1, 3, H, W), RGB, 0 to 1.
 
-        Raises DetectorError for results that are not finite, or that do not fit the layout.
+        Raises DetectorError for results that are NaN, or that do not fit the layout.
         """
         self._net.setInput(blob)
         outputs = [np.asarray(output) for output in self._net.forward(self._outputs)]
         boxes, scores = decode_onnx(outputs, self._layout, self.n_classes, self.input_size)
-        require_finite(boxes, scores, self._told)
+        require_numbers(boxes, scores, self._told)
         return boxes, scores
