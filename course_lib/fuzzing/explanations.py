@@ -20,6 +20,7 @@ from course_lib.fuzzing.readings import Reading, same
 
 PAYLOAD = "payload: what the file says"
 MISSING = "the file is missing, as it may be"
+NO_CHECKSUM = "data of a JPEG, which has no checksum: the same picture to another decoder"
 ROUNDING = 2e-3
 """What making a rotation exact may change in one of its numbers: files may be wrong by 1e-3."""
 
@@ -142,17 +143,24 @@ def of_depth_image(data: bytes, found: Reading, original: Reading) -> str | None
 
 
 def of_picture(data: bytes, found: Reading, original: Reading) -> str | None:
-    """The pixels that Pillow finds. JPEG has no checksum: a changed bit is another picture, to any reader."""
-    pixels, image = _pillow(data), np.asarray(found["pixels"])
-    if pixels is None or pixels.ndim != 3 or pixels.shape[:2] != image.shape[:2]:
-        return None
-    apart = np.abs(pixels[..., :3].astype(int) - image[..., ::-1]).max()
-    return PAYLOAD if apart <= (2 if data[:2] == b"\xff\xd8" else 0) else None
+    """The pixels that Pillow finds: of a PNG exactly, of a JPEG that is complete whatever its data have become."""
+    image, is_jpeg = np.asarray(found["pixels"]), data[:2] == b"\xff\xd8"
+    for lenient in (False, True):
+        pixels = _pillow(data, lenient)
+        if pixels is not None and pixels.ndim == 3 and pixels.shape[:2] == image.shape[:2]:
+            apart = np.abs(pixels[..., :3].astype(int) - image[..., ::-1]).max()
+            if apart <= (2 if is_jpeg else 0):
+                return NO_CHECKSUM if lenient else PAYLOAD
+        if not (is_jpeg and data.find(b"\xff\xd9", data.find(b"\xff\xda")) > 0):
+            return None  # it was cut off, or has checksums
+    return None
 
 
-def _pillow(data: bytes) -> np.ndarray | None:
-    from PIL import Image
+def _pillow(data: bytes, lenient: bool = False) -> np.ndarray | None:
+    """The pixels that Pillow unpacks, None where it does not; lenient: as far as it comes."""
+    from PIL import Image, ImageFile
 
+    before, ImageFile.LOAD_TRUNCATED_IMAGES = ImageFile.LOAD_TRUNCATED_IMAGES, lenient
     try:
         with Image.open(io.BytesIO(data)) as image:
             if image.mode.startswith("I"):
@@ -160,6 +168,8 @@ def _pillow(data: bytes) -> np.ndarray | None:
             return np.asarray(image.convert("RGB"))
     except Exception:  # whatever Pillow stumbles on: it does not accept the file
         return None
+    finally:
+        ImageFile.LOAD_TRUNCATED_IMAGES = before
 
 
 def of_stereo(data: bytes, found: Reading, original: Reading) -> str | None:
