@@ -119,7 +119,11 @@ def read_json(
         return value if math.isfinite(value) else refuse(f"holds the number {digits[:20]}, which is too large")
 
     def whole(digits: str) -> int:
-        return int(digits) if len(digits) < 300 else refuse(f"is not JSON that can be read: a number of {len(digits)} digits")
+        return (
+            int(digits)
+            if len(digits) < 300
+            else refuse(f"is not JSON that can be read: a number of {len(digits)} digits")
+        )
 
     def members(pairs: list[tuple[str, object]]) -> dict[str, object]:
         found = dict(pairs)

@@ -166,7 +166,7 @@ def test_json_of_nothing_but_open_strings_is_read_in_one_go(tmp_path):
 
 def test_a_whole_number_that_no_float_holds_is_named(tmp_path):
     (tmp_path / "a.json").write_text('{"x": 1' + 400 * "0" + "}")
-    with pytest.raises(AskedError, match="a.json is not JSON that can be read: a number of 401 digits"):
+    with pytest.raises(AskedError, match=r"a\.json is not JSON that can be read: a number of 401 digits"):
         read_json(tmp_path / "a.json", "map", AskedError)
 
 

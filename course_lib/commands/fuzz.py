@@ -24,7 +24,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `fuzz`."""
     parser.add_argument("--seconds", type=float, metavar="S", help="stop after so many seconds")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="same seed, same files (default: 1)")
-    parser.add_argument("--files", type=int, metavar="N", help=f"how many files (default: {FILES}, or what fits --seconds)")
+    parser.add_argument(
+        "--files", type=int, metavar="N", help=f"how many files (default: {FILES}, or what fits --seconds)"
+    )
     parser.add_argument("--processes", type=int, default=1, metavar="P", help="that try files at a time (default: 1)")
     parser.add_argument("--formats", metavar="NAMES", help="only these, with commas (default: all)")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")

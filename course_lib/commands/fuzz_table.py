@@ -23,7 +23,10 @@ def fuzz_table(result: dict) -> str:
     for name, counts in (*result["formats"].items(), ("all", result["all"])):
         cells = "".join(f"  {counts[one]:>{widths[one]}}" for one in HEADINGS)
         lines.append(f"{name:<14}{sum(counts.values()):>7}{cells}")
-    lines += ["", "refused: by an error that names the file. same, explained: read, with the result of the valid file, or"]
+    lines += [
+        "",
+        "refused: by an error that names the file. same, explained: read, with the result of the valid file, or",
+    ]
     lines.append("another one that a second reading of the file confirms. The other five columns are defects.")
     lines += [f"  explained: {count} times {why}" for why, count in result["explained"].items()]
     lines.append(f"Seed {result['seed']}; most memory {result['peak_mb']:.0f} MB.")

@@ -286,7 +286,8 @@ def _require_same_frames(folder: Path, pose_frames: list[int], image_frames: lis
     without_image = sorted(set(pose_frames) - set(image_frames))[:3]
     without_pose = sorted(set(image_frames) - set(pose_frames))[:3]
     raise SequenceError(
-        f"{folder / 'poses.txt'} and {folder / 'depth'} name other frames: {len(pose_frames)} poses, {len(image_frames)} images; "
+        f"{folder / 'poses.txt'} and {folder / 'depth'} name other frames: {len(pose_frames)} poses, "
+        f"{len(image_frames)} images; "
         f"poses without an image start {without_image}, images without a pose {without_pose}"
     )
 

@@ -9,9 +9,20 @@ import zlib
 from collections.abc import Callable
 from pathlib import Path
 
-from course_lib.fuzzing.structure_mutators import png
+from course_lib.fuzzing.image_mutators import png
 
-LINKS = ("missing", "dangling", "loop", "folder", "link to a folder", "/dev/zero", "/dev/full", "fifo", "link to a fifo", "link to itself whole")
+LINKS = (
+    "missing",
+    "dangling",
+    "loop",
+    "folder",
+    "link to a folder",
+    "/dev/zero",
+    "/dev/full",
+    "fifo",
+    "link to a fifo",
+    "link to itself whole",
+)
 """Kinds of what stands in a file's place."""
 
 
@@ -53,6 +64,12 @@ def _png_of_zeros(width: int, bits: int, colour: int, height: int | None = None)
     row = 1 + width * channels * bits // 8
     header = struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, 0)
     return png([(b"IHDR", header), (b"IDAT", zeros(height * row)), (b"IEND", b"")])
+
+
+def _jpeg_without_data(side: int) -> bytes:
+    """A JPEG that says how large it is, and ends."""
+    frame = b"\x08" + struct.pack(">HH", side, side) + b"\x03\x01\x11\0\x02\x11\0\x03\x11\0"
+    return b"\xff\xd8\xff\xc0\0\x11" + frame + b"\xff\xd9"
 
 
 def _glb(accessor: dict, **more: object) -> bytes:
@@ -117,7 +134,9 @@ def make_bombs(of: str) -> dict[str, Callable[[], bytes]]:
             "9,900 x 9,900 in four channels of 16 bits": lambda: _png_of_zeros(9_900, 16, 6),
             "9,900 x 9,900 in grey of 16 bits": lambda: _png_of_zeros(9_900, 16, 0),
             "14,000 x 7,000 in three colours": lambda: _png_of_zeros(14_000, 8, 2, 7_000),
-            "2^31 x 2^31": lambda: png([(b"IHDR", struct.pack(">IIBBBBB", 2**31 - 1, 2**31 - 1, 16, 0, 0, 0, 0)), (b"IEND", b"")]),
+            "2^31 x 2^31": lambda: png(
+                [(b"IHDR", struct.pack(">IIBBBBB", 2**31 - 1, 2**31 - 1, 16, 0, 0, 0, 0)), (b"IEND", b"")]
+            ),
             "10,000 x 10,000 of no bytes": lambda: png(
                 [(b"IHDR", struct.pack(">IIBBBBB", 10_000, 10_000, 16, 0, 0, 0, 0)), (b"IDAT", b""), (b"IEND", b"")]
             ),
@@ -130,12 +149,12 @@ def make_bombs(of: str) -> dict[str, Callable[[], bytes]]:
             ),
         },
         "jpeg": {
-            "65,000 x 65,000": lambda: b"\xff\xd8\xff\xc0\0\x11\x08\xfd\xe8\xfd\xe8\x03\x01\x11\0\x02\x11\0\x03\x11\0\xff\xd9",
-            "10,000 x 10,000 of no bytes": lambda: b"\xff\xd8\xff\xc0\0\x11\x08\x27\x10\x27\x10\x03\x01\x11\0\x02\x11\0\x03\x11\0\xff\xd9",
+            "65,000 x 65,000": lambda: _jpeg_without_data(65_000),
+            "10,000 x 10,000 of no bytes": lambda: _jpeg_without_data(10_000),
         },
         "floats": {"8 MB of zeros": lambda: bytes(8_000_000), "8 MB of NaN": lambda: b"\xff" * 8_000_000},
         "onnx": {"2,000 messages inside each other": lambda: _nested(2_000)},
-    }  # fmt: skip
+    }
     return makers.get(of, {})
 
 

@@ -7,7 +7,7 @@ import tempfile
 import time
 import zlib
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -166,14 +166,14 @@ def run_campaign(
     files: int | None,
     seconds: float | None,
     processes: int,
-    progress: Callable[[Iterator[Trial], int | None], Iterator[Trial]] = lambda trials, total: trials,
+    progress: Callable[[Iterator[Trial]], Iterable[Trial]] = lambda trials: trials,
 ) -> list[Trial]:
     """Try files until there were so many, or the time is up. `progress` wraps the iterator over what was tried."""
     until = None if seconds is None else time.monotonic() + seconds
     planned = plan(names, files)
     trials = _here(names, seed, planned) if processes == 1 else _apart(names, seed, planned, processes)
     found = []
-    for trial in progress(trials, files):
+    for trial in progress(trials):
         found.append(trial)
         if until is not None and time.monotonic() > until:
             break

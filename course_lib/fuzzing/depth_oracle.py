@@ -1,4 +1,4 @@
-"""Are the depths of a map that was accepted those of its triangles? Our z-buffer beside plain ray casting in float64."""
+"""Are the depths of an accepted map those of its triangles? Our z-buffer beside plain ray casting in float64."""
 
 from __future__ import annotations
 

@@ -194,7 +194,9 @@ def of_stereo(data: bytes, found: Reading, original: Reading) -> str | None:
         and np.array_equal(np.asarray(found["rig"]), [content["baseline"], pairs[0]["rig"]["upper_height"]])
         and found["size"] == np.asarray(found["pixels"]).shape[2:0:-1]
         and found["seed"] == content.get("seed")
-        and same(found["pixels"], np.asarray(original["pixels"])[[original["files"].index(one) for one in found["files"]]])
+        and same(
+            found["pixels"], np.asarray(original["pixels"])[[original["files"].index(one) for one in found["files"]]]
+        )
     )
     return PAYLOAD if legal and said else None
 
@@ -204,7 +206,9 @@ def of_objects_json(data: bytes, found: Reading, original: Reading) -> str | Non
     content = json.loads(data.decode("utf-8-sig"))
     rows = content["landmarks"]
     walls = content.get("walls")
-    kept = found["name"] == content.get("name", "") and same(found["walls"], None if walls is None else np.array(walls, float))
+    kept = found["name"] == content.get("name", "") and same(
+        found["walls"], None if walls is None else np.array(walls, float)
+    )
     return PAYLOAD if kept and _are_landmarks(rows, found) else None
 
 
@@ -310,7 +314,11 @@ def of_notebook(data: bytes, found: Reading, original: Reading) -> str | None:
     """The code of the cells, in their order."""
     sources = []
     for cell in json.loads(data.decode("utf-8-sig"))["cells"]:
-        if isinstance(cell, dict) and cell.get("cell_type") == "code" and isinstance(cell.get("source", ""), str | list):
+        if (
+            isinstance(cell, dict)
+            and cell.get("cell_type") == "code"
+            and isinstance(cell.get("source", ""), str | list)
+        ):
             source = cell.get("source", "")
             if isinstance(source, str) or all(isinstance(line, str) for line in source):
                 sources.append(source if isinstance(source, str) else "".join(source))

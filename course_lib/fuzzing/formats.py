@@ -73,21 +73,49 @@ FORMATS: dict[str, Format] = {
         _recording("poses", "sequence/poses.txt", "text numbers", explanations.optional(explanations.of_poses)),
         _recording("intrinsics", "sequence/intrinsics.txt", "text numbers", explanations.of_intrinsics),
         _recording("up", "sequence/up.txt", "text", explanations.optional(explanations.of_up)),
-        _recording("gravity", "sequence/gravity.txt", "text numbers", explanations.optional(explanations.of_numbers("gravity"))),
-        _recording("floor", "sequence/path_on_floor.txt", "text numbers", explanations.optional(explanations.of_numbers("path_on_floor"))),
-        _recording("times", "sequence/groundtruth.txt", "text numbers", explanations.optional(explanations.of_trajectory)),
+        _recording(
+            "gravity", "sequence/gravity.txt", "text numbers", explanations.optional(explanations.of_numbers("gravity"))
+        ),
+        _recording(
+            "floor",
+            "sequence/path_on_floor.txt",
+            "text numbers",
+            explanations.optional(explanations.of_numbers("path_on_floor")),
+        ),
+        _recording(
+            "times", "sequence/groundtruth.txt", "text numbers", explanations.optional(explanations.of_trajectory)
+        ),
         _recording("tum", "tum/groundtruth.txt", "text numbers", explanations.optional(explanations.of_trajectory)),
         _recording("tum-images", "tum/depth.txt", "text numbers", explanations.optional(explanations.of_image_list)),
         _format("start", "pose/start.txt", "text numbers", readings.read_start, SequenceError, explanations.of_start),
-        _format("panorama-png", "panoramas/upper.png", "png", readings.read_picture, PanoramaError, explanations.of_picture),
-        _format("panorama-jpeg", "panoramas/upper.jpg", "jpeg", readings.read_picture, PanoramaError, explanations.of_picture),
-        _format("stereo", "stereo/poses.json", "text json", readings.read_stereo, PanoramaError, explanations.of_stereo),
         _format(
-            "semantic-json", "semantic/map.json", "text json", readings.read_objects, SemanticMapError,
+            "panorama-png", "panoramas/upper.png", "png", readings.read_picture, PanoramaError, explanations.of_picture
+        ),
+        _format(
+            "panorama-jpeg",
+            "panoramas/upper.jpg",
+            "jpeg",
+            readings.read_picture,
+            PanoramaError,
+            explanations.of_picture,
+        ),
+        _format(
+            "stereo", "stereo/poses.json", "text json", readings.read_stereo, PanoramaError, explanations.of_stereo
+        ),
+        _format(
+            "semantic-json",
+            "semantic/map.json",
+            "text json",
+            readings.read_objects,
+            SemanticMapError,
             explanations.of_objects_json,
         ),
         _format(
-            "semantic-csv", "semantic/map.csv", "text numbers", readings.read_objects, SemanticMapError,
+            "semantic-csv",
+            "semantic/map.csv",
+            "text numbers",
+            readings.read_objects,
+            SemanticMapError,
             explanations.of_objects_csv,
         ),
         _format("boxes", "boxes/boxes.json", "text json", readings.read_boxes, DetectionError, explanations.of_boxes),
@@ -97,13 +125,21 @@ FORMATS: dict[str, Format] = {
         _detector("training", "training.json", "text json", explanations.optional(explanations.of_training)),
         _format("onnx", "onnx/net.onnx", "onnx floats slow", readings.read_onnx, DetectorError, explanations.of_onnx),
         _format(
-            "notebook", f"notebook/alice/{readings.LESSON}.ipynb", "text json", readings.read_handed_in, SubmissionError,
+            "notebook",
+            f"notebook/alice/{readings.LESSON}.ipynb",
+            "text json",
+            readings.read_handed_in,
+            SubmissionError,
             explanations.of_notebook,
         ),
         _format(
-            "python", f"python/bob/{readings.LESSON}.py", "text", readings.read_handed_in, SubmissionError,
+            "python",
+            f"python/bob/{readings.LESSON}.py",
+            "text",
+            readings.read_handed_in,
+            SubmissionError,
             explanations.of_python,
         ),
     )
-}  # fmt: skip
+}
 """By name, in the order of the table."""

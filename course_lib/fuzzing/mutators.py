@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from course_lib.fuzzing import structure_mutators as structure
+from course_lib.fuzzing import image_mutators, json_mutators, mesh_mutators, number_mutators
 from course_lib.fuzzing import text_mutators as text
 
 Mutator = Callable[[bytes, np.random.Generator], bytes]
@@ -63,7 +63,9 @@ def swap(data: bytes, rng: np.random.Generator) -> bytes:
     if second < first + length:
         return data[first:] + data[:first]
     middle = data[first + length : second]
-    return data[:first] + data[second : second + length] + middle + data[first : first + length] + data[second + length :]
+    return (
+        data[:first] + data[second : second + length] + middle + data[first : first + length] + data[second + length :]
+    )
 
 
 def append(data: bytes, rng: np.random.Generator) -> bytes:
@@ -78,7 +80,15 @@ def empty(data: bytes, rng: np.random.Generator) -> bytes:
 
 def another_format(data: bytes, rng: np.random.Generator) -> bytes:
     """The start of another kind of file."""
-    starts = (b"PK\x03\x04", b"\x89PNG\r\n\x1a\n", b"%PDF-1.7\n", b"\x80\x04\x95", b"glTF\x02\0\0\0", b"<html>", b"ply\n")
+    starts = (
+        b"PK\x03\x04",
+        b"\x89PNG\r\n\x1a\n",
+        b"%PDF-1.7\n",
+        b"\x80\x04\x95",
+        b"glTF\x02\0\0\0",
+        b"<html>",
+        b"ply\n",
+    )
     return starts[int(rng.integers(0, len(starts)))] + (data if rng.random() < 0.5 else rng.bytes(200))
 
 
@@ -91,14 +101,14 @@ BYTES: tuple[Mutator, ...] = (
 BY_TRAIT: dict[str, tuple[Mutator, ...]] = {
     "text": text.ENCODINGS + text.LINES,
     "numbers": text.NUMBERS * 2,
-    "json": structure.JSON * 3,
-    "ply": structure.PLY,
-    "stl": structure.STL,
-    "png": structure.PNG,
-    "jpeg": structure.JPEG,
-    "glb": structure.GLB * 2,
-    "floats": structure.FLOATS,
-    "onnx": structure.ONNX,
+    "json": json_mutators.JSON * 3,
+    "ply": mesh_mutators.PLY,
+    "stl": mesh_mutators.STL,
+    "png": image_mutators.PNG,
+    "jpeg": image_mutators.JPEG,
+    "glb": mesh_mutators.GLB * 2,
+    "floats": number_mutators.FLOATS,
+    "onnx": number_mutators.ONNX,
 }
 """For files with something in them."""
 

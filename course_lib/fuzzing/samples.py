@@ -197,7 +197,9 @@ def _write_boxes(folder: Path) -> None:
         ]
         for side, shift in (("upper", 2), ("lower", 0))
     }
-    write_at_once(folder / "boxes.json", json.dumps({"version": 1, "width": width, "height": height, **sides}, indent=1))
+    write_at_once(
+        folder / "boxes.json", json.dumps({"version": 1, "width": width, "height": height, **sides}, indent=1)
+    )
 
 
 def _write_networks(folder: Path) -> None:
@@ -245,7 +247,12 @@ def weights(l_normalized, beta=BETA):
 def _write_notebooks(folder: Path) -> None:
     for part in ("notebook/alice", "python/bob"):
         (folder / part).mkdir(parents=True)
-    sources = ["%matplotlib inline\nimport numpy as np\n", ANSWER, "print(weights(np.linspace(0, 1, 5)))\n", "x = 1 +\n"]
+    sources = [
+        "%matplotlib inline\nimport numpy as np\n",
+        ANSWER,
+        "print(weights(np.linspace(0, 1, 5)))\n",
+        "x = 1 +\n",
+    ]
     cells: list[dict] = [{"cell_type": "markdown", "metadata": {}, "source": ["# Likelihood\n", "and weights\n"]}]
     for number, source in enumerate(sources):
         cells.append(

@@ -90,7 +90,18 @@ def repeated_line(data: bytes, rng: np.random.Generator) -> bytes:
 
 def strange_line(data: bytes, rng: np.random.Generator) -> bytes:
     """A line that means nothing, or is very long, in between."""
-    strange = (b"# comment", b"//", b"[section]", b"key=value", b"=", b",,,,", b"1 2 3", b"\x00", b"1 " * 50_000, b"x" * 10**5)
+    strange = (
+        b"# comment",
+        b"//",
+        b"[section]",
+        b"key=value",
+        b"=",
+        b",,,,",
+        b"1 2 3",
+        b"\x00",
+        b"1 " * 50_000,
+        b"x" * 10**5,
+    )
     lines = data.split(b"\n")
     lines.insert(int(rng.integers(0, len(lines) + 1)), strange[int(rng.integers(0, len(strange)))])
     return b"\n".join(lines)
@@ -116,7 +127,17 @@ def another_encoding(data: bytes, rng: np.random.Generator) -> bytes:
 
 def strange_letters(data: bytes, rng: np.random.Generator) -> bytes:
     """Letters that are no letters: a zero byte, half a surrogate, invisible spaces, other line ends, right to left."""
-    strange = (b"\x00", b"\xed\xa0\x80", b"\xc2\xa0", b"\xe2\x80\x8b", b"\xe2\x80\xa8", b"\xc2\x85", b"\x0c", b"\x1c", b"\xe2\x80\xae")
+    strange = (
+        b"\x00",
+        b"\xed\xa0\x80",
+        b"\xc2\xa0",
+        b"\xe2\x80\x8b",
+        b"\xe2\x80\xa8",
+        b"\xc2\x85",
+        b"\x0c",
+        b"\x1c",
+        b"\xe2\x80\xae",
+    )
     at = int(rng.integers(0, len(data) + 1))
     return data[:at] + strange[int(rng.integers(0, len(strange)))] + data[at:]
 

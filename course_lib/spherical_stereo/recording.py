@@ -103,7 +103,7 @@ def _pair(folder: Path, entry: dict) -> StereoPair:
 
 
 def true_object(entry: dict) -> TrueObject:
-    """One object from its entry in poses.json or boxes.json. Raises `KeyError`, `TypeError` for another kind of entry."""
+    """One object from its entry in poses.json or boxes.json. Raises `KeyError`, `TypeError` for another entry."""
     return TrueObject(
         _whole(entry["object"]),
         _text(entry["label"]),

@@ -207,5 +207,5 @@ def test_comments_colours_and_blank_lines_are_no_faults(tmp_path, data, kind):
 
 def test_corners_of_two_numbers_are_no_map(tmp_path):
     data = b"\n".join(line.rpartition(b" ")[0] if line[:2] == b"v " else line for line in OBJ.splitlines())
-    with pytest.raises(AskedError, match="map.obj"):
+    with pytest.raises(AskedError, match=r"map\.obj"):
         read(tmp_path, data, "obj")

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from course_lib.fuzzing.bombs import LINKS, make_bombs, put_link, zeros
 from course_lib.fuzzing.campaign import FORMATS, damage, plan, put
+from course_lib.fuzzing.image_mutators import chunks, png
 from course_lib.fuzzing.mutators import BY_TRAIT, BYTES, mutators_for
 from course_lib.fuzzing.samples import write_samples
-from course_lib.fuzzing.structure_mutators import chunks, png
 
 MUTATORS = sorted({one for group in (BYTES, *BY_TRAIT.values()) for one in group}, key=lambda one: one.__name__)
 

@@ -102,7 +102,9 @@ def test_a_reader_that_never_ends_hangs(file):
 def test_a_reader_that_waits_for_a_child_of_its_own_hangs_and_leaves_nothing(file):
     program = "import os, sys, time; open(sys.argv[1], 'w').write(str(os.getpid())); time.sleep(10_000)"
     note = file.with_name("pid")
-    found = told(lambda path: subprocess.run([sys.executable, "-c", program, str(note)], check=True), file, seconds=20.0)
+    found = told(
+        lambda path: subprocess.run([sys.executable, "-c", program, str(note)], check=True), file, seconds=20.0
+    )
     assert found.outcome == "hang"
     deadline = time.monotonic() + 60
     while _alive(int(note.read_text())) and time.monotonic() < deadline:

@@ -123,7 +123,9 @@ def _read_box(item: object, size: tuple[int, int], where: str) -> LabelledBox:
     except (TypeError, ValueError) as error:
         raise DetectionError(f"{where}: {error}") from None
     if box.shape != (4,):
-        raise DetectionError(f"{where}: box must be of the shape [u_min, v_min, u_max, v_max]; got {str(item['box'])[:80]}")
+        raise DetectionError(
+            f"{where}: box must be of the shape [u_min, v_min, u_max, v_max]; got {str(item['box'])[:80]}"
+        )
     box = checked_boxes(box, size[0], where)
     if box[1] < 0 or box[3] > size[1]:
         raise DetectionError(

@@ -55,8 +55,9 @@ class DarknetNetwork:
             # One run now: sizes that do not fit are found here, and the first image is as fast as the second.
             self.infer(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
         except cv2.error as error:
+            width, height = self.input_size
             raise DetectorError(
-                f"OpenCV cannot run {self._told} at an input of {self.input_size[0]} x {self.input_size[1]}: {error.err}. "
+                f"OpenCV cannot run {self._told} at an input of {width} x {height}: {error.err}. "
                 "Width and height must be multiples of the network's stride (32 for YOLOv4)"
             ) from error
 

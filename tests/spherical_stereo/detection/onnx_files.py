@@ -13,6 +13,7 @@ from tests.spherical_stereo.detection.blob_networks import (
     window_kernels,
 )
 
+
 def blob_onnx(layout: str) -> bytes:
     """The network of `blob_networks` as an ONNX file with outputs in one of the three layouts."""
     width, height = INPUT_SIZE

@@ -293,7 +293,9 @@ def test_a_trained_threshold_that_is_none_is_named_with_its_file(files, tmp_path
     for path in files:
         (tmp_path / path.name).write_bytes(path.read_bytes())
     (tmp_path / "training.json").write_text(f'{{"score_threshold": {threshold}}}')
-    with pytest.raises(DetectorError, match=r"training\.json(: score_threshold must be between|.* must be JSON with a number)"):
+    with pytest.raises(
+        DetectorError, match=r"training\.json(: score_threshold must be between|.* must be JSON with a number)"
+    ):
         YoloDetector.load(tmp_path)
 
 
