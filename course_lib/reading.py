@@ -191,6 +191,8 @@ def read_image(
         raise error(f"{what} {path} {taken}; at most {MOST_IMAGE / MEGABYTE:,.0f} MB are read")
     if header.frames > 1:
         raise error(f"{what} {path} is animated ({header.frames} frames); one picture is expected")
+    if header.kind == "PNG" and (fault := _chunk_fault(data)):
+        raise error(f"{what} {path} cannot be read as a PNG: {fault}: is it complete?")
     try:
         image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error as reason:
@@ -198,6 +200,22 @@ def read_image(
     if image is None:
         raise error(f"{what} {path} cannot be read as a {header.kind}: is it complete?")
     return image
+
+
+def _chunk_fault(data: bytes) -> str | None:
+    """The first chunk of a PNG that says it is longer than the file: OpenCV would take that much memory at once.
+
+    Source: PNG specification, section 5.3 (length, type, content, checksum).
+    """
+    at = 8
+    while at + 8 <= len(data):
+        length, kind = int.from_bytes(data[at : at + 4], "big"), data[at + 4 : at + 8]
+        if at + 12 + length > len(data):
+            return f"its part {kind!r} at byte {at} has {length:,} bytes, the file {len(data) - at - 8:,} more"
+        if kind == b"IEND":
+            return None
+        at += 12 + length
+    return "it has no end"
 
 
 def image_header(data: bytes) -> ImageHeader | None:

@@ -188,3 +188,20 @@ def test_whatever_stands_in_a_files_place_is_given(tmp_path):
     (tmp_path / "dangling").symlink_to("nowhere")
     (tmp_path / "folder").mkdir()
     assert all(is_given(tmp_path / name) for name in ("loop", "dangling", "folder"))
+
+
+@pytest.mark.parametrize("length", [2**31 + 11, 2**32 - 1, 200])
+def test_a_part_of_a_png_longer_than_the_file_is_refused_before_memory_is_taken(tmp_path, length):
+    """OpenCV takes what the part says: 2.3 GB for a file of 70 bytes."""
+    data = png(30, 1)
+    path = tmp_path / "a.png"
+    path.write_bytes(data)
+    assert read_image(path, "image", AskedError).shape == (1, 30)
+    path.write_bytes(data[:33] + struct.pack(">I", length) + data[37:])
+
+    def read(path):
+        return {"image": read_image(path, "image", AskedError)}
+
+    found = try_file(path, read, (AskedError,), lambda *given: None, {})
+    assert found.outcome == "refused"
+    assert "its part b'IDAT' at byte 33 has" in found.told

@@ -15,8 +15,8 @@ _CORNER = re.compile(rb"-?\d+(?:/-?\d*){0,2}")
 
 
 def row_fault(data: bytes, kind: str) -> str | None:
-    """What is wrong with the first bad row, "line 7: ...", or None. kind: "ply", "off", "obj", "stl"; a binary file has
-    no rows."""
+    """What is wrong with the first bad row, "line 7: ...", or None. kind: "ply", "off", "obj", "stl". Of a binary
+    file only the header is looked at."""
     faults = {"ply": _ply, "off": _off, "obj": _obj, "stl": _stl}.get(kind)
     return next(faults(data), None) if faults else None
 
@@ -38,6 +38,14 @@ def _polygon_fault(fields: list[bytes] | None, more: int = 0) -> str | None:
 
 def _ply(data: bytes) -> Iterator[str]:
     header, _, body = data.partition(b"end_header")
+    names: list[bytes] = []
+    for number, words in enumerate((line.split() for line in header.splitlines()), start=1):
+        if words[:1] == [b"element"]:
+            names = []
+        elif words[:1] == [b"property"]:
+            if words[-1] in names:  # trimesh drops one, and reads every row from the wrong place
+                yield f"line {number}: the element has two properties {words[-1].decode('ascii', 'replace')}"
+            names.append(words[-1])
     if not re.search(rb"^\s*format\s+ascii", header, re.M):
         return
     rows = iter(enumerate(body.splitlines()[1:], start=header.count(b"\n") + 2))

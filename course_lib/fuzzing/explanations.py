@@ -148,7 +148,7 @@ def of_picture(data: bytes, found: Reading, original: Reading) -> str | None:
     for lenient in (False, True):
         pixels = _pillow(data, lenient)
         if pixels is not None and pixels.ndim == 3 and pixels.shape[:2] == image.shape[:2]:
-            apart = np.abs(pixels[..., :3].astype(int) - image[..., ::-1]).max()
+            apart = np.abs(pixels[..., :3].astype(np.int16) - image[..., ::-1]).max()
             if apart <= (2 if is_jpeg else 0):
                 return NO_CHECKSUM if lenient else PAYLOAD
         if not (is_jpeg and data.find(b"\xff\xd9", data.find(b"\xff\xda")) > 0):

@@ -10,6 +10,7 @@ import contextlib
 import faulthandler
 import json
 import os
+import resource
 import select
 import signal
 import sys
@@ -35,6 +36,10 @@ MEMORY = 1_000 * MEGABYTE
 
 SPACE = 4_000 * MEGABYTE
 """Bytes that the child may ask for: above it is told that there are none, and the machine goes on."""
+
+
+_UNIT = 1 if sys.platform == "darwin" else 1024
+"""Bytes of `ru_maxrss`."""
 
 
 @dataclass(frozen=True)
@@ -79,8 +84,9 @@ def try_file(
             os.kill(child, signal.SIGKILL)
     _, status, used = os.wait4(child, 0)
     taken = time.monotonic() - start
-    peak = used.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-    outcome, told = _outcome(said, status, hangs, seconds)
+    peak = used.ru_maxrss * _UNIT
+    outcome, told, read_peak = _outcome(said, status, hangs, seconds)
+    peak = peak if read_peak is None else read_peak
     if peak > memory and outcome != "hang":
         outcome, told = "memory", f"{peak / MEGABYTE:,.0f} MB; {told}"
     return Verdict(outcome, told[:400], round(peak / MEGABYTE, 1), round(taken, 3))
@@ -99,16 +105,17 @@ def _said_within(handle: int, until: float) -> bytes | None:
     return None
 
 
-def _outcome(said: bytes | None, status: int, hangs: bool, seconds: float) -> tuple[str, str]:
+def _outcome(said: bytes | None, status: int, hangs: bool, seconds: float) -> tuple[str, str, int | None]:
+    """Class, what is told, and the memory that the reader took, bytes, where the child lived to tell."""
     if hangs:
-        return "hang", f"not done after {seconds:g} s"
+        return "hang", f"not done after {seconds:g} s", None
     if os.WIFSIGNALED(status):
-        return "crash", f"died by {signal.Signals(os.WTERMSIG(status)).name}"
+        return "crash", f"died by {signal.Signals(os.WTERMSIG(status)).name}", None
     try:
         verdict = json.loads(said or b"")
-        return verdict["outcome"], verdict["told"]
+        return verdict["outcome"], verdict["told"], verdict["peak"]
     except (ValueError, KeyError):
-        return "crash", f"ended without a word, with exit code {os.waitstatus_to_exitcode(status)}"
+        return "crash", f"ended without a word, with exit code {os.waitstatus_to_exitcode(status)}", None
 
 
 def _judge_and_leave(handle: int, *arguments: object) -> None:
@@ -119,13 +126,12 @@ def _judge_and_leave(handle: int, *arguments: object) -> None:
         silent = os.open(os.devnull, os.O_RDWR)
         for stream in (0, 1, 2):
             os.dup2(silent, stream)
-        with contextlib.suppress(ImportError, ValueError, OSError):
-            import resource
-
+        with contextlib.suppress(ValueError, OSError):
             resource.setrlimit(resource.RLIMIT_DATA, (SPACE, SPACE))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        outcome, told = judge(*arguments)
-        os.write(handle, json.dumps({"outcome": outcome, "told": told[:2000]}).encode())
+        peak: list[int] = []
+        outcome, told = judge(*arguments, peak)
+        os.write(handle, json.dumps({"outcome": outcome, "told": told[:2000], "peak": peak[0]}).encode())
     finally:
         os._exit(0)
 
@@ -136,10 +142,14 @@ def judge(
     errors: tuple[type[Exception], ...],
     explain: Callable[[bytes | None, Reading, Reading], str | None],
     original: Reading,
+    peak: list[int],
 ) -> tuple[str, str]:
-    """(class, what is told) of a file that is read in this process."""
+    """(class, what is told) of a file that is read in this process; `peak` gets the bytes that reading it took."""
     try:
-        found = read(path)
+        try:
+            found = read(path)
+        finally:
+            peak.append(_most_memory())
     except BaseException as error:
         told = f"{type(error).__name__}: {error}"
         if _lacked_memory(error):
@@ -162,6 +172,12 @@ def judge(
         changed = [name for name, value in found.items() if name not in original or not same(value, original[name])]
         return "unexplained", f"changed: {', '.join(changed)}"
     return "changed", why
+
+
+def _most_memory() -> int:
+    """Bytes that this process, or one that it started, had in memory at most."""
+    most = max(resource.getrusage(whose).ru_maxrss for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return most * _UNIT
 
 
 def _lacked_memory(error: BaseException | None) -> bool:

@@ -95,8 +95,8 @@ def _pair(folder: Path, entry: dict) -> StereoPair:
     return StereoPair(
         _text(entry["name"]),
         np.array([_number(rig[name]) for name in ("x", "y", "heading")]),
-        folder / entry["upper"]["file"],
-        folder / entry["lower"]["file"],
+        folder / _file_name(entry["upper"]["file"]),
+        folder / _file_name(entry["lower"]["file"]),
         tuple(map(true_object, entry["upper"]["objects"])),
         tuple(map(true_object, entry["lower"]["objects"])),
     )
@@ -116,6 +116,13 @@ def true_object(entry: dict) -> TrueObject:
 def _text(value: object) -> str:
     if not isinstance(value, str):
         raise TypeError(f"a text is expected, found {str(value)[:40]}")
+    return value
+
+
+def _file_name(value: object) -> str:
+    """A name that a system can look up: longer ones, and ones with a zero byte, are errors of its own."""
+    if not 0 < len(_text(value)) <= 255 or "\0" in value:
+        raise TypeError(f"the name of a file is expected, found {value[:40]!r}")
     return value
 
 
