@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.fuzzing import depth_oracle
+from course_lib.fuzzing import depth_oracle, mesh_explanation
 from course_lib.fuzzing.campaign import FORMATS
 from course_lib.fuzzing.depth_oracle import CAMERA, VIEWS, depths_agree, ray_cast
 from course_lib.fuzzing.mesh_explanation import second_reading
@@ -131,3 +131,13 @@ def test_depths_of_the_room_agree_with_the_oracle_and_two_millimetres_do_not(mon
     assert len(VIEWS) == 2
     monkeypatch.setattr(depth_oracle, "ray_cast", lambda *given: exact(*given) + 2e-3)
     assert not depths_agree(mesh.vertices, mesh.faces)
+
+
+def test_a_map_with_other_depths_or_other_corners_is_not_explained(samples, monkeypatch):
+    one, path = FORMATS["ply"], samples / FORMATS["ply"].file
+    data, found = path.read_bytes(), one.read(path)
+    assert one.explain(data, found, found)
+    shifted = found | {"vertices": found["vertices"] + [1e-4, 0, 0]}
+    assert one.explain(data, shifted, found) is None
+    monkeypatch.setattr(mesh_explanation, "depths_agree", lambda vertices, faces: False)
+    assert one.explain(data, found, found) is None
