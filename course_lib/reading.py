@@ -64,6 +64,14 @@ def is_given(path: Path) -> bool:
     return True
 
 
+def is_file(path: Path) -> bool:
+    """Whether a file is at `path`, which another file names: not where no system would look a name up."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name that is too long, or holds a zero byte
+        return False
+
+
 def require_file(path: Path, what: str, error: type[Exception]) -> None:
     """Raises `error` unless `path` is a file that can be read."""
     try:

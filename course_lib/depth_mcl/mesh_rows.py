@@ -71,6 +71,8 @@ def _ply(data: bytes) -> Iterator[str]:
 def _off(data: bytes) -> Iterator[str]:
     lines = [(number, line.partition(b"#")[0].strip()) for number, line in enumerate(data.splitlines(), start=1)]
     rows = [(number, line) for number, line in lines if line]
+    if rows and not re.match(rb"(?:\xef\xbb\xbf)?(?:ST)?C?N?OFF\b", rows[0][1]):  # trimesh leaves out what is before it
+        yield f"line {rows[0][0]}: OFF is expected; found {rows[0][1][:60]!r}"
     if rows and re.fullmatch(rb"C?OFF", rows[0][1]):
         rows = rows[1:]
     elif rows:

@@ -26,7 +26,7 @@ import numpy as np
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_poses, read_tum, write_tum
 from course_lib.geometry import UP_AXES
-from course_lib.reading import is_given, read_image, read_text
+from course_lib.reading import is_file, is_given, read_image, read_text
 
 NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
 
@@ -307,12 +307,11 @@ def _read_tum_folder(folder: Path) -> tuple[dict[int, Path], np.ndarray, np.ndar
     images = {row: folder / name for row, (_, name) in enumerate(rows, start=1)}
     if not images:
         raise SequenceError(f"{folder / 'depth.txt'} names no image")
-    missing = [(row, name) for row, name in images.items() if not name.is_file()]
+    missing = [(row, name) for row, name in images.items() if not is_file(name)]
     if missing:
-        row, image = missing[0]
+        row, image = missing[0][0], str(missing[0][1].relative_to(folder))[:80]
         raise SequenceError(
-            f"{folder / 'depth.txt'} names {len(missing)} images that are no files, {image.relative_to(folder)} in row "
-            f"{row} first"
+            f"{folder / 'depth.txt'} names {len(missing)} images that are no files, {image} in row {row} first"
         )
     if not is_given(folder / "groundtruth.txt"):
         return images, times, None

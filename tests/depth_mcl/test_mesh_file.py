@@ -169,6 +169,7 @@ ASCII_STL = exported("stl_ascii")
         (QUADS, "ply", b"\n1 1 0\n", b"\n1 1 0 7\n", "line 13, vertex: 3 numbers are expected"),
         (QUADS, "ply", b"\n1 1 0\n", b"\n1 1,5 0\n", "line 13, vertex: 3 numbers are expected"),
         (BINARY_PLY, "ply", b"property float y", b"property float x", "line 6: the element has two properties x"),
+        (OFF, "off", b"OFF", b"<html>OFF", "line 1: OFF is expected; found b'<html>OFF'"),
         (OFF, "off", b"\n3 ", b"\n0 ", "line 11: a face is its number of corners"),
         (OFF, "off", b"\n3 ", b"\n9 ", "line 11: a face of 9 corners has 3 more numbers"),
         (OFF, "off", b"-1.5", b"-1,5", "a vertex is three numbers"),

@@ -252,8 +252,8 @@ def test_what_may_be_missing_may_not_be_something_else(folder, name, target):
 
 def test_a_list_of_images_that_are_not_there_is_named(folder):
     (folder / "poses.txt").unlink()
-    (folder / "depth.txt").write_text("0.0 depth/000002.png\n0.1 depth/nowhere.png\n0.2 depth\n")
+    (folder / "depth.txt").write_text("0.0 depth/000002.png\n0.1 depth/nowhere.png\n0.2 depth\n0.3 " + 900 * "1")
     with pytest.raises(
-        SequenceError, match=r"depth\.txt names 2 images that are no files, depth/nowhere\.png in row 2"
+        SequenceError, match=r"depth\.txt names 3 images that are no files, depth/nowhere\.png in row 2"
     ):
         read_sequence(folder)
