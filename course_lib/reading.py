@@ -27,6 +27,9 @@ MOST_BYTES = 2_000 * MEGABYTE
 MOST_PIXELS = 100_000_000
 """Pixels of an image: a panorama of 14,000 x 7,000. A bomb of 0.8 MB held four times as many, and took 3.4 GB."""
 
+MOST_IMAGE = 3 * MOST_PIXELS
+"""Bytes of an image in memory: that panorama in three colours. With 8 bytes a pixel a bomb took 1.7 GB."""
+
 MOST_LEVELS = 50
 """Lists and objects inside each other in JSON; our own formats have four."""
 
@@ -47,6 +50,26 @@ def read_bytes(
         return path.read_bytes()
     except OSError as reason:
         raise error(f"{what} {path} cannot be read: {reason.strerror}") from reason
+
+
+def is_given(path: Path) -> bool:
+    """Whether something stands at `path`: a file that may be left out is missing only where nothing does.
+
+    A broken link, a link to itself, a folder or a pipe in its place is no file left out, but one that cannot be read.
+    """
+    try:
+        path.lstat()
+    except (OSError, ValueError):
+        return False
+    return True
+
+
+def is_file(path: Path) -> bool:
+    """Whether a file is at `path`, which another file names: not where no system would look a name up."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name that is too long, or holds a zero byte
+        return False
 
 
 def require_file(path: Path, what: str, error: type[Exception]) -> None:
@@ -103,6 +126,13 @@ def read_json(
         value = float(digits)
         return value if math.isfinite(value) else refuse(f"holds the number {digits[:20]}, which is too large")
 
+    def whole(digits: str) -> int:
+        return (
+            int(digits)
+            if len(digits) < 300
+            else refuse(f"is not JSON that can be read: a number of {len(digits)} digits")
+        )
+
     def members(pairs: list[tuple[str, object]]) -> dict[str, object]:
         found = dict(pairs)
         if len(found) < len(pairs):
@@ -114,19 +144,16 @@ def read_json(
     if (levels := _levels(text)) > MOST_LEVELS:
         refuse(f"has {levels} levels of lists and objects inside each other; at most {MOST_LEVELS} are read")
     try:
-        return json.loads(text, parse_constant=constant, parse_float=number, object_pairs_hook=members)
+        return json.loads(text, parse_constant=constant, parse_float=number, parse_int=whole, object_pairs_hook=members)
     except json.JSONDecodeError as reason:
         refuse(f"is not JSON: line {reason.lineno}, column {reason.colno}: {reason.msg}")
-    except error:
-        raise
-    except ValueError as reason:  # a whole number of thousands of digits
-        refuse(f"is not JSON that can be read: {reason}")
 
 
 def _levels(text: str) -> int:
     """How deep lists and objects are nested in a JSON text; brackets inside strings do not count."""
     deepest = level = 0
-    for bracket in re.findall(r'"(?:[^"\\]|\\.)*"|[\[\]{}]', text):
+    # Possessive, and to the end where a string is not closed: else every quotation mark begins a search to the end.
+    for bracket in re.findall(r'"(?:[^"\\]|\\.)*+"?|[\[\]{}]', text, re.DOTALL):
         if bracket in "[{":
             level += 1
             deepest = max(deepest, level)
@@ -144,6 +171,8 @@ class ImageHeader(NamedTuple):
     height: int
     frames: int
     """More than one for an animated PNG."""
+    pixel_bytes: int
+    """Bytes of one pixel in memory."""
 
 
 def read_image(
@@ -165,8 +194,13 @@ def read_image(
     if header.width * header.height > MOST_PIXELS:
         size = f"{header.width} x {header.height} pixels"
         raise error(f"{what} {path} has {size}; at most {MOST_PIXELS / 1e6:.0f} million are read")
+    if (size := header.width * header.height * header.pixel_bytes) > MOST_IMAGE:
+        taken = f"would take {size / MEGABYTE:,.0f} MB ({header.pixel_bytes} bytes a pixel)"
+        raise error(f"{what} {path} {taken}; at most {MOST_IMAGE / MEGABYTE:,.0f} MB are read")
     if header.frames > 1:
         raise error(f"{what} {path} is animated ({header.frames} frames); one picture is expected")
+    if header.kind == "PNG" and (fault := _chunk_fault(data)):
+        raise error(f"{what} {path} cannot be read as a PNG: {fault}: is it complete?")
     try:
         image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error as reason:
@@ -174,6 +208,22 @@ def read_image(
     if image is None:
         raise error(f"{what} {path} cannot be read as a {header.kind}: is it complete?")
     return image
+
+
+def _chunk_fault(data: bytes) -> str | None:
+    """The first chunk of a PNG that says it is longer than the file: OpenCV would take that much memory at once.
+
+    Source: PNG specification, section 5.3 (length, type, content, checksum).
+    """
+    at = 8
+    while at + 8 <= len(data):
+        length, kind = int.from_bytes(data[at : at + 4], "big"), data[at + 4 : at + 8]
+        if at + 12 + length > len(data):
+            return f"its part {kind!r} at byte {at} has {length:,} bytes, the file {len(data) - at - 8:,} more"
+        if kind == b"IEND":
+            return None
+        at += 12 + length
+    return "it has no end"
 
 
 def image_header(data: bytes) -> ImageHeader | None:
@@ -185,7 +235,8 @@ def image_header(data: bytes) -> ImageHeader | None:
         width, height = struct.unpack(">II", data[16:24])
         control = data.find(b"acTL", 33, 1 << 16)  # of an animated PNG
         frames = struct.unpack(">I", data[control + 4 : control + 8])[0] if 0 < control <= len(data) - 8 else 1
-        return ImageHeader("PNG", width, height, frames)
+        channels = {0: 1, 2: 3, 3: 4, 4: 4, 6: 4}.get(data[25], 4)  # as OpenCV unpacks them
+        return ImageHeader("PNG", width, height, frames, channels * (2 if data[24] == 16 else 1))
     if data[:3] != b"\xff\xd8\xff":
         return None
     at = 2
@@ -193,6 +244,6 @@ def image_header(data: bytes) -> ImageHeader | None:
         marker, length = data[at + 1], int.from_bytes(data[at + 2 : at + 4], "big")
         if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
             height, width = struct.unpack(">HH", data[at + 5 : at + 9])
-            return ImageHeader("JPEG", width, height, 1)
+            return ImageHeader("JPEG", width, height, 1, 3)
         at += 1 if marker == 0xFF else 2 + length
     return None

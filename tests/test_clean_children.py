@@ -47,6 +47,7 @@ STARTERS = {
     "course_lib/commands/compare.py": "constants of subprocess; starts by child.py",
     "course_lib/commands/stopped_runs.py": "the error of a run that hangs; starts with `child.start`",
     "course_lib/commands/full_disk.py": "unshare, mount, umount: no Python",
+    "course_lib/fuzzing/trial.py": "forks of itself, which read one damaged file and end",
     "course_lib/commands/lesson_versions.py": "git, no Python",
     "course_lib/commands/test.py": "pytest in this checkout's folder: what it runs is the checkout",
     "course_lib/commands/mutations.py": "pytest in a copy's folder, whose code is meant to be found first",

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from course_lib import reading
-from course_lib.reading import image_header, read_bytes, read_image, read_json, read_text
+from course_lib.fuzzing.trial import try_file
+from course_lib.reading import image_header, is_given, read_bytes, read_image, read_json, read_text
 
 
 class AskedError(ValueError):
@@ -147,4 +148,60 @@ def test_a_progressive_jpeg_with_a_comment_has_its_size():
     image = np.zeros((30, 60, 3), np.uint8)
     data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_PROGRESSIVE, 1])[1].tobytes()
     commented = data[:2] + b"\xff\xfe" + struct.pack(">H", 9) + b"comment" + data[2:]
-    assert image_header(commented) == ("JPEG", 60, 30, 1)
+    assert image_header(commented) == ("JPEG", 60, 30, 1, 3)
+
+
+def test_json_of_nothing_but_open_strings_is_read_in_one_go(tmp_path):
+    """Each quotation mark once began a search to the end: minutes for 200 kB."""
+    path = tmp_path / "a.json"
+    path.write_bytes(b'"\\' * 100_000)
+
+    def read(path):
+        return {"content": read_json(path, "map", AskedError)}
+
+    assert try_file(path, read, (AskedError,), lambda *given: None, {}, seconds=60).outcome == "refused"
+    path.write_text('{"a[": "]\\"[[", "b": [[1]]}')
+    assert read_json(path, "map", AskedError) == {"a[": ']"[[', "b": [[1]]}
+
+
+def test_a_whole_number_that_no_float_holds_is_named(tmp_path):
+    (tmp_path / "a.json").write_text('{"x": 1' + 400 * "0" + "}")
+    with pytest.raises(AskedError, match=r"a\.json is not JSON that can be read: a number of 401 digits"):
+        read_json(tmp_path / "a.json", "map", AskedError)
+
+
+@pytest.mark.parametrize(("bits", "colour", "taken"), [(8, 2, 3), (16, 6, 8), (16, 0, 2), (8, 3, 4), (1, 0, 1)])
+def test_an_image_is_bounded_by_the_bytes_it_takes(tmp_path, monkeypatch, bits, colour, taken):
+    data = bytearray(png(100, 100))
+    data[24:26] = bits, colour
+    assert image_header(bytes(data)).pixel_bytes == taken
+    (tmp_path / "a.png").write_bytes(data)
+    monkeypatch.setattr(reading, "MOST_IMAGE", 100 * 100 * taken - 1)
+    with pytest.raises(AskedError, match=rf"a\.png would take .* \({taken} bytes a pixel\)"):
+        read_image(tmp_path / "a.png", "image", AskedError)
+
+
+def test_whatever_stands_in_a_files_place_is_given(tmp_path):
+    assert not is_given(tmp_path / "nothing")
+    assert not is_given(tmp_path / "a zero \0 byte")
+    (tmp_path / "loop").symlink_to("loop")
+    (tmp_path / "dangling").symlink_to("nowhere")
+    (tmp_path / "folder").mkdir()
+    assert all(is_given(tmp_path / name) for name in ("loop", "dangling", "folder"))
+
+
+@pytest.mark.parametrize("length", [2**31 + 11, 2**32 - 1, 200])
+def test_a_part_of_a_png_longer_than_the_file_is_refused_before_memory_is_taken(tmp_path, length):
+    """OpenCV takes what the part says: 2.3 GB for a file of 70 bytes."""
+    data = png(30, 1)
+    path = tmp_path / "a.png"
+    path.write_bytes(data)
+    assert read_image(path, "image", AskedError).shape == (1, 30)
+    path.write_bytes(data[:33] + struct.pack(">I", length) + data[37:])
+
+    def read(path):
+        return {"image": read_image(path, "image", AskedError)}
+
+    found = try_file(path, read, (AskedError,), lambda *given: None, {})
+    assert found.outcome == "refused"
+    assert "its part b'IDAT' at byte 33 has" in found.told

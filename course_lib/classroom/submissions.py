@@ -144,7 +144,14 @@ def _refused(path: Path, kind: os.stat_result, student: str, lesson: str) -> str
 
 
 def read_cells(path: Path) -> list[tuple[str, str]]:
-    """Name and source of each code cell; a Python file is one cell. Raises `SubmissionError`."""
+    """Name and source of each code cell; a Python file is one cell. Raises `SubmissionError`, with the file's name."""
+    try:
+        return _cells(path)
+    except SubmissionError as error:
+        raise SubmissionError(f"{shown(path.name)} {error}") from None
+
+
+def _cells(path: Path) -> list[tuple[str, str]]:
     text = _read_text(path)
     if path.suffix.lower() == ".py":
         return [("the file", text)]

@@ -16,6 +16,7 @@ import numpy as np
 import trimesh
 
 from course_lib.child import ChildError, run_apart
+from course_lib.depth_mcl.mesh_rows import row_fault
 from course_lib.reading import MEGABYTE, read_bytes
 
 MOST_TIMES = 40
@@ -56,6 +57,8 @@ def read_mesh(path: str | Path, error: type[Exception]) -> tuple[np.ndarray, np.
     if kind not in mesh_endings():
         raise error(f"map {path} ends in {path.suffix!r}, which is no mesh: PLY, OBJ, STL, OFF or GLB is expected")
     _require_complete(data, kind, path, error)
+    if fault := row_fault(data, kind):
+        raise error(f"map {path}, {fault}")
     read = _read_here if kind in _SIZED else _read_apart
     try:
         vertices, faces = read(path, data, kind)
@@ -70,6 +73,9 @@ def read_mesh(path: str | Path, error: type[Exception]) -> tuple[np.ndarray, np.
         raise error(f"map {path} holds neither vertices nor triangles: is the file complete?")
     if len(faces) == 0:
         raise error(f"map {path} holds no triangles ({len(vertices)} vertices): mesh it first")
+    for what, array in (("vertices", vertices), ("faces", faces)):
+        if np.ndim(array) != 2 or np.shape(array)[1] != 3:
+            raise error(f"map {path} has {what} that are no rows of three numbers: got {np.shape(array)}")
     return vertices, faces
 
 

@@ -26,7 +26,7 @@ import numpy as np
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_poses, read_tum, write_tum
 from course_lib.geometry import UP_AXES
-from course_lib.reading import read_image, read_text
+from course_lib.reading import is_file, is_given, read_image, read_text
 from course_lib.writing import replaced_outputs, write_at_once
 
 NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
@@ -150,10 +150,10 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
     if not folder.is_dir():
         raise FileNotFoundError(f"no sequence at {folder}: give a folder with depth/ and intrinsics.txt")
     require_units(units_per_metre)
-    if (folder / "depth.txt").is_file():
+    if is_given(folder / "depth.txt"):
         images, times, camera_to_world = _read_tum_folder(folder)
         frames = sorted(images)
-    elif (folder / "poses.txt").exists():
+    elif is_given(folder / "poses.txt"):
         images = _depth_files(folder)
         frames, camera_to_world = read_poses(folder / "poses.txt")
         _require_same_frames(folder, frames, sorted(images))
@@ -170,7 +170,7 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
     except ValueError as error:
         raise SequenceError(f"{folder / 'intrinsics.txt'}: {error}") from error
     path_file = folder / "path_on_floor.txt"
-    path_on_floor = read_numbers(path_file) if path_file.is_file() else None
+    path_on_floor = read_numbers(path_file) if is_given(path_file) else None
     if path_on_floor is not None and (path_on_floor.ndim != 2 or path_on_floor.shape[1] != 3):
         raise SequenceError(f"{path_file} must hold x y z per row; got shape {path_on_floor.shape}")
     return DepthSequence(
@@ -245,7 +245,8 @@ def read_depth_png(path: str | Path, units_per_metre: float = UNITS_PER_METRE) -
     image = read_image(path, "depth image", SequenceError, kinds=("PNG",), missing=FileNotFoundError)
     if image.dtype != np.uint16 or image.ndim != 2:
         raise SequenceError(f"{path} must be a 16-bit single-channel PNG; got {image.dtype} with shape {image.shape}")
-    depth = image.astype(np.float32) * np.float32(1 / units_per_metre)
+    depth = image.astype(np.float32)
+    depth *= np.float32(1 / units_per_metre)
     depth[image == 0] = np.nan
     return depth
 
@@ -289,7 +290,8 @@ def _require_same_frames(folder: Path, pose_frames: list[int], image_frames: lis
     without_image = sorted(set(pose_frames) - set(image_frames))[:3]
     without_pose = sorted(set(image_frames) - set(pose_frames))[:3]
     raise SequenceError(
-        f"poses.txt and depth/ in {folder} name other frames: {len(pose_frames)} poses, {len(image_frames)} images; "
+        f"{folder / 'poses.txt'} and {folder / 'depth'} name other frames: {len(pose_frames)} poses, "
+        f"{len(image_frames)} images; "
         f"poses without an image start {without_image}, images without a pose {without_pose}"
     )
 
@@ -309,7 +311,13 @@ def _read_tum_folder(folder: Path) -> tuple[dict[int, Path], np.ndarray, np.ndar
     images = {row: folder / name for row, (_, name) in enumerate(rows, start=1)}
     if not images:
         raise SequenceError(f"{folder / 'depth.txt'} names no image")
-    if not (folder / "groundtruth.txt").is_file():
+    missing = [(row, name) for row, name in images.items() if not is_file(name)]
+    if missing:
+        row, image = missing[0][0], str(missing[0][1].relative_to(folder))[:80]
+        raise SequenceError(
+            f"{folder / 'depth.txt'} names {len(missing)} images that are no files, {image} in row {row} first"
+        )
+    if not is_given(folder / "groundtruth.txt"):
         return images, times, None
     true_times, true_poses = read_tum(folder / "groundtruth.txt")
     nearest = np.abs(times[:, None] - true_times).argmin(axis=1)
@@ -323,7 +331,7 @@ def _read_tum_folder(folder: Path) -> tuple[dict[int, Path], np.ndarray, np.ndar
 def _read_times(folder: Path, camera_to_world: np.ndarray) -> np.ndarray | None:
     """Times of groundtruth.txt, which must hold the poses of poses.txt; None where it is missing."""
     path = folder / "groundtruth.txt"
-    if not path.is_file():
+    if not is_given(path):
         return None
     times, timed_poses = read_tum(path)
     if len(times) != len(camera_to_world) or not np.allclose(timed_poses, camera_to_world, atol=1e-3):
@@ -335,7 +343,7 @@ def _read_times(folder: Path, camera_to_world: np.ndarray) -> np.ndarray | None:
 
 def _read_gravity(folder: Path, frames: list[int]) -> np.ndarray | None:
     path = folder / "gravity.txt"
-    if not path.is_file():
+    if not is_given(path):
         return None
     rows = read_numbers(path)
     if rows.shape[1] != 4 or not (rows[:, 1:] != 0).any(axis=1).all():
@@ -351,7 +359,7 @@ def _read_gravity(folder: Path, frames: list[int]) -> np.ndarray | None:
 
 def _read_up(folder: Path) -> str | None:
     path = folder / "up.txt"
-    if not path.is_file():
+    if not is_given(path):
         return None
     up = read_text(path, "the upward axis", SequenceError).strip()
     if up not in UP_AXES:

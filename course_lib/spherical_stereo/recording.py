@@ -75,10 +75,12 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
         raise PanoramaError(f"{path} has version {version!r}; this program reads version {VERSION}")
     try:
         pairs = tuple(_pair(folder, entry) for entry in content["pairs"])
-        heights = {entry["rig"]["upper_height"] for entry in content["pairs"]}
-        rig = StereoRig(float(content["baseline"]), float(min(heights, default=np.nan)))
-        width, height = int(content["width"]), int(content["height"])
-    except (KeyError, TypeError, IndexError) as error:
+        heights = {_number(entry["rig"]["upper_height"]) for entry in content["pairs"]}
+        rig = StereoRig(_number(content["baseline"]), float(min(heights, default=np.nan)))
+        width, height = _whole(content["width"]), _whole(content["height"])
+    except PanoramaError as error:
+        raise PanoramaError(f"{path}: {error}") from None
+    except (KeyError, TypeError, IndexError, ValueError, OverflowError) as error:
         raise PanoramaError(f"{path}: a field is missing or of the wrong kind ({error!r})") from None
     if len(heights) != 1:
         raise PanoramaError(f"{path}: pairs with upper cameras at {sorted(heights)} m; expected one height")
@@ -91,22 +93,52 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
 def _pair(folder: Path, entry: dict) -> StereoPair:
     rig = entry["rig"]
     return StereoPair(
-        str(entry["name"]),
-        np.array([rig["x"], rig["y"], rig["heading"]], float),
-        folder / entry["upper"]["file"],
-        folder / entry["lower"]["file"],
+        _text(entry["name"]),
+        np.array([_number(rig[name]) for name in ("x", "y", "heading")]),
+        folder / _file_name(entry["upper"]["file"]),
+        folder / _file_name(entry["lower"]["file"]),
         tuple(map(true_object, entry["upper"]["objects"])),
         tuple(map(true_object, entry["lower"]["objects"])),
     )
 
 
 def true_object(entry: dict) -> TrueObject:
-    """One object from its entry in poses.json or boxes.json. Raises `KeyError`, `TypeError` or `PanoramaError`."""
-    try:
-        boxes = [tuple(float(value) for value in entry[name]) for name in ("visible_box", "unoccluded_box")]
-        number, fraction = int(entry["object"]), float(entry["visible_fraction"])
-    except ValueError as error:
-        raise PanoramaError(f"an object has a number that is none: {error}") from None
-    if any(len(box) != 4 for box in boxes):
-        raise PanoramaError(f"a box has four edges (u_min, v_min, u_max, v_max); got {[list(box) for box in boxes]}")
-    return TrueObject(number, str(entry["label"]), *boxes, fraction)
+    """One object from its entry in poses.json or boxes.json. Raises `KeyError`, `TypeError` for another entry."""
+    return TrueObject(
+        _whole(entry["object"]),
+        _text(entry["label"]),
+        _box(entry["visible_box"]),
+        _box(entry["unoccluded_box"]),
+        _number(entry["visible_fraction"]),
+    )
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"a text is expected, found {str(value)[:40]}")
+    return value
+
+
+def _file_name(value: object) -> str:
+    """A name that a system can look up: longer ones, and ones with a zero byte, are errors of its own."""
+    if not 0 < len(_text(value)) <= 255 or "\0" in value:
+        raise TypeError(f"the name of a file is expected, found {value[:40]!r}")
+    return value
+
+
+def _number(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise TypeError(f"a number is expected, found {str(value)[:40]}")
+    return float(value)
+
+
+def _whole(value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise TypeError(f"a whole number is expected, found {str(value)[:40]}")
+    return value
+
+
+def _box(value: object) -> tuple[float, float, float, float]:
+    if not isinstance(value, list) or len(value) != 4:
+        raise TypeError(f"a box of four numbers is expected, found {str(value)[:40]}")
+    return tuple(map(_number, value))

@@ -147,3 +147,11 @@ def test_a_link_that_comes_after_the_look_is_not_followed(tmp_path):
     os.symlink(secret, tmp_path / "alice_06.py")
     with pytest.raises(SubmissionError, match="cannot be opened"):
         read_cells(tmp_path / "alice_06.py")
+
+
+@pytest.mark.parametrize("data", [b"\xff", b"{", b"[]", b"[" * 100_000])
+def test_a_file_that_cannot_be_read_is_named(tmp_path, data):
+    path = tmp_path / "alice_06.ipynb"
+    path.write_bytes(data)
+    with pytest.raises(SubmissionError, match=r"^alice_06\.ipynb is "):
+        read_cells(path)

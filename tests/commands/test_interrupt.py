@@ -187,6 +187,7 @@ REFUSED = {
     "demo rooms": "demo rooms",
     "demo trouble": "demo trouble",
     "demo walk": "demo walk",
+    "fuzz": "fuzz --files 10",
     "grade": "grade {data}/room",
     "handout": "handout 03",
     "interrupt": "interrupt",

@@ -154,3 +154,60 @@ def test_materials_and_what_they_name_are_left_alone(tmp_path):
 def test_a_missing_file_is_the_systems_error(tmp_path):
     with pytest.raises(FileNotFoundError, match="is missing"):
         read_mesh(tmp_path / "none.ply", AskedError)
+
+
+OBJ = exported("obj")
+ASCII_STL = exported("stl_ascii")
+
+
+@pytest.mark.parametrize(
+    ("data", "kind", "old", "new", "said"),
+    [
+        (QUADS, "ply", b"4 4 5 7 6", b"0 4 5 7 6", "line 19, face: a face is its number of corners, 3 or more"),
+        (QUADS, "ply", b"4 4 5 7 6", b"3 4 5 7 6", "line 19, face: a face of 3 corners has 4 more numbers"),
+        (QUADS, "ply", b"\n1 1 0\n", b"\n1 1\n", "line 13, vertex: 3 numbers are expected"),
+        (QUADS, "ply", b"\n1 1 0\n", b"\n1 1 0 7\n", "line 13, vertex: 3 numbers are expected"),
+        (QUADS, "ply", b"\n1 1 0\n", b"\n1 1,5 0\n", "line 13, vertex: 3 numbers are expected"),
+        (BINARY_PLY, "ply", b"property float y", b"property float x", "line 6: the element has two properties x"),
+        (OFF, "off", b"OFF", b"<html>OFF", "line 1: OFF is expected; found b'<html>OFF'"),
+        (OFF, "off", b"\n3 ", b"\n0 ", "line 11: a face is its number of corners"),
+        (OFF, "off", b"\n3 ", b"\n9 ", "line 11: a face of 9 corners has 3 more numbers"),
+        (OFF, "off", b"-1.5", b"-1,5", "a vertex is three numbers"),
+        (OBJ, "obj", b"-1.50000000\n", b"\n", "a vertex is three numbers"),
+        (OBJ, "obj", b"-1.50000000\n", b"-1.5 0 0\n", "a vertex is three numbers"),
+        (OBJ, "obj", b"\nf ", b"\nf 1 2\nf ", "a face is three vertices or more"),
+        (OBJ, "obj", b"\nf ", b"\nf 1 2 x\nf ", "a face is three vertices or more"),
+        (ASCII_STL, "stl", b"endloop", b"", "three vertices|a loop begins in a loop"),
+        (ASCII_STL, "stl", b"outer loop", b"", "three vertices of three numbers stand in a loop"),
+        (ASCII_STL, "stl", b"vertex", b"normalvertex", "a vertex begins its line"),
+        (ASCII_STL, "stl", b"vertex ", b"vertex 1 ", "three vertices of three numbers"),
+    ],
+)
+def test_a_row_that_is_not_whole_is_named_with_its_line(tmp_path, data, kind, old, new, said):
+    """trimesh takes the rows together, or takes a part of a row, and reads other triangles."""
+    read(tmp_path, data, kind)
+    assert old in data
+    with pytest.raises(AskedError, match=rf"map .*map\.{kind}, .*({said})"):
+        read(tmp_path, data.replace(old, new, 1), kind)
+
+
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [
+        (OBJ.replace(b"\nv ", b"\nvn 0 0 1\nvt 0 0\nv  ", 1).replace(b"\nf ", b"\n# faces\ns 1\nf ", 1), "obj"),
+        (b"\n".join(line + b" 0.5 0.5 0.5" if line[:2] == b"v " else line for line in OBJ.splitlines()), "obj"),
+        (OFF.replace(b"\n3 ", b"\n\n3 ", 1), "off"),
+        (ASCII_STL.replace(b"\nfacet", b"\n  FACET", 1), "stl"),
+        (ASCII_PLY, "ply"),
+    ],
+)
+def test_comments_colours_and_blank_lines_are_no_faults(tmp_path, data, kind):
+    vertices, faces = read(tmp_path, data, kind)
+    assert len(faces) == 12
+    assert np.ptp(vertices, axis=0) == pytest.approx([1, 2, 3])
+
+
+def test_corners_of_two_numbers_are_no_map(tmp_path):
+    data = b"\n".join(line.rpartition(b" ")[0] if line[:2] == b"v " else line for line in OBJ.splitlines())
+    with pytest.raises(AskedError, match=r"map\.obj"):
+        read(tmp_path, data, "obj")

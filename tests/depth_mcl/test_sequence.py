@@ -240,3 +240,23 @@ def test_the_real_recording_is_read(kitchen_folder):
     assert len(sequence) == 167
     assert sequence.up is None
     assert 0.85 < np.mean([np.isfinite(sequence.depth(i)).mean() for i in range(0, 167, 20)]) < 0.95
+
+
+@pytest.mark.parametrize("name", ["poses.txt", "up.txt", "groundtruth.txt", "path_on_floor.txt", "gravity.txt"])
+@pytest.mark.parametrize("target", [None, "nowhere", "."])
+def test_what_may_be_missing_may_not_be_something_else(folder, name, target):
+    """A folder, a broken link or a link to a folder in its place was read as if the file had been left out."""
+    (folder / name).unlink(missing_ok=True)
+    read_sequence(folder)
+    (folder / name).symlink_to(target) if target else (folder / name).mkdir()
+    with pytest.raises((SequenceError, FileNotFoundError), match=name):
+        read_sequence(folder)
+
+
+def test_a_list_of_images_that_are_not_there_is_named(folder):
+    (folder / "poses.txt").unlink()
+    (folder / "depth.txt").write_text("0.0 depth/000002.png\n0.1 depth/nowhere.png\n0.2 depth\n0.3 " + 900 * "1")
+    with pytest.raises(
+        SequenceError, match=r"depth\.txt names 3 images that are no files, depth/nowhere\.png in row 2"
+    ):
+        read_sequence(folder)

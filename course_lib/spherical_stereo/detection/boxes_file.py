@@ -116,14 +116,17 @@ def _read_box(item: object, size: tuple[int, int], where: str) -> LabelledBox:
     if name is not None and not (isinstance(name, str) and name.strip()):
         raise DetectionError(f"{where}: name must be a text that is not empty, or be left out; got {name!r}")
     try:
-        box = checked_boxes(np.array(item["box"], dtype=np.float64), size[0], where)
+        box = np.array(item["box"], dtype=np.float64)
         label = canonical_label(item["label"])
     except DetectionError:
         raise
     except (TypeError, ValueError) as error:
         raise DetectionError(f"{where}: {error}") from None
     if box.shape != (4,):
-        raise DetectionError(f"{where}: box must be [u_min, v_min, u_max, v_max]; got {item['box']!r}")
+        raise DetectionError(
+            f"{where}: box must be of the shape [u_min, v_min, u_max, v_max]; got {str(item['box'])[:80]}"
+        )
+    box = checked_boxes(box, size[0], where)
     if box[1] < 0 or box[3] > size[1]:
         raise DetectionError(
             f"{where}: box leaves the image at the top or bottom, v from 0 to {size[1]}; got {item['box']}"

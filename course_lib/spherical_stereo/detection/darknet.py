@@ -15,7 +15,7 @@ Source: paper 2, section 2.2 (its detector is YOLOv4).
 import struct
 from pathlib import Path
 
-from course_lib.reading import read_text
+from course_lib.reading import read_text, require_file
 from course_lib.spherical_stereo.detection.darknet_cfg import (
     DETECTION_KINDS,
     DetectorError,
@@ -116,9 +116,9 @@ def check_weights(cfg: str | Path | list[Section], weights: str | Path) -> None:
     number of floats differs (the message has both counts). Source: paper 2, section 2.2 (YOLOv4).
     """
     sections = cfg if isinstance(cfg, list) else read_cfg(cfg)
+    told = "the cfg" if isinstance(cfg, list) else f"cfg {cfg}"
     weights = Path(weights)
-    if not weights.is_file():
-        raise DetectorError(f"weights file {weights} is missing: give the path of an existing file")
+    require_file(weights, "weights file", DetectorError)
     with weights.open("rb") as file:
         start = file.read(12)
     size = weights.stat().st_size
@@ -129,7 +129,7 @@ def check_weights(cfg: str | Path | list[Section], weights: str | Path) -> None:
     if size != header + 4 * expected:
         problem = "is too short: was the download or copy cut off?" if size < header + 4 * expected else "is too long"
         raise DetectorError(
-            f"weights file {weights} {problem} It holds {(size - header) / 4:.10g} floats, the cfg needs {expected}; "
+            f"weights file {weights} {problem} It holds {(size - header) / 4:.10g} floats, {told} needs {expected}; "
             "give the cfg and the weights of the same network"
         )
 
@@ -167,12 +167,21 @@ def class_count(sections: list[Section]) -> int:
     return classes
 
 
+MOST_INPUT_PIXELS = 1 << 24
+"""Pixels of a network's input, 4096 x 4096: YOLOv4 has 608 x 608, and needs a hundred times as many numbers inside."""
+
+
 def input_size(sections: list[Section]) -> tuple[int, int]:
-    """(width, height) of the network's input in pixels. Raises DetectorError: missing or not positive."""
+    """(width, height) of the network's input in pixels. Raises DetectorError: missing, not positive or too large."""
     width, height = sections[0].integer("width"), sections[0].integer("height")
     if width < 1 or height < 1:
         raise DetectorError(
             f"[{sections[0].kind}] at line {sections[0].line}: input {width} x {height} is not positive"
+        )
+    if width * height > MOST_INPUT_PIXELS:
+        raise DetectorError(
+            f"[{sections[0].kind}] at line {sections[0].line}: input {width} x {height} is more than "
+            f"{MOST_INPUT_PIXELS:,} pixels"
         )
     return width, height
 

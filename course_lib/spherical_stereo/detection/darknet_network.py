@@ -16,6 +16,8 @@ from course_lib.spherical_stereo.detection.darknet import (
     Section,
     check_weights,
     class_count,
+    expected_weight_floats,
+    header_bytes,
     input_size,
     read_cfg,
     render_cfg,
@@ -29,13 +31,21 @@ class DarknetNetwork:
         """Check and load a network.
 
         size: (width, height) of the input in pixels instead of the cfg's; YOLOv4 takes any multiples of 32.
-        Raises DetectorError: what `read_cfg`, `class_count` and `check_weights` refuse, or a size that does not suit.
+        Raises DetectorError: what `read_cfg`, `class_count` and `check_weights` refuse, weights that are not
+        finite, results that are NaN, or a size that does not suit.
         Source: paper 2, section 2.2.
         """
         sections = read_cfg(cfg)
-        self.n_classes = class_count(sections)
-        check_weights(sections, weights)
-        self.input_size: tuple[int, int] = input_size(sections) if size is None else (int(size[0]), int(size[1]))
+        try:
+            self.n_classes = class_count(sections)
+            given = input_size(sections)
+            expected_weight_floats(sections)
+        except DetectorError as error:
+            raise DetectorError(f"cfg file {cfg}: {error}") from None
+        check_weights(cfg, weights)
+        require_finite_weights(weights)
+        self.input_size: tuple[int, int] = given if size is None else (int(size[0]), int(size[1]))
+        self._told = f"{cfg} with {weights}"
         text = render_cfg(for_opencv(sections, self.input_size))
         try:
             self._net = cv2.dnn.readNetFromDarknet(
@@ -45,8 +55,9 @@ class DarknetNetwork:
             # One run now: sizes that do not fit are found here, and the first image is as fast as the second.
             self.infer(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
         except cv2.error as error:
+            width, height = self.input_size
             raise DetectorError(
-                f"OpenCV cannot run {cfg} at an input of {self.input_size[0]} x {self.input_size[1]}: {error.err}. "
+                f"OpenCV cannot run {self._told} at an input of {width} x {height}: {error.err}. "
                 "Width and height must be multiples of the network's stride (32 for YOLOv4)"
             ) from error
 
@@ -54,13 +65,34 @@ class DarknetNetwork:
         """Boxes (n, 4) in edge coordinates of the input and scores (n, classes) for a blob (1, 3, H, W), RGB, 0 to 1.
 
         OpenCV's rows are cx, cy, w, h as shares of the input, objectness, and the classes' scores, which are already
-        multiplied by the objectness. Nothing is thresholded or suppressed. Source: paper 2, section 2.2.
+        multiplied by the objectness. Nothing is thresholded or suppressed. Raises DetectorError for results that are
+        NaN. Source: paper 2, section 2.2.
         """
         self._net.setInput(blob)
         rows = np.concatenate([output.reshape(-1, 5 + self.n_classes) for output in self._net.forward(self._outputs)])
         centre, half = rows[:, 0:2], rows[:, 2:4] / 2
         boxes = np.concatenate([centre - half, centre + half], axis=1) * np.tile(self.input_size, 2)
+        require_numbers(boxes, rows[:, 5:], self._told)
         return boxes, rows[:, 5:]
+
+
+def require_numbers(boxes: np.ndarray, scores: np.ndarray, told: str) -> None:
+    """Raises DetectorError where a network, `told` by its files, gives boxes or scores that are no numbers.
+
+    A box may be infinitely wide, as an untrained network's are: it is cut at the image's edges as any other.
+    """
+    if np.isnan(boxes).any() or not np.isfinite(scores).all():
+        raise DetectorError(f"the network {told} gives boxes or scores that are NaN: are its numbers damaged?")
+
+
+def require_finite_weights(weights: str | Path) -> None:
+    """Raises DetectorError for a `.weights` file with NaN or infinite numbers in it; its length is right already."""
+    with Path(weights).open("rb") as file:
+        start = header_bytes(file.read(12))
+    floats = np.memmap(weights, dtype="<f4", mode="r", offset=start)
+    bad = int(len(floats) - np.isfinite(floats).sum())
+    if bad:
+        raise DetectorError(f"weights file {weights}: {bad} of its {len(floats)} numbers are NaN or infinite")
 
 
 def for_opencv(sections: list[Section], size: tuple[int, int]) -> list[Section]:

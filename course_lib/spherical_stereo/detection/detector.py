@@ -13,7 +13,7 @@ from typing import Protocol
 import cv2
 import numpy as np
 
-from course_lib.reading import read_json
+from course_lib.reading import is_given, read_json
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.darknet import DetectorError, read_names
 from course_lib.spherical_stereo.detection.darknet_network import DarknetNetwork
@@ -197,12 +197,16 @@ class YoloDetector:
 
 def _trained_options(path: Path) -> dict[str, float]:
     """The constructor's options that a training wrote down."""
-    if not path.is_file():
+    if not is_given(path):
         return {}
+    expected = "must be JSON with a number score_threshold; mend or remove it, or give score_threshold yourself"
     try:
-        threshold = float(read_json(path, "training report", DetectorError)["score_threshold"])
-    except (ValueError, TypeError, KeyError):
-        raise DetectorError(
-            f"{path} must be JSON with a number score_threshold; mend or remove it, or give score_threshold yourself"
-        ) from None
-    return {"score_threshold": threshold}
+        report = read_json(path, "training report", DetectorError)
+    except DetectorError as error:
+        raise DetectorError(f"{path} {expected} ({error})") from None
+    threshold = report.get("score_threshold") if isinstance(report, dict) else None
+    if isinstance(threshold, bool) or not isinstance(threshold, (int, float)):
+        raise DetectorError(f"{path} {expected} (found {str(threshold)[:40]!r})")
+    if not 0 <= threshold <= 1:
+        raise DetectorError(f"{path}: score_threshold must be between 0 and 1; got {threshold}")
+    return {"score_threshold": float(threshold)}

@@ -18,6 +18,7 @@ import numpy as np
 from course_lib.child import ChildError, ChildStopped, run_apart
 from course_lib.reading import MEGABYTE, require_file
 from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
+from course_lib.spherical_stereo.detection.darknet_network import require_numbers
 
 MEMORY = 1_500 * MEGABYTE
 """What a small network may take, of which most is for its intermediate results."""
@@ -96,6 +97,7 @@ class OnnxNetwork:
         _require_no_crash(path, self.input_size)
         self.n_classes = n_classes
         self._layout = layout
+        self._told = str(path)
         try:
             self._net = cv2.dnn.readNetFromONNX(str(path))
         except cv2.error as error:
@@ -111,7 +113,12 @@ class OnnxNetwork:
             ) from error
 
     def infer(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Boxes (n, 4) in edge coordinates of the input, scores (n, classes), for a blob (1, 3, H, W), RGB, 0 to 1."""
+        """Boxes (n, 4) in edge coordinates of the input, scores (n, classes), for a blob (1, 3, H, W), RGB, 0 to 1.
+
+        Raises DetectorError for results that are NaN, or that do not fit the layout.
+        """
         self._net.setInput(blob)
         outputs = [np.asarray(output) for output in self._net.forward(self._outputs)]
-        return decode_onnx(outputs, self._layout, self.n_classes, self.input_size)
+        boxes, scores = decode_onnx(outputs, self._layout, self.n_classes, self.input_size)
+        require_numbers(boxes, scores, self._told)
+        return boxes, scores

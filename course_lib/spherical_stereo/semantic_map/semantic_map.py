@@ -41,7 +41,10 @@ class Landmark:
     def __post_init__(self):
         if not isinstance(self.label, str) or not self.label.strip():
             raise SemanticMapError(f"label must be the name of a class, such as 'sofa'; got {self.label!r}")
-        object.__setattr__(self, "label", canonical_label(self.label))
+        try:
+            object.__setattr__(self, "label", canonical_label(self.label))
+        except ValueError:  # nothing but underscores
+            raise SemanticMapError(f"label must be the name of a class, such as 'sofa'; got {self.label!r}") from None
         for name in ("x", "y", "hue", "saturation"):
             object.__setattr__(self, name, _number(getattr(self, name), f"{name} of this {self.label}"))
         if not (math.isfinite(self.x) and math.isfinite(self.y)):

@@ -36,10 +36,10 @@ SPOILT = [
     ({"version": 1, "images": [{"file": "a.jpg"}]}, "image 0: a field is missing .*objects"),
     ({"version": 1, "images": [{"file": 5, "objects": []}]}, "file must be a name"),
     (listed(5), "image 0"),
-    (listed(OBJECT, {}), "visible_box"),
+    (listed(OBJECT, {}), "object"),
     (listed(OBJECT | {"visible_box": 5}), "image 0"),
-    (listed(OBJECT | {"visible_box": [1, 2, 3]}), "four edges"),
-    (listed(OBJECT | {"visible_fraction": "much"}), "a number that is none"),
+    (listed(OBJECT | {"visible_box": [1, 2, 3]}), "a box of four numbers is expected"),
+    (listed(OBJECT | {"visible_fraction": "much"}), "a number is expected, found much"),
 ]
 
 

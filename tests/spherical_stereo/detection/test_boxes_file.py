@@ -109,3 +109,8 @@ def side(**change):
 def test_a_file_that_does_not_fit_is_refused(tmp_path, content, message):
     with pytest.raises(DetectionError, match=message):
         read_stereo_boxes(write(tmp_path / "boxes.json", content))
+
+
+def test_a_box_that_is_a_number_is_named(tmp_path):
+    with pytest.raises(DetectionError, match=r"boxes\.json, upper\[0\]: box must be of the shape .*; got 5"):
+        read_stereo_boxes(write(tmp_path / "boxes.json", GOOD | side(box=5)))

@@ -1,5 +1,6 @@
 """Detection with real networks run by OpenCV: every object once wherever it is, and every misfit of files named."""
 
+import re
 import struct
 
 import cv2
@@ -285,3 +286,58 @@ def test_a_detection_that_cannot_be_is_refused(change, message):
     Detection(**good)
     with pytest.raises(DetectionError, match=message):
         Detection(**(good | change))
+
+
+@pytest.mark.parametrize("threshold", ["1.5", "-0.1", "true", '"0.4"', "null", "[0.4]"])
+def test_a_trained_threshold_that_is_none_is_named_with_its_file(files, tmp_path, threshold):
+    for path in files:
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    (tmp_path / "training.json").write_text(f'{{"score_threshold": {threshold}}}')
+    with pytest.raises(
+        DetectorError, match=r"training\.json(: score_threshold must be between|.* must be JSON with a number)"
+    ):
+        YoloDetector.load(tmp_path)
+
+
+def test_a_training_report_that_is_no_file_is_not_one_left_out(files, tmp_path):
+    for path in files:
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    (tmp_path / "training.json").mkdir()
+    with pytest.raises(DetectorError, match=r"training\.json is a folder"):
+        YoloDetector.load(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("filters=3", "size=3", "has no filters"),
+        ("width=320", "width=3.5", "not a whole number"),
+        ("width=320", "width=2147483647", "is more than 16,777,216 pixels"),
+        ("classes=2", "classes=3", "channels"),
+        ("filters=3", "filters=4", r"is too short.* blobs\.weights|blobs\.weights is too short"),
+    ],
+)
+def test_a_fault_of_the_cfg_names_the_cfg(files, tmp_path, old, new, said):
+    cfg = tmp_path / "other.cfg"
+    cfg.write_text(files[0].read_text().replace(old, new, 1))
+    with pytest.raises(DetectorError, match=r"other\.cfg") as told:
+        YoloDetector(cfg, *files[1:])
+    assert re.search(said, str(told.value))
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_weights_that_are_no_numbers_are_named(files, tmp_path, value):
+    weights = tmp_path / "other.weights"
+    weights.write_bytes(files[1].read_bytes()[:-4] + np.float32(value).tobytes())
+    with pytest.raises(DetectorError, match=r"other\.weights: 1 of its \d+ numbers are NaN or infinite"):
+        YoloDetector(files[0], weights, files[2])
+
+
+def test_a_network_of_right_numbers_whose_results_are_none_is_refused(files, tmp_path):
+    weights = np.frombuffer(files[1].read_bytes()[20:], "<f4").copy()
+    weights[:3], weights[3 + 144 :] = 3e38, 3e38  # sums that no float32 holds, of both signs
+    weights[3 + 144 :: 2] = -3e38
+    damaged = tmp_path / "other.weights"
+    damaged.write_bytes(files[1].read_bytes()[:20] + weights.tobytes())
+    with pytest.raises(DetectorError, match=r"blobs\.cfg with .*other\.weights gives boxes or scores that are NaN"):
+        YoloDetector(files[0], damaged, files[2])

@@ -84,3 +84,13 @@ def test_a_file_that_ends_opencvs_reader_is_an_error_with_a_name(names, tmp_path
     path.write_bytes(blob_onnx("yolov8"))
     with pytest.raises(DetectorError, match=r"blobs\.onnx cannot be used: reading and running it crashes \(SIGABRT\)"):
         YoloDetector.from_onnx(path, names, layout="yolov8", input_size=INPUT_SIZE)
+
+
+def test_results_that_are_no_numbers_are_refused(names, tmp_path):
+    path = tmp_path / "blobs.onnx"
+    data = blob_onnx("yolov8")
+    cells = np.array([4, 12, 20, 28], "<f4").tobytes()  # where the first four cells are
+    assert cells in data
+    path.write_bytes(data.replace(cells, np.full(4, np.nan, "<f4").tobytes(), 1))
+    with pytest.raises(DetectorError, match=r"blobs\.onnx gives boxes or scores that are NaN"):
+        YoloDetector.from_onnx(path, names, layout="yolov8", input_size=INPUT_SIZE)

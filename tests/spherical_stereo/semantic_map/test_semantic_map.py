@@ -242,3 +242,9 @@ def test_saving_where_nothing_can_be_saved_is_named(tmp_path):
         a_map().save(tmp_path / "missing" / "map.json")
     with pytest.raises(SemanticMapError, match=r"\.json or \.csv"):
         a_map().save(tmp_path / "map.txt")
+
+
+@pytest.mark.parametrize("label", ["___", " - ", "\u2028"])
+def test_a_label_without_a_letter_is_refused(label):
+    with pytest.raises(SemanticMapError, match="label must be the name of a class"):
+        Landmark(label, 0.0, 0.0, 10.0, 50.0)

@@ -1,0 +1,69 @@
+"""A folder of stereo panoramas: a list of pairs that cannot be used is named, and nothing in it is made to fit."""
+
+import json
+
+import cv2
+import numpy as np
+import pytest
+
+from course_lib.spherical_stereo.panorama import PanoramaError
+from course_lib.spherical_stereo.recording import read_stereo_recording
+
+BOX = [50.0, 20.0, 70.0, 40.0]
+SEEN = {"object": 7, "label": "sofa", "visible_box": BOX, "unoccluded_box": BOX, "visible_fraction": 0.9}
+
+
+@pytest.fixture
+def content(tmp_path):
+    for side in ("upper", "lower"):
+        cv2.imwrite(str(tmp_path / f"{side}.png"), np.full((64, 128, 3), 90, np.uint8))
+    sides = {side: {"file": f"{side}.png", "objects": [SEEN]} for side in ("upper", "lower")}
+    rig = {"x": 0.5, "y": 0.25, "heading": 0.1, "upper_height": 1.32}
+    pairs = [{"name": "pose_0", "rig": rig, **json.loads(json.dumps(sides))}]
+    return {"version": 1, "seed": 3, "width": 128, "height": 64, "baseline": 0.3, "pairs": pairs}
+
+
+def read(folder, content):
+    (folder / "poses.json").write_text(json.dumps(content))
+    return read_stereo_recording(folder)
+
+
+def test_what_is_written_is_read(tmp_path, content):
+    found = read(tmp_path, content)
+    assert (found.width, found.height, found.seed, found.rig.baseline) == (128, 64, 3, 0.3)
+    assert found.pairs[0].pose.tolist() == [0.5, 0.25, 0.1]
+    assert found.pairs[0].upper_objects[0].visible_box == tuple(BOX)
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        (("baseline",), "0.3"),
+        (("baseline",), -0.3),
+        (("baseline",), None),
+        (("width",), 128.5),
+        (("width",), True),
+        (("pairs",), "pairs"),
+        (("pairs", 0), []),
+        (("pairs", 0, "name"), 5),
+        (("pairs", 0, "upper", "file"), 2000 * "x"),
+        (("pairs", 0, "upper", "file"), "a\0b"),
+        (("pairs", 0, "lower", "file"), ""),
+        (("pairs", 0, "rig", "x"), " "),
+        (("pairs", 0, "rig", "x"), "0.5"),
+        (("pairs", 0, "rig", "heading"), [0.1]),
+        (("pairs", 0, "rig", "upper_height"), "1.32"),
+        (("pairs", 0, "upper", "objects", 0, "label"), 5),
+        (("pairs", 0, "upper", "objects", 0, "object"), 7.5),
+        (("pairs", 0, "upper", "objects", 0, "visible_box"), BOX[:3]),
+        (("pairs", 0, "upper", "objects", 0, "visible_box"), "1234"),
+        (("pairs", 0, "lower", "objects", 0, "visible_fraction"), "most"),
+    ],
+)
+def test_what_is_of_another_kind_is_named_with_the_file(tmp_path, content, place, value):
+    inner = content
+    for key in place[:-1]:
+        inner = inner[key]
+    inner[place[-1]] = value
+    with pytest.raises(PanoramaError, match=r"poses\.json"):
+        read(tmp_path, content)
