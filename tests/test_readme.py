@@ -12,6 +12,8 @@ from course_lib.commands.bench_table import table
 from course_lib.commands.demo_corridor import table_1
 from course_lib.commands.demo_finale import finale_text
 from course_lib.commands.demo_lost import lost_table
+from course_lib.commands.fuzz_table import fuzz_table
+from course_lib.commands.interrupt import table as interrupt_table
 from course_lib.commands.six_degrees_table import six_degrees_table
 from course_lib.commands.trouble_table import trouble_table
 from course_lib.experiments.lost_and_found import summarize
@@ -134,6 +136,19 @@ def test_sensor_trouble_is_what_the_command_prints_of_its_stored_numbers(path):
     assert "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in section
     wrong = sum(row["confident_wrong"] for row in [stored["undisturbed"], *stored["rows"]])
     assert f"{stored['method']}: {wrong} confident and wrong" in " ".join(section.replace("`", "").split())
+
+
+TABLES = [
+    ("fuzz_1.json", "4.2 Damaged files", fuzz_table),
+    ("interrupt_14.json", "4.3 Stopped at any", interrupt_table),
+]
+
+
+@pytest.mark.parametrize(("file", "title", "table_of"), TABLES)
+def test_damage_and_kills_are_what_the_commands_print_of_their_stored_numbers(file, title, table_of):
+    section = RESULTS.partition(f"### {title}")[2].partition("\n### ")[0]
+    printed = table_of(json.loads((CORRIDOR_RESULTS / file).read_text()))
+    assert "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in section
 
 
 def test_the_speed_is_what_the_benchmark_printed():

@@ -107,12 +107,12 @@ def row_text(row: dict) -> str:
         " / ".join(f"{row[way][key]}" for key in ("old", "new", "between", "broken")) if row[way] else "-"
         for way in WAYS
     )
-    return f"{row['name']:<26}" + "".join(f"{text:<22}" for text in told)
+    return f"{row['name']:<30}" + "".join(f"{text:<22}" for text in told)
 
 
 def table(result: dict) -> str:
     """What the command prints."""
-    head = f"{'old / new / between / broken':<26}" + "".join(f"{name:<22}" for name in WAYS.values())
+    head = f"{'old / new / between / broken':<30}" + "".join(f"{name:<22}" for name in WAYS.values())
     sums = {"name": "all"} | result["sum"]
     lines = [head, *(row_text(row) for row in result["rows"]), row_text(sums), ""]
     kill = result["sum"]["kill"] or dict.fromkeys(COUNTED, 0)
