@@ -66,10 +66,17 @@ class DarknetNetwork:
 
         OpenCV's rows are cx, cy, w, h as shares of the input, objectness, and the classes' scores, which are already
         multiplied by the objectness. Nothing is thresholded or suppressed. Raises DetectorError for results that are
-        NaN. Source: paper 2, section 2.2.
+        NaN, or of a layer that detects nothing. Source: paper 2, section 2.2.
         """
         self._net.setInput(blob)
-        rows = np.concatenate([output.reshape(-1, 5 + self.n_classes) for output in self._net.forward(self._outputs)])
+        outputs = self._net.forward(self._outputs)
+        for output in outputs:
+            if output.shape[1:] != (5 + self.n_classes,):  # what no later layer takes is an output to OpenCV
+                raise DetectorError(
+                    f"the network {self._told} has an output of shape {output.shape} that no [yolo] layer gives; "
+                    f"expected (n, {5 + self.n_classes}). Does a [route] pass over a layer?"
+                )
+        rows = np.concatenate(outputs)
         centre, half = rows[:, 0:2], rows[:, 2:4] / 2
         boxes = np.concatenate([centre - half, centre + half], axis=1) * np.tile(self.input_size, 2)
         require_numbers(boxes, rows[:, 5:], self._told)
