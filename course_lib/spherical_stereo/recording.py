@@ -43,10 +43,20 @@ class StereoPair:
     lower_file: Path
     upper_objects: tuple[TrueObject, ...]
     lower_objects: tuple[TrueObject, ...]
+    size: tuple[int, int]
+    """(width, height) of both panoramas, pixels."""
 
     def images(self) -> tuple[np.ndarray, np.ndarray]:
         """The upper and the lower panorama, `(H, W, 3)` uint8 BGR. Raises `PanoramaError` when one cannot be used."""
-        return read_panorama(self.upper_file), read_panorama(self.lower_file)
+        return self._image(self.upper_file), self._image(self.lower_file)
+
+    def _image(self, file: Path) -> np.ndarray:
+        image = read_panorama(file)
+        height, width = image.shape[:2]
+        if (width, height) != self.size:
+            told = f"{self.size[0]} x {self.size[1]}"
+            raise PanoramaError(f"{file} has {width} x {height} pixels; {file.parent / POSES_FILE} says {told}")
+        return image
 
 
 @dataclass(frozen=True)
@@ -74,10 +84,10 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
     if version != VERSION:
         raise PanoramaError(f"{path} has version {version!r}; this program reads version {VERSION}")
     try:
-        pairs = tuple(_pair(folder, entry) for entry in content["pairs"])
+        width, height = _pixels(content["width"]), _pixels(content["height"])
+        pairs = tuple(_pair(folder, entry, (width, height)) for entry in content["pairs"])
         heights = {_number(entry["rig"]["upper_height"]) for entry in content["pairs"]}
         rig = StereoRig(_number(content["baseline"]), float(min(heights, default=np.nan)))
-        width, height = _whole(content["width"]), _whole(content["height"])
     except PanoramaError as error:
         raise PanoramaError(f"{path}: {error}") from None
     except (KeyError, TypeError, IndexError, ValueError, OverflowError) as error:
@@ -90,7 +100,7 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
     return StereoRecording(folder, rig, width, height, content.get("seed"), pairs)
 
 
-def _pair(folder: Path, entry: dict) -> StereoPair:
+def _pair(folder: Path, entry: dict, size: tuple[int, int]) -> StereoPair:
     rig = entry["rig"]
     return StereoPair(
         _text(entry["name"]),
@@ -99,6 +109,7 @@ def _pair(folder: Path, entry: dict) -> StereoPair:
         folder / _file_name(entry["lower"]["file"]),
         tuple(map(true_object, entry["upper"]["objects"])),
         tuple(map(true_object, entry["lower"]["objects"])),
+        size,
     )
 
 
@@ -135,6 +146,12 @@ def _number(value: object) -> float:
 def _whole(value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, int):
         raise TypeError(f"a whole number is expected, found {str(value)[:40]}")
+    return value
+
+
+def _pixels(value: object) -> int:
+    if _whole(value) < 1:
+        raise TypeError(f"a number of pixels is expected, found {value}")
     return value
 
 

@@ -43,6 +43,8 @@ def test_what_is_written_is_read(tmp_path, content):
         (("baseline",), None),
         (("width",), 128.5),
         (("width",), True),
+        (("width",), 0),
+        (("height",), -64),
         (("pairs",), "pairs"),
         (("pairs", 0), []),
         (("pairs", 0, "name"), 5),
@@ -67,3 +69,11 @@ def test_what_is_of_another_kind_is_named_with_the_file(tmp_path, content, place
     inner[place[-1]] = value
     with pytest.raises(PanoramaError, match=r"poses\.json"):
         read(tmp_path, content)
+
+
+def test_a_panorama_of_another_size_than_the_list_says_is_named(tmp_path, content):
+    upper, lower = read(tmp_path, content).pairs[0].images()
+    assert upper.shape == lower.shape == (64, 128, 3)
+    content["width"] = 130
+    with pytest.raises(PanoramaError, match=r"upper\.png has 128 x 64 pixels; .*poses\.json says 130 x 64"):
+        read(tmp_path, content).pairs[0].images()
