@@ -16,7 +16,8 @@ SEEN = {"object": 7, "label": "sofa", "visible_box": BOX, "unoccluded_box": BOX,
 @pytest.fixture
 def content(tmp_path):
     for side in ("upper", "lower"):
-        cv2.imwrite(str(tmp_path / f"{side}.png"), np.full((64, 128, 3), 90, np.uint8))
+        image = np.random.default_rng(1).integers(0, 256, (64, 128, 3), dtype=np.uint8)
+        cv2.imwrite(str(tmp_path / f"{side}.png"), image)
     sides = {side: {"file": f"{side}.png", "objects": [SEEN]} for side in ("upper", "lower")}
     rig = {"x": 0.5, "y": 0.25, "heading": 0.1, "upper_height": 1.32}
     pairs = [{"name": "pose_0", "rig": rig, **json.loads(json.dumps(sides))}]
