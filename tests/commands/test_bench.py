@@ -224,14 +224,17 @@ def test_a_measurement_that_dies_is_named(tmp_path, capfd):
 
 @pytest.mark.parametrize("backend", ["raster", "vtk", "ray"])
 def test_memory_is_flat_and_images_stay_over_hundreds_of_renders(backend, capsys):
-    """10,000 of them are for the command; if each of these kept its images, or one of them, that would be 27 MB."""
+    """10,000 of them are for the command; if each of these kept its images, or one of them, that would be 27 MB.
+
+    A renderer holds tens of MB; what a window of VTK's takes comes and goes by some 8 MB.
+    """
     assert main(["bench", "--renders", "300", "--renderers", "40", "--backends", backend, "--json"]) == 0
     (told,) = json.loads(capsys.readouterr().out).values()
     assert "missing" not in told
-    for what, calls in (("renders", 300), ("renderers", 40)):
+    for what, calls, most in (("renders", 300, 8.0), ("renderers", 40, 16.0)):
         assert told[what]["calls"] == calls
         assert told[what]["other_images"] == 0
-        assert not told[what]["grew_mb"] > 8.0, told[what]
+        assert not told[what]["grew_mb"] > most, told[what]
 
 
 @pytest.mark.parametrize("kept", ["nothing", "one image in twenty", "an image is another"])
@@ -244,10 +247,10 @@ def test_what_a_call_leaves_behind_or_changes_is_told(benchmarks, kept):
         nonlocal calls
         calls += 1
         if kept == "one image in twenty" and calls % 20 == 0:
-            left.append(np.ones(2_000_000))
+            left.append(np.ones(5_000_000))  # 40 MB: never from what the process has at hand
         return images[k] + (kept == "an image is another" and calls == 70)
 
     told = _over(100, render, images)
     assert told["other_images"] == (kept == "an image is another")
-    # Four of five lie in the part that counts: 64 MB.
-    assert (told["grew_mb"] > 40) == (kept == "one image in twenty") or np.isnan(told["grew_mb"])
+    # Four of five lie in the part that counts: 160 MB.
+    assert (told["grew_mb"] > 100) == (kept == "one image in twenty") or np.isnan(told["grew_mb"])
