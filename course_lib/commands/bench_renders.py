@@ -11,7 +11,7 @@ from pathlib import Path
 from course_lib.child import python
 from course_lib.child import run as run_child
 
-LEAST = 20  # fewer leave nothing to compare after a tenth of them
+LEAST = 20  # fewer leave nothing to compare once memory has settled
 WHAT = {"renders": "renders, one renderer", "renderers": "renderers, a render each"}
 
 
@@ -39,12 +39,15 @@ def measure(
 
 def heading() -> str:
     """The line above the rows."""
-    heads = ("before", "after 10 %", "greatest", "end", "grew [MB]", "other images")
+    heads = ("before", "settled", "greatest", "end", "grew [MB]", "other images")
     return f"{'memory held [MB]':42}" + "".join(f"{head:>14}" for head in heads)
 
 
 def rows(backend: str, told: dict) -> str:
-    """Memory (MB) before the first call, after a tenth of them and at the end; calls whose image was another."""
+    """Memory (MB) before the first call, settled, the greatest from then on, at the end; calls of another image.
+
+    Settled: after a tenth of the calls, 20 at least.
+    """
     if "missing" in told:
         return f"{backend:42}  not here: {told['missing'][:90]}"
     lines = []

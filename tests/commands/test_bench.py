@@ -202,7 +202,7 @@ def test_the_table_of_renders_tells_memory_other_images_and_what_is_missing():
     }
     rows = [line for backend, row in told.items() for line in bench_renders.rows(backend, row).splitlines()]
     renders, renderers, missing = rows
-    heads = "memory held [MB] before after 10 % greatest end grew [MB] other images"
+    heads = "memory held [MB] before settled greatest end grew [MB] other images"
     assert bench_renders.heading().split() == heads.split()
     assert renders.split() == "raster, 10,000 renders, one renderer 270.0 360.0 361.5 361.0 +1.0 3".split()
     assert renderers.split() == "raster, 300 renderers, a render each 270.0 360.0 361.5 361.0 -0.5 3".split()
@@ -226,12 +226,13 @@ def test_a_measurement_that_dies_is_named(tmp_path, capfd):
 def test_memory_is_flat_and_images_stay_over_hundreds_of_renders(backend, capsys):
     """10,000 of them are for the command; if each of these kept its images, or one of them, that would be 27 MB.
 
-    A renderer holds tens of MB; what a window of VTK's takes comes and goes by some 8 MB.
+    80 of the 100 renderers count: 32 MB if each kept the images of its one render, far more if it kept its map. The
+    allocator keeps or gives back one block of 8 MB at any time, which is no leak: half of 32 MB is clear of both.
     """
-    assert main(["bench", "--renders", "300", "--renderers", "40", "--backends", backend, "--json"]) == 0
+    assert main(["bench", "--renders", "300", "--renderers", "100", "--backends", backend, "--json"]) == 0
     (told,) = json.loads(capsys.readouterr().out).values()
     assert "missing" not in told
-    for what, calls, most in (("renders", 300, 8.0), ("renderers", 40, 16.0)):
+    for what, calls, most in (("renders", 300, 8.0), ("renderers", 100, 16.0)):
         assert told[what]["calls"] == calls
         assert told[what]["other_images"] == 0
         assert not told[what]["grew_mb"] > most, told[what]

@@ -31,9 +31,9 @@ SAVE = """() => new Promise((resolve, reject) => {
     window.jupyterapp.commands.execute('docmanager:save').then(() => resolve(true), reject)
         .finally(() => clearInterval(asked));
 })"""
-# The whole course of an autosave, with 15 s instead of two minutes: something changed, and JupyterLab's own timer saves.
-# Off at first and not faster: a save that begins while another is on its way finds the file changed, and asks. JupyterLab
-# lets its timer and a person, or its timer and itself, do so; with one second it happened here once in some twenty runs.
+# The whole course of an autosave, with 15 s instead of two minutes: something changed, and JupyterLab's timer saves.
+# Off at first and not faster: a save that begins while another is on its way finds the file changed, and asks.
+# JupyterLab lets its timer and a person do so, and its timer twice; with one second it happened here in one of 20 runs.
 AUTOSAVE = "@jupyterlab/docmanager-extension:plugin", '{"autosave": false, "autosaveInterval": 15}'
 TOGGLE_AUTOSAVE = "() => window.jupyterapp.commands.execute('docmanager:toggle-autosave').then(() => true)"
 IS_SAVED = "() => !window.jupyterapp.shell.currentWidget.context.model.dirty"
