@@ -227,7 +227,7 @@ def test_memory_is_flat_and_images_stay_over_hundreds_of_renders(backend, capsys
     """10,000 of them are for the command; if each of these kept its images, or one of them, that would be 27 MB.
 
     80 of the 100 renderers count: 32 MB if each kept the images of its one render, far more if it kept its map. The
-    bound, half of that, was chosen after a look: OpenGL's memory comes and goes by 8 MB, once by 18 among 300 renderers.
+    bound, half of that, was chosen after a look: OpenGL's memory comes and goes by 8 MB, once by 18 among 300 of them.
     """
     assert main(["bench", "--renders", "300", "--renderers", "100", "--backends", backend, "--json"]) == 0
     (told,) = json.loads(capsys.readouterr().out).values()
