@@ -13,9 +13,10 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from course_lib import writing
+from course_lib import unfinished, writing
 from course_lib.simulation.data_folder import move_products
-from course_lib.writing import MADE, UNFINISHED, WriteError, replaced_outputs, write_at_once
+from course_lib.unfinished import UNFINISHED
+from course_lib.writing import MADE, WriteError, replaced_outputs, write_at_once
 
 
 def names(folder):
@@ -129,8 +130,8 @@ def test_a_run_killed_while_files_change_places_is_completed_by_the_next(tmp_pat
     make(out, {"a.json": "1", "b.json": "1", "gone.png": "1"})
     monkeypatch.setattr(writing, "_exchange", lambda one, other: False)
     with monkeypatch.context() as killed:
-        killed.setattr(writing, "_move_all", lambda beside, out: (_ for _ in ()).throw(SystemExit))
-        killed.setattr(writing.shutil, "rmtree", lambda *_, **__: None)
+        killed.setattr(unfinished, "_move_all", lambda beside, out: (_ for _ in ()).throw(SystemExit))
+        killed.setattr(unfinished.shutil, "rmtree", lambda *_, **__: None)
         with pytest.raises(SystemExit):
             make(out, {"a.json": "2", "b.json": "2"})
     assert len(left_over(out)) == 1
@@ -206,7 +207,7 @@ def hook(event, arguments):
     if armed and event == {step!r} and (event != "open" or UNFINISHED in str(arguments[0])):
         armed.clear()
         signal.raise_signal(signal.SIGINT)
-from course_lib.writing import UNFINISHED
+from course_lib.unfinished import UNFINISHED
 sys.addaudithook(hook)
 def folder():
     with replaced_outputs(disk / "out", "demo") as new: (new / "a").write_text("new")
