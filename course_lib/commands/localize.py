@@ -17,7 +17,7 @@ import numpy as np
 from course_lib.commands.arguments import add_backend_argument
 from course_lib.commands.localize_report import believed, localize_table, write_localized
 from course_lib.commands.localize_start import found_start, given_start, join_words
-from course_lib.writing import replaced_outputs
+from course_lib.output_folder import replaced_outputs
 
 __all__ = ["add_arguments", "join_words", "run"]
 

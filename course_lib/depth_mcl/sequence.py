@@ -26,8 +26,9 @@ import numpy as np
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_poses, read_tum, write_tum
 from course_lib.geometry import UP_AXES
+from course_lib.output_folder import replaced_outputs
 from course_lib.reading import is_file, is_given, read_image, read_text
-from course_lib.writing import replaced_outputs, write_at_once
+from course_lib.writing import write_at_once
 
 NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
 
