@@ -42,7 +42,8 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `localize`."""
-    from course_lib.depth_mcl.sequence import FAR, NEAR, UNITS_PER_METRE
+    from course_lib.depth_mcl.sequence import FAR, NEAR
+    from course_lib.depth_mcl.sequence_files import UNITS_PER_METRE
 
     parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the examples
     parser.epilog = EPILOG
