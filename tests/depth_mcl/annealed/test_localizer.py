@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.annealed.localizer import AnnealedLocalizer, Layer, distinct
+from course_lib.depth_mcl.annealed.localizer import AnnealedLocalizer, distinct
 from course_lib.depth_mcl.annealed.prediction import START_SPREAD
+from course_lib.depth_mcl.annealed.schedule import Layer
 from course_lib.depth_mcl.annealed.twists import motion_between, moved
 from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
