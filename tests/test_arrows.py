@@ -8,7 +8,7 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "course_lib"
 
 # Part of the library -> parts it may import besides itself. commands and cli stand above all of them, but for lessons.
-BELOW = {"child", "frame_order", "geometry", "reading", "worker_pool", "writing"}
+BELOW = {"child", "frame_order", "geometry", "output_folder", "reading", "unfinished", "worker_pool", "writing"}
 METHODS = BELOW | {"depth_mcl", "spherical_stereo"}
 ALLOWED = {
     "frame_order": set(),
@@ -16,7 +16,9 @@ ALLOWED = {
     "paths": set(),
     "reading": set(),
     "child": {"reading"},
-    "writing": set(),
+    "unfinished": set(),
+    "writing": {"unfinished"},
+    "output_folder": {"unfinished", "writing"},
     "processors": set(),
     "worker_pool": set(),
     "depth_mcl": BELOW | {"processors"},

@@ -25,7 +25,8 @@ from course_lib.classroom.model_answers import model_solution_path
 from course_lib.classroom.nbgrader_course import canary_of, write_course, write_grading_module
 from course_lib.classroom.rubric import rubric
 from course_lib.classroom.student_copies import solved_notebook, write_copies
-from course_lib.writing import UNFINISHED, replaced_outputs
+from course_lib.output_folder import replaced_outputs
+from course_lib.unfinished import UNFINISHED
 
 MARKER = "handout.json"
 MADE_BY = "course.py handout"

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course_lib.commands.arguments import require_output_folder, require_positive, require_seed
-from course_lib.writing import replaced_outputs
+from course_lib.output_folder import replaced_outputs
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from course_lib.experiments.ambiguity import AmbiguityMap

@@ -7,7 +7,8 @@ import math
 import re
 from pathlib import Path
 
-from course_lib.writing import WriteError, require_writable
+from course_lib.output_folder import require_writable
+from course_lib.writing import WriteError
 
 
 def add_backend_argument(parser: argparse.ArgumentParser) -> None:

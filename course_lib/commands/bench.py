@@ -21,7 +21,7 @@ from pathlib import Path
 from course_lib.child import python
 from course_lib.child import run as run_child
 from course_lib.commands.arguments import require_output_folder
-from course_lib.writing import replaced_outputs
+from course_lib.output_folder import replaced_outputs
 
 ROOT = Path(__file__).resolve().parents[2]
 LOCK = ROOT / "environment-bench.txt"

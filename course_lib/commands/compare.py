@@ -14,7 +14,7 @@ from pathlib import Path
 from course_lib.child import python
 from course_lib.child import run as run_child
 from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
-from course_lib.writing import replaced_outputs
+from course_lib.output_folder import replaced_outputs
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from course_lib.commands.arguments import add_backend_argument
 from course_lib.commands.corridor_tables import table_1, table_of_kindnesses, table_over_recordings
-from course_lib.writing import replaced_outputs
+from course_lib.output_folder import replaced_outputs
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
     from matplotlib.figure import Figure

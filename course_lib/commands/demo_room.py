@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.commands.make_room import SEED
 from course_lib.commands.room_tables import EXACT, FITS, WEIGHTED, tables
-from course_lib.writing import replaced_outputs
+from course_lib.output_folder import replaced_outputs
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from matplotlib.figure import Figure

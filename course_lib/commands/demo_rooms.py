@@ -15,8 +15,8 @@ from pathlib import Path
 
 from course_lib.commands.arguments import parse_seeds, require_output_folder
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+from course_lib.output_folder import replaced_outputs
 from course_lib.processors import processors
-from course_lib.writing import replaced_outputs
 
 SEEDS = "1-20"
 NETWORK_FILES = (".cfg", ".weights", ".names", ".json")  # what makes a detector what it is

@@ -72,8 +72,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     from course_lib.commands.trouble_table import trouble_table
     from course_lib.experiments.results import write_results
+    from course_lib.output_folder import replaced_outputs
     from course_lib.plots.trouble_figure import trouble_figure
-    from course_lib.writing import replaced_outputs
 
     methods = [arguments.method] if arguments.method else ["depth", "stereo"]
     results = {}

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from course_lib.commands.arguments import require_output_folder, require_positive, require_seed
 from course_lib.commands.fuzz_table import fuzz_table
-from course_lib.writing import replaced_outputs, write_at_once
+from course_lib.output_folder import replaced_outputs
+from course_lib.writing import write_at_once
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from course_lib.fuzzing.campaign import Trial

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder
+from course_lib.output_folder import replaced_outputs
 from course_lib.processors import processors
-from course_lib.writing import replaced_outputs
 
 TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"
 

@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.commands.interrupt_cases import CASES
     from course_lib.commands.interruptions import InterruptionError, Staged, drawn_ctrl_c, drawn_kills, interruptions
     from course_lib.experiments.results import write_results
-    from course_lib.writing import replaced_outputs
+    from course_lib.output_folder import replaced_outputs
 
     require_seed(arguments.seed)
     require_positive("--moments", arguments.moments, "kills")

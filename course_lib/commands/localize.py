@@ -17,7 +17,7 @@ import numpy as np
 from course_lib.commands.arguments import add_backend_argument
 from course_lib.commands.localize_report import believed, localize_table, write_localized
 from course_lib.commands.localize_start import found_start, given_start, join_words
-from course_lib.writing import replaced_outputs
+from course_lib.output_folder import replaced_outputs
 
 __all__ = ["add_arguments", "join_words", "run"]
 
@@ -42,7 +42,8 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `localize`."""
-    from course_lib.depth_mcl.sequence import FAR, NEAR, UNITS_PER_METRE
+    from course_lib.depth_mcl.sequence import FAR, NEAR
+    from course_lib.depth_mcl.sequence_files import UNITS_PER_METRE
 
     parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the examples
     parser.epilog = EPILOG

@@ -14,7 +14,7 @@ import numpy as np
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.commands.stereo import add_pair_arguments
-from course_lib.writing import replaced_outputs
+from course_lib.output_folder import replaced_outputs
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from course_lib.spherical_stereo.panorama import View

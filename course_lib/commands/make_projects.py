@@ -11,8 +11,8 @@ from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder
 from course_lib.commands.detector_options import chosen_detector
+from course_lib.output_folder import replaced_outputs
 from course_lib.processors import processors
-from course_lib.writing import replaced_outputs
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "projects"
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.writing import replaced_outputs
+from course_lib.output_folder import replaced_outputs
 
 BOXES_FORMAT = """\
 the boxes file, in pixels (left, top, right, bottom) of images of that size; "name" may be left out:

@@ -14,7 +14,7 @@ import shutil
 from pathlib import Path
 from typing import Literal
 
-from course_lib.writing import UNFINISHED
+from course_lib.unfinished import UNFINISHED
 
 State = Literal["old", "new", "between", "broken"]
 Tree = dict[str, bytes]

@@ -25,7 +25,8 @@ from course_lib.commands.lesson_versions import (
     text_version,
     whole_version,
 )
-from course_lib.writing import clear_unfinished, flush_below, staged
+from course_lib.output_folder import staged
+from course_lib.unfinished import clear_unfinished, flush_below
 
 WORK, MEMORY = "work", ".copies.json"
 _EARLIER = "earlier"  # in an entry of the memory: the entry before it, until the copy has changed as well

@@ -11,7 +11,7 @@
     localizer            figure 1: all of it in order
     evaluation           section 4: table 1
     fallon               the method that table 1 compares with
-    poses, sequence      files of poses, recordings on disk
+    sequence             recordings on disk; poses, sequence_files: their files, each read and checked
   beyond the paper
     uncertainty          how far off the estimate may be, which the paper's weights cannot say
     tracking             whether the filter still holds the track

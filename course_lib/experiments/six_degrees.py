@@ -13,10 +13,10 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from course_lib.depth_mcl.annealed.localizer import LAYERS, STEPS
 from course_lib.depth_mcl.annealed.prediction import MotionPrediction, Rival
 from course_lib.depth_mcl.annealed.pyramid import pyramid
 from course_lib.depth_mcl.annealed.refinement import refine
+from course_lib.depth_mcl.annealed.schedule import LAYERS, STEPS
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap

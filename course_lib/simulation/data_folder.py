@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from course_lib.writing import replaced_outputs, require_writable
+from course_lib.output_folder import replaced_outputs, require_writable
 
 
 def require_folder(out: str | Path) -> Path:

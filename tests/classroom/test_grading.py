@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from course_lib import writing
+from course_lib import output_folder
 from course_lib.classroom import grading
 from course_lib.classroom.confinement import Limits
 from course_lib.classroom.grade_page import grade_page
@@ -251,7 +251,7 @@ def test_results_never_lie_among_the_submissions_and_are_put_in_place_whole(tmp_
     out = tmp_path / "out"
     command.write(out, {"a.csv": "old"})
     with monkeypatch.context() as full:
-        full.setattr(writing, "_exchange", lambda *given: (_ for _ in ()).throw(OSError("disk full")))
+        full.setattr(output_folder, "_exchange", lambda *given: (_ for _ in ()).throw(OSError("disk full")))
         with pytest.raises(OSError, match="disk full"):
             command.write(out, {"a.csv": "new", "b.csv": "new"})
     assert [path.name for path in out.glob("[!.]*")] == ["a.csv"]

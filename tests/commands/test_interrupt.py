@@ -20,7 +20,7 @@ from course_lib.commands.interruptions import (
 )
 from course_lib.commands.stopped_runs import Moment
 from course_lib.commands.whole_outputs import left_over, state
-from course_lib.writing import UNFINISHED
+from course_lib.unfinished import UNFINISHED
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="it forks")
 

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,11 +33,13 @@ from course_lib.depth_mcl.annealed.covariance import (
     predicted_covariance,
     with_rivals,
 )
+from course_lib.depth_mcl.annealed.hypotheses import APART, DISTINCT, RIVAL_APART, RIVAL_WITHIN, distinct
 from course_lib.depth_mcl.annealed.prediction import GREATEST_SPREAD, MotionPrediction, Rival, widened
 from course_lib.depth_mcl.annealed.pyramid import Level, pyramid
 from course_lib.depth_mcl.annealed.refinement import gauss_newton_step
+from course_lib.depth_mcl.annealed.schedule import LAYERS, SECOND_LOOK, STEPS, Layer, Step
 from course_lib.depth_mcl.annealed.tempering import Tempered, temper
-from course_lib.depth_mcl.annealed.twists import lengths, motion_between, moved
+from course_lib.depth_mcl.annealed.twists import motion_between, moved
 from course_lib.depth_mcl.likelihood import ALPHA, DepthImageError, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
@@ -45,43 +47,6 @@ from course_lib.depth_mcl.particle_filter import resample
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.tracking import Agreement, TrackStatus, agreement, judge_refined
 from course_lib.geometry import optical_pose, state_from_optical_pose
-
-
-class Layer(NamedTuple):
-    """One round of drawing, weighing and resampling within a frame, on coarse images."""
-
-    particles: float
-    """How many, as a share of the filter's `n_particles`."""
-    spread: float
-    """Of the noise, as a share of the prediction's spread."""
-    survivors: float
-    """Effective sample size that the weights leave, as a share of the particles."""
-
-
-class Step(NamedTuple):
-    """One Gauss-Newton step for the hypotheses that are left."""
-
-    level: Literal[0, 1, 2]
-    """Of the pyramid: coarse, middle, fine."""
-    scale: float
-    """Metres: a residual as large counts a quarter."""
-    hypotheses: int
-    """How many are taken along, the best that differ."""
-
-
-# All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th; what
-# concerns rivals on walks through rooms, seeds 10,041 to 10,066.
-LAYERS = (Layer(1.0, 1.0, 0.1), Layer(0.4, 0.35, 0.1))
-SECOND_LOOK = (Layer(0.45, 1.0, 0.1),)
-STEPS = (
-    Step(0, 0.25, 30), Step(0, 0.20, 20), Step(0, 0.15, 9), Step(0, 0.10, 5),
-    Step(1, 0.10, 4), Step(1, 0.07, 3), Step(1, 0.05, 3),
-    Step(2, 0.05, 3), Step(2, 0.03, 3), Step(2, 0.03, 3),
-)  # fmt: skip
-APART = 0.2  # of the prediction's spread: particles nearer to each other are one hypothesis
-DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same between two refined poses
-RIVAL_WITHIN = 0.06  # of raw score: what fits less is no rival
-RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
 
 
 class AnnealedEstimate(NamedTuple):
@@ -339,18 +304,3 @@ class AnnealedLocalizer:
             found.layers,
             self._renders,
         )
-
-
-def distinct(poses: np.ndarray, scores: np.ndarray, count: int, apart: np.ndarray) -> np.ndarray:
-    """Indices of the best `count` poses `(N, 4, 4)` of which no two are alike: nearer than `apart`, metres and radians.
-
-    scores: `(N,)`. Best first; fewer than `count` where there are no more that differ.
-    """
-    kept: list[int] = []
-    for index in np.argsort(-scores, kind="stable"):
-        differences = lengths(motion_between(poses[index], poses[kept]))
-        if (differences >= apart).any(axis=-1).all():
-            kept.append(int(index))
-        if len(kept) == count:
-            break
-    return np.array(kept)

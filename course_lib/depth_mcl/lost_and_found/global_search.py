@@ -20,7 +20,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.annealed.localizer import distinct
+from course_lib.depth_mcl.annealed.hypotheses import distinct
 from course_lib.depth_mcl.annealed.prediction import MotionPrediction
 from course_lib.depth_mcl.annealed.pyramid import Level, pyramid
 from course_lib.depth_mcl.annealed.refinement import gauss_newton_step

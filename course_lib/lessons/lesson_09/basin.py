@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.annealed.localizer import STEPS
 from course_lib.depth_mcl.annealed.pyramid import Level, pyramid
 from course_lib.depth_mcl.annealed.refinement import refine
+from course_lib.depth_mcl.annealed.schedule import STEPS
 from course_lib.depth_mcl.annealed.twists import moved
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.rendering.renderer import DepthRenderer

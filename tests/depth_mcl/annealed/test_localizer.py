@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.annealed.localizer import AnnealedLocalizer, Layer, distinct
+from course_lib.depth_mcl.annealed.localizer import AnnealedLocalizer
 from course_lib.depth_mcl.annealed.prediction import START_SPREAD
+from course_lib.depth_mcl.annealed.schedule import Layer
 from course_lib.depth_mcl.annealed.twists import motion_between, moved
 from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
@@ -214,16 +215,6 @@ def test_the_same_seed_gives_the_same_bytes(renderer):
     )
     assert first.tobytes() == second.tobytes()
     assert not np.array_equal(first, other)
-
-
-def test_of_poses_alike_the_best_stands_for_all():
-    motions = np.zeros((5, 6))
-    motions[:, 0] = [0.0, 0.01, 0.5, 0.505, 0.0]
-    motions[4, 5] = 0.5
-    poses = moved(np.eye(4), motions)
-    scores = np.array([0.5, 0.9, 0.8, 0.7, 0.6])
-    assert distinct(poses, scores, 9, np.array([0.02, 0.02])).tolist() == [1, 2, 4]
-    assert distinct(poses, scores, 2, np.array([0.02, 0.02])).tolist() == [1, 2]
 
 
 def test_bad_use_is_named(renderer):
