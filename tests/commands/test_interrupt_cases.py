@@ -1,0 +1,74 @@
+"""The cases of `interrupt`: every command that writes, made short; what is kept for them, and what they leave."""
+
+import sys
+
+import pytest
+
+from course_lib.commands.full_disk import full_disks, why_no_disk, wrong_end
+from course_lib.commands.interrupt_cases import CASES, Case
+from course_lib.commands.interruptions import Staged, interruptions
+from course_lib.commands.stopped_runs import Ended, Moment
+from course_lib.paths import data_path
+from tests.commands.test_interrupt import REFUSED
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="it forks")
+
+BY_NAME = {case.name: case for case in CASES}
+KEEPS = """
+import sys
+from pathlib import Path
+out, which = Path(sys.argv[1]), sys.argv[2]
+rows = out / "rows.txt"
+print("kept" if rows.exists() else "made anew")
+if which == "2" and not rows.exists():
+    rows.write_text("takes long")
+(out / "a.txt").write_text(which)
+"""
+TEMPORARY = """
+import os, sys, tempfile
+from pathlib import Path
+held = tempfile.mkdtemp()
+(Path(sys.argv[1]) / "a.txt").write_text(sys.argv[2])
+"""
+
+
+def test_what_takes_long_is_done_once_and_kept_for_the_runs_that_are_stopped(tmp_path):
+    with Staged(Case("kept", "{out} {which}", KEEPS, kept=True), tmp_path.resolve()) as staged:
+        assert staged.old == {"rows.txt": b"takes long", "a.txt": b"1"}
+        staged.begin_anew()
+        assert staged.run(2).printed.strip() == "kept"
+
+
+def test_what_killed_runs_leave_in_the_folder_for_temporary_files_goes_with_the_case(tmp_path, monkeypatch):
+    (tmp_path / "users").mkdir()
+    (tmp_path / "case").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "users"))
+    with Staged(Case("temporary", "{out} {which}", TEMPORARY), (tmp_path / "case").resolve()) as staged:
+        interruptions(staged, [Moment(step=1)])
+    assert not [path for path in (tmp_path / "users").iterdir() if path.name.startswith("tmp")]
+    assert list((tmp_path / "case" / "tmp").iterdir())
+
+
+def test_from_the_finished_rooms_the_projects_become_what_is_shipped(tmp_path):
+    with Staged(BY_NAME["make-data projects"], tmp_path.resolve()) as staged:
+        for name in ("rooms_practice.json", "rooms_hidden.json"):
+            shipped = (data_path("projects") / name).read_bytes()
+            assert staged.new[name] == shipped != staged.old[name]
+
+
+@pytest.mark.skipif(why_no_disk() is not None, reason=f"no disk can be filled here: {why_no_disk()}")
+def test_a_command_that_was_made_short_is_held_to_the_end_of_a_command_on_a_full_disk(tmp_path):
+    with Staged(BY_NAME["bench"], tmp_path.resolve()) as staged:
+        assert full_disks(staged)["faults"] == []
+        ended = Ended(1, "", f"Traceback: {staged.stage}: No space left on device", 99, ())
+        assert any("exit code 1" in fault for fault in wrong_end(ended, "old", staged))
+
+
+NOT_KILLED = {
+    "train-detector": "it needs PyTorch, which the course does not install: its checkpoints alone, by a writer",
+    "interrupt": "it would kill itself",
+}
+
+
+def test_every_command_with_an_out_folder_is_killed_or_it_is_said_why_not():
+    assert {*REFUSED, "progress"} - set(BY_NAME) == set(NOT_KILLED)
