@@ -8,6 +8,7 @@ from course_lib.commands.full_disk import full_disks, why_no_disk, wrong_end
 from course_lib.commands.interrupt_cases import CASES, Case
 from course_lib.commands.interruptions import Staged, interruptions
 from course_lib.commands.stopped_runs import Ended, Moment
+from course_lib.commands.whole_outputs import state
 from course_lib.paths import data_path
 from tests.commands.test_interrupt import REFUSED
 
@@ -30,6 +31,30 @@ from pathlib import Path
 held = tempfile.mkdtemp()
 (Path(sys.argv[1]) / "a.txt").write_text(sys.argv[2])
 """
+
+
+ROW_1, ROW_2 = b'{"seed": 1, "ms": 5}\n', b'{"seed": 2, "found": 3, "ms": 5}\n'
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        (ROW_1, "old"),
+        (ROW_1 + ROW_2, "new"),
+        (ROW_1 + b'{"seed": 2, "found": 3, "ms": 71}\n', "new"),
+        (ROW_1 + b'{"seed": 2, "found": 4, "ms": 5}\n', "broken"),
+        (ROW_1 + ROW_2[:18], "between"),
+        (ROW_1 + b'{"seed": 2, "found": 3, "ms": 7', "between"),
+        (ROW_1 + b'{"seed": 2, "found": 4', "broken"),
+        (ROW_1 + ROW_2 + b"{", "broken"),
+        (ROW_1 + b"\n", "broken"),
+        (b'{"seed": 1, "ms": 6}\n', "broken"),
+        (ROW_2, "broken"),
+        (b"", "broken"),
+    ],
+)
+def test_rows_may_tell_other_times_and_end_in_a_row_that_was_begun(rows, expected):
+    assert state({"a.jsonl": rows}, {"a.jsonl": ROW_1}, {"a.jsonl": ROW_1 + ROW_2}, by_file=True) == expected
 
 
 def test_what_takes_long_is_done_once_and_kept_for_the_runs_that_are_stopped(tmp_path):
