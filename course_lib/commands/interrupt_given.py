@@ -67,13 +67,16 @@ def prepare_finished_rooms(given: Path, out: Path) -> None:
 
 
 def prepare_measurements(given: Path, out: Path) -> None:
-    """In place of a measurement, which takes minutes: a program that tells stored numbers, the second time others."""
+    """In place of a measurement, which takes minutes: a program that tells stored numbers, the second time others.
+
+    So does its figure, which here is any picture.
+    """
     stored = data_path("corridor") / "results"
     result = json.loads((stored / "bench.json").read_text(encoding="utf-8"))
-    for which in (1, 2):
+    for which, picture in ((1, stored / "overview.png"), (2, stored / "bench.png")):
         folder = given / f"measured_{which}" / "benchmarks"
         folder.mkdir(parents=True)
         result["maps"]["growth"] = float(which)
         told = json.dumps(result)
-        program = f"import shutil, sys\nshutil.copy({str(stored / 'bench.png')!r}, sys.argv[2])\nprint({told!r})\n"
+        program = f"import shutil, sys\nshutil.copy({str(picture)!r}, sys.argv[2])\nprint({told!r})\n"
         (folder / "measure.py").write_text(program)
