@@ -47,6 +47,8 @@ def run(stage, program, words, chosen, delay, number, told):
             if event not in {STEPS!r} or (event == "open" and not given[2] & (os.O_WRONLY | os.O_RDWR)):
                 return
             path = os.fsdecode(given[0]) if isinstance(given[0], (str, bytes, os.PathLike)) else ""
+            if event in ("os.remove", "os.rmdir") and given[1] >= 0 and os.path.exists("/proc/self/fd"):
+                path = os.path.join(os.readlink(f"/proc/self/fd/{{given[1]}}"), path)  # of a folder held open
             if os.path.isabs(path) and not path.startswith(stage):
                 return
         steps[0] += 1

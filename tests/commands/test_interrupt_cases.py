@@ -1,5 +1,6 @@
 """The cases of `interrupt`: every command that writes, made short; what is kept for them, and what they leave."""
 
+import os
 import sys
 
 import pytest
@@ -32,6 +33,14 @@ held = tempfile.mkdtemp()
 (Path(sys.argv[1]) / "a.txt").write_text(sys.argv[2])
 """
 
+FILLED = """
+import sys, tempfile
+from pathlib import Path
+with tempfile.TemporaryDirectory(dir={place}) as folder:
+    for number in range(5):
+        Path(folder, str(number)).write_text("")
+(Path(sys.argv[1]) / "a.txt").write_text(sys.argv[2])
+"""
 
 ROW_1, ROW_2 = b'{"seed": 1, "ms": 5}\n', b'{"seed": 2, "found": 3, "ms": 5}\n'
 
@@ -72,6 +81,17 @@ def test_what_killed_runs_leave_in_the_folder_for_temporary_files_goes_with_the_
         interruptions(staged, [Moment(step=1)])
     assert not [path for path in (tmp_path / "users").iterdir() if path.name.startswith("tmp")]
     assert list((tmp_path / "case" / "tmp").iterdir())
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self/fd"), reason="whose folder a name is in cannot be told here")
+def test_a_step_is_what_happens_where_the_outputs_go_and_not_in_other_folders(tmp_path):
+    steps = {}
+    for name, place in (("elsewhere", "None"), ("beside", "Path(sys.argv[1]).parent")):
+        (tmp_path / name).mkdir()
+        with Staged(Case(name, "{out} {which}", FILLED.format(place=place)), (tmp_path / name).resolve()) as staged:
+            steps[name] = staged.steps
+    assert steps["elsewhere"] == 1, "a.txt is opened for writing"
+    assert steps["beside"] == 1 + 2 * 5 + 2, "so are five more, which go again, and their folder comes and goes"
 
 
 def test_from_the_finished_rooms_the_projects_become_what_is_shipped(tmp_path):
