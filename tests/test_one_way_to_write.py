@@ -49,7 +49,7 @@ ALLOWED = {
     "course_lib/commands/demo_trouble.py": NEW,
     "course_lib/commands/demo_walk.py": NEW,
     "course_lib/commands/grade.py": NEW,
-    "course_lib/commands/interrupt_cases.py": TEMPORARY,
+    "course_lib/commands/interrupt_given.py": TEMPORARY,
     "course_lib/commands/interrupt_writers.py": TEMPORARY,
     "course_lib/commands/whole_outputs.py": TEMPORARY,
     "course_lib/commands/localize_report.py": NEW,

@@ -62,10 +62,10 @@ def run(arguments: argparse.Namespace) -> int:
 def lost_table(s: dict) -> str:
     """What `demo lost` prints."""
     of = f"of {s['trials']}"
+    median = "-" if s["frames_to_recover"] is None else f"{s['frames_to_recover']:.0f}"
     return "\n".join(
         [
-            f"kidnapped           {s['kidnapped_recovered']} {of} recovered within 30 frames "
-            f"(median {s['frames_to_recover']:.0f})",
+            f"kidnapped           {s['kidnapped_recovered']} {of} recovered within 30 frames (median {median})",
             f"started anywhere    {s['started_right']} {of} in the right place within 20 frames, "
             f"{s['started_wrong']} in a wrong one, {s['started_several']} said: several",
             f"                    median {s['frames_to_start']:.0f} frames, {s['particles_to_start']:,.0f} particles, "

@@ -11,12 +11,12 @@ import subprocess
 import sys
 
 from course_lib.commands.interruptions import Staged
-from course_lib.commands.stopped_runs import COMMAND, Ended, Runs
+from course_lib.commands.stopped_runs import Ended, Runs
 from course_lib.commands.whole_outputs import Tree, state
 
 PAGE = 4096  # bytes: what the smallest file takes on a tmpfs
 FILLED = (0.0, 0.4, 0.9, 0.2, 0.7, 1.05, 2.5)
-"""Room beside the old, in sizes of the new; a case whose run takes long has the first three alone."""
+"""Room beside the old, in sizes of the new; a command, whose run may take long, has the first three alone."""
 
 BAD_INPUT = 2  # exit code
 REFUSED_BEFORE_STEPS = 12
@@ -65,7 +65,7 @@ def full_disks(staged: Staged) -> dict:
     faults = []
     taken = {which: sum(PAGE + len(content) for content in getattr(staged, which).values()) for which in ("old", "new")}
     with Runs(staged.stage, staged.modules, ("unshare", "-rm")) as runs:
-        for share in FILLED if staged.case.share > 1 else FILLED[:3]:
+        for share in FILLED[:3] if staged.case.is_command else FILLED:
             staged.begin_anew()
             size = taken["old"] + int(share * taken["new"]) + 4 * PAGE
             ended, files, left = _run_on_a_disk(staged, runs, size)
@@ -100,7 +100,7 @@ def wrong_end(ended: Ended, held: str, staged: Staged) -> list[str]:
     full = "disk is full" in said or "No space left on device" in said
     if not full or not any(str(place) in said for place in (staged.stage, staged.given)):
         wrong.append(f"exit code {ended.code}, and the full disk is not named: {said[-1000:]}")
-    if staged.case.program == COMMAND and (ended.code != BAD_INPUT or "Traceback" in said):
+    if staged.case.is_command and (ended.code != BAD_INPUT or "Traceback" in said):
         wrong.append(f"exit code {ended.code}: {said[-1000:]}")
     if staged.case.prints and not ended.printed.strip() and ended.steps > REFUSED_BEFORE_STEPS:
         wrong.append(f"nothing was printed before the disk was full: {said[-1000:]}")

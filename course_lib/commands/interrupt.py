@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise ValueError(f"--only {', '.join(unknown)}: there is no such command here; there are: {', '.join(known)}")
     require_output_folder(arguments.out)
     cases = [known[name] for name in arguments.only or known]
-    counts = shares(arguments.moments, [case.share for case in cases])
+    counts = shares(arguments.moments, len(cases))
     no_disk = "not asked for" if arguments.no_disk else why_no_disk()
     rows = []
     for case, count, random in zip(cases, counts, np.random.default_rng(arguments.seed).spawn(len(cases)), strict=True):
@@ -81,10 +81,9 @@ def run(arguments: argparse.Namespace) -> int:
     )
 
 
-def shares(moments: int, weights: list[int]) -> list[int]:
-    """So many whole numbers, about as the weights, at least one each; their sum is `moments` where that can be."""
-    ends = np.rint(np.cumsum([0, *weights]) * moments / sum(weights)).astype(int)
-    return [max(1, int(n)) for n in np.diff(ends)]
+def shares(moments: int, n_cases: int) -> list[int]:
+    """So many whole numbers, alike but for one, at least one each; their sum is `moments` where that can be."""
+    return [max(1, int(n)) for n in np.diff(np.arange(n_cases + 1) * moments // n_cases)]
 
 
 WAYS = {"kill": "kill -9", "ctrl_c": "Ctrl-C", "full_disk": "full disk"}

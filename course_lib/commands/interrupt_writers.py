@@ -73,7 +73,7 @@ def made_data(out: Path, which: int) -> None:
     move_products(folder, out, products)
 
 
-def sweep(out: Path, which: int) -> None:
+def sweep_rows(out: Path, which: int) -> None:
     """Rows one by one, then what they say: as `sweep`, `compare`, `demo lost`, `walk`, `finale` do; a run adds rows."""
     from course_lib.experiments.results import write_results
     from course_lib.experiments.sweeps import sweep as run
@@ -122,7 +122,7 @@ WRITERS: dict[str, Callable[[Path, int], None]] = {
         simplified_map,
         checkpoint,
         made_data,
-        sweep,
+        sweep_rows,
         lab_settings,
         working_copies,
         notebook,

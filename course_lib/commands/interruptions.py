@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from course_lib.commands.interrupt_cases import Case
-from course_lib.commands.stopped_runs import COMMAND, Ended, Moment, Runs
+from course_lib.commands.stopped_runs import Ended, Moment, Runs
 from course_lib.commands.whole_outputs import Tree, left_over, put_back, state, tree
 from course_lib.paths import data_path
 
@@ -40,6 +40,8 @@ class Staged:
 
     def __enter__(self) -> Staged:
         with Runs(self.stage) as cold:
+            if self.case.kept:
+                self._undisturbed(cold, 2)
             self.old, ended = self._undisturbed(cold, 1)
         with contextlib.ExitStack() as context:
             self.modules = ended.modules
@@ -108,7 +110,7 @@ def interruptions(staged: Staged, moments: Iterable[Moment]) -> dict:
         counts[found] += 1
         wrong = [f"broken: {sorted(files)}"] * (found == "broken")
         if moment.signal == signal.SIGINT:
-            wrong += [f"left {left}"] * bool(left) + (wrong_end(ended) if staged.case.program == COMMAND else [])
+            wrong += [f"left {left}"] * bool(left) + (wrong_end(ended) if staged.case.is_command else [])
         if left or found in ("between", "broken"):
             staged.run(2)
             still = left_over(staged.stage, staged.out)

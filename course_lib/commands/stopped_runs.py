@@ -47,6 +47,8 @@ def run(stage, program, words, chosen, delay, number, told):
             if event not in {STEPS!r} or (event == "open" and not given[2] & (os.O_WRONLY | os.O_RDWR)):
                 return
             path = os.fsdecode(given[0]) if isinstance(given[0], (str, bytes, os.PathLike)) else ""
+            if event in ("os.remove", "os.rmdir") and given[1] >= 0 and os.path.exists("/proc/self/fd"):
+                path = os.path.join(os.readlink(f"/proc/self/fd/{{given[1]}}"), path)  # of a folder held open
             if os.path.isabs(path) and not path.startswith(stage):
                 return
         steps[0] += 1
@@ -133,14 +135,17 @@ class Ended(NamedTuple):
 class Runs:
     """A process whose forks run programs in the folder `stage`; a context manager.
 
-    modules: names of what is imported once, before the forks. before: words before the interpreter's.
+    modules: names of what is imported once, before the forks. before: words before the interpreter's. What a killed run
+    leaves in the folder for temporary files lies beside `stage`, and goes with it: whoever runs this keeps none of it.
     """
 
     def __init__(self, stage: Path, modules: Sequence[str] = (), before: Sequence[str] = ()) -> None:
         self.stage, self.modules = stage, list(modules)
+        temporary = stage.parent / "tmp"
+        temporary.mkdir(exist_ok=True)
         self._process = start(
             [*before, *python("-c", _FORKING, REPOSITORY)],
-            {"PYTHONPATH": str(REPOSITORY)},
+            {"PYTHONPATH": str(REPOSITORY), "TMPDIR": str(temporary)},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             bufsize=0,  # a line waits in the pipe, where `select` sees it, until it is read

@@ -68,10 +68,23 @@ def _is_of_either(name: str, content: bytes, old: Tree, new: Tree) -> bool:
     if name in old and content == old[name]:
         return True
     if name.endswith(".jsonl"):  # grows by lines; the next run mends the last
-        return content.startswith(old.get(name, b"")) and new.get(name, b"").startswith(content)
+        return content.startswith(old.get(name, b"")) and _begins_as(content, new.get(name, b""))
     if name == ".copies.json":  # tells of both while they change
         return _json(content) is not None
     return name in new and _is_the_new(name, content, old, new)
+
+
+def _begins_as(content: bytes, new: bytes) -> bool:
+    """Whether these are the new's first rows, but for times; a last one without its end is compared up to a time."""
+    *whole, begun = content.split(b"\n")
+    *rows, _ = new.split(b"\n")
+    found = [_json(row) for row in whole]
+    if None in found or found != [_json(row) for row in rows[: len(whole)]]:
+        return False
+    row = rows[len(whole)] if len(whole) < len(rows) else b""
+    times = (key.start() for key in re.finditer(rb'"(\w+)":', row) if _TIMES.search(key[1].decode()))
+    told = row[: next(times, len(row))]
+    return told.startswith(begun) or (told != row and begun.startswith(told))
 
 
 def _is_the_new(name: str, content: bytes, old: Tree, new: Tree) -> bool:
@@ -98,6 +111,13 @@ def _timeless(value: object, key: str = "") -> object:
     return [_timeless(part) for part in value] if isinstance(value, list) else value
 
 
+def _rows(content: bytes) -> object:
+    """Lines of JSON, the last one with its end."""
+    *rows, end = content.split(b"\n")
+    found = [_json(row) for row in rows]
+    return found if rows and not end and None not in found else None
+
+
 def _page(content: bytes) -> object:
     return content.rstrip().endswith(b"</html>") or None
 
@@ -120,6 +140,7 @@ def _picture(content: bytes) -> object:
 
 _KINDS = {
     ".json": _json,
+    ".jsonl": _rows,
     ".ipynb": _json,
     ".html": _page,
     ".csv": _table,

@@ -53,15 +53,16 @@ def corridor_trial(data: str, seed: int) -> dict[str, dict]:
         return trial(str(Path(data) / "map.ply"), str(folder), seed)
 
 
-def summarize(trials: Sequence[dict[str, dict]]) -> dict[str, float]:
-    """The numbers of the table, of some trials."""
-    recovered = [t["kidnapped"]["frames_to_recover"] for t in trials]
+def summarize(trials: Sequence[dict[str, dict]]) -> dict[str, float | None]:
+    """The numbers of the table, of some trials; `frames_to_recover` is None where no camera recovered."""
+    recovered = (one["kidnapped"]["frames_to_recover"] for one in trials)
+    frames_to_recover = [frames for frames in recovered if frames is not None]
     starts = [t["start"] for t in trials]
     found = [s for s in starts if s["status"] == "found"]
     return {
         "trials": len(trials),
-        "kidnapped_recovered": sum(r is not None for r in recovered),
-        "frames_to_recover": float(np.median([r for r in recovered if r is not None] or [np.nan])),
+        "kidnapped_recovered": len(frames_to_recover),
+        "frames_to_recover": float(np.median(frames_to_recover)) if frames_to_recover else None,
         "started_right": sum(s["right"] for s in found),
         "started_wrong": sum(not s["right"] for s in found),
         "started_several": sum(s["status"] == "several" for s in starts),

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from course_lib.cli import main
+from course_lib.cli import COMMANDS, main
 from course_lib.commands.full_disk import full_disks, why_no_disk
 from course_lib.commands.interrupt import shares
 from course_lib.commands.interrupt_cases import CASES, Case
@@ -20,12 +20,13 @@ from course_lib.commands.interruptions import (
 )
 from course_lib.commands.stopped_runs import Moment
 from course_lib.commands.whole_outputs import left_over, state
+from course_lib.paths import data_path
 from course_lib.unfinished import UNFINISHED
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="it forks")
 
 BY_NAME = {case.name: case for case in CASES}
-QUICK = ("made data", "recording", "checkpoint", "sweep", "lab settings", "working copies")
+QUICK = ("made data", "recording", "checkpoint", "sweep rows", "lab settings", "working copies", "bench")
 STEPS = 10  # of each, its first and its last among them
 OLD = {"a.json": b'{"seed": 1, "time_s": 0.1}', "b.csv": b"x\n1\n"}
 NEW = {"a.json": b'{"seed": 2, "time_s": 0.1}', "b.csv": b"x\n2\n"}
@@ -80,8 +81,10 @@ def test_what_is_left_is_seen_wherever_it_lies(tmp_path):
 
 
 def test_moments_are_shared_out_and_drawn_from_the_seed():
-    assert sum(shares(200, [case.share for case in CASES])) == 200
-    assert min(shares(5, [case.share for case in CASES])) == 1
+    assert sum(shares(200, len(CASES))) == 200
+    assert min(shares(200, len(CASES))) >= 6
+    assert max(shares(200, len(CASES))) <= 7, "alike but for one"
+    assert min(shares(5, len(CASES))) == 1
 
     class Timed:
         steps, seconds = 9, 2.0
@@ -143,7 +146,7 @@ def test_a_run_that_fails_undisturbed_or_makes_the_same_twice_tells_nothing(tmp_
 
 
 @pytest.mark.skipif(why_no_disk() is not None, reason=f"no disk can be filled here: {why_no_disk()}")
-@pytest.mark.parametrize("name", ["made data", "sweep", "working copies"])
+@pytest.mark.parametrize("name", ["made data", "sweep rows", "working copies"])
 def test_on_every_size_of_disk_the_old_or_the_new_is_whole_and_the_disk_is_named(name, tmp_path):
     with Staged(BY_NAME[name], tmp_path.resolve()) as staged:
         found = full_disks(staged)
@@ -207,8 +210,6 @@ REFUSED = {
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="a folder that takes no files, root's included")
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_be_written_is_refused_before_the_work(name, capsys, monkeypatch, tmp_path):
-    from course_lib.paths import data_path
-
     data = data_path("corridor").parent
     places = {
         "data": data,
@@ -225,8 +226,6 @@ def test_what_cannot_be_written_is_refused_before_the_work(name, capsys, monkeyp
 def test_every_command_with_an_out_folder_is_among_those_that_refuse():
     import argparse
     from importlib import import_module
-
-    from course_lib.cli import COMMANDS
 
     with_out = []
     for name, (module, _) in COMMANDS.items():
