@@ -58,7 +58,7 @@ except (ImportError, ValueError, OSError):  # no such limit on this system
     pass
 """
 _MEMORY = 77  # exit code: out of memory
-# A library in C++ says in words that memory ran out; the name of a function, such as `getMemoryShapes`, says nothing.
+# A library in C++ says in words that memory ran out; the name of a function, such as `allocateLayers`, says nothing.
 _CALLED = r"""
 import re
 OUT_OF_MEMORY = r"(?i)bad.alloc|insufficient memory|out of memory|not enough memory|(un|not|fail)\w* (to )?(re|m)?alloc"

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from course_lib.child import ChildStopped, run_apart
 from course_lib.fuzzing.onnx_file import model, node
 from course_lib.spherical_stereo.detection import onnx_network
 from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
@@ -115,11 +116,15 @@ def test_a_network_that_fails_on_an_image_is_told_by_name(names, tmp_path, rng):
 
 
 def test_the_name_of_a_function_is_not_taken_for_a_lack_of_memory(names, tmp_path):
-    """OpenCV's error for an input that nobody gives comes from `getMemoryShapes`."""
+    """OpenCV's error for an input that nobody gives comes from `allocateLayers`."""
     width, height = INPUT_SIZE
     path = tmp_path / "two.onnx"
     images = {"image": (1, 3, height, width), "second": (1, 3, height, width)}
-    path.write_bytes(model([node("Add", ["image", "second"], "output")], {}, images, {"output": images["image"]}))
+    nodes = [node("Add", ["image", "second"], "sum"), node("Reshape", ["sum", "flat"], "output")]
+    flat = np.array([1, 3 * width * height])
+    path.write_bytes(model(nodes, {"flat": flat}, images, {"output": (1, 3 * width * height)}))
+    with pytest.raises(ChildStopped, match="allocateLayers"):
+        run_apart(onnx_network._PROBE.format(*INPUT_SIZE), str(path), onnx_network.MEMORY)
     with pytest.raises(DetectorError, match=f"OpenCV cannot run .*two.onnx at an input of {width} x {height}"):
         YoloDetector.from_onnx(path, names, layout="yolov5", input_size=INPUT_SIZE)
 
