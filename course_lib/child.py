@@ -58,13 +58,16 @@ except (ImportError, ValueError, OSError):  # no such limit on this system
     pass
 """
 _MEMORY = 77  # exit code: out of memory
-_CALLED = """
+# A library in C++ says in words that memory ran out; the name of a function, such as `allocateLayers`, says nothing.
+_CALLED = r"""
+import re
+OUT_OF_MEMORY = r"(?i)bad.alloc|insufficient memory|out of memory|not enough memory|(un|not|fail)\w* (to )?(re|m)?alloc"
 try:
     exec(compile(CODE, "reader", "exec"), {"__name__": "__main__"})
 except MemoryError:
     sys.exit(77)
 except BaseException as error:
-    if "alloc" in str(error).lower() or "memory" in str(error).lower():
+    if re.search(OUT_OF_MEMORY, str(error)):
         sys.exit(77)
     print(f"{type(error).__name__}: {error}"[:500], file=sys.stderr)
     sys.exit(78)

@@ -15,6 +15,8 @@ import sys
 import traceback
 import warnings
 
+from course_lib.standard_output import told_output
+
 # Name as typed -> (module of course_lib.commands, one line for the list of commands).
 COMMANDS: dict[str, tuple[str, str]] = {
     "lab": ("lab", "open the lessons in JupyterLab (on this computer only)"),
@@ -97,9 +99,10 @@ def main(words: list[str]) -> int:
         module = importlib.import_module(f"course_lib.commands.{COMMANDS[name][0]}")
         arguments = parse(name, module, rest)
         debug = debug or arguments.debug
-        code = module.run(arguments)
-        sys.stdout.flush()
-        return code
+        with told_output() as output:
+            code = module.run(arguments)
+            output.flush()
+        return max(code, EXIT_BAD_INPUT) if output.failed else code
     except KeyboardInterrupt:
         if debug:
             traceback.print_exc()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 
 from numba import njit
@@ -11,13 +12,27 @@ def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]
     """Decorator: Numba compiles the function at its first call; threads run it side by side (without Python's lock).
 
     fastmath: what the compiler may take liberties with, all of it or LLVM's flags. Compiled code is kept beside the
-    source or in the user's cache; where neither can be written, every process compiles for itself.
+    source or in the user's cache; where neither can be written, every process compiles for itself. So it does where
+    the disk is full, and where what was kept is damaged: neither is a reason to stop in the middle of a filter's run.
     """
 
     def decorate(function: Callable) -> Callable:
         try:
-            return njit(nogil=True, fastmath=fastmath, cache=True)(function)
+            fast = njit(nogil=True, fastmath=fastmath, cache=True)(function)
+            fast._cache.load_overload = _or_none(fast._cache.load_overload)
+            fast._cache.save_overload = _or_none(fast._cache.save_overload)
+            return fast
         except RuntimeError:  # Numba's, where it has no place to keep code in
             return njit(nogil=True, fastmath=fastmath)(function)
 
     return decorate
+
+
+def _or_none(step: Callable) -> Callable:
+    """A step of Numba's cache; None, as where nothing is kept, when it fails in whatever way a damaged pickle can."""
+
+    def tried(*arguments: object) -> object:
+        with contextlib.suppress(Exception):
+            return step(*arguments)
+
+    return tried

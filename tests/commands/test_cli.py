@@ -1,6 +1,7 @@
 """The command line: which command is meant, what is imported for it, and one line for every error."""
 
 import argparse
+import os
 import subprocess
 import sys
 import types
@@ -121,6 +122,45 @@ def test_a_reader_that_leaves_early_causes_no_complaint():
     process.stderr.close()
     process.wait(timeout=1800)
     assert errors == ""
+
+
+A_COMMAND_THAT_PRINTS_AND_WRITES = """
+import pathlib, subprocess, sys, types
+from course_lib import cli
+def run(arguments):
+    print("a row of the table", flush=True)
+    with open(sys.argv[1], "w") as file:
+        subprocess.run(["echo", "a child's words"], check=True)
+        file.write("the results")
+    print("written", flush=True)
+    return 0
+module = types.SimpleNamespace(run=run, add_arguments=lambda parser: None, __doc__="Try it.")
+cli.COMMANDS["try it"] = ("try_it", "a try")
+sys.modules["course_lib.commands.try_it"] = module
+sys.exit(cli.main(["try", "it"]))
+"""
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a device of Linux")
+def test_a_full_disk_behind_standard_output_is_told_and_the_results_are_kept(tmp_path):
+    results = tmp_path / "results"
+    command = [sys.executable, "-c", A_COMMAND_THAT_PRINTS_AND_WRITES, str(results)]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert results.read_text() == "the results"
+    assert done.returncode == 2
+    assert done.stderr.count("cannot be written to standard output: No space left on device") == 1
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a shell of POSIX")
+def test_a_standard_output_that_was_closed_takes_nothing_and_spoils_no_file(tmp_path):
+    """Without one, the first file that is opened has its number, and what a child prints lands in that file."""
+    results = tmp_path / "results"
+    command = ["sh", "-c", 'exec "$@" >&-', "sh", sys.executable, "-c", A_COMMAND_THAT_PRINTS_AND_WRITES, str(results)]
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert results.read_text() == "the results"
 
 
 def test_descriptions_come_from_the_command_modules_docstring(command):

@@ -1,4 +1,8 @@
-"""Compiled loops where there is no place to keep compiled code: read-only installations, users without a home."""
+"""Compiled loops where there is no place to keep compiled code: read-only installations, users without a home, a full
+disk; and where what was kept is damaged."""
+
+import subprocess
+import sys
 
 import numba
 import pytest
@@ -34,3 +38,39 @@ def test_compiled_code_is_kept_where_it_can_be(tmp_path, monkeypatch):
     exec(compile(TWICE, str(path), "exec"), names)
     assert compiled()(names["twice"])(21) == 42
     assert list(tmp_path.rglob("*.nbc"))
+
+
+ON_A_DISK_THAT_TAKES_NOTHING = """
+import resource, sys
+from course_lib.depth_mcl.compiled import compiled
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+names = {"__name__": "twice"}
+exec(compile(open(sys.argv[1]).read(), sys.argv[1], "exec"), names)
+print(compiled()(names["twice"])(21))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a limit of POSIX")
+def test_on_a_disk_that_takes_nothing_it_runs_all_the_same(tmp_path):
+    path = tmp_path / "twice.py"
+    path.write_text(TWICE)
+    command = [sys.executable, "-c", ON_A_DISK_THAT_TAKES_NOTHING, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.stdout == "42\n", done.stderr
+    assert not [left for left in tmp_path.rglob("*.nb*") if left.stat().st_size]
+
+
+@pytest.mark.parametrize("damage", [b"", b"no pickle"])
+def test_kept_code_that_is_damaged_is_compiled_anew(tmp_path, monkeypatch, damage):
+    """As a disk that lost its power leaves a file: with its name, and without what was in it."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    path = tmp_path / "twice.py"
+    path.write_text(TWICE)
+    for _ in range(2):
+        names = {"__name__": "twice"}
+        exec(compile(TWICE, str(path), "exec"), names)
+        assert compiled()(names["twice"])(21) == 42
+        kept = [*tmp_path.rglob("*.nbc"), *tmp_path.rglob("*.nbi")]
+        assert kept
+        for file in kept:
+            file.write_bytes(damage)

@@ -16,6 +16,9 @@ from course_lib.depth_mcl.rendering.renderer import OpenGLError
 if sys.platform.startswith("linux"):
     # Before VTK is imported for the first time: no display is needed. An empty value would crash VTK.
     os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW") or "vtkEGLRenderWindow"
+    # Mesa keeps its compiled shaders in a file that it maps into memory: where the disk of the user's cache is full, it
+    # ends the process (SIGBUS). Without it the first image takes as long as before.
+    os.environ.setdefault("MESA_SHADER_CACHE_DISABLE", "true")
 
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - registers the OpenGL classes behind the name below
 from vtkmodules.vtkRenderingCore import vtkRenderWindow

@@ -25,6 +25,8 @@ def bootstrap_median(values: np.ndarray) -> tuple[float, float]:
 
 
 def median_text(values: np.ndarray, digits: int = 3, unit: str = "m") -> str:
-    """The median of `values` with its interval, such as "0.041 m (0.032 to 0.058)"."""
+    """The median of `values` with its interval, such as "0.041 m (0.032 to 0.058)"; fewer than two have none."""
+    if len(values) < 2:
+        return f"{values[0]:.{digits}f} {unit} (one value)" if len(values) else "no number (of no values)"
     low, high = bootstrap_median(values)
     return f"{np.median(values):.{digits}f} {unit} ({low:.{digits}f} to {high:.{digits}f})"

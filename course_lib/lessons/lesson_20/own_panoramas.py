@@ -13,6 +13,7 @@ from course_lib.experiments.room import exact_detections
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import draw_box, panorama
+from course_lib.reading import is_given
 from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
 from course_lib.spherical_stereo.matching.feature_matching import FeatureMatches
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair, read_panorama
@@ -32,6 +33,10 @@ class MissingPanoramaError(FileNotFoundError):
 
 class MissingBaselineError(ValueError):
     """A pair of panoramas of which nobody said how far apart its cameras stood."""
+
+
+class AmbiguousFileError(ValueError):
+    """A folder with two files of which one must be meant."""
 
 
 class PanoramaPair(NamedTuple):
@@ -66,7 +71,7 @@ def panorama_pair(
     """The reader's pair: upper and lower image, and where they are there, boxes.json and map.json or map.csv.
 
     folder: None for the course's stand-in. baseline: metres between the cameras. boxes: a boxes file elsewhere.
-    Raises `MissingPanoramaError`, `MissingBaselineError`, and what reading the files raises.
+    Raises `MissingPanoramaError`, `MissingBaselineError`, `AmbiguousFileError`, and what reading the files raises.
     """
     if folder is None:
         return _stand_in()
@@ -75,19 +80,29 @@ def panorama_pair(
     open_pair(upper, lower)
     if baseline is None:
         raise MissingBaselineError(f"how many metres is the upper camera of {folder.name} above the lower one?")
-    boxes = Path(boxes) if boxes is not None else folder / "boxes.json"
-    views = read_stereo_boxes(boxes).on(upper, lower) if boxes.is_file() else ()
+    if boxes is None and is_given(folder / "boxes.json"):
+        boxes = folder / "boxes.json"
+    views = read_stereo_boxes(boxes).on(upper, lower) if boxes is not None else ()
     detections = [view.detections for view in views] or ([], [])
-    maps = [folder / name for name in MAP_FILES if (folder / name).is_file()]
-    semantic_map = SemanticMap.load(maps[0]) if maps else None
+    path = _only_one(folder, MAP_FILES)
+    semantic_map = SemanticMap.load(path) if path else None
     return PanoramaPair(folder.name, upper, lower, StereoRig(baseline), *detections, semantic_map, None)
 
 
 def _image(folder: Path, side: str) -> Path:
-    for ending in IMAGE_ENDINGS:
-        if (folder / f"{side}{ending}").is_file():
-            return folder / f"{side}{ending}"
-    raise MissingPanoramaError(f"no {side} panorama in {folder}: name it {side}.png or {side}.jpg")
+    path = _only_one(folder, [f"{side}{ending}" for ending in IMAGE_ENDINGS])
+    if path is None:
+        raise MissingPanoramaError(f"no {side} panorama in {folder}: name it {side}.png or {side}.jpg")
+    return path
+
+
+def _only_one(folder: Path, names: Sequence[str]) -> Path | None:
+    """The file of one of these names; None for none. Raises `AmbiguousFileError` for two."""
+    found = [folder / name for name in names if is_given(folder / name)]
+    if len(found) > 1:
+        told = " and ".join(path.name for path in found)
+        raise AmbiguousFileError(f"{folder} has {told}, and one of them is read: leave that one there")
+    return found[0] if found else None
 
 
 def _stand_in() -> PanoramaPair:

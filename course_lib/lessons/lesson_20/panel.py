@@ -18,13 +18,14 @@ def reading_panel(given: Recording | None = None) -> Panel:
     live = LiveFigure(figure, drawn)
 
     def draw(reading: str, frame: float, shift: float) -> Drawing:
-        compared = checker(int(frame), reading, shift)
+        frame = min(int(frame), last)  # of a single frame too the slider has two ends
+        compared = checker(frame, reading, shift)
         for image, values in zip(drawn, (compared.measured, compared.seen, compared.difference), strict=True):
             image.set_data(np.ma.masked_invalid(values))
         numbers = f"{compared.hits:.0%} of the measured pixels hit the map"
         if np.isfinite(compared.median):
             numbers = f"median |z - z_map| = {compared.median:.3f} m;  {numbers}"
-        alt = f"Frame {int(frame)}, read with {reading}: the measured depth, the map, and their difference. {numbers}."
+        alt = f"Frame {frame}, read with {reading}: the measured depth, the map, and their difference. {numbers}."
         return Drawing(live.png(), alt, f"{reading}, camera moved by {shift:.2f} m\n{numbers}")
 
     controls = [

@@ -22,10 +22,11 @@ from course_lib.spherical_stereo.detection.darknet import (
     read_cfg,
     render_cfg,
 )
+from course_lib.spherical_stereo.detection.shared_network import SharedNetwork
 
 
-class DarknetNetwork:
-    """A loaded network. `infer` takes one blob at a time, from one thread."""
+class DarknetNetwork(SharedNetwork):
+    """A loaded network. Threads may share it, and processes."""
 
     def __init__(self, cfg: str | Path, weights: str | Path, size: tuple[int, int] | None = None) -> None:
         """Check and load a network.
@@ -42,18 +43,14 @@ class DarknetNetwork:
             expected_weight_floats(sections)
         except DetectorError as error:
             raise DetectorError(f"cfg file {cfg}: {error}") from None
-        check_weights(cfg, weights)
-        require_finite_weights(weights)
         self.input_size: tuple[int, int] = given if size is None else (int(size[0]), int(size[1]))
+        self._cfg, self._weights = Path(cfg).absolute(), Path(weights).absolute()
         self._told = f"{cfg} with {weights}"
-        text = render_cfg(for_opencv(sections, self.input_size))
+        self._text = render_cfg(for_opencv(sections, self.input_size))
         try:
-            self._net = cv2.dnn.readNetFromDarknet(
-                np.frombuffer(text.encode(), dtype=np.uint8), np.fromfile(weights, dtype=np.uint8)
-            )
-            self._outputs = self._net.getUnconnectedOutLayersNames()
+            super().__init__()
             # One run now: sizes that do not fit are found here, and the first image is as fast as the second.
-            self.infer(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
+            self._decoded(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
         except cv2.error as error:
             width, height = self.input_size
             raise DetectorError(
@@ -61,15 +58,28 @@ class DarknetNetwork:
                 "Width and height must be multiples of the network's stride (32 for YOLOv4)"
             ) from error
 
+    def _opened(self) -> cv2.dnn.Net:
+        check_weights(self._cfg, self._weights)
+        require_finite_weights(self._weights)
+        return cv2.dnn.readNetFromDarknet(
+            np.frombuffer(self._text.encode(), dtype=np.uint8), np.fromfile(self._weights, dtype=np.uint8)
+        )
+
     def infer(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Boxes (n, 4) in edge coordinates of the input and scores (n, classes) for a blob (1, 3, H, W), RGB, 0 to 1.
 
         OpenCV's rows are cx, cy, w, h as shares of the input, objectness, and the classes' scores, which are already
         multiplied by the objectness. Nothing is thresholded or suppressed. Raises DetectorError for results that are
-        NaN, or of a layer that detects nothing. Source: paper 2, section 2.2.
+        NaN, or of a layer that detects nothing, and where OpenCV fails. Source: paper 2, section 2.2.
         """
-        self._net.setInput(blob)
-        outputs = self._net.forward(self._outputs)
+        try:
+            return self._decoded(blob)
+        except cv2.error as error:
+            raise DetectorError(f"OpenCV cannot run {self._told} on this image: {error.err}") from error
+
+    def _decoded(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """`infer`, with OpenCV's errors as they are."""
+        outputs = self._results(blob)
         for output in outputs:
             if output.shape[1:] != (5 + self.n_classes,):  # what no later layer takes is an output to OpenCV
                 raise DetectorError(

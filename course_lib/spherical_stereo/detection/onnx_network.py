@@ -19,6 +19,7 @@ from course_lib.child import ChildError, ChildStopped, run_apart
 from course_lib.reading import MEGABYTE, require_file
 from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
 from course_lib.spherical_stereo.detection.darknet_network import require_numbers
+from course_lib.spherical_stereo.detection.shared_network import SharedNetwork
 
 MEMORY = 1_500 * MEGABYTE
 """What a small network may take, of which most is for its intermediate results."""
@@ -65,8 +66,9 @@ import sys
 import cv2
 import numpy as np
 net = cv2.dnn.readNetFromONNX(sys.argv[1])
-net.setInput(np.zeros((1, 3, {1}, {0}), np.float32))
-net.forward(net.getUnconnectedOutLayersNames())
+for image in (np.zeros((1, 3, {1}, {0}), np.float32), np.linspace(0, 1, 3 * {1} * {0}, dtype=np.float32)):
+    net.setInput(image.reshape(1, 3, {1}, {0}))  # a black image and a ramp: an index may be made of what is seen
+    net.forward(net.getUnconnectedOutLayersNames())
 """
 
 
@@ -82,8 +84,8 @@ def _require_no_crash(path: Path, input_size: tuple[int, int]) -> None:
         ) from None
 
 
-class OnnxNetwork:
-    """A loaded network. `infer` takes one blob at a time, from one thread."""
+class OnnxNetwork(SharedNetwork):
+    """A loaded network. Threads may share it, and processes."""
 
     def __init__(self, path: str | Path, layout: str, n_classes: int, input_size: tuple[int, int]) -> None:
         """Load a network and run it once, so that what does not fit is found now.
@@ -98,13 +100,10 @@ class OnnxNetwork:
         self.n_classes = n_classes
         self._layout = layout
         self._told = str(path)
+        self._path = path.absolute()
+        super().__init__()
         try:
-            self._net = cv2.dnn.readNetFromONNX(str(path))
-        except cv2.error as error:
-            raise DetectorError(f"OpenCV cannot read {path} as an ONNX network: {error.err}") from error
-        self._outputs = self._net.getUnconnectedOutLayersNames()
-        try:
-            self.infer(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
+            self._decoded(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
         except cv2.error as error:
             width, height = self.input_size
             raise DetectorError(
@@ -112,13 +111,26 @@ class OnnxNetwork:
                 "Give the input_size (width, height) that the file was exported for"
             ) from error
 
+    def _opened(self) -> cv2.dnn.Net:
+        require_file(self._path, "ONNX file", DetectorError)
+        try:
+            return cv2.dnn.readNetFromONNX(str(self._path))
+        except cv2.error as error:
+            raise DetectorError(f"OpenCV cannot read {self._told} as an ONNX network: {error.err}") from error
+
     def infer(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Boxes (n, 4) in edge coordinates of the input, scores (n, classes), for a blob (1, 3, H, W), RGB, 0 to 1.
 
-        Raises DetectorError for results that are NaN, or that do not fit the layout.
+        Raises DetectorError for results that are NaN, or that do not fit the layout, and where OpenCV fails: what a
+        file does with an image may depend on the image.
         """
-        self._net.setInput(blob)
-        outputs = [np.asarray(output) for output in self._net.forward(self._outputs)]
-        boxes, scores = decode_onnx(outputs, self._layout, self.n_classes, self.input_size)
+        try:
+            return self._decoded(blob)
+        except cv2.error as error:
+            raise DetectorError(f"OpenCV cannot run {self._told} on this image: {error.err}") from error
+
+    def _decoded(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """`infer`, with OpenCV's errors as they are."""
+        boxes, scores = decode_onnx(self._results(blob), self._layout, self.n_classes, self.input_size)
         require_numbers(boxes, scores, self._told)
         return boxes, scores

@@ -28,6 +28,12 @@ def test_it_is_said_with_its_unit():
     assert median_text([1.0, 1.0], digits=1, unit="degrees") == "1.0 degrees (1.0 to 1.0)"
 
 
+def test_the_text_of_too_few_values_says_so():
+    """As a lesson prints them of a reader's recording with a single frame, or of panoramas without boxes."""
+    assert median_text([0.04]) == "0.040 m (one value)"
+    assert median_text(np.array([])) == "no number (of no values)"
+
+
 def test_one_value_has_no_interval():
     with pytest.raises(ValueError, match="at least two"):
         bootstrap_median([0.3])

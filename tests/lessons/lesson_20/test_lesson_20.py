@@ -14,6 +14,7 @@ from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.lessons.lesson_20.exercises import baseline_needed
 from course_lib.lessons.lesson_20.own_panoramas import (
+    AmbiguousFileError,
     MissingBaselineError,
     MissingPanoramaError,
     distances_table,
@@ -21,6 +22,7 @@ from course_lib.lessons.lesson_20.own_panoramas import (
     measured_objects,
     panorama_pair,
 )
+from course_lib.lessons.lesson_20.panel import reading_panel
 from course_lib.lessons.lesson_20.readings import (
     READINGS,
     Checker,
@@ -32,6 +34,7 @@ from course_lib.lessons.lesson_20.readings import (
     recording,
 )
 from course_lib.paths import REPOSITORY
+from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.object_matching import match_objects
 from course_lib.spherical_stereo.panorama import StereoRig
@@ -111,6 +114,26 @@ def test_a_recording_of_few_frames_is_misread_as_far_as_it_goes(stand_in):
     assert len(run.frames) == len(short.sequence)
 
 
+def test_the_lesson_runs_on_a_recording_of_one_frame(stand_in, tmp_path, monkeypatch):
+    """Its cells up to the filter's picture, as a reader runs them who tries a single depth image first."""
+    monkeypatch.chdir(tmp_path)
+    sequence = stand_in.sequence
+    depths = [sequence.depth(0)]
+    write_sequence(tmp_path / "mine", sequence.intrinsics, [0], depths, sequence.camera_to_world[:1], up="z")
+    shutil.copy(REPOSITORY / "data" / "corridor" / "planar_map.ply", tmp_path / "mine" / "map.ply")
+    run = ["20-imports", "20-mine", "20-look", "20-check-picture", "20-read-depth", "20-read-pose", "20-read-points"]
+    run += ["20-readings", "20-filter", "20-filter-picture"]
+    notebook = nbformat.read(REPOSITORY / "notebooks" / "20_your_own_data.ipynb", as_version=4)
+    source = {cell.id: cell.source for cell in notebook.cells}
+    names: dict = {}
+    for cell in run:
+        exec(source[cell], names)
+        names |= {"MY_SEQUENCE": str(tmp_path / "mine")} if cell == "20-mine" else {}
+    assert len(names["found"].frames) == len(names["sequence"]) == 1
+    panel = reading_panel(names["mine"])
+    assert panel.draw(**panel.defaults() | {"frame": panel.controls["frame"].greatest}).alt.startswith("Frame 0,")
+
+
 def test_a_folder_that_is_not_there_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match="nowhere"):
         recording(tmp_path / "nowhere")
@@ -145,6 +168,25 @@ def test_a_readers_pair_is_read_and_what_is_missing_is_named(pair, tmp_path):
     assert np.array_equal(mine.lower, pair.lower)
     pair.semantic_map.save(tmp_path / "map.csv")
     assert len(panorama_pair(tmp_path, 0.25).semantic_map) == len(pair.semantic_map)
+
+
+def test_files_that_are_named_or_doubled_are_not_passed_over(pair, tmp_path):
+    """Else a slip in the name of the boxes gave no boxes, and one of two maps was taken without a word."""
+    cv2.imwrite(str(tmp_path / "upper.png"), pair.upper)
+    cv2.imwrite(str(tmp_path / "lower.png"), pair.lower)
+    with pytest.raises(DetectionError, match=r"bocks\.json is missing"):
+        panorama_pair(tmp_path, 0.25, tmp_path / "bocks.json")
+    (tmp_path / "boxes.json").symlink_to(tmp_path / "nowhere")
+    with pytest.raises(DetectionError, match=r"boxes\.json is missing"):
+        panorama_pair(tmp_path, 0.25)
+    (tmp_path / "boxes.json").unlink()
+    for name in ("map.json", "map.csv"):
+        pair.semantic_map.save(tmp_path / name)
+    with pytest.raises(AmbiguousFileError, match=r"map\.json and map\.csv"):
+        panorama_pair(tmp_path, 0.25)
+    shutil.copy(tmp_path / "upper.png", tmp_path / "upper.jpg")
+    with pytest.raises(AmbiguousFileError, match=r"upper\.png and upper\.jpg"):
+        panorama_pair(tmp_path, 0.25)
 
 
 def test_a_wrong_baseline_shows_in_the_residuals_and_nowhere_else(pair):

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from course_lib.child import ChildStopped, run_apart
+from course_lib.fuzzing.onnx_file import model, node
 from course_lib.spherical_stereo.detection import onnx_network
 from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -84,6 +86,47 @@ def test_a_file_that_ends_opencvs_reader_is_an_error_with_a_name(names, tmp_path
     path.write_bytes(blob_onnx("yolov8"))
     with pytest.raises(DetectorError, match=r"blobs\.onnx cannot be used: reading and running it crashes \(SIGABRT\)"):
         YoloDetector.from_onnx(path, names, layout="yolov8", input_size=INPUT_SIZE)
+
+
+def onnx_of_an_index_made_of_the_image(times: float) -> bytes:
+    """A network that takes its boxes from where the image's brightness says: at 0 for a black one."""
+    width, height = INPUT_SIZE
+    every = 3 * width * height
+    constants = {"flat": np.array([1, every]), "times": np.array([times]), "first": np.array([0])}
+    constants |= {"last": np.array([70]), "axis": np.array([1]), "shape": np.array([1, 10, 7])}
+    nodes = [
+        node("Reshape", ["image", "flat"], "values"),
+        node("Mul", ["values", "times"], "places"),
+        node("Cast", ["places"], "index", to=7),
+        node("Gather", ["values", "index"], "gathered", axis=1),
+        node("Reshape", ["gathered", "flat"], "row"),
+        node("Slice", ["row", "first", "last", "axis"], "cut"),
+        node("Reshape", ["cut", "shape"], "output"),
+    ]
+    return model(nodes, constants, {"image": (1, 3, height, width)}, {"output": (1, 10, 7)})
+
+
+def test_a_network_that_fails_on_an_image_is_told_by_name(names, tmp_path, rng):
+    """It runs on a black image, as the trial does, and not on one whose brightness leads it out of its numbers."""
+    path = tmp_path / "wild.onnx"
+    path.write_bytes(onnx_of_an_index_made_of_the_image(1e9))
+    detector = YoloDetector.from_onnx(path, names, layout="yolov5", input_size=INPUT_SIZE)
+    with pytest.raises(DetectorError, match=r"OpenCV cannot run .*wild\.onnx on this image"):
+        detector.detect(panorama(rng))
+
+
+def test_the_name_of_a_function_is_not_taken_for_a_lack_of_memory(names, tmp_path):
+    """OpenCV's error for an input that nobody gives comes from `allocateLayers`."""
+    width, height = INPUT_SIZE
+    path = tmp_path / "two.onnx"
+    images = {"image": (1, 3, height, width), "second": (1, 3, height, width)}
+    nodes = [node("Add", ["image", "second"], "sum"), node("Reshape", ["sum", "flat"], "output")]
+    flat = np.array([1, 3 * width * height])
+    path.write_bytes(model(nodes, {"flat": flat}, images, {"output": (1, 3 * width * height)}))
+    with pytest.raises(ChildStopped, match="allocateLayers"):
+        run_apart(onnx_network._PROBE.format(*INPUT_SIZE), str(path), onnx_network.MEMORY)
+    with pytest.raises(DetectorError, match=f"OpenCV cannot run .*two.onnx at an input of {width} x {height}"):
+        YoloDetector.from_onnx(path, names, layout="yolov5", input_size=INPUT_SIZE)
 
 
 def test_results_that_are_no_numbers_are_refused(names, tmp_path):
