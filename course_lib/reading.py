@@ -199,8 +199,8 @@ def read_image(
         raise error(f"{what} {path} {taken}; at most {MOST_IMAGE / MEGABYTE:,.0f} MB are read")
     if header.frames > 1:
         raise error(f"{what} {path} is animated ({header.frames} frames); one picture is expected")
-    if header.kind == "PNG" and (fault := _chunk_fault(data)):
-        raise error(f"{what} {path} cannot be read as a PNG: {fault}: is it complete?")
+    if fault := (_chunk_fault if header.kind == "PNG" else _segment_fault)(data):
+        raise error(f"{what} {path} cannot be read as a {header.kind}: {fault}: is it complete?")
     try:
         image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error as reason:
@@ -224,6 +224,20 @@ def _chunk_fault(data: bytes) -> str | None:
             return None
         at += 12 + length
     return "it has no end"
+
+
+def _segment_fault(data: bytes) -> str | None:
+    """Why a JPEG is not whole: OpenCV fills in whatever its scan lacks, where the end of the image is missing.
+
+    Source: ITU-T T.81, section B.1.1 (segments), B.2.1 (a scan, then the end-of-image marker).
+    """
+    at = 2
+    while data[at : at + 1] == b"\xff":
+        marker = data[at + 1 : at + 2]
+        if marker == b"\xda":  # from here on, the end's marker stands nowhere else: 0xFF of the data is followed by 0
+            return None if data.find(b"\xff\xd9", at) > 0 else "it has no end"
+        at += 1 if marker == b"\xff" else 2 + int.from_bytes(data[at + 2 : at + 4], "big")
+    return f"a segment is expected at byte {at}, where the file {'ends' if at >= len(data) else 'has something else'}"
 
 
 def image_header(data: bytes) -> ImageHeader | None:

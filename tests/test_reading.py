@@ -151,6 +151,29 @@ def test_a_progressive_jpeg_with_a_comment_has_its_size():
     assert image_header(commented) == ("JPEG", 60, 30, 1, 3)
 
 
+@pytest.mark.parametrize("progressive", [0, 1])
+def test_a_jpeg_without_its_end_is_not_complete(tmp_path, rng, progressive):
+    """OpenCV fills in what is missing, without a word."""
+    image = rng.integers(0, 255, (40, 60, 3), dtype=np.uint8)
+    data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_PROGRESSIVE, progressive])[1].tobytes()
+    thumbnail = b"\xff\xe1" + struct.pack(">H", 8) + b"\xff\xda\xff\xd9\xff\xd9"
+    whole = data[:2] + thumbnail + data[2:]
+    (tmp_path / "a.jpg").write_bytes(whole + b"what a phone appends \xff\xda")
+    assert read_image(tmp_path / "a.jpg", "image", AskedError).shape == image.shape
+    for damaged, said in (
+        (whole[:-1] + b"\xf6", "it has no end"),
+        (whole[:-2], "it has no end"),
+        (whole[: whole.rindex(b"\xff\xc4")], "a segment is expected at byte|it has no end"),
+        (
+            whole.replace(b"\xff\xc4", b"\x00\xc4", 1),
+            "a segment is expected at byte .*, where the file has something else",
+        ),
+    ):
+        (tmp_path / "a.jpg").write_bytes(damaged)
+        with pytest.raises(AskedError, match=f"image .*a.jpg cannot be read as a JPEG: ({said}).*: is it complete"):
+            read_image(tmp_path / "a.jpg", "image", AskedError)
+
+
 def test_json_of_nothing_but_open_strings_is_read_in_one_go(tmp_path):
     """Each quotation mark once began a search to the end: minutes for 200 kB."""
     path = tmp_path / "a.json"

@@ -46,7 +46,8 @@ def heading() -> str:
 def rows(backend: str, told: dict) -> str:
     """Memory (MB) before the first call, settled, the greatest from then on, at the end; calls of another image.
 
-    Settled: after a tenth of the calls, 20 at least.
+    Settled: after a tenth of the calls, 20 at least. Grew: from the least of the first quarter since then to the least
+    of the last.
     """
     if "missing" in told:
         return f"{backend:42}  not here: {told['missing'][:90]}"

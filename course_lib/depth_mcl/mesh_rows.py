@@ -13,12 +13,19 @@ _NUMBER = rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf|infinity)
 _NUMBERS = re.compile(rb"\s*(?:(?:%b)(?:\s+|$))*" % _NUMBER, re.I)
 _CORNER = re.compile(rb"-?\d+(?:/-?\d*){0,2}")
 
+_PLY_FORMATS = [[kind, b"1.0"] for kind in (b"ascii", b"binary_little_endian", b"binary_big_endian")]
+_PLY_WORDS = (b"format", b"comment", b"obj_info", b"element", b"property")
+
 
 def row_fault(data: bytes, kind: str) -> str | None:
     """What is wrong with the first bad row, "line 7: ...", or None. kind: "ply", "off", "obj", "stl". Of a binary
     file only the header is looked at."""
     faults = {"ply": _ply, "off": _off, "obj": _obj, "stl": _stl}.get(kind)
     return next(faults(data), None) if faults else None
+
+
+def _shown(words: list[bytes]) -> str:
+    return repr(b" ".join(words)[:60].decode("ascii", "replace"))
 
 
 def _fields(line: bytes) -> list[bytes] | None:
@@ -40,6 +47,11 @@ def _ply(data: bytes) -> Iterator[str]:
     header, _, body = data.partition(b"end_header")
     names: list[bytes] = []
     for number, words in enumerate((line.split() for line in header.splitlines()), start=1):
+        # trimesh takes the second line for the format, whatever its first word, and passes over words it does not know.
+        if (words[:1] == [b"format"]) != (number == 2) or (number == 2 and words[1:] not in _PLY_FORMATS):
+            yield f"line {number}: 'format ascii 1.0', or binary, is expected on line 2; found {_shown(words)}"
+        if number > 1 and words and words[0] not in _PLY_WORDS:
+            yield f"line {number}: element, property or comment is expected; found {_shown(words)}"
         if words[:1] == [b"element"]:
             names = []
         elif words[:1] == [b"property"]:

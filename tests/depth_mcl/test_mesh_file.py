@@ -169,6 +169,16 @@ ASCII_STL = exported("stl_ascii")
         (QUADS, "ply", b"\n1 1 0\n", b"\n1 1 0 7\n", "line 13, vertex: 3 numbers are expected"),
         (QUADS, "ply", b"\n1 1 0\n", b"\n1 1,5 0\n", "line 13, vertex: 3 numbers are expected"),
         (BINARY_PLY, "ply", b"property float y", b"property float x", "line 6: the element has two properties x"),
+        (
+            QUADS,
+            "ply",
+            b"format",
+            b"fkrmat",
+            "line 2: 'format ascii 1.0', or binary, is expected on line 2; found 'fkrmat",
+        ),
+        (QUADS, "ply", b"ascii 1.0", b"ascii 1.5", "line 2: 'format ascii 1.0', or binary, is expected on line 2"),
+        (QUADS, "ply", b"element vertex", b"format ascii 1.0\nelement vertex", "line 3: 'format ascii 1.0', or binary"),
+        (BINARY_PLY, "ply", b"property float z", b"property float z\nprpperty float w", "line 8: element, property or"),
         (OFF, "off", b"OFF", b"<html>OFF", "line 1: OFF is expected; found b'<html>OFF'"),
         (OFF, "off", b"\n3 ", b"\n0 ", "line 11: a face is its number of corners"),
         (OFF, "off", b"\n3 ", b"\n9 ", "line 11: a face of 9 corners has 3 more numbers"),
@@ -199,6 +209,7 @@ def test_a_row_that_is_not_whole_is_named_with_its_line(tmp_path, data, kind, ol
         (OFF.replace(b"\n3 ", b"\n\n3 ", 1), "off"),
         (ASCII_STL.replace(b"\nfacet", b"\n  FACET", 1), "stl"),
         (ASCII_PLY, "ply"),
+        (BINARY_PLY.replace(b"element face", b"comment of a room\nobj_info 12\nelement face"), "ply"),
     ],
 )
 def test_comments_colours_and_blank_lines_are_no_faults(tmp_path, data, kind):
