@@ -2,7 +2,7 @@
 
 from course_lib.lessons.lesson_20.alternative_texts import ALT
 from course_lib.lessons.lesson_20.figures import check_figure, track_figure
-from course_lib.lessons.lesson_20.own_panoramas import disparity_picture, panorama_pair
+from course_lib.lessons.lesson_20.own_panoramas import disparity_picture, near_features, panorama_pair
 from course_lib.lessons.lesson_20.panel import PANELS, reading_panel
 from course_lib.lessons.lesson_20.readings import (
     Checker,
@@ -20,6 +20,7 @@ __all__ = [
     "compare_readings",
     "disparity_picture",
     "misread_run",
+    "near_features",
     "panorama_pair",
     "reading_panel",
     "readings_table",

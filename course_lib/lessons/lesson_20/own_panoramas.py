@@ -22,6 +22,8 @@ from course_lib.spherical_stereo.ranging.object_places import MeasuredObject, me
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 STAND_IN_PAIR = 3  # of the room's experiment 1: most objects in view (chosen)
+NEAR = 0.02
+"""Radians of vertical disparity: nearer than fifty baselines, so that a row more or less is not everything (chosen)."""
 IMAGE_ENDINGS = (".png", ".jpg", ".jpeg")
 MAP_FILES = ("map.json", "map.csv")
 _DRAWN_SHARE = (0.2, 0.85)  # of the image's height: neither ceiling nor tripod
@@ -37,6 +39,10 @@ class MissingBaselineError(ValueError):
 
 class AmbiguousFileError(ValueError):
     """A folder with two files of which one must be meant."""
+
+
+class NoNearFeatureError(ValueError):
+    """A pair of panoramas in which no matched feature is near enough to measure its distance."""
 
 
 class PanoramaPair(NamedTuple):
@@ -87,6 +93,18 @@ def panorama_pair(
     path = _only_one(folder, MAP_FILES)
     semantic_map = SemanticMap.load(path) if path else None
     return PanoramaPair(folder.name, upper, lower, StereoRig(baseline), *detections, semantic_map, None)
+
+
+def near_features(features: FeatureMatches) -> np.ndarray:
+    """Indices of the matched features whose vertical disparity is above `NEAR`. Raises `NoNearFeatureError`."""
+    found = np.flatnonzero(features.epipolar & (features.vertical_disparity > NEAR))
+    if found.size == 0:
+        kept = int(np.sum(features.epipolar))
+        raise NoNearFeatureError(
+            f"{len(features)} features of the two panoramas match, {kept} of them within their column, none of them "
+            f"nearer than {1 / NEAR:.0f} baselines: are both images sharp, upright, of one place, moment and rig?"
+        )
+    return found
 
 
 def _image(folder: Path, side: str) -> Path:

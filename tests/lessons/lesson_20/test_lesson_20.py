@@ -17,9 +17,11 @@ from course_lib.lessons.lesson_20.own_panoramas import (
     AmbiguousFileError,
     MissingBaselineError,
     MissingPanoramaError,
+    NoNearFeatureError,
     distances_table,
     fit_text,
     measured_objects,
+    near_features,
     panorama_pair,
 )
 from course_lib.lessons.lesson_20.panel import reading_panel
@@ -36,6 +38,8 @@ from course_lib.lessons.lesson_20.readings import (
 from course_lib.paths import REPOSITORY
 from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.matching.feature_matching import match_features
+from course_lib.spherical_stereo.matching.features import detect_features
 from course_lib.spherical_stereo.matching.object_matching import match_objects
 from course_lib.spherical_stereo.panorama import StereoRig
 
@@ -224,6 +228,18 @@ def test_no_baseline_is_chosen_where_none_is_good_enough():
 
 def test_no_boxes_give_no_distances_but_a_sentence(pair):
     assert distances_table(measured_objects(pair, [])).startswith("0 objects")
+
+
+def test_a_pair_without_a_near_feature_is_named(pair, rng):
+    """Two strangers; two blank images; and one image twice, in which everything is at infinity."""
+    strangers = [rng.integers(0, 255, pair.upper.shape, dtype=np.uint8) for _ in "ul"]
+    blank = np.full_like(pair.upper, (90, 60, 30))
+    for images in (strangers, [blank, blank], [pair.upper, pair.upper]):
+        with pytest.raises(NoNearFeatureError, match="none of them nearer than 50 baselines: are both images sharp"):
+            near_features(match_features(*map(detect_features, images)))
+    found = match_features(detect_features(pair.upper), detect_features(pair.lower))
+    assert (found.vertical_disparity[near_features(found)] > 0.02).all()
+    assert found.epipolar[near_features(found)].all()
 
 
 def test_the_stored_lesson_is_that_of_the_stand_in():
