@@ -1,6 +1,7 @@
 """Fixtures of all tests."""
 
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -15,6 +16,10 @@ settings.load_profile("suite")
 
 if sys.platform.startswith("linux"):
     os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW") or "vtkEGLRenderWindow"
+
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    # What a script starts in the background ignores Ctrl-C, and hands that on: tests that send one would wait for ever.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 matplotlib.use("Agg")  # not by MPLBACKEND, which the lessons' kernels would inherit
 
