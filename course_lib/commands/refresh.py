@@ -11,7 +11,6 @@ import argparse
 import json
 import math
 import re
-import tempfile
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -25,6 +24,7 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernel
 from course_lib.child import KERNEL_PATH, clean_environment
 from course_lib.commands.saved_panels import drop_widgets
 from course_lib.paths import STORE_SCENES, notebook_paths, project_paths
+from course_lib.scratch import scratch_folder
 from course_lib.writing import write_at_once
 
 MAX_BYTES = 400_000
@@ -119,12 +119,12 @@ def execute(
 
     watch: from the process id of the kernel, what is entered before its first cell and left after its last.
     """
-    with tempfile.TemporaryDirectory(prefix="course-refresh-") as home:
-        startup = Path(home) / "profile_default" / "startup"
+    with scratch_folder() as home:
+        startup = home / "profile_default" / "startup"
         startup.mkdir(parents=True)
         (startup / "00-offline.py").write_text(OFFLINE_STARTUP, encoding="utf-8")
         (startup / "01-path.py").write_text(KERNEL_PATH, encoding="utf-8")
-        environment = clean_environment({"IPYTHONDIR": home, STORE_SCENES: "1"})
+        environment = clean_environment({"IPYTHONDIR": str(home), STORE_SCENES: "1"})
         client = NotebookClient(
             notebook,
             timeout=math.ceil(cell_timeout),  # 0 would be no limit

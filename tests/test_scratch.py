@@ -1,0 +1,75 @@
+"""What is made for a while in the temporary folder goes with its run, or, where that was killed, with the next one."""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from course_lib.scratch import PREFIX, clear_scratch, scratch_folder
+
+ROOT = Path(__file__).resolve().parents[1]
+HOLDS = """
+import sys, time
+from course_lib.scratch import scratch_folder
+with scratch_folder() as folder:
+    (folder / "deep").mkdir()
+    (folder / "deep" / "work").write_text("begun")
+    (folder / "deep").chmod(0)
+    print(folder, flush=True)
+    time.sleep(600)
+"""
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="no locks on folders there, so nothing is cleared")
+
+
+@pytest.fixture(autouse=True)
+def temporary(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    return tmp_path
+
+
+def begun(environment=None):
+    """A process that holds a scratch folder, and the folder."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", HOLDS], cwd=ROOT, env=os.environ | (environment or {}), stdout=subprocess.PIPE, text=True
+    )
+    return process, Path(process.stdout.readline().strip())
+
+
+def test_it_is_gone_at_the_end_and_after_an_error(temporary):
+    with scratch_folder() as folder:
+        (folder / "a").write_text("x")
+    assert folder.parent == temporary
+    with pytest.raises(KeyError), scratch_folder():
+        raise KeyError
+    assert list(temporary.iterdir()) == []
+
+
+def test_the_next_run_clears_what_a_killed_one_left_and_nothing_of_one_that_lives(temporary):
+    (killed, left), (lives, held) = begun(), begun()
+    try:
+        killed.send_signal(signal.SIGKILL)
+        killed.wait()
+        assert left.is_dir()
+        with scratch_folder() as folder:
+            assert sorted(temporary.iterdir()) == sorted([held, folder])
+    finally:
+        lives.kill()
+        lives.wait()
+    clear_scratch()
+    assert list(temporary.iterdir()) == []
+
+
+def test_a_link_and_a_strangers_folder_stay(temporary):
+    (temporary / "precious").mkdir()
+    (temporary / "precious" / "a").write_text("x")
+    (temporary / f"{PREFIX}link").symlink_to("precious", target_is_directory=True)
+    (temporary / "course-scratch-").mkdir()
+    clear_scratch()
+    assert sorted(path.name for path in temporary.iterdir()) == ["course-scratch-", f"{PREFIX}link", "precious"]
+    assert (temporary / "precious" / "a").read_text() == "x"
