@@ -29,7 +29,9 @@ def scratch_folder() -> Iterator[Path]:
         clear_scratch()
         raise
     try:
-        yield folder
+        work = folder / "work"  # what is being made beside it lies in the locked folder, too, and goes with it
+        work.mkdir()
+        yield work
     finally:
         try:
             remove(folder)
