@@ -136,12 +136,17 @@ def execute(
             allow_errors=False,
         )
         client.km = client.create_kernel_manager()
+        client.km.connection_file = str(home / "kernel.json")  # else one of its own, which a killed run would leave
         client.km.kernel_spec_manager = KernelSpecManager(kernel_dirs=[])  # this environment's, no other of its name
         try:
             with client.setup_kernel(env=environment), watch(client.km.provisioner.pid):
                 started = time.perf_counter()
-                for index, cell in enumerate(notebook.cells):
-                    client.execute_cell(cell, index)
+                try:
+                    for index, cell in enumerate(notebook.cells):
+                        client.execute_cell(cell, index)
+                except KeyboardInterrupt:
+                    client.shutdown_kernel = "immediate"  # else it complains of the cell that it could not end
+                    raise
                 return time.perf_counter() - started
         except CellTimeoutError as error:
             raise RefreshError(f"a cell took longer than {cell_timeout:g} s: {str(error).splitlines()[-1]}") from error
