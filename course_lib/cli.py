@@ -15,7 +15,9 @@ import sys
 import traceback
 import warnings
 
+from course_lib.scratch import clear_scratch
 from course_lib.standard_output import told_output
+from course_lib.told_to_end import told_to_end
 
 # Name as typed -> (module of course_lib.commands, one line for the list of commands).
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -99,15 +101,16 @@ def main(words: list[str]) -> int:
         module = importlib.import_module(f"course_lib.commands.{COMMANDS[name][0]}")
         arguments = parse(name, module, rest)
         debug = debug or arguments.debug
-        with told_output() as output:
+        with told_to_end(), told_output() as output:
             code = module.run(arguments)
             output.flush()
         return max(code, EXIT_BAD_INPUT) if output.failed else code
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
+        clear_scratch()  # a worker's, which ended in the midst of its work
         if debug:
             traceback.print_exc()
         print("\nStopped.", file=sys.stderr)
-        return EXIT_INTERRUPTED
+        return getattr(stop, "exit_code", EXIT_INTERRUPTED)
     except BrokenPipeError:
         # Whoever read our output (head, less) has gone; Python would complain once more when it closes stdout.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -32,9 +32,14 @@ def begun_file(parent: Path, name: str) -> tuple[int, Path]:
 
 def begun_folder(parent: Path, name: str) -> tuple[int, Path]:
     """A new folder beside or in `name`, locked: the handle that holds the lock, and the folder."""
+    return locked_folder(parent, f".{name}{UNFINISHED}")
+
+
+def locked_folder(parent: Path, prefix: str) -> tuple[int, Path]:
+    """A new folder whose name begins with `prefix`, locked: the handle that holds the lock, and the folder."""
 
     def make() -> tuple[int, str] | None:
-        path = tempfile.mkdtemp(dir=parent, prefix=f".{name}{UNFINISHED}")
+        path = tempfile.mkdtemp(dir=parent, prefix=prefix)
         try:
             return os.open(path if fcntl else os.devnull, os.O_RDONLY), path
         except FileNotFoundError:  # taken for left over already
@@ -67,7 +72,7 @@ def _begun(make: Callable[[], tuple[int, str] | None]) -> tuple[int, Path]:
 
 
 @contextlib.contextmanager
-def _held(path: Path) -> Iterator[bool]:
+def held(path: Path) -> Iterator[bool]:
     """Holds what nobody is writing any more, so that one process alone clears it; False where somebody is."""
     if fcntl is None or path.is_symlink():
         yield False
@@ -93,7 +98,7 @@ def clear_unfinished(path: Path) -> None:
     path = Path(os.path.realpath(path))
     for folder in (path.parent, path):
         for left in folder.glob(f".{glob.escape(path.name)}{UNFINISHED}*") if folder.is_dir() else ():
-            with _held(left) as orphaned:
+            with held(left) as orphaned:
                 if orphaned:
                     _settle(left, path)
 
@@ -149,7 +154,7 @@ def finish(beside: Path, out: Path, gone: set[str]) -> None:
 def complete(out: Path) -> None:
     """Finish what a killed run had begun to move into `out`. Raises `OSError`."""
     for beside in out.glob(f".*{UNFINISHED}*") if out.is_dir() else ():
-        with _held(beside) as orphaned:
+        with held(beside) as orphaned:
             if orphaned and (beside / "gone.json").is_file():
                 _move_all(beside, out)
 

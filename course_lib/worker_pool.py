@@ -10,10 +10,14 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+import signal
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.connection import Connection, wait
+
+_ENDS_S = 10.0
+"""Seconds after which a worker that should end is no longer waited for: it ends by itself, a busy machine or not."""
 
 
 @contextlib.contextmanager
@@ -30,11 +34,15 @@ def worker_pool(
         pool = ProcessPoolExecutor(
             n_workers, multiprocessing.get_context("spawn"), _begin, (watched, start_worker, arguments)
         )
+        others = multiprocessing.active_children()
         try:
             yield pool
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
-            raise  # and with it the pipe is closed
+            held.close()
+            for worker in set(multiprocessing.active_children()).difference(others):
+                worker.join(_ENDS_S)  # what it had open is free then, and can be cleared
+            raise
         pool.shutdown()
 
 
@@ -54,6 +62,7 @@ def _end_when_ready(watched: Connection | int) -> None:
 
 
 def _begin(watched: Connection, start_worker: Callable[..., None] | None, arguments: tuple) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all at once; the workers end with who began them
     _end_when_ready(watched)
     if start_worker is not None:
         start_worker(*arguments)

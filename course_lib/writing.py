@@ -74,4 +74,6 @@ def told(path: Path) -> Iterator[None]:
 def write_error(path: Path, error: OSError) -> WriteError:
     """The system's `error` at writing `path` in words, to be raised from it."""
     reason = _REASONS.get(error.errno, error.strerror or str(error))
-    return WriteError(f"{path} cannot be written: {reason}. What was there before is untouched.")
+    found = WriteError(f"{path} cannot be written: {reason}. What was there before is untouched.")
+    found.errno = error.errno  # for who made the folder that this file was to be in, and names that one
+    return found

@@ -8,15 +8,19 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "course_lib"
 
 # Part of the library -> parts it may import besides itself. commands and cli stand above all of them, but for lessons.
-BELOW = {"child", "frame_order", "geometry", "output_folder", "reading", "unfinished", "worker_pool", "writing"}
+BELOW = {
+    *("child", "frame_order", "geometry", "output_folder", "reading", "scratch", "unfinished", "worker_pool"),
+    "writing",
+}
 METHODS = BELOW | {"depth_mcl", "spherical_stereo"}
 ALLOWED = {
     "frame_order": set(),
     "geometry": set(),
     "paths": set(),
     "reading": set(),
-    "child": {"reading"},
     "unfinished": set(),
+    "scratch": {"unfinished"},
+    "child": {"reading", "scratch"},
     "writing": {"unfinished"},
     "output_folder": {"unfinished", "writing"},
     "processors": set(),

@@ -27,7 +27,7 @@ ONLY_OF = {
     "export": {"mesh", "trimesh"},
 }
 
-TEMPORARY = "into a folder of TemporaryDirectory's, which nobody else reads"
+TEMPORARY = "into a `scratch_folder`, which nobody else reads"
 NEW = "into the folder that `replaced_outputs` puts in place as a whole"
 ALLOWED = {
     "course_lib/writing.py": "the one way: a file",
@@ -68,12 +68,11 @@ ALLOWED = {
     "course_lib/fuzzing/bombs.py": TEMPORARY,
     "course_lib/fuzzing/campaign.py": TEMPORARY,
     "course_lib/fuzzing/samples.py": TEMPORARY,
-    "course_lib/simulation/corridor/data.py": "make-data's: " + TEMPORARY,
-    "course_lib/simulation/corridor/mesh_files.py": "make-data's: " + TEMPORARY,
-    "course_lib/simulation/data_folder.py": NEW,
-    "course_lib/simulation/room/data.py": "make-data's: " + TEMPORARY,
-    "course_lib/simulation/room/finale_data.py": "make-data's: " + TEMPORARY,
-    "course_lib/simulation/room/stereo_photographs.py": "make-data's: " + TEMPORARY,
+    "course_lib/simulation/corridor/data.py": "make-data's: " + NEW,
+    "course_lib/simulation/corridor/mesh_files.py": "make-data's: " + NEW,
+    "course_lib/simulation/room/data.py": "make-data's: " + NEW,
+    "course_lib/simulation/room/finale_data.py": "make-data's: " + NEW,
+    "course_lib/simulation/room/stereo_photographs.py": "make-data's: " + NEW,
     "course_lib/standard_output.py": "the process's own stream, no file",
     "course.py": "it has the standard library alone: marks whose being there is all they say, and a stamp put in place "
     "in one step",
@@ -108,6 +107,14 @@ def raw_writes(text):
                 yield node.lineno
             elif last in WRITES and (last not in ONLY_OF or (before and before[-1] in ONLY_OF[last])):
                 yield node.lineno
+
+
+def unclaimed(text):
+    """Lines of Python source that make something temporary by hand."""
+    for node in ast.walk(ast.parse(text)):
+        made = ("TemporaryDirectory", "mkdtemp", "mkstemp", "NamedTemporaryFile", "TemporaryFile", "mktemp")
+        if isinstance(node, ast.Call) and called(node)[-1] in made:
+            yield node.lineno
 
 
 def sources():
@@ -159,3 +166,14 @@ def test_who_says_that_a_folder_is_put_in_place_calls_what_does_so(name):
         path.read_text(encoding="utf-8") for path in (ROOT / name, *folder.glob(f"{Path(name).stem.split('_')[0]}*.py"))
     ]
     assert any("with replaced_outputs(" in text for text in texts)
+
+
+@pytest.mark.parametrize("text", ["TemporaryDirectory()", "tempfile.mkdtemp('a')", "tempfile.NamedTemporaryFile()"])
+def test_a_temporary_folder_that_no_run_would_clear_is_seen(text):
+    assert list(unclaimed(text)) == [1]
+
+
+def test_what_is_temporary_is_a_scratch_folder_which_the_next_run_clears_after_a_kill():
+    found = {name: list(unclaimed(text)) for name, text in sources().items()}
+    strangers = {name for name, lines in found.items() if lines} - {"course_lib/unfinished.py"}
+    assert not strangers, "use course_lib.scratch"

@@ -8,7 +8,6 @@ import pytest
 
 from course_lib import output_folder, unfinished
 from course_lib.output_folder import MADE, replaced_outputs, require_writable, staged
-from course_lib.simulation.data_folder import move_products
 from course_lib.unfinished import UNFINISHED
 from course_lib.writing import WriteError, write_at_once
 from tests.made_outputs import left_over, make, names
@@ -140,18 +139,21 @@ def test_files_are_staged_beside_their_places_and_nothing_is_left(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
 
 
-def test_copies_of_made_data_name_the_full_disk(tmp_path, monkeypatch):
-    """`copytree` would collect what every file said, and the number of the error would be lost."""
-    (tmp_path / "made" / "wagon").mkdir(parents=True)
-    (tmp_path / "made" / "wagon" / "0.png").write_text("x")
+def test_a_full_disk_under_a_file_inside_names_the_folder_that_was_asked_for(tmp_path, monkeypatch):
+    """What is written beside it has a name that nobody knows, and is gone when the message is read."""
 
-    def full(*_, **__):
+    def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("shutil.copy2", full)
-    with pytest.raises(WriteError, match="data cannot be written: the disk is full"):
-        move_products(tmp_path / "made", tmp_path / "data", ["wagon"])
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["made"]
+    def work():
+        with replaced_outputs(tmp_path / "data", "make-data") as new:
+            monkeypatch.setattr(os, "fsync", full)
+            write_at_once(new / "0.png", "x")
+
+    with pytest.raises(WriteError) as told:
+        work()
+    assert str(told.value).startswith(f"{tmp_path / 'data'} cannot be written: the disk is full")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_what_cannot_be_written_is_refused_before_the_work(tmp_path):

@@ -8,7 +8,6 @@ the same functions without nbgrader. Nothing of the teacher's may stand in what 
 
 from __future__ import annotations
 
-import tempfile
 import time
 import warnings
 from collections.abc import Callable
@@ -26,6 +25,7 @@ from course_lib.classroom.points import points_of
 from course_lib.classroom.score_worlds import MOST
 from course_lib.lessons.kit.exercises import Exercise, Mistake, find_exercise
 from course_lib.lessons.kit.projects import find_project
+from course_lib.scratch import scratch_folder
 
 HEADER = "lesson  most  solved  untouched  mistaken (expected)  leaks  seconds"
 NOISE = """import logging, os, sys, warnings
@@ -71,8 +71,8 @@ def try_assignment(assignment: Assignment, seed: int, answers_only: bool = True,
     answers_only: only the cells that matter run. folder: new or empty, kept; a temporary one for None.
     """
     if folder is None:
-        with tempfile.TemporaryDirectory(prefix="course-nbgrader-") as temporary:
-            return try_assignment(assignment, seed, answers_only, Path(temporary))
+        with scratch_folder() as temporary:
+            return try_assignment(assignment, seed, answers_only, temporary)
     started = time.monotonic()
     warnings.filterwarnings("ignore", module="nbgrader")  # its database's, about itself
     canary, name, course = canary_of(seed), assignment.name, folder / "nbgrader"

@@ -167,7 +167,7 @@ def place_of(assignment: Assignment) -> PurePosixPath:
 def write_copies(folder: Path, assignments: list[Assignment], make: Callable = student_notebook) -> None:
     """Write lessons, pages, pictures and scenes into an empty folder; `make` is `student_notebook` or another."""
     for name in FOLDERS:
-        shutil.copytree(NOTEBOOKS / name, folder / name, ignore=shutil.ignore_patterns("yours", ".*"))
+        copy_folder(NOTEBOOKS / name, folder / name)
     places = {place_of(assignment) for assignment in assignments}
     places |= {PurePosixPath(name) for name in PAGES} | {PurePosixPath("projects")}
     for page in PAGES:
@@ -178,6 +178,21 @@ def write_copies(folder: Path, assignments: list[Assignment], make: Callable = s
     for assignment in assignments:
         place = place_of(assignment)
         write_notebook(folder / place, make(assignment, within(places, place)))
+
+
+def copy_folder(source: Path, target: Path) -> None:
+    """A folder of pictures or scenes into a new one, without hidden files and the reader's own. Raises `OSError`.
+
+    One by one, so that the first error is told: `copytree` would go on, and collect a full disk's file by file.
+    """
+    target.mkdir(parents=True)
+    for path in sorted(source.iterdir()):
+        if path.name == "yours" or path.name.startswith("."):
+            continue
+        if path.is_dir():
+            copy_folder(path, target / path.name)
+        else:
+            shutil.copy2(path, target / path.name)
 
 
 def within(places: set[PurePosixPath], page: PurePosixPath) -> Resolve:

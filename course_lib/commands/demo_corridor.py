@@ -11,12 +11,12 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from course_lib.commands.arguments import add_backend_argument
 from course_lib.commands.corridor_tables import table_1, table_of_kindnesses, table_over_recordings
 from course_lib.output_folder import replaced_outputs
+from course_lib.scratch import scratch_folder
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
     from matplotlib.figure import Figure
@@ -112,8 +112,8 @@ def _require_methods(arguments: argparse.Namespace) -> None:
 
 def _run_seed(arguments: argparse.Namespace) -> int:
     """One seed: table 1, figures, results."""
-    with TemporaryDirectory() as temporary:
-        maps, sequence, rows = _rows_of(arguments, arguments.seed, Path(temporary))
+    with scratch_folder() as temporary:
+        maps, sequence, rows = _rows_of(arguments, arguments.seed, temporary)
         summary = summarize(arguments, arguments.seed, rows)
         print(json.dumps(summary) if arguments.json else table_1(summary), flush=True)
         with replaced_outputs(arguments.out, "demo corridor") as out:
@@ -137,8 +137,8 @@ def _run_seeds(arguments: argparse.Namespace, seeds: list[int]) -> int:
         path = arguments.out / f"seed_{seed}.json"
         summary = _finished(path, _settings(arguments, seed))
         if summary is None:
-            with TemporaryDirectory() as temporary:
-                _, _, rows = _rows_of(arguments, seed, Path(temporary))
+            with scratch_folder() as temporary:
+                _, _, rows = _rows_of(arguments, seed, temporary)
             summary = summarize(arguments, seed, rows)
             write(path, summary, rows)
         else:

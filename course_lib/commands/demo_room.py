@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +16,7 @@ from course_lib.commands.detector_options import add_detector_arguments, chosen_
 from course_lib.commands.make_room import SEED
 from course_lib.commands.room_tables import EXACT, FITS, WEIGHTED, tables
 from course_lib.output_folder import replaced_outputs
+from course_lib.scratch import scratch_folder
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from matplotlib.figure import Figure
@@ -97,9 +97,9 @@ def run(arguments: argparse.Namespace) -> int:
     if seed == SEED:
         return _run_on(arguments.data or data_path("room"), arguments)
     detector = chosen_detector(arguments)  # before the photographs: an error then costs no minutes
-    with tempfile.TemporaryDirectory() as folder:
-        _photograph(Path(folder), seed)
-        return _run_on(Path(folder), arguments, detector)
+    with scratch_folder() as folder:
+        _photograph(folder, seed)
+        return _run_on(folder, arguments, detector)
 
 
 def _photograph(folder: Path, seed: int) -> None:

@@ -100,7 +100,7 @@ def wrong_end(ended: Ended, held: str, staged: Staged) -> list[str]:
     full = "disk is full" in said or "No space left on device" in said
     if not full or not any(str(place) in said for place in (staged.stage, staged.given)):
         wrong.append(f"exit code {ended.code}, and the full disk is not named: {said[-1000:]}")
-    if staged.case.is_command and (ended.code != BAD_INPUT or "Traceback" in said):
+    if staged.case.is_command and (ended.code != BAD_INPUT or "Traceback" in said or "[Errno" in said):
         wrong.append(f"exit code {ended.code}: {said[-1000:]}")
     if staged.case.prints and not ended.printed.strip() and ended.steps > REFUSED_BEFORE_STEPS:
         wrong.append(f"nothing was printed before the disk was full: {said[-1000:]}")

@@ -10,12 +10,12 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from course_lib.commands.arguments import require_output_folder, require_positive, require_seed
+from course_lib.scratch import scratch_folder
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -57,8 +57,8 @@ def run(arguments: argparse.Namespace) -> int:
     for case, count, random in zip(cases, counts, np.random.default_rng(arguments.seed).spawn(len(cases)), strict=True):
         row = {"name": case.name, **dict.fromkeys(WAYS), "not_run": None}
         try:
-            with tempfile.TemporaryDirectory(prefix="course-interrupt-") as folder:
-                with Staged(case, Path(folder).resolve()) as staged:
+            with scratch_folder() as folder:
+                with Staged(case, folder.resolve()) as staged:
                     row["kill"] = interruptions(staged, drawn_kills(staged, count, random))
                     row["ctrl_c"] = interruptions(staged, drawn_ctrl_c(staged, max(1, count // 10), random))
                     row["full_disk"] = None if no_disk else full_disks(staged)

@@ -6,7 +6,6 @@ Each takes the folder to write into and which of two runs it is, 1 or 2: their o
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -59,18 +58,17 @@ def checkpoint(out: Path, which: int) -> None:
 
 
 def made_data(out: Path, which: int) -> None:
-    """Products of `make-data` in the place of earlier ones: what is moved at its end, after minutes."""
-    from course_lib.simulation.data_folder import checksums, move_products
+    """Products of `make-data` in the place of earlier ones: made beside them, in minutes, and put there at once."""
+    from course_lib.output_folder import replaced_outputs
+    from course_lib.simulation.data_folder import checksums
 
     random, products = np.random.default_rng(which), ("map.ply", "wagon", "SHA256SUMS")
-    folder = out.parent.parent / "made"
-    shutil.rmtree(folder, ignore_errors=True)
-    (folder / "wagon").mkdir(parents=True)
-    (folder / "map.ply").write_bytes(random.bytes(3_000_000))
-    for number in range(10 + which):
-        (folder / "wagon" / f"{number}.png").write_bytes(random.bytes(20_000))
-    (folder / "SHA256SUMS").write_text(checksums(folder, products))
-    move_products(folder, out, products)
+    with replaced_outputs(out, "make-data", products) as folder:
+        (folder / "wagon").mkdir()
+        (folder / "map.ply").write_bytes(random.bytes(3_000_000))
+        for number in range(10 + which):
+            (folder / "wagon" / f"{number}.png").write_bytes(random.bytes(20_000))
+        (folder / "SHA256SUMS").write_text(checksums(folder, products))
 
 
 def sweep_rows(out: Path, which: int) -> None:

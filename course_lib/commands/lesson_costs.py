@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import tempfile
 import threading
 import time
 from contextlib import AbstractContextManager
@@ -24,6 +23,7 @@ import psutil
 from course_lib.child import start
 from course_lib.commands.lab import lab_command
 from course_lib.commands.refresh import HANGS_S, execute
+from course_lib.scratch import scratch_folder
 
 EVERY_S = 0.1
 """Between two looks at the processes [s]; the kernel's own peak is the system's, which misses nothing."""
@@ -126,21 +126,21 @@ def notebook_cost(path: Path) -> Cost:
         watches.append(ProcessWatch(pid, path.name.partition("_")[0]))
         return watches[0]
 
-    with tempfile.TemporaryDirectory(prefix="course-bench-") as folder:
-        execute(nbformat.read(path, as_version=4), Path(folder), HANGS_S, watch)
+    with scratch_folder() as folder:
+        execute(nbformat.read(path, as_version=4), folder, HANGS_S, watch)
     return watches[0].cost
 
 
 def server_cost() -> Cost:
     """What the server of `course.py lab` takes once it has shown its first page, without a kernel."""
-    with tempfile.TemporaryDirectory(prefix="course-bench-") as folder:
+    with scratch_folder() as folder:
         command, environment = lab_command(port=0, state_folder=folder)
         server = start(
             command, environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
         )
         try:
             with ProcessWatch(server.pid, "server") as watch:
-                _first_page(server, Path(folder) / "runtime")
+                _first_page(server, folder / "runtime")
         finally:
             server.terminate()
             server.wait()

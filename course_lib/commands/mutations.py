@@ -23,13 +23,13 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 from course_lib.commands import test as suite
+from course_lib.scratch import scratch_folder
 
 # Folders of the first level.
 NOT_COPIED = (".git", ".venv", "results", "work", "build", ".pytest_cache", ".ruff_cache", ".hypothesis")
@@ -159,8 +159,8 @@ def choose(mutations: list[Mutation], names: list[str]) -> list[Mutation]:
 @contextlib.contextmanager
 def scratch_copies(root: Path, count: int) -> Iterator[list[Path]]:
     """`count` copies of the repository; each is checked to be what Python imports when it stands there."""
-    with tempfile.TemporaryDirectory(prefix="course-mutations-") as folder:
-        copies = [Path(folder).resolve() / str(number) / "course" for number in range(count)]
+    with scratch_folder() as folder:
+        copies = [folder.resolve() / str(number) / "course" for number in range(count)]
         for copy in copies:
             shutil.copytree(root, copy, ignore=lambda folder, names: not_copied(Path(folder) == root, names))
             if (root.parent / "shared").is_dir():  # recordings beside the repository

@@ -11,7 +11,6 @@ import argparse
 import json
 import math
 import re
-import tempfile
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -25,6 +24,7 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernel
 from course_lib.child import KERNEL_PATH, clean_environment
 from course_lib.commands.saved_panels import drop_widgets
 from course_lib.paths import STORE_SCENES, notebook_paths, project_paths
+from course_lib.scratch import scratch_folder
 from course_lib.writing import write_at_once
 
 MAX_BYTES = 400_000
@@ -119,12 +119,12 @@ def execute(
 
     watch: from the process id of the kernel, what is entered before its first cell and left after its last.
     """
-    with tempfile.TemporaryDirectory(prefix="course-refresh-") as home:
-        startup = Path(home) / "profile_default" / "startup"
+    with scratch_folder() as home:
+        startup = home / "profile_default" / "startup"
         startup.mkdir(parents=True)
         (startup / "00-offline.py").write_text(OFFLINE_STARTUP, encoding="utf-8")
         (startup / "01-path.py").write_text(KERNEL_PATH, encoding="utf-8")
-        environment = clean_environment({"IPYTHONDIR": home, STORE_SCENES: "1"})
+        environment = clean_environment({"IPYTHONDIR": str(home), STORE_SCENES: "1"})
         client = NotebookClient(
             notebook,
             timeout=math.ceil(cell_timeout),  # 0 would be no limit
@@ -136,12 +136,17 @@ def execute(
             allow_errors=False,
         )
         client.km = client.create_kernel_manager()
+        client.km.connection_file = str(home / "kernel.json")  # else one of its own, which a killed run would leave
         client.km.kernel_spec_manager = KernelSpecManager(kernel_dirs=[])  # this environment's, no other of its name
         try:
             with client.setup_kernel(env=environment), watch(client.km.provisioner.pid):
                 started = time.perf_counter()
-                for index, cell in enumerate(notebook.cells):
-                    client.execute_cell(cell, index)
+                try:
+                    for index, cell in enumerate(notebook.cells):
+                        client.execute_cell(cell, index)
+                except KeyboardInterrupt:
+                    client.shutdown_kernel = "immediate"  # else it complains of the cell that it could not end
+                    raise
                 return time.perf_counter() - started
         except CellTimeoutError as error:
             raise RefreshError(f"a cell took longer than {cell_timeout:g} s: {str(error).splitlines()[-1]}") from error

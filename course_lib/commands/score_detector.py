@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import tempfile
 from pathlib import Path
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
@@ -18,6 +17,7 @@ from course_lib.commands.make_training_rooms import (
     N_TEST_ROOMS,
     N_VALIDATION_ROOMS,
 )
+from course_lib.scratch import scratch_folder
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -72,10 +72,10 @@ def run(arguments: argparse.Namespace) -> int:
             progress_bar("the experiment's room", "image")(chain.from_iterable(map(labelled_panoramas, recordings))),
         )
     }
-    with tempfile.TemporaryDirectory() as temporary:
+    with scratch_folder() as temporary:
         images = arguments.images
         if images is None:
-            images = Path(temporary)
+            images = temporary
             make_room_images(
                 images, FIRST_TEST_ROOM, arguments.rooms, IMAGES_PER_ROOM, progress_bar("photographs", "room")
             )
@@ -105,8 +105,8 @@ def _compare_voting(arguments: argparse.Namespace, detector) -> int:
     from course_lib.simulation.room.training_images import labelled_images, make_room_images
     from course_lib.spherical_stereo.detection.suppression import VOTE_IOU, VOTE_SCORE
 
-    with tempfile.TemporaryDirectory() as temporary:
-        images = arguments.images or Path(temporary)
+    with scratch_folder() as temporary:
+        images = arguments.images or temporary
         if arguments.images is None:
             bar = progress_bar("photographs", "room")
             make_room_images(images, FIRST_VALIDATION_ROOM, N_VALIDATION_ROOMS, IMAGES_PER_ROOM, bar)

@@ -12,13 +12,13 @@ import os
 import select
 import signal
 import subprocess
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from course_lib.child import python, start
 from course_lib.paths import REPOSITORY
+from course_lib.scratch import scratch_folder
 
 HANGS_S = 1800.0
 
@@ -167,8 +167,8 @@ class Runs:
         Raises `subprocess.TimeoutExpired` for a run that hangs.
         """
         moment = moment or Moment()
-        with tempfile.TemporaryDirectory(prefix="course-interrupt-") as folder:
-            out, error, told = (Path(folder) / name for name in ("out", "error", "told"))
+        with scratch_folder() as folder:
+            out, error, told = (folder / name for name in ("out", "error", "told"))
             call = {
                 "stage": str(self.stage),
                 "program": program,

@@ -12,9 +12,9 @@ import json
 import re
 from contextlib import ExitStack
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from course_lib.commands.arguments import parse_seeds, require_output_folder
+from course_lib.scratch import scratch_folder
 
 EXPERIMENTS = ("corridor",)
 CONNECT_S = 30
@@ -105,8 +105,8 @@ def corridor(seed: int, frames: int | None, n_particles: int) -> dict:
     from course_lib.paths import data_path
 
     data = data_path("corridor")
-    with TemporaryDirectory() as temporary:
-        even, by_hand = own_recordings(data, Path(temporary), seed, frames)
+    with scratch_folder() as temporary:
+        even, by_hand = own_recordings(data, temporary, seed, frames)
         options = {"seed": seed, "frames": frames, "n_particles": n_particles}
         rows = run_rows(Maps.load(data), even, by_hand, METHODS_BY_HAND, **options)
     return {"seed": seed, "frames": len(rows["proposed"].run.frames), **rows_by_part(rows)}

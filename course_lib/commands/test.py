@@ -10,13 +10,13 @@ import argparse
 import os
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Mapping
 from pathlib import Path
 
 from course_lib.child import JUPYTER
 from course_lib.processors import processors
+from course_lib.scratch import scratch_folder
 
 ROOT = Path(__file__).resolve().parents[2]
 PASSES_ARGUMENTS_ON = True
@@ -68,12 +68,12 @@ def run(arguments: argparse.Namespace) -> int:
             raise ValueError(f"--mutations takes names and nothing else; got {' '.join(arguments.passed_on)}")
         return mutations.run(ROOT, arguments.mutations)
     started = time.monotonic()
-    with tempfile.TemporaryDirectory(prefix="course-test-") as home:
+    with scratch_folder() as home:
         words = pytest_arguments(
             arguments.passed_on, arguments.fast, arguments.no_notebooks, arguments.only_notebooks, processors()
         )
-        write_offline_startup(Path(home))
-        environment = suite_environment(Path(home)) | one_thread_a_worker(words)
+        write_offline_startup(home)
+        environment = suite_environment(home) | one_thread_a_worker(words)
         code = subprocess.run([sys.executable, "-m", "pytest", *words], cwd=ROOT, env=environment).returncode
     return conclude(code, time.monotonic() - started)
 

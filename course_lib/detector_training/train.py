@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -28,6 +27,7 @@ from course_lib.detector_training.workers import (
     start_others,
 )
 from course_lib.experiments.detection_scores import DetectionScoreError
+from course_lib.scratch import scratch_folder
 from course_lib.spherical_stereo.detection.darknet import check_names, read_cfg, read_names
 
 # Gradients longer than this are shortened: one odd batch must not undo the ones before.
@@ -102,8 +102,8 @@ def train(
         return _train(Alone(), *given, log, progress)
     # Read here first: what is wrong with a folder is said once, not by every process.
     PanoramaFolders(images, read_names(names_file), plan.panorama_width, (0, 10**9))
-    with tempfile.TemporaryDirectory() as folder:
-        meeting_file = Path(folder) / "meeting"
+    with scratch_folder() as folder:
+        meeting_file = folder / "meeting"
         others = start_others(plan.processes, meeting_file, _train_beside, given)
         try:
             _one_thread()

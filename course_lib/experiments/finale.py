@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -24,6 +22,7 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
 from course_lib.geometry import optical_pose, wrap_angle
+from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.depth_world import (
     CAMERA,
     MAP,
@@ -65,9 +64,9 @@ def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[
     )
     network, caster = YoloDetector.load(detector), depth_caster(room)
     results = []
-    with TemporaryDirectory() as temporary:
+    with scratch_folder() as temporary:
         # Two headings at each place of the paper's table; here every place is one of its own.
-        recording = read_stereo_recording(photograph_room(Path(temporary), room, seed, 2 * places, models)[camera - 1])
+        recording = read_stereo_recording(photograph_room(temporary, room, seed, 2 * places, models)[camera - 1])
         size = (recording.width, recording.height)
         localizer = SemanticLocalizer(recording.rig, semantic_map, network, image_size=size, association="consistent")
         with DepthRenderer(scene_map, DepthCamera.sr4000(far=FAR)) as renderer:

@@ -10,7 +10,6 @@ import time
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from course_lib.depth_mcl.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.geometry import optical_pose, state_from_optical_pose
+from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed
 
 GRAVITY_SIGMA = np.deg2rad(1.0)
@@ -47,8 +47,8 @@ def trial(map_file: str, sequence: str, seed: int) -> dict[str, dict]:
 
 def corridor_trial(data: str, seed: int) -> dict[str, dict]:
     """A point of a sweep: the same on a recording of the seed's own, carried by hand through the corridor."""
-    with TemporaryDirectory() as temporary:
-        folder = Path(temporary) / "hand"
+    with scratch_folder() as temporary:
+        folder = temporary / "hand"
         record_seed(folder, building_of_data(data), seed, carried="hand")
         return trial(str(Path(data) / "map.ply"), str(folder), seed)
 

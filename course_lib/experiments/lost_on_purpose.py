@@ -11,7 +11,6 @@ Of the kitchen this says: 456 frames truly lost, 88 % of them called lost, 10 % 
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -23,6 +22,7 @@ from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import SIGMA, run_sequence, system_noise
 from course_lib.geometry import rotation_exp
+from course_lib.scratch import scratch_folder
 
 # A frame is truly lost beyond either (chosen: what makes an estimate useless for going through a door).
 LOST_POSITION = 0.3  # metres
@@ -85,8 +85,8 @@ def judged_run(
     start[:3, 3] += way.shift
     start[:3, :3] = start[:3, :3] @ rotation_exp(np.deg2rad([0.0, way.turn_deg, 0.0]))
     position, rotation_deg = SIGMA[dof]
-    with tempfile.TemporaryDirectory() as folder:
-        _write_thinned(Path(folder), sequence, kept)
+    with scratch_folder() as folder:
+        _write_thinned(folder, sequence, kept)
         run = run_sequence(
             _mirrored(scene_map) if way.mirrored else scene_map,
             read_sequence(folder),

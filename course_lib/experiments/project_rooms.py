@@ -8,7 +8,6 @@ there), the map, and the truth. Students work on the practice rooms; the hidden 
 from __future__ import annotations
 
 import json
-import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
@@ -25,6 +24,7 @@ from course_lib.experiments.rooms import (
     stored_map,
     stored_observations,
 )
+from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.look_alike_recording import photograph_room, surveyed_room
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -74,8 +74,8 @@ def record_room(seed: int, options: RoomsOptions, detector) -> dict:
     """
     room, semantic_map = surveyed_room(seed, options.models)
     views = []
-    with tempfile.TemporaryDirectory() as temporary:
-        for folder in photograph_room(Path(temporary), room, seed, options.poses, options.models):
+    with scratch_folder() as temporary:
+        for folder in photograph_room(temporary, room, seed, options.poses, options.models):
             recording = read_stereo_recording(folder)
             size = (recording.width, recording.height)
             localizer = SemanticLocalizer(

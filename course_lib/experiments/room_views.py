@@ -7,14 +7,13 @@ here, and kept in files of their own, so that who asks for one view does not wai
 from __future__ import annotations
 
 import json
-import tempfile
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from course_lib.experiments.rooms import RoomsOptions, record_of_observations, stored_observations
+from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.look_alike_recording import surveyed_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
 from course_lib.simulation.room.nearby_views import WalkModel, experiment_of, photograph_walks
@@ -41,8 +40,8 @@ def observe_views(seed: int, options: ViewsOptions, detector) -> dict:
     models = options.rooms.models
     room, semantic_map = surveyed_room(seed, models)
     sequences = []
-    with tempfile.TemporaryDirectory() as folder:
-        walks = photograph_walks(Path(folder), room, seed, options.rooms.poses, options.views - 1, models, options.walk)
+    with scratch_folder() as folder:
+        walks = photograph_walks(folder, room, seed, options.rooms.poses, options.views - 1, models, options.walk)
         for k, walk in enumerate(walks):
             upper, lower = CAMERA_HEIGHTS[experiment_of(k)]
             localizer = SemanticLocalizer(

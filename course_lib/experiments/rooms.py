@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -22,6 +21,7 @@ from course_lib.experiments.detector_evaluation import match_image
 from course_lib.experiments.results import write_results
 from course_lib.experiments.room import SOURCES, PairResult, localize_pair
 from course_lib.experiments.sweeps import finished
+from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.look_alike_recording import RecordingModels, photograph_room, surveyed_room
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.recording import read_stereo_recording
@@ -59,8 +59,8 @@ def observe_room(seed: int, options: RoomsOptions, detector) -> dict:
     room, semantic_map = surveyed_room(seed, options.models)
     alike = room.objects[0].label
     poses = []
-    with tempfile.TemporaryDirectory() as temporary:
-        folders = photograph_room(Path(temporary), room, seed, options.poses, options.models)
+    with scratch_folder() as temporary:
+        folders = photograph_room(temporary, room, seed, options.poses, options.models)
         for number, folder in enumerate(folders, start=1):
             recording = read_stereo_recording(folder)
             localizer = SemanticLocalizer(

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.depth_mcl.tracking import agreement, judge_refined
 from course_lib.experiments.recordings import SIGMA, Run, run_annealed, run_sequence, system_noise
+from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
 
 METHODS = ("annealed", "paper", "floor")
@@ -170,9 +170,9 @@ def corridor_hand(data: str, seed: int, frames: int | None, methods: list[str]) 
     """
     scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
     result = {}
-    with TemporaryDirectory() as temporary:
+    with scratch_folder() as temporary:
         for part, hardships in (("methods", ()), ("methods_less_kind", HAND_HARDSHIPS)):
-            folder = Path(temporary) / part
+            folder = temporary / part
             record_seed(folder, building, seed, hardships, frames=frames, carried="hand")
             recording = read_sequence(folder)
             result[part] = {method: run_frames(method, scene_map, recording, seed) for method in methods}

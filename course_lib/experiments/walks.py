@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from course_lib.depth_mcl.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.six_degrees import run_frames
+from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.walk import record_walk
 
 
@@ -17,8 +16,8 @@ def room_walk(seed: int, methods: Sequence[str], everies: Sequence[int]) -> list
 
     Each: {"method", "every", "run"}. The floor is taken once, of every frame.
     """
-    with TemporaryDirectory() as temporary:
-        folder = Path(temporary) / "walk"
+    with scratch_folder() as temporary:
+        folder = temporary / "walk"
         record_walk(folder, seed)
         recording, scene_map = read_sequence(folder), SceneMap.load(folder / "map.ply")
         return [

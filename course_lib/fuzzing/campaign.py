@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import shutil
-import tempfile
 import time
 import zlib
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from course_lib.fuzzing.readings import Reading
 from course_lib.fuzzing.samples import room_mesh, write_samples
 from course_lib.fuzzing.trial import CLASSES, DEFECTS, MEMORY, SECONDS, Verdict, try_file
 from course_lib.reading import is_given
+from course_lib.scratch import scratch_folder
 from course_lib.worker_pool import worker_pool
 
 SHARES = {"bytes": 0.35, "inside": 0.45, "both": 0.08, "link": 0.06, "bomb": 0.06}
@@ -81,8 +82,8 @@ class Bench:
         cv2.setNumThreads(1)  # a child that is forked has none of its parent's threads
         mesh = room_mesh()
         depths_agree(mesh.vertices, mesh.faces)  # compiled now, once, and not by every child
-        self._folder = tempfile.TemporaryDirectory(prefix="course-fuzz-")
-        self.folder = Path(self._folder.name)
+        self._scratch = ExitStack()
+        self.folder = self._scratch.enter_context(scratch_folder())
         write_samples(self.folder)
         self._whole = {name: (self.folder / FORMATS[name].file).read_bytes() for name in names}
         self._original: dict[str, Reading] = {
@@ -93,7 +94,7 @@ class Bench:
         return self
 
     def __exit__(self, *error: object) -> None:
-        self._folder.cleanup()
+        self._scratch.close()
 
     def damage(self, name: str, seed: int, number: int) -> Damage:
         """The damage that file `number` of a format gets."""
@@ -136,9 +137,9 @@ def put(done: Damage, path: Path, whole: bytes) -> None:
 
 def put_damaged(name: str, seed: int, number: int, folder: Path) -> str:
     """Puts file `number` of a format into a new folder; returns its name, that of the sample."""
-    with tempfile.TemporaryDirectory(prefix="course-fuzz-") as samples:
-        write_samples(Path(samples))
-        whole = (Path(samples) / FORMATS[name].file).read_bytes()
+    with scratch_folder() as samples:
+        write_samples(samples)
+        whole = (samples / FORMATS[name].file).read_bytes()
     folder.mkdir(parents=True)
     path = folder / Path(FORMATS[name].file).name
     put(damage(FORMATS[name], whole, seed, number), path, whole)

@@ -1,13 +1,12 @@
-"""Folders of generated data: checked before the work, filled at its end, all at once, with checksums."""
+"""Folders of generated data: checked before the work, with checksums."""
 
 from __future__ import annotations
 
 import hashlib
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from course_lib.output_folder import replaced_outputs, require_writable
+from course_lib.output_folder import require_writable
 
 
 def require_folder(out: str | Path) -> Path:
@@ -31,14 +30,3 @@ def checksums(folder: Path, products: Sequence[str]) -> str:
     )
     lines = [f"{hashlib.sha256(p.read_bytes()).hexdigest()}  {p.relative_to(folder).as_posix()}\n" for p in files]
     return "".join(lines)
-
-
-def move_products(folder: Path, out: Path, products: Sequence[str]) -> None:
-    """Puts the finished products in the place of the earlier ones, all at once; what else is in `out` stays."""
-    with replaced_outputs(out, "make-data", products) as new:
-        for name in products:
-            for path in sorted((folder / name, *(folder / name).rglob("*"))):
-                if path.is_dir():
-                    (new / path.relative_to(folder)).mkdir(parents=True)
-                else:  # one by one: `copytree` would collect a full disk's errors, and tell none of them
-                    shutil.copy2(path, new / path.relative_to(folder))

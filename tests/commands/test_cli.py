@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import signal
 import subprocess
 import sys
 import types
@@ -9,6 +10,7 @@ import types
 import pytest
 
 from course_lib import cli
+from course_lib.output_folder import replaced_outputs
 
 
 @pytest.fixture
@@ -101,6 +103,34 @@ def test_an_error_is_one_line_and_a_code(command, capsys, error, code):
     assert len(errors.strip().splitlines()) == 1
     assert str(error) in errors
     assert "Traceback" not in errors
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+@pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGHUP", 129), ("SIGINT", 130)])
+def test_whatever_asks_it_to_end_its_work_is_cleared(command, capsys, name, code, tmp_path):
+    sent = getattr(signal, name)
+    before = signal.getsignal(sent)
+
+    def run(arguments):
+        with replaced_outputs(tmp_path / "out", "try it") as out:
+            (out / "a").write_text("half")
+            signal.raise_signal(sent)
+
+    command(run)
+    assert cli.main(["try", "it"]) == code
+    assert capsys.readouterr().err.strip() == "Stopped."
+    assert list(tmp_path.iterdir()) == []
+    assert signal.getsignal(sent) is before
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_what_nohup_ignores_stays_ignored(command):
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        command(lambda arguments: signal.raise_signal(signal.SIGHUP) or 0)
+        assert cli.main(["try", "it"]) == 0
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 @pytest.mark.parametrize("way", ["option", "variable"])

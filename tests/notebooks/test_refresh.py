@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import nbformat
 import pytest
@@ -205,3 +207,45 @@ def test_only_addresses_kernel_paths_and_where_a_scene_lies_are_sanitized():
     lines = [line for line in SANITIZE.read_text().splitlines() if line and not line.startswith("#")]
     assert [line for line in lines if line.startswith("[")] == ["[picture]", "[address]", "[scene]", "[kernel-path]"]
     assert len(lines) == 12
+
+
+STOPPED = """
+import sys
+from pathlib import Path
+from course_lib.commands.refresh import refresh
+from course_lib.told_to_end import told_to_end
+try:
+    with told_to_end():
+        refresh(Path(sys.argv[1]))
+except KeyboardInterrupt:
+    sys.exit(3)
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+@pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGKILL])
+def test_stopped_in_a_cell_it_leaves_the_file_and_no_kernel_and_nothing_said(sent, tmp_path):
+    temporary, lesson = tmp_path / "temporary", tmp_path / "lesson"
+    temporary.mkdir()
+    lesson.mkdir()
+    note = lesson / "kernel"
+    path = written(lesson, f"import os, time; open({str(note)!r}, 'w').write(str(os.getpid()) + '.'); time.sleep(600)")
+    before = path.read_bytes()
+    process = subprocess.Popen(
+        [sys.executable, "-c", STOPPED, str(path)],
+        cwd=REPOSITORY,
+        env=os.environ | {"TMPDIR": str(temporary)},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not (note.exists() and note.read_text().endswith(".")):
+        assert process.poll() is None
+        time.sleep(0.05)
+    process.send_signal(sent)
+    told = process.communicate()[1]  # whose end the kernel holds as well: it has ended, too
+    assert path.read_bytes() == before
+    if sent == signal.SIGTERM:
+        assert (process.returncode, told) == (3, "")
+        assert list(temporary.iterdir()) == []
+    else:
+        assert [name.name.startswith("course-scratch-") for name in temporary.iterdir()] == [True]

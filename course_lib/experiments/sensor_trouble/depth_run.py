@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Literal
 
 import numpy as np
@@ -27,6 +26,7 @@ from course_lib.experiments.sensor_trouble.depth_frames import TROUBLES, trouble
 from course_lib.experiments.sensor_trouble.placing import Arrival, generator
 from course_lib.experiments.sensor_trouble.score import Gate
 from course_lib.geometry import optical_pose, state_from_optical_pose
+from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed
 
 IMAGE = (88, 72)  # pixels, width and height
@@ -69,8 +69,8 @@ def corridor_trouble(data: str, seed: int, frames: int, shares: Sequence[float],
     {"undisturbed": frames, "troubles": [{"trouble", "share", "runs", "frames"}]}, frames as `watched_frames` has them.
     """
     scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
-    with TemporaryDirectory() as temporary:
-        folder = Path(temporary) / "recording"
+    with scratch_folder() as temporary:
+        folder = temporary / "recording"
         camera = DepthCamera.sr4000().resized(*IMAGE)
         carried = "wagon" if dof == "xyyaw" else "hand"
         record_seed(folder, building, seed, camera=camera, frames=frames, carried=carried)

@@ -7,8 +7,6 @@ looked up and not computed again. So it has recovered with the first good pair, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -16,6 +14,7 @@ from course_lib.experiments.look_alikes import LARGEST_ERROR_M, LARGEST_TURN_DEG
 from course_lib.experiments.sensor_trouble.panoramas import PERIOD, TROUBLES, Pair, troubled_walk
 from course_lib.experiments.sensor_trouble.placing import Arrival, generator
 from course_lib.experiments.sensor_trouble.score import Gate
+from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
 from course_lib.simulation.room.nearby_views import WalkModel, experiment_of, photograph_walks
@@ -76,8 +75,8 @@ def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float])
     """
     models = RecordingModels()
     room, semantic_map = surveyed_room(seed, models)
-    with TemporaryDirectory() as folder:
-        walk = next(photograph_walks(Path(folder), room, seed, 1, frames, models, WalkModel()))
+    with scratch_folder() as folder:
+        walk = next(photograph_walks(folder, room, seed, 1, frames, models, WalkModel()))
     upper, lower = CAMERA_HEIGHTS[experiment_of(0)]
     localizer = SemanticLocalizer(
         StereoRig(round(upper - lower, 6), upper), semantic_map, YoloDetector.load(detector), association="consistent"

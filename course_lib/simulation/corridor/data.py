@@ -1,13 +1,12 @@
 """Everything under data/corridor from one seed: true world, surveyed map, planar map, two recorded runs, checksums.
 
-Everything is made in the system's temporary folder and put in its place at the end: a run that is stopped leaves the
-old data as they were.
+Everything is made beside its place and put there at the end: a run that is stopped leaves the old data as they were,
+and what was made goes, with the next run where this one was killed.
 """
 
 from __future__ import annotations
 
 import json
-import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -17,6 +16,7 @@ import numpy as np
 
 from course_lib.depth_mcl.camera import DepthCamera
 from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.output_folder import replaced_outputs
 from course_lib.simulation.corridor.measurements import hole_share, map_error, noise_on_a_wall
 from course_lib.simulation.corridor.mesh_building import WorldMesh
 from course_lib.simulation.corridor.mesh_files import write_ply, write_world_ply
@@ -34,7 +34,7 @@ from course_lib.simulation.corridor.recorded_runs import (
 from course_lib.simulation.corridor.recording import record
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
 from course_lib.simulation.corridor.world import LENGTH, make_corridor
-from course_lib.simulation.data_folder import checksums, move_products, require_folder
+from course_lib.simulation.data_folder import checksums, require_folder
 from course_lib.simulation.sensors.laser_survey import STATIONS, ScannerModel, registration_error, survey
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
@@ -79,8 +79,7 @@ def make_corridor_data(
     out, models = require_folder(out), models or CorridorModels()
     generators = np.random.default_rng(seed).spawn(7)
     world_rng, survey_rng, planar_rng, camera_rng, wagon_rng, hand_rng, measure_rng = generators
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary)
+    with replaced_outputs(out, "make-data", PRODUCTS) as folder:
         world = make_corridor(world_rng)
         write_world_ply(folder / "true_world.ply", world.run_day, "corridor, true world of the run day; CC BY 4.0")
         measured = {"map": _make_map(folder, world.survey_day, models, survey_rng, planar_rng, measure_rng, progress)}
@@ -96,7 +95,6 @@ def make_corridor_data(
         (folder / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
         (folder / "PARAMETERS.md").write_text(corridor_parameters(models))
         (folder / "SHA256SUMS").write_text(checksums(folder, PRODUCTS))
-        move_products(folder, out, PRODUCTS)
     return summary
 
 

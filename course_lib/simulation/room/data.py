@@ -1,19 +1,19 @@
 """Everything under data/room from one seed: the paper's stereo panoramas, exact boxes and poses, the semantic map.
 
-Everything is made in the system's temporary folder and put in its place at the end: a run that is stopped leaves the
-old data as they were.
+Everything is made beside its place and put there at the end: a run that is stopped leaves the old data as they were,
+and what was made goes, with the next run where this one was killed.
 """
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from course_lib.simulation.data_folder import checksums, move_products, require_folder
+from course_lib.output_folder import replaced_outputs
+from course_lib.simulation.data_folder import checksums, require_folder
 from course_lib.simulation.parameter_tables import parameter_tables
 from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
@@ -61,8 +61,7 @@ def make_room_data(
     survey_rng, rng = np.random.default_rng(seed).spawn(2)
     room = make_experiment_room()
     mount = None if models.rig.assembled_anew else assemble(models.rig, rng.spawn(1)[0])
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary)
+    with replaced_outputs(out, "make-data", PRODUCTS) as folder:
         survey_room(room, models.survey, survey_rng).save(folder / "semantic_map.json")
         shots = [
             (experiment, upper_height, place, turn)
@@ -84,5 +83,4 @@ def make_room_data(
             write_poses(folder / f"experiment_{experiment}", seed, models.width, models.heights.baseline, entries)
         (folder / "PARAMETERS.md").write_text(parameter_tables(models, "room"))
         (folder / "SHA256SUMS").write_text(checksums(folder, PRODUCTS))
-        move_products(folder, out, PRODUCTS)
     return {"seed": seed, "pairs": sum(map(len, lists.values())), "objects": len(room.objects)}

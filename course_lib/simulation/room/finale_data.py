@@ -6,14 +6,14 @@ kept. Seed and streams are those of `demo finale`: the files are what that exper
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from course_lib.output_folder import replaced_outputs
 from course_lib.simulation.corridor.mesh_files import write_ply
-from course_lib.simulation.data_folder import checksums, move_products, require_folder
+from course_lib.simulation.data_folder import checksums, require_folder
 from course_lib.simulation.parameter_tables import parameter_table
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh
 from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
@@ -38,15 +38,13 @@ def make_finale_data(out: str | Path, seed: int, models: FinaleModels | None = N
     Raises `ValueError` where `out` cannot be a folder.
     """
     models, out = models or FinaleModels(), require_folder(out)
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary)
+    with replaced_outputs(out, "make-data", PRODUCTS) as folder:
         room, semantic_map = surveyed_room(seed, models.recording)
         semantic_map.save(folder / "semantic_map.json")
         vertices, faces = surveyed_mesh(room, models.mesh, np.random.default_rng([STREAM, seed, MAP]))
         write_ply(folder / "map.ply", vertices, faces, "generated room, simulated laser survey; CC BY 4.0")
         (folder / "PARAMETERS.md").write_text(finale_parameters(models))
         (folder / "SHA256SUMS").write_text(checksums(folder, PRODUCTS))
-        move_products(folder, out, PRODUCTS)
     return {"seed": seed, "objects": len(room.objects), "triangles": len(faces)}
 
 
