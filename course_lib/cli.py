@@ -15,6 +15,7 @@ import sys
 import traceback
 import warnings
 
+from course_lib.command_parser import VERY_LIKE, CommandParser, meant
 from course_lib.scratch import clear_scratch
 from course_lib.standard_output import told_output
 from course_lib.told_to_end import told_to_end
@@ -91,8 +92,10 @@ def main(words: list[str]) -> int:
     found = find_command(words)
     if found is None:
         longer = [name for name in COMMANDS if name.split()[0] == words[0]]
-        meant = f"did you mean: {', '.join(longer)}?" if longer else f"the commands are: {', '.join(COMMANDS)}"
-        print(f"error: there is no command {' '.join(words[:2])!r}; {meant}", file=sys.stderr)
+        like = meant(" ".join(words[:2]), COMMANDS, VERY_LIKE) if len(words) > 1 else ""
+        like = like or (f"; did you mean: {', '.join(longer)}?" if longer else meant(words[0], COMMANDS))
+        told = like or f"; the commands are: {', '.join(COMMANDS)}"
+        print(f"error: there is no command {' '.join(words[:2])!r}{told}", file=sys.stderr)
         return EXIT_BAD_INPUT
     debug = os.environ.get("COURSE_DEBUG", "") not in ("", "0")
     warnings.formatwarning = one_line
@@ -122,9 +125,9 @@ def main(words: list[str]) -> int:
 
 
 def parse(name: str, module, words: list[str]) -> argparse.Namespace:
-    """The arguments of one command; argparse itself exits, with code 2 and the usage, on arguments that do not fit."""
+    """The arguments of one command; the parser itself exits, with code 2 and a sentence, on those that do not fit."""
     description = (module.__doc__ or "").strip().split("\n")[0]
-    parser = argparse.ArgumentParser(prog=f"course.py {name}", description=description, allow_abbrev=False)
+    parser = CommandParser(prog=f"course.py {name}", description=description, allow_abbrev=False)
     module.add_arguments(parser)
     words = module.join_words(words) if hasattr(module, "join_words") else words
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
@@ -144,6 +147,9 @@ def report(error: Exception) -> int:
     if isinstance(error, ImportError):
         print(f"error: {error}. See what is missing: python3 course.py check", file=sys.stderr)
         return EXIT_FAULT
+    if isinstance(error, MemoryError):
+        print(f"error: there is not enough memory ({error}): ask for less, such as fewer particles", file=sys.stderr)
+        return EXIT_BAD_INPUT
     if isinstance(error, (ValueError, OSError, RuntimeError)):
         print(f"error: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT

@@ -25,6 +25,7 @@ _REASONS = {
     errno.EACCES: "it may not be written to: give a folder of your own",
     errno.EPERM: "it may not be written to: give a folder of your own",
     errno.ENOENT: "there is no such folder",
+    errno.EISDIR: "it is a folder: give the name of a file",
     errno.ENOTDIR: "a part of its path is a file",
 }
 

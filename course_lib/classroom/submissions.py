@@ -65,6 +65,8 @@ def collect(folder: Path, titles: Sequence[str]) -> Collection:
     folder = Path(folder)
     if not folder.is_dir():
         raise SubmissionError(f"{folder} is no folder: name the one that holds what the students handed in")
+    if not any(folder.iterdir()):
+        raise SubmissionError(f"{folder} is empty: name the folder that holds what the students handed in")
     found: dict[tuple[str, str], list[tuple[int, str, Path]]] = {}
     not_read: list[NotRead] = []
     for path, kind in _files(folder, folder, not_read):

@@ -78,12 +78,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs all rows of the table; 0 when every one reached the last frame."""
-    from course_lib.commands.arguments import parse_seeds, require_output_folder, require_seed
+    from course_lib.commands.arguments import (
+        MOST_PARTICLES,
+        parse_seeds,
+        require_count,
+        require_output_folder,
+        require_seed,
+    )
 
     require_seed(arguments.seed)
     seeds = None if arguments.seeds is None else parse_seeds(arguments.seeds)
-    if arguments.frames is not None and arguments.frames < 1:
-        raise ValueError(f"--frames must be at least 1; got {arguments.frames}")
+    require_count("--particles", arguments.particles, MOST_PARTICLES)  # before the recording, which takes a minute
+    require_count("--frames", arguments.frames)
     require_output_folder(arguments.out)
     if arguments.dof == "6":
         return _run_by_hand(arguments, seeds or [arguments.seed])

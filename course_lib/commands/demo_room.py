@@ -74,7 +74,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs both experiments, from images and from exact boxes; returns the exit code."""
-    from course_lib.commands.arguments import require_output_folder, require_seed
+    from course_lib.commands.arguments import require_count, require_output_folder, require_seed
     from course_lib.paths import data_path
     from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
 
@@ -86,8 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
     seed = SEED if arguments.seed is None else arguments.seed
     require_seed(seed)
     require_output_folder(arguments.out)
-    if arguments.poses is not None and arguments.poses < 1:
-        raise ValueError(f"--poses must be at least 1; got {arguments.poses}")
+    require_count("--poses", arguments.poses)
     if 0 in arguments.roll:
         raise ValueError("--roll must not be 0: images that are not rolled are the experiment itself")
     if arguments.association not in ASSOCIATIONS:
@@ -110,6 +109,7 @@ def _photograph(folder: Path, seed: int) -> None:
 
 
 def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector | None = None) -> int:
+    from course_lib.commands.arguments import warn_of_fewer
     from course_lib.commands.look_alike_tables import views_table
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.look_alikes import answers_of_places, tables_by_method
@@ -126,6 +126,7 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
     rolled: dict[str, list[RolledPair]] = {name: [] for name in FITS}
     for number in (1, 2):
         recording = read_stereo_recording(folder / f"experiment_{number}")
+        warn_of_fewer("--poses", arguments.poses, len(recording.pairs), f"experiment {number} has")
         recording = replace(recording, pairs=recording.pairs[: arguments.poses])
         localizer = SemanticLocalizer(
             recording.rig,

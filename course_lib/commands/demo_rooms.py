@@ -13,7 +13,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from course_lib.commands.arguments import parse_seeds, require_output_folder
+from course_lib.commands.arguments import parse_seeds, require_count, require_output_folder, require_processes
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.output_folder import replaced_outputs
 from course_lib.processors import processors
@@ -88,10 +88,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Runs the experiment; returns the exit code."""
     seeds = parse_seeds(arguments.seeds)
-    if arguments.poses < 1:
-        raise ValueError(f"--poses must be at least 1; got {arguments.poses}")
-    if arguments.processes is not None and arguments.processes < 1:
-        raise ValueError(f"--processes must be at least 1; got {arguments.processes}")
+    require_count("--poses", arguments.poses)
+    require_processes("--processes", arguments.processes)
     for tilt in arguments.tilts:
         if not 0 <= tilt <= GREATEST_TILT_DEG:
             raise ValueError(f"--tilts must be between 0 and {GREATEST_TILT_DEG:g} degrees; got {tilt:g}")

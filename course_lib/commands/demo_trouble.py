@@ -10,7 +10,13 @@ import argparse
 import json
 from pathlib import Path
 
-from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
+from course_lib.commands.arguments import (
+    parse_numbers,
+    parse_seeds,
+    require_count,
+    require_output_folder,
+    require_processes,
+)
 
 FRAMES = 100  # of a depth recording
 PAIRS = 24  # of a walk with panoramas
@@ -64,10 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
     percents = parse_numbers("--share", arguments.share)
     if max(percents) > GREATEST_SHARE:
         raise ValueError(f"--share must be at most {GREATEST_SHARE} percent; got {max(percents)}")
-    for option in ("processes", "frames"):
-        value = getattr(arguments, option)
-        if value is not None and value < 1:
-            raise ValueError(f"--{option} must be at least 1; got {value}")
+    require_count("--frames", arguments.frames)
+    require_processes("--processes", arguments.processes)
     require_output_folder(arguments.out)
 
     from course_lib.commands.trouble_table import trouble_table

@@ -9,7 +9,13 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course_lib.commands.arguments import require_output_folder, require_positive, require_seed
+from course_lib.commands.arguments import (
+    require_count,
+    require_output_folder,
+    require_positive,
+    require_processes,
+    require_seed,
+)
 from course_lib.commands.fuzz_table import fuzz_table
 from course_lib.output_folder import replaced_outputs
 from course_lib.writing import write_at_once
@@ -50,9 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     names = format_names(arguments.formats)
     require_seed(arguments.seed)
-    for option, value in (("--files", arguments.files), ("--processes", arguments.processes)):
-        if value is not None and value < 1:
-            raise ValueError(f"{option} must be at least 1; got {value}")
+    require_count("--files", arguments.files)
+    require_processes("--processes", arguments.processes)
     if arguments.seconds is not None:
         require_positive("--seconds", arguments.seconds, "seconds")
     require_output_folder(arguments.out)

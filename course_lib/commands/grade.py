@@ -9,7 +9,7 @@ import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from course_lib.commands.arguments import require_output_folder
+from course_lib.commands.arguments import require_output_folder, require_processes
 from course_lib.output_folder import replaced_outputs
 from course_lib.processors import processors
 
@@ -62,7 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.classroom.grading import grade_folder
 
     out = results_folder(arguments.folder, arguments.out)
-    for name, value in (("--jobs", arguments.jobs), ("--seconds", arguments.seconds), ("--memory", arguments.memory)):
+    require_processes("--jobs", arguments.jobs)
+    for name, value in (("--seconds", arguments.seconds), ("--memory", arguments.memory)):
         if value is not None and not value > 0:
             raise ValueError(f"{name} {value}: it must be more than 0")
     if arguments.seed is not None and arguments.seed < 0:

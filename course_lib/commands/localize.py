@@ -115,7 +115,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs the filter; 0 when it reached the last frame, whatever it believes of the track."""
-    from course_lib.commands.arguments import require_output_folder, require_positive, require_seed
+    from course_lib.commands.arguments import (
+        MOST_PARTICLES,
+        require_count,
+        require_output_folder,
+        require_positive,
+        require_seed,
+        warn_of_fewer,
+    )
     from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
@@ -129,6 +136,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     method = _method(arguments)
     require_seed(arguments.seed)
+    require_count("--particles", arguments.particles, MOST_PARTICLES)
+    require_count("--frames", arguments.frames)
     require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
     require_positive("--near", arguments.near, "metres")
     require_positive("--far", arguments.far, "metres")
@@ -137,6 +146,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.out:
         require_output_folder(arguments.out)
     sequence = read_sequence(arguments.sequence, arguments.depth_scale)
+    warn_of_fewer("--frames", arguments.frames, len(sequence.frames), f"{arguments.sequence} has")
     up = arguments.up or sequence.up or "unknown"
     if arguments.dof == "xyyaw" and up == "unknown":
         raise ValueError(

@@ -9,7 +9,7 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from course_lib.commands.arguments import require_output_folder
+from course_lib.commands.arguments import require_output_folder, require_processes
 from course_lib.commands.detector_options import chosen_detector
 from course_lib.output_folder import replaced_outputs
 from course_lib.processors import processors
@@ -34,8 +34,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Makes the data; returns the exit code."""
     out = arguments.out or FOLDER
-    for folder in (out, arguments.work):
-        require_output_folder(folder)
+    require_processes("--processes", arguments.processes)
+    require_output_folder(out)
+    require_output_folder(arguments.work, "--work")
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.project_rooms import make_project_rooms
     from course_lib.simulation.data_folder import checksums

@@ -13,7 +13,7 @@ import re
 from contextlib import ExitStack
 from pathlib import Path
 
-from course_lib.commands.arguments import parse_seeds, require_output_folder
+from course_lib.commands.arguments import MOST_PARTICLES, parse_seeds, require_count, require_output_folder
 from course_lib.scratch import scratch_folder
 
 EXPERIMENTS = ("corridor",)
@@ -53,10 +53,8 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments.results import write_results
 
     seeds = seeds_of(arguments.seeds)
-    for option in ("particles", "frames"):
-        value = getattr(arguments, option)
-        if value is not None and value < 1:
-            raise ValueError(f"--{option} must be at least 1; got {value}")
+    require_count("--particles", arguments.particles, MOST_PARTICLES)
+    require_count("--frames", arguments.frames)
     require_output_folder(arguments.out)
     points = [{"seed": seed, "frames": arguments.frames, "n_particles": arguments.particles} for seed in seeds]
     path = arguments.out / "corridor.jsonl"

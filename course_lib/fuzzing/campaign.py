@@ -107,7 +107,7 @@ class Bench:
     def try_file(self, name: str, file: Path, seconds: float = SECONDS, memory: int = MEMORY) -> Verdict:
         """The same with a file that lies elsewhere. Raises `FileNotFoundError` where nothing is."""
         if not is_given(file):
-            raise FileNotFoundError(f"there is no {file}")
+            raise FileNotFoundError(f"there is no {file}: give --read a file, such as those that failing.txt names")
         if file.is_file() and not file.is_symlink():
             return self._tried(name, lambda path: shutil.copyfile(file, path), seconds, memory)
         return self._tried(name, lambda path: path.symlink_to(file.absolute()), seconds, memory)

@@ -95,6 +95,11 @@ def test_what_is_no_folder_is_named(tmp_path):
         collect(tmp_path / "nowhere", TITLES)
 
 
+def test_an_empty_folder_is_named_and_no_empty_table_made_of_it(tmp_path):
+    with pytest.raises(SubmissionError, match="is empty: name the folder that holds what the students handed in"):
+        collect(tmp_path, TITLES)
+
+
 def test_cells_are_read_without_running_or_trusting_anything(tmp_path):
     cells = [
         {"cell_type": "markdown", "source": "# x"},

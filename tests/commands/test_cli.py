@@ -76,7 +76,7 @@ def test_unknown_arguments_are_refused_unless_the_command_passes_them_on(command
 
 @pytest.mark.parametrize(
     ("words", "said"),
-    [(["demo"], "demo corridor"), (["make-data", "house"], "make-data corridor"), (["lba"], "lab, test")],
+    [(["demo"], "demo corridor"), (["make-data", "house"], "make-data corridor"), (["xyz"], "lab, test")],
 )
 def test_an_unknown_command_is_told_the_known_ones(words, said, capsys):
     assert cli.main(words) == 2
@@ -197,3 +197,75 @@ def test_descriptions_come_from_the_command_modules_docstring(command):
     command(lambda arguments: 0)
     module = sys.modules["course_lib.commands.try_it"]
     assert isinstance(cli.parse("try it", module, []), argparse.Namespace)
+
+
+def with_options(parser):
+    parser.add_argument("--particles", type=int)
+    parser.add_argument("--far", type=float)
+    parser.add_argument("--map", required=True, metavar="MESH")
+    parser.add_argument("--dof", choices=["xyyaw", "6"])
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--map", "m", "--particle", "5"], "--particle 5: there is no option '--particle'; did you mean --particles?"),
+        (["--map", "m", "--Particles=5"], "--Particles=5: there is no option '--Particles'; did you mean --particles?"),
+        (["--map", "m", "--zzzzzzzz"], "--zzzzzzzz: there is no option '--zzzzzzzz'."),
+        (["--map", "m", "walk"], "walk: there is no place for the word 'walk'."),
+        (["--map", "m", "--particles", "ten"], "--particles must be a whole number; got 'ten'."),
+        (["--map", "m", "--particles", "1e9"], "--particles must be a whole number; got '1e9'."),
+        (["--map", "m", "--far", "near"], "--far must be a number; got 'near'."),
+        (["--map", "m", "--particles"], "--particles needs a value."),
+        (["--map", ""], "an empty word stands where a value is expected"),
+        (["--map="], "an empty word stands where a value is expected"),
+        ([], "--map must be given."),
+    ],
+)
+def test_words_that_do_not_fit_are_told_in_one_sentence_that_says_where_the_options_are(command, capsys, words, told):
+    command(lambda arguments: pytest.fail("work had begun"), with_options)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["try", "it", *words])
+    assert ended.value.code == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"error: {told}")
+    assert error.endswith(" All options: python3 course.py try it --help\n")
+    assert len(error.splitlines()) == 1
+
+
+def test_a_choice_that_there_is_not_is_told_with_those_that_there_are(command, capsys):
+    command(lambda arguments: pytest.fail("work had begun"), with_options)
+    with pytest.raises(SystemExit):
+        cli.main(["try", "it", "--map", "m", "--dof", "7"])
+    error = capsys.readouterr().err
+    assert error.startswith("error: --dof must be one of ")
+    for word in ("xyyaw", "6", "got '7'"):
+        assert word in error
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["loclize"], "there is no command 'loclize'; did you mean localize"),
+        (["demo", "corrider"], "there is no command 'demo corrider'; did you mean demo corridor"),
+        (["Demo", "room"], "there is no command 'Demo room'; did you mean demo room"),
+        (["handuot", "06", "--out", "x"], "there is no command 'handuot 06'; did you mean handout?"),
+        (["demo"], "there is no command 'demo'; did you mean: demo corridor, demo room, "),
+        (["lba"], "there is no command 'lba'; did you mean lab?"),
+        (["zzzzzz"], "there is no command 'zzzzzz'; the commands are: lab, test, "),
+    ],
+)
+def test_a_misspelt_command_is_told_with_the_one_that_may_be_meant(words, told, capsys):
+    assert cli.main(words) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"error: {told}")
+    assert len(error.splitlines()) == 1
+
+
+def test_what_needs_more_memory_than_there_is_can_be_mended_by_who_asked(command, capsys):
+    command(raising(MemoryError("Unable to allocate 119. GiB")))
+    assert cli.main(["try", "it"]) == 2
+    error = capsys.readouterr().err
+    assert error == (
+        "error: there is not enough memory (Unable to allocate 119. GiB): ask for less, such as fewer particles\n"
+    )

@@ -192,6 +192,8 @@ def test_the_kindnesses_are_measured_one_by_one(tmp_path, capsys):
         (["--seeds", "5-1"], "--seeds must be"),
         (["--seeds", "1-"], "--seeds must be"),
         (["--frames", "0"], "--frames must be at least 1"),
+        (["--particles", "0"], "--particles must be at least 1; got 0"),
+        (["--particles", "1000000000"], "--particles must be at most 1,000,000; got 1,000,000,000"),
         (["--methods", "proposed"], "--methods goes with --seeds"),
         (["--seeds", "1", "--methods", "proposed,miracle"], "--methods must name proposed and fallon"),
     ],

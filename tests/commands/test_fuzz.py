@@ -111,6 +111,7 @@ def test_seconds_end_a_run(tmp_path, capsys):
         (["--formats", "ply,docx"], "docx is not known"),
         (["--files", "0"], "--files must be at least 1"),
         (["--processes", "0"], "--processes must be at least 1"),
+        (["--processes", "10000"], "--processes must be at most "),
         (["--seconds", "-1"], "--seconds must be a positive number"),
         (["--seed", "-1"], "--seed must be 0 or more"),
         (["--read", "map.ply"], "--format says what"),

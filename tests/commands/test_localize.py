@@ -397,3 +397,22 @@ def test_exact_reaches_the_renderer(command, corridor_folder, tmp_path, monkeypa
     assert main([command, *words, "--exact"]) == 0
     assert asked
     assert all(asked)
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "told"),
+    [
+        ("--particles", "0", "--particles must be at least 1; got 0"),
+        ("--particles", "1000000000", "--particles must be at most 1,000,000; got 1,000,000,000"),
+        ("--frames", "-3", "--frames must be at least 1; got -3"),
+    ],
+)
+def test_a_number_that_cannot_be_is_told_by_the_option_that_was_given(corridor_folder, capsys, option, value, told):
+    assert main([*arguments(corridor_folder), option, value]) == 2
+    assert capsys.readouterr().err == f"error: {told}\n"
+
+
+def test_more_frames_than_there_are_are_warned_of(corridor_folder):
+    there = len(read_sequence(corridor_folder / "wagon").frames)
+    with pytest.warns(UserWarning, match=f"--frames 5000: .* has {there}, and all are taken"):
+        assert main(arguments(corridor_folder, dof="xyyaw", frames=5000, particles=5)) == 0

@@ -36,5 +36,13 @@ def test_a_file_in_place_of_a_folder_is_refused(made, option, tmp_path, monkeypa
     monkeypatch.setattr("course_lib.commands.make_projects.FOLDER", tmp_path / "projects")
     (tmp_path / "file").write_text("")
     assert main(["make-data", "projects", option, str(tmp_path / "file")]) == 2
-    assert f"{tmp_path / 'file'} is a file" in capsys.readouterr().err
+    assert f"{tmp_path / 'file'} is a file" in (told := capsys.readouterr().err)
+    assert told.startswith(f"error: {option} ")
+    assert made == []
+
+
+@pytest.mark.parametrize("processes", ["0", "-2", "10000"])
+def test_processes_that_cannot_be_are_refused(made, processes, tmp_path, capsys):
+    assert main(["make-data", "projects", "--out", str(tmp_path / "out"), "--processes", processes]) == 2
+    assert "--processes must be at " in capsys.readouterr().err
     assert made == []
