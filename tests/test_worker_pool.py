@@ -49,8 +49,11 @@ def note_and_sleep_beside(rank, count, meeting_file, folder):
 
 
 def press_ctrl_c():
-    os.kill(os.getpid(), signal.SIGINT)
-    time.sleep(0.1)
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.1)
+    except KeyboardInterrupt:
+        return "stopped"
     return "still here"
 
 
