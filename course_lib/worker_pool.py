@@ -13,11 +13,27 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor
 from multiprocessing.connection import Connection, wait
 
 _ENDS_S = 10.0
 """Seconds after which a worker that should end is no longer waited for: it ends by itself, a busy machine or not."""
+
+
+class _Pool(ProcessPoolExecutor):
+    """Its workers are begun with Ctrl-C withheld, which reaches all of a terminal's processes: they end with this one.
+
+    From their first moment on, in which Python would answer it with a traceback already.
+    """
+
+    def submit(self, *call: object, **named: object) -> Future:
+        if not hasattr(signal, "pthread_sigmask"):
+            return super().submit(*call, **named)
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            return super().submit(*call, **named)  # which begins a worker where none waits
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextlib.contextmanager
@@ -31,9 +47,7 @@ def worker_pool(
     """
     watched, held = multiprocessing.Pipe(duplex=False)
     with watched, held:
-        pool = ProcessPoolExecutor(
-            n_workers, multiprocessing.get_context("spawn"), _begin, (watched, start_worker, arguments)
-        )
+        pool = _Pool(n_workers, multiprocessing.get_context("spawn"), _begin, (watched, start_worker, arguments))
         others = multiprocessing.active_children()
         try:
             yield pool
@@ -62,7 +76,6 @@ def _end_when_ready(watched: Connection | int) -> None:
 
 
 def _begin(watched: Connection, start_worker: Callable[..., None] | None, arguments: tuple) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all at once; the workers end with who began them
     _end_when_ready(watched)
     if start_worker is not None:
         start_worker(*arguments)

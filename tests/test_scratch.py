@@ -31,8 +31,8 @@ from course_lib import cli
 from course_lib.worker_pool import worker_pool
 from tests.test_scratch import hold
 def run(arguments):
-    with worker_pool(2) as pool:
-        list(pool.map(hold, [sys.argv[1]] * 2))
+    with worker_pool(2, hold, (sys.argv[1],)) as pool:
+        list(pool.map(int, range(2)))
 if __name__ == "__main__":
     sys.modules["course_lib.commands.try_it"] = types.SimpleNamespace(run=run, add_arguments=lambda parser: None)
     cli.COMMANDS["try"] = ("try_it", "a try")

@@ -48,6 +48,15 @@ def note_and_sleep_beside(rank, count, meeting_file, folder):
     note_and_sleep(folder)
 
 
+def press_ctrl_c():
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.1)
+    except KeyboardInterrupt:
+        return "stopped"
+    return "still here"
+
+
 def note_start(folder):
     (Path(folder) / f"begun-{os.getpid()}").touch()
 
@@ -79,6 +88,15 @@ def test_work_is_done_in_fresh_processes_that_begin_as_told(tmp_path):
     assert 1 <= len(list(tmp_path.glob("begun-*"))) <= 2
     assert str(os.getpid()) not in {path.name.split("-")[1] for path in tmp_path.glob("begun-*")}
     assert not multiprocessing.active_children()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_ctrl_c_which_reaches_all_of_a_terminals_processes_stops_no_worker_by_itself():
+    earlier = signal.getsignal(signal.SIGINT)
+    with worker_pool(1) as pool:
+        assert pool.submit(press_ctrl_c).result() == "still here"
+    assert signal.getsignal(signal.SIGINT) is earlier
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, set()), "here it goes on to work"
 
 
 def test_an_exception_ends_the_workers_in_the_middle_of_their_work(tmp_path):

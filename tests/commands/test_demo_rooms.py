@@ -42,6 +42,12 @@ def test_other_seeds_are_refused(text):
         parse_seeds(text)
 
 
+def test_so_many_seeds_that_no_memory_holds_them_are_refused():
+    assert len(parse_seeds("1-100000")) == 100_000
+    with pytest.raises(ValueError, match=r"--seeds must be at most 100,000 seeds; got '1-100001'"):
+        parse_seeds("1-100001")
+
+
 def test_the_table_has_the_papers_row_ours_and_their_intervals(made, tmp_path, capsys):
     assert main(["demo", "rooms", "--seeds", "10001-10002", "--processes", "1", "--out", str(tmp_path)]) == 0
     text = capsys.readouterr().out
