@@ -7,6 +7,7 @@ with bounded memory.
 
 from __future__ import annotations
 
+import codecs
 import io
 import re
 import struct
@@ -56,6 +57,7 @@ def read_mesh(path: str | Path, error: type[Exception]) -> tuple[np.ndarray, np.
     kind = path.suffix.lower().lstrip(".")
     if kind not in mesh_endings():
         raise error(f"map {path} ends in {path.suffix!r}, which is no mesh: PLY, OBJ, STL, OFF or GLB is expected")
+    data = _without_mark(data, kind)
     _require_complete(data, kind, path, error)
     if fault := row_fault(data, kind):
         raise error(f"map {path}, {fault}")
@@ -77,6 +79,13 @@ def read_mesh(path: str | Path, error: type[Exception]) -> tuple[np.ndarray, np.
         if np.ndim(array) != 2 or np.shape(array)[1] != 3:
             raise error(f"map {path} has {what} that are no rows of three numbers: got {np.shape(array)}")
     return vertices, faces
+
+
+def _without_mark(data: bytes, kind: str) -> bytes:
+    """The file without a byte order mark, with which trimesh would not know its first word."""
+    text = data.removeprefix(codecs.BOM_UTF8)
+    binary = kind not in _SIZED or (kind == "stl" and text[:5] != b"solid")  # their first bytes may be any
+    return data if binary else text
 
 
 def _read_here(path: Path, data: bytes, kind: str) -> tuple[np.ndarray, np.ndarray]:

@@ -15,6 +15,14 @@ _CORNER = re.compile(rb"-?\d+(?:/-?\d*){0,2}")
 
 _PLY_FORMATS = [[kind, b"1.0"] for kind in (b"ascii", b"binary_little_endian", b"binary_big_endian")]
 _PLY_WORDS = (b"format", b"comment", b"obj_info", b"element", b"property")
+_OBJ_WORDS = frozenset(
+    b"v vt vn vp deg bmat step cstype p l f curv curv2 surf parm trim hole scrv sp end con g s mg o bevel c_interp "
+    b"d_interp lod usemap maplib usemtl mtllib shadow_obj trace_obj ctech stech call csh".split()
+)
+"""A vertex whose word is damaged would be left out, and every face after it would take other vertices.
+
+Source: Wavefront, Object Files (.obj), version 3.0, without what it calls superseded.
+"""
 
 
 def row_fault(data: bytes, kind: str) -> str | None:
@@ -83,7 +91,7 @@ def _ply(data: bytes) -> Iterator[str]:
 def _off(data: bytes) -> Iterator[str]:
     lines = [(number, line.partition(b"#")[0].strip()) for number, line in enumerate(data.splitlines(), start=1)]
     rows = [(number, line) for number, line in lines if line]
-    if rows and not re.match(rb"(?:\xef\xbb\xbf)?(?:ST)?C?N?OFF\b", rows[0][1]):  # trimesh leaves out what is before it
+    if rows and not re.match(rb"(?:ST)?C?N?OFF\b", rows[0][1]):  # trimesh leaves out what is before it
         yield f"line {rows[0][0]}: OFF is expected; found {rows[0][1][:60]!r}"
     if rows and re.fullmatch(rb"C?OFF", rows[0][1]):
         rows = rows[1:]
@@ -108,6 +116,8 @@ def _obj(data: bytes) -> Iterator[str]:
             # Three, with a weight or a colour, or both.
             if len(words) - 1 not in (3, 4, 6, 7) or not _NUMBERS.fullmatch(b" ".join(words[1:])):
                 yield f"line {number}: a vertex is three numbers; found {line[:60]!r}"
+        elif words and words[0] not in _OBJ_WORDS:
+            yield f"line {number}: {_shown(words[:1])} is no word of OBJ's; found {line[:60]!r}"
         elif words[:1] == [b"f"] and (len(words) < 4 or not all(map(_CORNER.fullmatch, words[1:]))):
             yield f"line {number}: a face is three vertices or more; found {line[:60]!r}"
 

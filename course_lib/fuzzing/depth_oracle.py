@@ -16,6 +16,8 @@ JITTER = 0.02
 VIEWS = np.array([[0.3, 0.2, 0.1, 0.02, 0.05, 0.4], [-1.0, 0.5, -0.2, 0.0, 0.1, -2.0]])
 """Where the reference views are taken, states `(2, 6)`: inside the room of the samples."""
 CAMERA = DepthCamera(32, 24, 24.0, 24.0, 15.5, 11.5, 0.1, 12.0)
+PLANES = ((CAMERA.near, CAMERA.far), (CAMERA.nearest, CAMERA.farthest))
+"""What lies between a plane and what rounding may make of it, may be seen or not."""
 
 
 def depths_agree(vertices: np.ndarray, faces: np.ndarray) -> bool:
@@ -27,18 +29,26 @@ def depths_agree(vertices: np.ndarray, faces: np.ndarray) -> bool:
 
 
 def _agree(image: np.ndarray, corners: np.ndarray, state: np.ndarray) -> bool:
-    casts = np.stack([ray_cast(corners, state, du, dv) for du in (0, JITTER, -JITTER) for dv in (0, JITTER, -JITTER)])
-    with np.errstate(invalid="ignore"):
-        near, far = casts.min(axis=0), casts.max(axis=0)
-        fine = (image >= near - CONTRACT) & (image <= far + CONTRACT)
+    fine = np.zeros(image.shape, bool)
+    for planes in PLANES:
+        steps = (0, JITTER, -JITTER)
+        casts = np.stack([ray_cast(corners, state, du, dv, planes) for du in steps for dv in steps])
+        with np.errstate(invalid="ignore"):
+            fine |= (image >= casts.min(axis=0) - CONTRACT) & (image <= casts.max(axis=0) + CONTRACT)
     return bool(fine.all())
 
 
-def ray_cast(corners: np.ndarray, state: np.ndarray, du: float = 0.0, dv: float = 0.0) -> np.ndarray:
+def ray_cast(
+    corners: np.ndarray,
+    state: np.ndarray,
+    du: float = 0.0,
+    dv: float = 0.0,
+    planes: tuple[float, float] = (CAMERA.near, CAMERA.far),
+) -> np.ndarray:
     """Depth `(H, W)` of triangles `(F, 3, 3)` from a state `(6,)`, float64, `inf` where nothing is hit.
 
-    du, dv: pixels beside the pixels' centres. Both sides of a triangle are seen. Source: T. Moeller, B. Trumbore,
-    "Fast, minimum storage ray/triangle intersection", 1997.
+    du, dv: pixels beside the pixels' centres. planes: the least and greatest depth that is seen. Both sides of a
+    triangle are seen. Source: T. Moeller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
     """
     pose = optical_pose(np.asarray(state))
     local = (corners - pose[:3, 3]) @ pose[:3, :3]  # to the camera's axes: x right, y down, z forward
@@ -54,6 +64,6 @@ def ray_cast(corners: np.ndarray, state: np.ndarray, du: float = 0.0, dv: float 
             q = np.cross(-a, e1)
             v = (rays @ q) / det
             t = (e2 @ q) / det
-            hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t >= CAMERA.near) & (t <= CAMERA.far)
+            hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t >= planes[0]) & (t <= planes[1])
         depth = np.where(hit & (t < depth), t, depth)
     return depth

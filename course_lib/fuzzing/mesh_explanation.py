@@ -50,6 +50,8 @@ def _stand_in(vertices: np.ndarray, points: np.ndarray) -> bool:
 def second_reading(data: bytes, kind: str) -> tuple[np.ndarray | None, int]:
     """The points `(n, 3)` of a mesh file, and how many triangles it has at most. Of a GLB, which may move and repeat
     its points, there are none."""
+    if kind != "glb" and re.match(rb"\xef\xbb\xbf(ply|solid|OFF|[#v])", data):
+        data = data[3:]
     with np.errstate(all="ignore"):
         return {"ply": _ply, "off": _off, "obj": _obj, "stl": _stl, "glb": _glb}[kind](data)
 

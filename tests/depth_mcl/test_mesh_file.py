@@ -185,6 +185,8 @@ ASCII_STL = exported("stl_ascii")
         (OFF, "off", b"-1.5", b"-1,5", "a vertex is three numbers"),
         (OBJ, "obj", b"-1.50000000\n", b"\n", "a vertex is three numbers"),
         (OBJ, "obj", b"-1.50000000\n", b"-1.5 0 0\n", "a vertex is three numbers"),
+        (OBJ, "obj", b"\nv ", b"\nw ", "line 2: 'w' is no word of OBJ's"),
+        (OBJ, "obj", b"\nv ", b"\n1.5 v ", "line 2: '1.5' is no word of OBJ's"),
         (OBJ, "obj", b"\nf ", b"\nf 1 2\nf ", "a face is three vertices or more"),
         (OBJ, "obj", b"\nf ", b"\nf 1 2 x\nf ", "a face is three vertices or more"),
         (ASCII_STL, "stl", b"endloop", b"", "three vertices|a loop begins in a loop"),
@@ -216,6 +218,22 @@ def test_comments_colours_and_blank_lines_are_no_faults(tmp_path, data, kind):
     vertices, faces = read(tmp_path, data, kind)
     assert len(faces) == 12
     assert np.ptp(vertices, axis=0) == pytest.approx([1, 2, 3])
+
+
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [(ASCII_PLY, "ply"), (BINARY_PLY, "ply"), (OFF, "off"), (OBJ, "obj"), (OBJ[OBJ.index(b"v ") :], "obj"),
+     (ASCII_STL, "stl")],
+)  # fmt: skip
+def test_a_byte_order_mark_changes_nothing(tmp_path, data, kind):
+    (tmp_path / "plain").mkdir()
+    plain, marked = read(tmp_path / "plain", data, kind), read(tmp_path, b"\xef\xbb\xbf" + data, kind)
+    assert all(np.array_equal(one, other) for one, other in zip(plain, marked, strict=True))
+
+
+def test_the_header_of_a_binary_stl_may_begin_with_any_bytes(tmp_path):
+    data = exported("stl")
+    assert len(read(tmp_path, b"\xef\xbb\xbf" + data[3:], "stl")[1]) == 12
 
 
 def test_corners_of_two_numbers_are_no_map(tmp_path):

@@ -112,6 +112,8 @@ def test_the_second_reading_of_a_valid_mesh_has_its_corners_and_triangles(name, 
     path = samples / FORMATS[name].file
     points, most = second_reading(path.read_bytes(), path.suffix[1:])
     assert most == 192 + (12 if "ascii.ply" not in path.name and "off" not in path.name else 0)
+    if name not in ("glb", "ply", "stl"):
+        assert np.array_equal(second_reading(b"\xef\xbb\xbf" + path.read_bytes(), path.suffix[1:])[0], points)
     if name != "glb":
         assert np.abs(points).max(axis=0) == pytest.approx(np.array(ROOM) / 2)
 
@@ -122,6 +124,20 @@ def test_the_oracle_sees_a_wall_where_it_is():
     depth = ray_cast(mesh.triangles, state)
     assert depth[int(CAMERA.cy), int(CAMERA.cx)] == pytest.approx(ROOM[0] / 2, abs=1e-12)
     assert ray_cast(mesh.triangles[:0], state).min() == np.inf
+
+
+def test_between_a_plane_and_its_rounding_a_surface_may_be_seen_or_not_and_nothing_else():
+    """Damaged file 238 of seed 6 had a triangle 0.07 mm before the near plane."""
+    wall = np.array([[[CAMERA.near - 5e-5, y, z] for y, z in ((-9, -9), (9, -9), (0, 9))]])
+    far_wall = wall + np.array([2.0, 0, 0])
+    state, corners = np.zeros(6), np.concatenate([wall, far_wall])
+    seen, cut = (ray_cast(corners, state, planes=planes) for planes in ((CAMERA.nearest, 12.0), (CAMERA.near, 12.0)))
+    middle = int(CAMERA.cy), int(CAMERA.cx)
+    assert (seen[middle], cut[middle]) == pytest.approx((CAMERA.near - 5e-5, 2.1 - 5e-5))
+    assert depth_oracle._agree(seen, corners, state)
+    assert depth_oracle._agree(cut, corners, state)
+    assert not depth_oracle._agree((seen + cut) / 2, corners, state)
+    assert not depth_oracle._agree(ray_cast(corners, state, planes=(0.05, 12.0)) - 0.01, corners, state)
 
 
 def test_depths_of_the_room_agree_with_the_oracle_and_two_millimetres_do_not(monkeypatch):
