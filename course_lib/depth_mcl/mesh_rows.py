@@ -14,7 +14,9 @@ _NUMBERS = re.compile(rb"\s*(?:(?:%b)(?:\s+|$))*" % _NUMBER, re.I)
 _CORNER = re.compile(rb"-?\d+(?:/-?\d*){0,2}")
 
 _PLY_FORMATS = [[kind, b"1.0"] for kind in (b"ascii", b"binary_little_endian", b"binary_big_endian")]
-_PLY_WORDS = (b"format", b"comment", b"obj_info", b"element", b"property")
+_PLY_TYPES = frozenset(
+    b"char uchar short ushort int uint float double int8 uint8 int16 uint16 int32 uint32 float32 float64".split()
+)
 _OBJ_WORDS = frozenset(
     b"v vt vn vp deg bmat step cstype p l f curv curv2 surf parm trim hole scrv sp end con g s mg o bevel c_interp "
     b"d_interp lod usemap maplib usemtl mtllib shadow_obj trace_obj ctech stech call csh".split()
@@ -51,21 +53,36 @@ def _polygon_fault(fields: list[bytes] | None, more: int = 0) -> str | None:
     return None
 
 
-def _ply(data: bytes) -> Iterator[str]:
-    header, _, body = data.partition(b"end_header")
+def _ply_header(header: bytes) -> Iterator[str]:
+    """trimesh takes the second line for the format, passes over words it does not know, and of two of one name drops
+    one: every row after it is then read from the wrong place."""
+    elements: list[list[bytes]] = []
     names: list[bytes] = []
     for number, words in enumerate((line.split() for line in header.splitlines()), start=1):
-        # trimesh takes the second line for the format, whatever its first word, and passes over words it does not know.
+        found = f"found {_shown(words)}"
         if (words[:1] == [b"format"]) != (number == 2) or (number == 2 and words[1:] not in _PLY_FORMATS):
-            yield f"line {number}: 'format ascii 1.0', or binary, is expected on line 2; found {_shown(words)}"
-        if number > 1 and words and words[0] not in _PLY_WORDS:
-            yield f"line {number}: element, property or comment is expected; found {_shown(words)}"
+            yield f"line {number}: 'format ascii 1.0', or binary, is expected on line 2; {found}"
         if words[:1] == [b"element"]:
+            if len(words) != 3 or not words[2].isdigit():
+                yield f"line {number}: element, a name and a whole number are expected; {found}"
+            if words[1:2] in elements:
+                yield f"line {number}: there are two elements {words[1].decode('ascii', 'replace')}"
+            elements.append(words[1:2])
             names = []
         elif words[:1] == [b"property"]:
-            if words[-1] in names:  # trimesh drops one, and reads every row from the wrong place
+            kinds = words[2:4] if words[1:2] == [b"list"] else words[1:2]
+            if len(words) - len(kinds) != (3 if len(kinds) == 2 else 2) or not _PLY_TYPES.issuperset(kinds):
+                yield f"line {number}: property, its type (or list and two types) and a name are expected; {found}"
+            if words[-1] in names:
                 yield f"line {number}: the element has two properties {words[-1].decode('ascii', 'replace')}"
             names.append(words[-1])
+        elif number > 1 and words and words[0] not in (b"format", b"comment", b"obj_info"):
+            yield f"line {number}: element, property or comment is expected; {found}"
+
+
+def _ply(data: bytes) -> Iterator[str]:
+    header, _, body = data.partition(b"end_header")
+    yield from _ply_header(header)
     if not re.search(rb"^\s*format\s+ascii", header, re.M):
         return
     rows = iter(enumerate(body.splitlines()[1:], start=header.count(b"\n") + 2))
