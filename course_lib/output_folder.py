@@ -186,8 +186,11 @@ def _stands_in(folder: Path) -> bool:
 
 @contextlib.contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    """One process at a time puts something in place in a folder: each sees what the other one made."""
-    handle = os.open(folder, os.O_RDONLY) if fcntl else None
+    """One process at a time puts something in place in a folder: each sees what the other one made.
+
+    In an unfinished folder there is no other process, and its lock is taken: by this one, which would wait for itself.
+    """
+    handle = os.open(folder, os.O_RDONLY) if fcntl and UNFINISHED not in folder.name else None
     try:
         if handle is not None:
             with contextlib.suppress(OSError):

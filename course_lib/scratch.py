@@ -29,8 +29,10 @@ def scratch_folder() -> Iterator[Path]:
         clear_scratch()
         raise
     try:
-        work = folder / "work"  # what is being made beside it lies in the locked folder, too, and goes with it
-        work.mkdir()
+        # What is being made beside `work` goes with it. Not in `folder` itself, whose lock is taken: who puts something
+        # in place beside it locks the folder around it, and would wait for this process, which is itself.
+        work = folder / "around" / "work"
+        work.mkdir(parents=True)
         yield work
     finally:
         try:

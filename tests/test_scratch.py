@@ -65,10 +65,31 @@ def begun():
 def test_it_is_gone_at_the_end_and_after_an_error(temporary):
     with scratch_folder() as folder:
         (folder / "a").write_text("x")
-    assert folder.parent.parent == temporary
+    assert folder.parents[2] == temporary
     with pytest.raises(KeyError), scratch_folder():
         raise KeyError
     assert list(temporary.iterdir()) == []
+
+
+WAITS = """
+import sys
+from course_lib.output_folder import replaced_outputs
+from course_lib.scratch import scratch_folder
+with scratch_folder() as folder, replaced_outputs(folder, None) as new:
+    (new / "a").write_text("first")
+    with replaced_outputs(new, None) as newer:
+        (newer / "b").write_text("second")
+    assert [path.name for path in folder.iterdir()] == []
+    print(sorted(path.name for path in new.iterdir()))
+print("done")
+"""
+
+
+def test_a_folder_of_ours_can_itself_be_put_in_place_and_nobody_waits_for_himself():
+    """Lesson 20 once waited for ever: the lock that it wanted was its own."""
+    command = [sys.executable, "-c", WAITS]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=True)
+    assert done.stdout.splitlines() == ["['a', 'b']", "done"]
 
 
 def test_the_next_run_clears_what_a_killed_one_left_and_nothing_of_one_that_lives(temporary):
@@ -78,7 +99,7 @@ def test_the_next_run_clears_what_a_killed_one_left_and_nothing_of_one_that_live
         killed.wait()
         assert left.is_dir()
         with scratch_folder() as folder:
-            assert sorted(temporary.iterdir()) == sorted([held.parent, folder.parent])
+            assert sorted(temporary.iterdir()) == sorted([held.parents[1], folder.parents[1]])
     finally:
         lives.kill()
         lives.wait()
