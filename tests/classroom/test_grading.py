@@ -224,7 +224,7 @@ def test_ctrl_c_leaves_no_process_and_no_folder_behind(tmp_path, folder):
     environment = os.environ | {"TMPDIR": str(scratch)}
     with subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
         waited = time.monotonic() + 600
-        while not list(scratch.glob("*/worker-*/answer")):
+        while not list(scratch.glob("*/around/work/worker-*/answer")):
             assert process.poll() is None
             assert time.monotonic() < waited
             time.sleep(0.05)
