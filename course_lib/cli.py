@@ -57,11 +57,9 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "train-detector": ("train_detector", "train the room detector (needs PyTorch, which the course does not install)"),
     "score-detector": ("score_detector", "measure a detector's precision and recall on known rooms"),
     "score": ("score", "score a project that was handed in, on its hidden seeds"),
-    "fuzz": ("fuzz", "damage files of every format, and see that each is refused by name or read rightly"),
     "handout": ("handout", "make a class's folder: lessons without solutions, and the teacher's with graded tests"),
     "grade": ("grade", "grade a folder of submissions in a sandbox: points and hints as CSV and as a page"),
     "refresh": ("refresh", "run the lessons again and store their outputs"),
-    "interrupt": ("interrupt", "kill every writing command at random moments, fill its disk: old or new, never half"),
 }
 
 EXIT_BAD_INPUT = 2

@@ -32,8 +32,6 @@ ALLOWED = {
     "plots": METHODS | {"experiments"},
     "lessons": METHODS | {"experiments", "paths", "plots", "simulation"},
     "classroom": METHODS | {"experiments", "lessons", "paths"},
-    # Reads with the readers of both methods and of the grader; commands call it, so no lessons.
-    "fuzzing": METHODS | {"classroom"},
     "detector_training": METHODS | {"experiments", "simulation"},
 }
 

@@ -12,8 +12,6 @@ from course_lib.commands.bench_table import table
 from course_lib.commands.demo_corridor import table_1
 from course_lib.commands.demo_finale import finale_text
 from course_lib.commands.demo_lost import lost_table
-from course_lib.commands.fuzz_table import fuzz_table
-from course_lib.commands.interrupt import table as interrupt_table
 from course_lib.commands.six_degrees_table import six_degrees_table
 from course_lib.commands.trouble_table import trouble_table
 from course_lib.experiments.lost_and_found import summarize
@@ -139,8 +137,6 @@ def test_sensor_trouble_is_what_the_command_prints_of_its_stored_numbers(path):
 
 
 TABLES = [
-    ("fuzz_1.json", "4.2 Damaged files", fuzz_table),
-    ("interrupt_14.json", "4.3 Stopped at any", interrupt_table),
 ]
 
 

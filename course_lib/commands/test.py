@@ -51,22 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     only.add_argument("--fast", action="store_true", help="no lessons nor their tests, no browser, nothing marked slow")
     only.add_argument("--no-notebooks", action="store_true", help="only tests/")
     only.add_argument("--only-notebooks", action="store_true", help="only the lessons")
-    only.add_argument(
-        "--mutations",
-        nargs="*",
-        metavar="NAME",
-        help="break a copy of the code in the ways of tests/mutations.toml, one after the other, and run the tests "
-        "that must notice (NAME: a part of the names to try; default: all)",
-    )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    if arguments.mutations is not None:
-        from course_lib.commands import mutations
-
-        if arguments.passed_on:
-            raise ValueError(f"--mutations takes names and nothing else; got {' '.join(arguments.passed_on)}")
-        return mutations.run(ROOT, arguments.mutations)
     started = time.monotonic()
     with scratch_folder() as home:
         words = pytest_arguments(

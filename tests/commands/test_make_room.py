@@ -1,11 +1,6 @@
 """`make-data room` and `make-data training-rooms` refuse, before any work, what would lose data or cannot be made."""
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -68,35 +63,3 @@ def test_training_rooms_that_are_all_there_are_counted(tmp_path, capsys):
     (tmp_path / room_images.BOXES_FILE).write_text(json.dumps({"version": 1, "images": images}))
     assert main(["make-data", "training-rooms", "--out", str(tmp_path), "--first-room", "7", "--rooms", "1"]) == 0
     assert "3 pictures of 1 rooms" in capsys.readouterr().out
-
-
-SMALL = """
-import sys
-from course_lib.cli import main
-from course_lib.commands.interrupt_small import SMALL
-SMALL["make-data_room"]()
-sys.exit(main(["make-data", "room", "--seed", "7", "--out", sys.argv[1]]))
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-@pytest.mark.parametrize(("sent", "code"), [(signal.SIGKILL, -signal.SIGKILL), (signal.SIGTERM, 143)])
-def test_stopped_in_the_middle_it_leaves_nothing_that_the_next_run_does_not_clear(sent, code, tmp_path):
-    place, temporary = tmp_path / "place", tmp_path / "temporary"
-    for folder in (place, temporary):
-        folder.mkdir()
-    options = {"cwd": ROOT, "env": os.environ | {"TMPDIR": str(temporary)}, "stderr": subprocess.DEVNULL}
-    command = [sys.executable, "-c", SMALL, str(place / "room")]
-    process = subprocess.Popen(command, **options)
-    while not list(place.rglob("*.jpg")):
-        assert process.poll() is None
-        time.sleep(0.01)
-    process.send_signal(sent)
-    assert process.wait() == code
-    assert list(temporary.iterdir()) == [], "what it makes lies beside its place"
-    assert bool(list(place.iterdir())) == (sent == signal.SIGKILL)
-    assert not (place / "room").exists()
-    assert subprocess.run(command, **options).returncode == 0
-    assert [path.name for path in place.iterdir()] == ["room"]
-    assert list(temporary.iterdir()) == []

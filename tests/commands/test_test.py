@@ -96,7 +96,6 @@ def run_in(folder, monkeypatch, *passed_on):
             fast=False,
             no_notebooks=False,
             only_notebooks=False,
-            mutations=None,
             debug=False,
         )
     )

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from course_lib.fuzzing.onnx_file import model, node
 from tests.spherical_stereo.detection.blob_networks import (
     BLOCK,
     INPUT_SIZE,
@@ -12,6 +11,7 @@ from tests.spherical_stereo.detection.blob_networks import (
     kernel,
     window_kernels,
 )
+from tests.spherical_stereo.detection.onnx_model import model, node
 
 
 def blob_onnx(layout: str) -> bytes:

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from course_lib.child import ChildStopped, run_apart
-from course_lib.fuzzing.onnx_file import model, node
 from course_lib.spherical_stereo.detection import onnx_network
 from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.onnx_network import LAYOUTS, decode_onnx
 from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, panorama, write_darknet
 from tests.spherical_stereo.detection.onnx_files import blob_onnx
+from tests.spherical_stereo.detection.onnx_model import model, node
 
 
 @pytest.fixture
