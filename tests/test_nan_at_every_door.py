@@ -13,7 +13,7 @@ import course_lib.geometry as geometry
 from course_lib import depth_mcl, spherical_stereo
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer, SceneMap
 from course_lib.spherical_stereo import Detection, Landmark, Observation, SemanticMap, StereoRig
-from tests.depth_mcl.shapes import room
+from tests.rendering.shapes import room
 
 PACKAGE = Path(geometry.__file__).parent
 CAMERA = DepthCamera.from_fov(16, 12, 60.0, 45.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.cli import find_command, main
-from course_lib.commands.bench_table import table
+from tools.bench_table import table
 from course_lib.commands.demo_corridor import table_1
 from course_lib.commands.demo_finale import finale_text
 from course_lib.commands.demo_lost import lost_table

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from course_lib.cli import COMMANDS, find_command, parse
-from course_lib.commands.lesson_costs_table import capacity_sentence, table
+from tools.lesson_costs_table import capacity_sentence, table
 from course_lib.lessons.kit import exercises as kit
 from course_lib.lessons.kit.exercises import Exercise, Mistake, find_exercise, judge, lesson_exercises
 from course_lib.paths import REPOSITORY, notebook_paths, project_paths

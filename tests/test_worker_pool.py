@@ -28,7 +28,7 @@ KILLED_BESIDE = """
 import sys
 from pathlib import Path
 from tests.test_worker_pool import note_and_sleep_beside
-from course_lib.detector_training.workers import start_others
+from tools.detector_training.workers import start_others
 if __name__ == "__main__":
     for process in start_others(3, Path("meeting"), note_and_sleep_beside, (sys.argv[1],)):
         process.join()

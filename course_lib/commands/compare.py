@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, then tells what all runs of a method and a thinning gave together."""
     from course_lib.commands.progress import progress_bar
     from course_lib.commands.six_degrees_table import row_name, six_degrees_table
-    from course_lib.depth_mcl.scene_map import SceneMap
+    from course_lib.rendering.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments import sweep
     from course_lib.experiments.results import write_results
@@ -93,14 +93,14 @@ def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, di
 
     Raises `RuntimeError` where Open3D cannot be installed or ends with an error.
     """
-    from course_lib.commands.bench import ROOT, install_tools, tools_environment
+    from tools.bench import ROOT, install_tools, tools_environment
 
     why = install_tools()
     if why:
         raise RuntimeError(f"--icp needs Open3D, which could not be installed: {why}")
     words = ["--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
     done = run_child(
-        python(ROOT / "benchmarks" / "icp.py", *words),
+        python(ROOT / "tools.tools/benchmarks" / "icp.py", *words),
         tools_environment(),
         stdout=subprocess.PIPE,
         text=True,

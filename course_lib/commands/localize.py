@@ -124,7 +124,7 @@ def run(arguments: argparse.Namespace) -> int:
         warn_of_fewer,
     )
     from course_lib.commands.progress import progress_bar
-    from course_lib.depth_mcl.scene_map import SceneMap
+    from course_lib.rendering.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments.recordings import (
         pose_error_summary,

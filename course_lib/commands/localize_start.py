@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
-    from course_lib.depth_mcl.scene_map import SceneMap
+    from course_lib.rendering.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import DepthSequence
 
 

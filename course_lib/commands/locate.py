@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.spherical_stereo.detection.detector import find_objects
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
     from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
-    from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
+    from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
     by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]

@@ -130,7 +130,7 @@ def nbval_options() -> list[str]:
 
 def write_offline_startup(home: Path) -> None:
     """Lets every kernel whose settings lie in `home` fail where a lesson reaches for the network."""
-    from course_lib.commands.refresh import OFFLINE_STARTUP
+    from tools.refresh import OFFLINE_STARTUP
 
     startup = home / "ipython" / "profile_default" / "startup" / "00-offline.py"
     startup.parent.mkdir(parents=True)

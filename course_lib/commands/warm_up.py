@@ -12,8 +12,8 @@ def compile_loops() -> None:
     import numpy as np
 
     from course_lib.commands.depth_image_probe import measure
-    from course_lib.depth_mcl.annealed.compiled_refinement import normal_equations
-    from course_lib.depth_mcl.camera import DepthCamera
+    from course_lib.beyond.six_dof.compiled_refinement import normal_equations
+    from course_lib.rendering.camera import DepthCamera
     from course_lib.depth_mcl.compiled_likelihood import likelihood
 
     measure("raster")
@@ -24,8 +24,8 @@ def compile_loops() -> None:
 
 def simplify_corridor() -> None:
     """Simplifies the map that most lessons render."""
-    from course_lib.depth_mcl.scene_map import SceneMap
-    from course_lib.depth_mcl.simplification import simplified
+    from course_lib.rendering.scene_map import SceneMap
+    from course_lib.rendering.simplification import simplified
     from course_lib.paths import data_path
 
     simplified(SceneMap.load(data_path("corridor/map.ply")))

@@ -22,13 +22,13 @@
 State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`.
 """
 
-from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate, AnnealedLocalizer
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
+from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
-from course_lib.depth_mcl.lost_and_found.global_search import GlobalSearch, Places
-from course_lib.depth_mcl.lost_and_found.recovery import RecoveringLocalizer
+from course_lib.beyond.lost_and_found.global_search import GlobalSearch, Places
+from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, Motion, propagate
 from course_lib.depth_mcl.particle_filter import (
     effective_sample_size,
@@ -37,11 +37,11 @@ from course_lib.depth_mcl.particle_filter import (
     weighted_mean_state,
 )
 from course_lib.depth_mcl.poses import SequenceError
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
-from course_lib.depth_mcl.scene_map import SceneMap, SceneMapError
+from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
+from course_lib.rendering.scene_map import SceneMap, SceneMapError
 from course_lib.depth_mcl.sensor import depth_image_from_points
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.depth_mcl.watched import Watched, WatchedLocalizer
+from course_lib.beyond.guarded_depth import Watched, WatchedLocalizer
 
 __all__ = [
     "BODY_AXES",

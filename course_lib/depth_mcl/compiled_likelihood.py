@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.depth_mcl.compiled import compiled
+from course_lib.rendering.compiled import compiled
 from course_lib.depth_mcl.likelihood import ALPHA, checked_alpha, paired_pixels
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 
 
 def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarray:

@@ -22,7 +22,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_poses, write_tum
 from course_lib.depth_mcl.sequence_files import (
     UNITS_PER_METRE,

@@ -21,13 +21,13 @@ from course_lib.experiments.rooms_summary import bootstrap_percent, wilson_perce
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.pose.confidence import LEAST_CONFIDENCE
-from course_lib.spherical_stereo.pose.consistent import associate_consistent
-from course_lib.spherical_stereo.pose.evidence import Evidence
-from course_lib.spherical_stereo.pose.hypotheses import rotations
-from course_lib.spherical_stereo.pose.matchers import ASSOCIATIONS
+from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE
+from course_lib.beyond.look_alikes.consistent import associate_consistent
+from course_lib.beyond.look_alikes.evidence import Evidence
+from course_lib.beyond.look_alikes.hypotheses import rotations
+from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.pose.tracker import Motion, SemanticTracker
+from course_lib.beyond.several_views import Motion, SemanticTracker
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 CORRECT, WRONG, UNANSWERED = "correct", "wrong", "unanswered"

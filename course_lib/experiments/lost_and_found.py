@@ -15,10 +15,10 @@ import numpy as np
 
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
-from course_lib.depth_mcl.lost_and_found.global_search import GlobalSearch
-from course_lib.depth_mcl.lost_and_found.recovery import RecoveringLocalizer
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.beyond.lost_and_found.global_search import GlobalSearch
+from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.scratch import scratch_folder

@@ -17,7 +17,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import SIGMA, run_sequence, system_noise

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.six_degrees import run_frames
 from course_lib.scratch import scratch_folder

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
-from course_lib.depth_mcl.rendering.renderer import Backend, DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.renderer import Backend, DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.experiments.corridor import Run
 from course_lib.plots.figures import depth_images

@@ -23,8 +23,8 @@ from course_lib.geometry import as_states, optical_pose, pose_matrix
 if TYPE_CHECKING:
     import pyvista
 
-    from course_lib.depth_mcl.camera import DepthCamera
-    from course_lib.depth_mcl.scene_map import SceneMap
+    from course_lib.rendering.camera import DepthCamera
+    from course_lib.rendering.scene_map import SceneMap
 
 AXIS_COLOURS = np.array([[213, 40, 0], [0, 158, 60], [0, 80, 200]], dtype=np.uint8)
 """Red x, green y, blue z, as robotics draws them; each axis also carries its letter."""
@@ -74,7 +74,7 @@ def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = 
     """
     if faces < 100:
         raise SceneError(f"faces must be at least 100, or no map is left; got {faces}")
-    from course_lib.depth_mcl.simplification import simplified
+    from course_lib.rendering.simplification import simplified
 
     fewer = simplified(scene_map)
     mesh = _polydata(fewer.vertices, fewer.faces)
@@ -330,7 +330,7 @@ def _positive(value: float, name: str) -> float:
 
 def _pyvista():
     """PyVista, its windows off the screen; imported late, since it takes a second."""
-    from course_lib.depth_mcl.rendering import off_screen  # first: no display is needed then
+    from course_lib.rendering import off_screen  # first: no display is needed then
 
     off_screen.off_screen_window()  # raises OpenGLError with the cure, where VTK itself would crash
     import pyvista

@@ -49,12 +49,12 @@ from course_lib.spherical_stereo.panorama import (
     pixel_to_direction,
     read_panorama,
 )
-from course_lib.spherical_stereo.pose.consistent import associate_consistent, rank_poses
-from course_lib.spherical_stereo.pose.evidence import Evidence
-from course_lib.spherical_stereo.pose.hypotheses import PoseHypothesis
+from course_lib.beyond.look_alikes.consistent import associate_consistent, rank_poses
+from course_lib.beyond.look_alikes.evidence import Evidence
+from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
-from course_lib.spherical_stereo.pose.tracker import Motion, SemanticTracker, Track
+from course_lib.beyond.several_views import Motion, SemanticTracker, Track
 from course_lib.spherical_stereo.ranging.triangulation import (
     TriangulationError,
     triangulate,
@@ -62,7 +62,7 @@ from course_lib.spherical_stereo.ranging.triangulation import (
     triangulation_outcome,
 )
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
-from course_lib.spherical_stereo.semantic_map.assignment import associate_hungarian
+from course_lib.beyond.look_alikes.assignment import associate_hungarian
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     AssociationError,
@@ -74,7 +74,7 @@ from course_lib.spherical_stereo.semantic_map.association import (
     penalty_table,
 )
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
-from course_lib.spherical_stereo.watched import WatchedPair, WatchedRig
+from course_lib.beyond.guarded_stereo import WatchedPair, WatchedRig
 
 __all__ = [
     "Association",

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from course_lib.cli import main
-from tests.spherical_stereo.look_alike_scene import PLANTED, SYMMETRIC
+from tests.beyond.look_alikes.look_alike_scene import PLANTED, SYMMETRIC
 
 
 @pytest.fixture

@@ -174,7 +174,7 @@ def test_the_tilted_plane_reads_its_closed_form(backend):
 
 def test_a_plane_in_the_wrong_place_is_noticed(monkeypatch):
     # Every depth 2 mm too great.
-    from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+    from course_lib.rendering.renderer import DepthRenderer
 
     render = DepthRenderer.render
     monkeypatch.setattr(DepthRenderer, "render", lambda renderer, states: render(renderer, states) + np.float32(0.002))

@@ -75,7 +75,7 @@ def test_what_does_not_go_with_six_degrees_is_told(tmp_path, capsys):
 def test_icp_stands_beside_them_pooled_as_they_are(short, tmp_path, capsys, monkeypatch):
     """Open3D lives in an environment of its own: here its errors are given."""
     told = {"ICP 0.15, 0.05 m": {"1": {"position_m": [0.01, 0.02, 0.5], "rotation_deg": [1.0, 1.0, 1.0]}}}
-    monkeypatch.setattr("course_lib.commands.bench.install_tools", lambda: None)
+    monkeypatch.setattr("tools.bench.install_tools", lambda: None)
     monkeypatch.setattr(
         "course_lib.commands.compare.run_child",
         lambda *words, **options: CompletedProcess(words, 0, stdout=json.dumps(told) + "\n"),
@@ -85,6 +85,6 @@ def test_icp_stands_beside_them_pooled_as_they_are(short, tmp_path, capsys, monk
     row = json.loads(capsys.readouterr().out)["rows"]["ICP 0.15, 0.05 m"]
     assert (row["frames"], row["wrong"], row["wrong_called_lost"]) == (3, 1, 0)
     assert row["within_5cm_5deg_percent"] == pytest.approx(200 / 3)
-    monkeypatch.setattr("course_lib.commands.bench.install_tools", lambda: "no network")
+    monkeypatch.setattr("tools.bench.install_tools", lambda: "no network")
     assert main(words) != 0
     assert "no network" in capsys.readouterr().err

@@ -10,7 +10,7 @@ from course_lib.cli import main
 from course_lib.commands.localize_report import believed
 from course_lib.commands.localize_start import join_words
 from course_lib.depth_mcl.poses import SequenceError, read_tum
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from course_lib.commands.scene_output import write_scene
-from course_lib.depth_mcl.rendering.renderer import OpenGLError
+from course_lib.rendering.renderer import OpenGLError
 from course_lib.plots.scene_page import ScenePageError
 from course_lib.plots.scenes import body_axes, new_plotter
 

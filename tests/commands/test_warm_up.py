@@ -13,8 +13,8 @@ from course_lib.depth_mcl import (
     compiled_likelihood,
     simplification,
 )
-from course_lib.depth_mcl.annealed import compiled_refinement
-from course_lib.depth_mcl.rendering import rasterizer
+from course_lib.beyond.six_dof import compiled_refinement
+from course_lib.rendering import rasterizer
 
 
 def compiled_forms():

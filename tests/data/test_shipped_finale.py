@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.commands.make_finale import SEED as COMMAND_SEED
-from course_lib.depth_mcl.scene_map import SceneMap
+from tools.make_finale import SEED as COMMAND_SEED
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.room.depth_world import depth_caster
 from course_lib.simulation.room.finale_data import PRODUCTS, SEED, FinaleModels, finale_parameters

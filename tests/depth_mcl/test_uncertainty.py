@@ -6,8 +6,8 @@ import pytest
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.depth_mcl.motion import BODY_AXES
 from course_lib.depth_mcl.particle_filter import effective_sample_size
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, normalized_error, tempered_weights

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from course_lib.experiments.ambiguity import ambiguity_map, imagined_observations, stereo_covariance
-from course_lib.spherical_stereo.pose.hypotheses import rotations
-from tests.spherical_stereo.look_alike_scene import PLANTED, POSE, SYMMETRIC
+from course_lib.beyond.look_alikes.hypotheses import rotations
+from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC
 
 
 def test_imagined_observations_lie_about_their_landmarks_as_their_covariances_say():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.corridor import METHODS, path_errors, run_method
 from course_lib.experiments.recordings import SIGMA, run_sequence

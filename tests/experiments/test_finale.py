@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.experiments.finale import (
     CAMERA_HEIGHT,
     FRAMES,
@@ -22,7 +22,7 @@ from course_lib.experiments.finale import (
 from course_lib.simulation.room.depth_world import depth_caster, room_triangles
 from course_lib.simulation.room.look_alike_room import make_look_alike_room
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from tests.depth_mcl.shapes import SMALL, furnished_room
+from tests.rendering.shapes import SMALL, furnished_room
 
 TRUE = np.array([-1.2, 0.5, -0.3])
 

@@ -23,9 +23,9 @@ from course_lib.experiments.look_alikes import (
 )
 from course_lib.experiments.room_views import ViewsOptions, stored_sequences
 from course_lib.experiments.rooms import record_of_observations
-from course_lib.spherical_stereo.pose.evidence import Evidence
+from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from tests.spherical_stereo.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed, scattered
+from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed, scattered
 
 STEPS = (POSE, POSE + [0.3, -0.1, 0.2], POSE + [0.5, 0.2, 0.3])  # noqa: RUF005 (they are arrays)
 

@@ -6,7 +6,7 @@ import ast
 import re
 import statistics
 
-from course_lib.commands.refresh import MAX_BYTES, METADATA
+from tools.refresh import MAX_BYTES, METADATA
 from course_lib.commands.saved_panels import WIDGET_VIEW
 from course_lib.paths import REPOSITORY
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from course_lib.experiments.ambiguity import AmbiguityMap
 from course_lib.plots.look_alike_figures import ambiguity_figure, risk_coverage_figure
-from tests.spherical_stereo.look_alike_scene import SYMMETRIC
+from tests.beyond.look_alikes.look_alike_scene import SYMMETRIC
 
 
 def test_doubt_is_dark_and_only_real_confusions_are_drawn():

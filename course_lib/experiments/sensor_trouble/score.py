@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.watched import OUTCOMES
+from course_lib.beyond.guarded_depth import OUTCOMES
 from course_lib.experiments.sensor_trouble.placing import GOOD_FRAMES, troubled_frames
 from course_lib.spherical_stereo.pose import localization
 

@@ -22,7 +22,7 @@ from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose.localization import OK
-from course_lib.spherical_stereo.watched import NO_IMAGE, WatchedRig
+from course_lib.beyond.guarded_stereo import NO_IMAGE, WatchedRig
 
 GATE = Gate(LARGEST_ERROR_M, LARGEST_TURN_DEG)
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import trimesh
 
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.sensors.ray_casting import Hits
 
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from course_lib.depth_mcl.localizer import Estimate
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.lessons.lesson_00.recorded import Moment
 from course_lib.plots import figures
 from course_lib.plots.corridor_figures import floor_plan

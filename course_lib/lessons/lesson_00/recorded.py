@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.likelihood import ALPHA, likelihood, valid_pixels
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
 from course_lib.lessons.kit.box_world import box_map

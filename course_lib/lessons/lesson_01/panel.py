@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.text import Text
 
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.geometry import optical_pose, pose_matrix
 from course_lib.lessons.kit.corridor_views import corridor_map, draw_walls
 from course_lib.lessons.kit.live_figure import LiveFigure

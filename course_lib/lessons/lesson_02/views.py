@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import wagon_run
 from course_lib.lessons.lesson_02.small_room import MapQuality, room

@@ -7,8 +7,8 @@ import functools
 import numpy as np
 from matplotlib.colors import LogNorm
 
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider
 from course_lib.lessons.lesson_03.measurements import buffer_step

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.lessons.kit.box_world import box_map
 
 # The side view of the idea: two surfaces (ends as depth, height in metres) and the slopes of seven rays.

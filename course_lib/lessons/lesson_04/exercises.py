@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import norm
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.lessons.kit.exercises import Exercise, Mistake
 
 SPEED_OF_LIGHT = 299_792_458.0  # m/s

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import Colormap
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.lesson_04.figures import ERRORS, counts, error_axis

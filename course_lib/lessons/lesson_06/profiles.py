@@ -10,7 +10,7 @@ import numpy as np
 
 from course_lib.depth_mcl.fallon import DEPTH_CUT, DEPTH_SIGMA, depth_log_likelihood, disparity_log_likelihood
 from course_lib.depth_mcl.likelihood import ALPHA, likelihood, normalize_likelihood
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.geometry import state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run

@@ -21,7 +21,7 @@ from course_lib.depth_mcl.particle_filter import (
     resample,
     weighted_mean_state,
 )
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.geometry import state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.depth_mcl.localizer import Estimate
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.lessons.lesson_08.along import STRETCH
 from course_lib.lessons.lesson_08.stored_runs import StoredRun

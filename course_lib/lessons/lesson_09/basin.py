@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.annealed.pyramid import Level, pyramid
-from course_lib.depth_mcl.annealed.refinement import refine
-from course_lib.depth_mcl.annealed.schedule import STEPS
-from course_lib.depth_mcl.annealed.twists import moved
+from course_lib.beyond.six_dof.pyramid import Level, pyramid
+from course_lib.beyond.six_dof.refinement import refine
+from course_lib.beyond.six_dof.schedule import STEPS
+from course_lib.beyond.six_dof.twists import moved
 from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.lesson_09.hand import hand_run

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib import colormaps
 
-from course_lib.depth_mcl.annealed.refinement import gauss_newton_step, surface_normals
-from course_lib.depth_mcl.annealed.twists import moved
+from course_lib.beyond.six_dof.refinement import gauss_newton_step, surface_normals
+from course_lib.beyond.six_dof.twists import moved
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from course_lib.depth_mcl.lost_and_found.adaptive_count import kld_count
+from course_lib.beyond.lost_and_found.adaptive_count import kld_count
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
 

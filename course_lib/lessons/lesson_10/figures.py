@@ -11,8 +11,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from course_lib.depth_mcl.lost_and_found.adaptive_count import kld_count
-from course_lib.depth_mcl.lost_and_found.global_search import Places
+from course_lib.beyond.lost_and_found.adaptive_count import kld_count
+from course_lib.beyond.lost_and_found.global_search import Places
 from course_lib.lessons.lesson_10.hotel import ALIKE, Recording, boxes_on_the_plan
 from course_lib.lessons.lesson_10.narrowing import Round, shares
 from course_lib.lessons.lesson_10.trials import GOALS, Trace, alarm_counts, evidence_near

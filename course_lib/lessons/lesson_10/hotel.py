@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.geometry import optical_pose
 from course_lib.lessons.kit.box_world import box_map
 

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.annealed.localizer import AnnealedLocalizer
+from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
-from course_lib.depth_mcl.lost_and_found.global_search import CLEAR_GAP, GlobalSearch, Places
-from course_lib.depth_mcl.lost_and_found.recovery import RecoveringLocalizer, RecoveryEstimate
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.beyond.lost_and_found.global_search import CLEAR_GAP, GlobalSearch, Places
+from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer, RecoveryEstimate
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.lesson_10.hotel import (
     ALIKE,

@@ -1,6 +1,6 @@
 """What the detector learned from: a picture of its training with the exact boxes, and the shapes that answer for one.
 
-The training itself is `course_lib.detector_training`, which needs PyTorch; a lesson does not.
+The training itself is `tools.detector_training`, which needs PyTorch; a lesson does not.
 """
 
 from __future__ import annotations

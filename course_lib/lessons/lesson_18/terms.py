@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.spherical_stereo.pose.confidence import TEMPER, score_of_nothing
-from course_lib.spherical_stereo.pose.evidence import (
+from course_lib.beyond.look_alikes.confidence import TEMPER, score_of_nothing
+from course_lib.beyond.look_alikes.evidence import (
     CLUTTER_DENSITY,
     colour_costs,
     detection_probabilities,
     free_space_costs,
     place_distances,
 )
-from course_lib.spherical_stereo.pose.hypotheses import PoseHypothesis, Scene
+from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, Scene
 
 TERMS = ("places", "colours", "seen", "missed", "free space")
 

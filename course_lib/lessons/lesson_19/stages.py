@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate
+from course_lib.beyond.six_dof.localizer import AnnealedEstimate
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.experiments.finale import REACHED, follow, mean_score, start_state, starts_of
 from course_lib.geometry import optical_pose, wrap_angle

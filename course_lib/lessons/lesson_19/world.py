@@ -11,10 +11,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from course_lib.depth_mcl.annealed.localizer import AnnealedEstimate
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.beyond.six_dof.localizer import AnnealedEstimate
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
 from course_lib.experiments.finale import look_around, robot_states
 from course_lib.paths import data_path

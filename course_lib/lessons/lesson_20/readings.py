@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.mesh_file import mesh_endings
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.mesh_file import mesh_endings
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import Run, run_sequence
 from course_lib.geometry import rotation_exp

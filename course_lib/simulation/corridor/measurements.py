@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor.mesh_building import WorldMesh
 from course_lib.simulation.corridor.mesh_files import to_polydata
 from course_lib.simulation.sensors.ray_casting import WorldCaster

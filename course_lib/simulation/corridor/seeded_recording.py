@@ -15,7 +15,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor.another_day import DayModel, another_day
 from course_lib.simulation.corridor.recorded_runs import (
     FloorSurveyModel,

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.simulation.corridor.mesh_files import write_ply

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 

@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 from scipy.stats import binom
 
-from course_lib.depth_mcl.lost_and_found.adaptive_count import kld_count
+from course_lib.beyond.lost_and_found.adaptive_count import kld_count
 from course_lib.geometry import rotation_exp, rotation_log
 from tests.lessons.kit.answers_04_to_06 import by_lines, weighed
 from tests.lessons.kit.answers_07_08_20 import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.depth_mcl.lost_and_found.adaptive_count import kld_count
+from course_lib.beyond.lost_and_found.adaptive_count import kld_count
 
 ENOUGH = 10**6
 

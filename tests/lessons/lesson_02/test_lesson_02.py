@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.lessons.kit.box_world import Box, BoxWorld
 from course_lib.lessons.lesson_02 import small_room
 from course_lib.lessons.lesson_02.exercises import lateral_sigma, off_the_sigma

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.camera import DepthCamera
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.lessons.lesson_03.exercises import cut_at_near, off_the_cut
 from course_lib.lessons.lesson_03.measurements import buffer_step, slanted_wall_error
 from course_lib.lessons.lesson_03.panel import camera_panel

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl import depth_image_from_points
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.lessons.lesson_04.exercises import nearest_of
 from course_lib.lessons.lesson_04.figures import counts
 from course_lib.lessons.lesson_04.panel import DEPTHS, faults_panel

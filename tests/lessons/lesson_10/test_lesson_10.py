@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.lost_and_found.adaptive_count import kld_count
-from course_lib.depth_mcl.lost_and_found.global_search import Place, Places
-from course_lib.depth_mcl.rendering.renderer import DepthRenderer
+from course_lib.beyond.lost_and_found.adaptive_count import kld_count
+from course_lib.beyond.lost_and_found.global_search import Place, Places
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.lesson_10.hotel import (
     ALIKE,

@@ -15,9 +15,9 @@ from course_lib.lessons.lesson_18.scenes import mirrored
 from course_lib.lessons.lesson_18.terms import residual_sigmas, score_terms, share_of_nothing
 from course_lib.lessons.lesson_18.trials import answers_of_confidence
 from course_lib.spherical_stereo import Evidence, Pose2D, SemanticLocalizer, SemanticTracker, StereoRig, rank_poses
-from course_lib.spherical_stereo.pose.confidence import confidence_of
-from course_lib.spherical_stereo.pose.evidence import detection_probabilities
-from course_lib.spherical_stereo.pose.hypotheses import pair_poses, scene_of
+from course_lib.beyond.look_alikes.confidence import confidence_of
+from course_lib.beyond.look_alikes.evidence import detection_probabilities
+from course_lib.beyond.look_alikes.hypotheses import pair_poses, scene_of
 
 TRUTH = np.array([1.2, -0.7, 0.4])
 

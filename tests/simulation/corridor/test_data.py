@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
-from course_lib.commands import make_data
-from course_lib.depth_mcl.scene_map import SceneMap
+from tools import make_corridor as make_data
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.output_folder import MADE
 from course_lib.simulation.corridor.data import PRODUCTS, CorridorModels, make_corridor_data

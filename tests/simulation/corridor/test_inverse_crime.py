@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.simulation.corridor import data
 from course_lib.simulation.corridor.materials import WALL_PAINT

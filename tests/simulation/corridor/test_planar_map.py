@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.planar_map import planar_simplification
 
 

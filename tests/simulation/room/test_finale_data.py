@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.surface_fusion import FusionModel
 from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh

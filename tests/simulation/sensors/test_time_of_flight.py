@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.camera import DepthCamera
+from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor.measurements import noise_on_a_wall
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import (

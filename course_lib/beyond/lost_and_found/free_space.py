@@ -1,0 +1,61 @@
+"""Where in a map a camera can be: not inside a wall, and not outside the building."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from course_lib.rendering.embree import EmbreeCaster
+from course_lib.rendering.scene_map import SceneMap
+
+CLEARANCE = 0.15  # metres to the nearest surface (chosen: no camera is nearer, and sees nothing if it is)
+ENCLOSED = (
+    0.65  # share of directions that must meet the map, in a map of a building (chosen: just outside a wall it is half)
+)
+# A map smaller than this, cubic metres of its box, is searched whole: it may show one side of one room, and a camera
+# stands where the scanner stood, on the open side (chosen: a large room).
+SMALL_MAP = 100.0
+_DIRECTIONS = 32
+_TRIES = 20_000  # places drawn at once
+_MOST_ROUNDS = 30
+
+
+class FreeSpaceError(ValueError):
+    """A map in which no free place was found."""
+
+
+class FreeSpace:
+    """Places in a map where a camera can be. Needs embreex (rays), where it has a wheel."""
+
+    def __init__(self, scene_map: SceneMap) -> None:
+        self._map = scene_map
+        self._caster = EmbreeCaster(scene_map.vertices[scene_map.faces] - scene_map.origin)
+        directions = np.random.default_rng(0).standard_normal((_DIRECTIONS, 3))  # the same for every place and seed
+        self._directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+        self.small = bool(np.prod(np.ptp(scene_map.bounds, axis=0)) < SMALL_MAP)
+
+    def contains(self, positions: np.ndarray) -> np.ndarray:
+        """Which of positions `(N, 3)` are free: clear of surfaces, and enclosed by them unless the map is small."""
+        distances = self.distances(positions)
+        free = distances.min(axis=1) > CLEARANCE
+        return free if self.small else free & (np.isfinite(distances).mean(axis=1) >= ENCLOSED)
+
+    def distances(self, positions: np.ndarray) -> np.ndarray:
+        """How far it is from positions `(N, 3)` to the map in each of 32 directions: `(N, 32)` metres, `inf` where
+        nothing is hit."""
+        origins = np.repeat(positions - self._map.origin, _DIRECTIONS, axis=0)
+        distances = self._caster.cast(origins, np.tile(self._directions, (len(positions), 1)))[0]
+        return distances.reshape(len(positions), _DIRECTIONS)
+
+    def draw(self, n: int, rng: np.random.Generator) -> np.ndarray:
+        """Positions `(n, 3)` drawn evenly from the free space. Raises `FreeSpaceError` where there is hardly any."""
+        found: list[np.ndarray] = []
+        low, high = self._map.bounds
+        for _ in range(_MOST_ROUNDS):
+            if sum(len(places) for places in found) >= n:
+                return np.concatenate(found)[:n]
+            tried = rng.uniform(low, high, (_TRIES, 3))
+            found.append(tried[self.contains(tried)])
+        raise FreeSpaceError(
+            f"hardly a free place in the map {self._map!r}: {sum(map(len, found))} of {_TRIES * _MOST_ROUNDS} places "
+            f"were {CLEARANCE} m from every surface and enclosed; is the map closed, and in metres?"
+        )

@@ -1,0 +1,201 @@
+"""GPU scene simulation (paper 1, 3.3.1): what a depth camera would measure at every particle's pose.
+
+`DepthRenderer` is one door with three rooms behind it. Backend "raster" fills a z-buffer in the course's own compiled
+loops, on every processor (rasterizer.py). Backend "vtk" is the paper's way, for whoever has a graphics card: it draws
+the map once per particle, as tiles of one off-screen window, and reads OpenGL's z-buffer back once (vtk_backend.py).
+Backend "ray" shoots one ray through every pixel centre (ray_backend.py): the reference that tests compare with. All
+take float64 states, subtract the map's anchor before anything becomes float32, and give depth along the optical axis,
+`inf` where nothing between the camera's near and far planes is hit.
+
+Threads may share a renderer. Processes: a forked child may use one that it inherits, unless it is "vtk", which says by
+name that it cannot. Pickled, as "spawn" does it, a renderer takes its map and camera along and opens again when first
+used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from types import TracebackType
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.large_triangles import cut_large_triangles
+from course_lib.rendering.scene_map import SceneMap
+from course_lib.geometry import as_states, is_rotation, optical_pose
+
+if TYPE_CHECKING:  # imported when asked for: Numba and VTK take their time, and VTK needs OpenGL's libraries
+    from course_lib.rendering.raster_backend import RasterBackend
+    from course_lib.rendering.ray_backend import RayBackend
+    from course_lib.rendering.vtk_backend import VtkBackend
+
+# Pixels of one off-screen window: 200 tiles of the SR4000, about 80 MB with colour and depth.
+MAX_BATCH_PIXELS = 200 * 176 * 144
+
+
+Backend = Literal["raster", "vtk", "ray"]
+
+
+class RendererClosedError(RuntimeError):
+    """A renderer was used after it had been closed."""
+
+
+class OpenGLError(RuntimeError):
+    """OpenGL could not start or draw, or belongs to the process that this one was forked from; the message says what to
+    do."""
+
+
+class DepthRenderer:
+    """Depth images of a map from any number of poses.
+
+    scene_map: triangles in the world. camera: the depth camera, its resolution, and its near and far planes.
+    backend: "raster" (z-buffer), "vtk" (OpenGL's) or "ray" (the reference). exact: draw every triangle of the map;
+    else a large map is drawn with fewer triangles, which lie within centimetres of it (simplification.py; `drawn`).
+    max_batch_pixels bounds one batch's memory: as many images as fit are drawn at once, at least one.
+    A context manager; `close()` frees the window, after which every call raises `RendererClosedError`.
+    Raises `OpenGLError` where OpenGL cannot start (backend "vtk"), which is so in a process forked after the first
+    window was opened, `ValueError` for an unknown backend.
+    """
+
+    def __init__(
+        self,
+        scene_map: SceneMap,
+        camera: DepthCamera,
+        backend: Backend = "raster",
+        *,
+        exact: bool = False,
+        max_batch_pixels: int = MAX_BATCH_PIXELS,
+    ) -> None:
+        if int(max_batch_pixels) != max_batch_pixels or max_batch_pixels < 1:
+            raise ValueError(f"max_batch_pixels must be a whole number, at least 1; got {max_batch_pixels!r}")
+        self.scene_map = scene_map
+        self.camera = camera
+        self.backend = backend
+        self.exact = exact
+        self.batch_size = max(1, int(max_batch_pixels) // (camera.width * camera.height))
+        self._closed = False
+        self._open_backend = self._new_backend()
+
+    def _new_backend(self) -> RasterBackend | VtkBackend | RayBackend:
+        if self.backend == "vtk":
+            from course_lib.rendering.vtk_backend import VtkBackend
+
+            return VtkBackend(self.drawn, self.camera, self.batch_size)
+        if self.backend == "raster":
+            from course_lib.rendering.raster_backend import RasterBackend
+
+            return RasterBackend(self.drawn, self.camera)
+        if self.backend == "ray":
+            from course_lib.rendering.ray_backend import RayBackend
+
+            return RayBackend(self.drawn, self.camera)
+        raise ValueError(
+            f"backend must be 'raster' (z-buffer), 'vtk' (OpenGL's z-buffer) or 'ray' (ray casting); "
+            f"got {self.backend!r}"
+        )
+
+    @property
+    def drawn(self) -> SceneMap:
+        """The triangles that are drawn: the map, or, unless `exact`, fewer; none of them large."""
+        drawn = self.scene_map
+        if not self.exact:
+            from course_lib.rendering.simplification import simplified
+
+            drawn = simplified(drawn)
+        vertices, faces = cut_large_triangles(drawn.vertices, drawn.faces)
+        return drawn if faces is drawn.faces else SceneMap(vertices, faces)
+
+    def render(self, states: np.ndarray) -> np.ndarray:
+        """Depth images `(N, H, W)` float32 metres of the map from states `(N, 6)`; `inf` where nothing is hit.
+
+        Z_(i) = {z_(i)^1, ..., z_(i)^m}: one value a pixel, m = H x W as many as the real camera has.
+        A single state `(6,)` counts as N = 1. Drawn in batches of bounded memory.
+        Raises `ValueError` for states of a wrong shape or not finite, `RendererClosedError` after `close()`.
+        Source: paper 1, eq. (6).
+        """
+        return self.render_poses(optical_pose(_particles(states)))
+
+    def batches(self, states: np.ndarray) -> Iterator[np.ndarray]:
+        """The same images a batch `(n, H, W)` at a time, for more particles than images fit into memory."""
+        states = _particles(states)
+        for start in range(0, len(states), self.batch_size):
+            yield self.render(states[start : start + self.batch_size])
+
+    def render_poses(self, camera_to_world: np.ndarray) -> np.ndarray:
+        """The same from camera-to-world matrices `(N, 4, 4)` in the optical convention."""
+        backend = self._backend()
+        poses = np.asarray(camera_to_world, dtype=np.float64)
+        if poses.ndim != 3 or poses.shape[1:] != (4, 4):
+            raise ValueError(f"camera_to_world must have shape (N, 4, 4); got {poses.shape}")
+        if not (np.isfinite(poses).all() and is_rotation(poses[:, :3, :3]).all()):
+            raise ValueError("camera_to_world must hold rigid transforms: finite, with a rotation in the upper left")
+        images = np.empty((len(poses), *self.camera.shape), dtype=np.float32)
+        for start in range(0, len(poses), self.batch_size):
+            batch = slice(start, start + self.batch_size)
+            backend.render(poses[batch], images[batch])
+        return images
+
+    def render_points(self, points: np.ndarray) -> np.ndarray:
+        """Depth image `(H, W)` float32 metres of the camera's own points; NaN where none fell.
+
+        points: `(..., 3)` metres in the optical frame; NaN points are no measurement. They go through the projection
+        and the z-buffer that the particles' views go through, so that both images obey one rule: of several points on
+        one pixel the nearest counts, and what lies outside near and far is not seen.
+        Z_t = {z_t^1, ..., z_t^m}. `depth_image_from_points` is the same in NumPy.
+        Raises `ValueError` for a wrong shape, `RendererClosedError` after `close()`. Source: paper 1, section 3.3.2.
+        """
+        backend = self._backend()
+        points = np.asarray(points, dtype=np.float64)
+        if points.ndim == 0 or points.shape[-1] != 3:
+            raise ValueError(f"points must have shape (..., 3); got {points.shape}")
+        points = points.reshape(-1, 3)
+        return backend.render_points(points[np.isfinite(points).all(axis=1)])
+
+    def describe(self) -> str:
+        """Name of what draws: the OpenGL renderer string, or the ray caster."""
+        return self._backend().describe()
+
+    def close(self) -> None:
+        """Frees the window and its memory; closing twice is harmless."""
+        self._closed = True
+        if self._open_backend is not None:
+            self._open_backend.close()
+            self._open_backend = None
+
+    def _backend(self) -> RasterBackend | VtkBackend | RayBackend:
+        """What draws; after a journey to another process it is opened here, at first use.
+
+        Not on arrival, where an error would kill a pool's worker and leave the pool waiting for its answer.
+        """
+        if self._closed:
+            raise RendererClosedError("this renderer was closed; make a new DepthRenderer(scene_map, camera)")
+        backend = self._open_backend
+        if backend is None:
+            backend = self._open_backend = self._new_backend()
+        return backend
+
+    def __getstate__(self) -> dict[str, object]:
+        """For pickle and copy: everything but the window."""
+        return vars(self) | {"_open_backend": None}
+
+    def __enter__(self) -> DepthRenderer:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        state = "closed" if self._closed else "open"
+        size = f"{self.camera.width} x {self.camera.height}"
+        return f"DepthRenderer({self.scene_map!r}, {size} pixels, backend={self.backend!r}, {state})"
+
+
+def _particles(states: np.ndarray) -> np.ndarray:
+    """States `(N, 6)`, of which one alone may come as `(6,)`."""
+    states = np.atleast_2d(as_states(states))
+    if states.ndim != 2:
+        raise ValueError(f"states must have shape (N, 6); got {states.shape}")
+    return states

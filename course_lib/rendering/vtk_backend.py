@@ -1,0 +1,271 @@
+"""Depth images by VTK's z-buffer: every particle's view is a tile of one off-screen window, read back once.
+
+One window lives as long as the renderer. Tile k has a vtkRenderer of its own (a viewport and a camera); all share one
+actor, the map. The colour of a pixel is never looked at. Threads take turns with the window (`_drawing`); processes do
+not share it (off_screen.py).
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkFloatArray, vtkLogger, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
+
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.chunks import MeshChunks
+from course_lib.rendering.off_screen import CURE, off_screen_window, require_own_process
+from course_lib.rendering.renderer import OpenGLError, RendererClosedError
+from course_lib.rendering.scene_map import SceneMap
+
+# The least that OpenGL 4.1 promises for a side of a framebuffer is 16,384 pixels; half of it is promised everywhere.
+MAX_WINDOW_SIDE = 8192
+
+# vtkPolyDataMapper::ShiftScaleMethodType::DISABLE_SHIFT_SCALE, whose name VTK does not give to Python.
+_NO_SHIFT_AND_SCALE = 0
+
+# Each tile costs VTK some 40 kB, however small its image, and is kept for the next frame.
+MAX_TILES = 1000
+
+
+class VtkBackend:
+    """Draws batches of at most `batch_size` views, fewer where a window would grow beyond what OpenGL allows."""
+
+    def __init__(self, scene_map: SceneMap, camera: DepthCamera, batch_size: int) -> None:
+        if camera.width > MAX_WINDOW_SIDE or camera.height > MAX_WINDOW_SIDE:
+            raise ValueError(
+                f"an image of {camera.width} x {camera.height} pixels is larger than one OpenGL window "
+                f"({MAX_WINDOW_SIDE} on a side): use camera.resized(...)"
+            )
+        self.camera = camera
+        # What OpenGL clips: far enough beyond `farthest` that rounding decides nothing there.
+        self._drawn = camera.with_clip_planes(camera.nearest, 1.01 * camera.farthest)
+        self._columns = max(1, min(MAX_WINDOW_SIDE // camera.width, int(np.ceil(np.sqrt(batch_size)))))
+        self._n_tiles = min(batch_size, MAX_TILES, self._columns * (MAX_WINDOW_SIDE // camera.height))
+        self._process = os.getpid()
+        self._turn = threading.Lock()
+        self._window: vtkRenderWindow | None = None
+        self._window_rows = 0
+        self._tiles: list[vtkRenderer] = []
+        self._buffer = vtkFloatArray()
+
+        self._scene_map = scene_map
+        self._chunks = MeshChunks(scene_map.vertices, scene_map.faces)
+        self._faces = np.ascontiguousarray(scene_map.faces[self._chunks.order], dtype=np.int64)
+        self._drawn_chunks = np.zeros(len(self._chunks.centers), dtype=bool)
+        self._map_data = vtkPolyData()
+        self._map_actor = _plain_actor(self._map_data)
+        self._upload_vertices(scene_map.origin)
+
+        self._points_data = vtkPolyData()
+        self._points_tile = vtkRenderer()
+        self._points_tile.AddActor(_plain_actor(self._points_data))
+        self._open_window()
+
+    def render(self, poses: np.ndarray, out: np.ndarray) -> None:
+        """Fills `out` `(N, H, W)` with the depth seen from camera poses `(N, 4, 4)`."""
+        for start in range(0, len(poses), self._n_tiles):
+            batch = slice(start, start + self._n_tiles)
+            with self._drawing():
+                self._render_batch(poses[batch], out[batch])
+
+    def _render_batch(self, poses: np.ndarray, out: np.ndarray) -> None:
+        anchor = self._scene_map.anchor(poses[:, :3, 3])
+        if not np.array_equal(anchor, self._anchor):
+            self._upload_vertices(anchor)
+        self._draw_only(poses)
+        self._prepare_tiles(len(poses))
+        for tile, pose in zip(self._tiles, poses, strict=False):
+            _place(tile.GetActiveCamera(), pose[:3, :3], pose[:3, 3] - anchor)
+        self._draw_and_read(self._tiles[: len(poses)], out)
+
+    def render_points(self, points: np.ndarray) -> np.ndarray:
+        """Depth image `(H, W)` of points `(M, 3)` in the optical frame, through the same z-buffer; NaN where none."""
+        count = len(points)
+        vtk_points = vtkPoints()
+        vtk_points.SetData(numpy_to_vtk(points.astype(np.float32), deep=True))
+        cells = np.stack([np.ones(count, dtype=np.int64), np.arange(count)], axis=1)
+        vertices = vtkCellArray()
+        vertices.ImportLegacyFormat(numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
+        image = np.empty(self.camera.shape, dtype=np.float32)
+        with self._drawing():
+            self._points_data.SetPoints(vtk_points)
+            self._points_data.SetVerts(vertices)
+            self._points_data.Modified()
+            self._draw_and_read([self._points_tile], image[None])
+        image[np.isinf(image)] = np.nan
+        return image
+
+    def describe(self) -> str:
+        """The OpenGL renderer's name, for example llvmpipe (a CPU) or a graphics card."""
+        with self._drawing():
+            for line in self._window.ReportCapabilities().splitlines():
+                if line.startswith("OpenGL renderer string:"):
+                    return line.split(":", 1)[1].strip()
+            return self._window.GetClassName()
+
+    def close(self) -> None:
+        """Frees the window with its framebuffers; after a fork it stays the parent's."""
+        if self._process != os.getpid():
+            return
+        with self._turn:
+            if self._window is not None:
+                for tile in [*self._tiles, self._points_tile]:
+                    tile.RemoveAllViewProps()
+                    self._window.RemoveRenderer(tile)
+                self._window.Finalize()
+            self._window, self._tiles = None, []
+            self._map_actor = self._map_data = self._points_data = self._points_tile = self._buffer = None
+
+    @contextmanager
+    def _drawing(self) -> Iterator[None]:
+        """The window is this thread's alone for the while.
+
+        OpenGL draws in the thread that holds the window's context. A thread that did not hold it would draw nothing and
+        read the depth of an earlier image, without an error; so each takes the context and gives it back.
+        """
+        require_own_process(self._process)  # before the lock: a fork copies it as it is, held or not
+        with self._turn:
+            if self._window is None:
+                raise RendererClosedError("this renderer was closed by another thread while it drew")
+            self._window.MakeCurrent()
+            try:
+                yield
+            finally:
+                self._window.ReleaseCurrent()
+
+    def _open_window(self) -> None:
+        # VTK reports on the console what the error below says better.
+        verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+        try:
+            self._window = window = off_screen_window()
+            self._resize_window(1)
+            self._points_tile.SetViewport(*self._viewport(0))
+            self._set_projection(self._points_tile)
+            _place(self._points_tile.GetActiveCamera(), np.eye(3), np.zeros(3))
+            window.AddRenderer(self._points_tile)
+            window.Render()
+            if not window.SupportsOpenGL() or window.GetDepthBufferSize() < 24:
+                raise OpenGLError(f"OpenGL gives no 24-bit depth buffer. {CURE}")
+            self._points_tile.DrawOff()
+            window.ReleaseCurrent()
+        finally:
+            vtkLogger.SetStderrVerbosity(verbosity)
+
+    def _resize_window(self, rows: int) -> None:
+        self._window_rows = rows
+        self._window.SetSize(self._columns * self.camera.width, rows * self.camera.height)
+        for index, tile in enumerate(self._tiles):
+            tile.SetViewport(*self._viewport(index))
+        self._points_tile.SetViewport(*self._viewport(0))
+
+    def _viewport(self, index: int) -> tuple[float, float, float, float]:
+        """Tile `index`, counted from the bottom left, as VTK's fractions (x_min, y_min, x_max, y_max) of the window."""
+        row, column = divmod(index, self._columns)
+        columns, rows = self._columns, self._window_rows
+        return column / columns, row / rows, (column + 1) / columns, (row + 1) / rows
+
+    def _prepare_tiles(self, count: int) -> None:
+        """Makes the window and its tiles large and many enough; they only ever grow."""
+        rows = -(-count // self._columns)
+        if rows > self._window_rows:
+            self._resize_window(rows)
+        while len(self._tiles) < count:
+            tile = vtkRenderer()
+            tile.AddActor(self._map_actor)
+            tile.SetViewport(*self._viewport(len(self._tiles)))
+            self._set_projection(tile)
+            self._window.AddRenderer(tile)
+            self._tiles.append(tile)
+
+    def _set_projection(self, tile: vtkRenderer) -> None:
+        matrix = vtkMatrix4x4()
+        matrix.DeepCopy(self._drawn.projection_matrix().ravel())
+        vtk_camera = tile.GetActiveCamera()
+        vtk_camera.SetUseExplicitProjectionTransformMatrix(True)
+        vtk_camera.SetExplicitProjectionTransformMatrix(matrix)
+        vtk_camera.SetClippingRange(self._drawn.near, self._drawn.far)
+
+    def _upload_vertices(self, anchor: np.ndarray) -> None:
+        """Gives OpenGL the map's vertices, float32, relative to `anchor` `(3,)`."""
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk((self._scene_map.vertices - anchor).astype(np.float32), deep=True))
+        self._map_data.SetPoints(points)
+        self._map_data.Modified()
+        self._anchor = anchor
+
+    def _draw_only(self, poses: np.ndarray) -> None:
+        """Puts the triangles that one of the views may see into the map's actor; uploads only what is new."""
+        visible = self._chunks.visible(self._drawn, poses)
+        if (visible & ~self._drawn_chunks).any() or 2 * visible.sum() < self._drawn_chunks.sum():
+            cells = vtkCellArray()
+            faces = self._faces[self._chunks.faces_of(visible)]
+            cells.SetData(3, numpy_to_vtkIdTypeArray(faces.ravel(), deep=True))
+            self._map_data.SetPolys(cells)
+            self._map_data.Modified()
+            self._drawn_chunks = visible
+
+    def _draw_and_read(self, tiles: list[vtkRenderer], out: np.ndarray) -> None:
+        """Draws just these tiles and fills `out` `(n, H, W)` from them."""
+        try:
+            for tile in tiles:
+                tile.DrawOn()
+            self._window.Render()
+            self._read_tiles(out)
+        finally:
+            # Also after Ctrl-C: the map's first tile and the points' tile cover the same pixels.
+            for tile in tiles:
+                tile.DrawOff()
+
+    def _read_tiles(self, out: np.ndarray) -> None:
+        """Fills `out` `(n, H, W)` from the first n tiles: the window's z-buffer read once, cut up and linearized."""
+        height, width = self.camera.shape
+        columns, rows = self._columns, -(-len(out) // self._columns)
+        self._window.GetZbufferData(0, 0, columns * width - 1, rows * height - 1, self._buffer)
+        window = vtk_to_numpy(self._buffer).reshape(rows, height, columns, width)
+        for index, image in enumerate(out):
+            row, column = divmod(index, columns)
+            # OpenGL's bottom row comes first, among the tiles and within each.
+            image[:] = depth_from_buffer(window[row, ::-1, column], self._drawn, self.camera.farthest)
+
+
+def depth_from_buffer(buffer: np.ndarray, camera: DepthCamera, farthest: float) -> np.ndarray:
+    """Depth in metres, float32, of depth-buffer values in [0, 1] by the camera's planes; `inf` beyond `farthest`.
+
+    Z = near far / (far - b (far - near)), the inverse of b = far (Z - near) / (Z (far - near)). Where nothing was drawn
+    the buffer still holds its clear value 1, which is far.
+    """
+    near, far = camera.near, camera.far
+    # float64, since far - b (far - near) loses the digits that the two have in common.
+    depth = near * far / (far - np.asarray(buffer, dtype=np.float64) * (far - near))
+    return np.where(depth <= farthest, depth, np.inf).astype(np.float32)
+
+
+def _plain_actor(data: vtkPolyData) -> vtkActor:
+    """Actor without light, colour arrays or normals: only its depth is of interest."""
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.ScalarVisibilityOff()
+    mapper.SetResolveCoincidentTopologyToOff()
+    # VTK would move and scale the vertices by their bounding box, which one stray triangle can stretch.
+    mapper.SetVBOShiftScaleMethod(_NO_SHIFT_AND_SCALE)
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().LightingOff()
+    actor.GetProperty().SetPointSize(1)
+    return actor
+
+
+def _place(vtk_camera: object, rotation: np.ndarray, position: np.ndarray) -> None:
+    """Puts a VTK camera at a position `(3,)`; columns of `rotation` `(3, 3)`: its right, down and forward."""
+    vtk_camera.SetPosition(*position)
+    vtk_camera.SetFocalPoint(*(position + rotation[:, 2]))
+    vtk_camera.SetViewUp(*-rotation[:, 1])

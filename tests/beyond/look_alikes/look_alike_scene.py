@@ -1,0 +1,71 @@
+"""A room that is the same after half a turn, and what a rig sees there without noise."""
+
+import numpy as np
+
+from course_lib.beyond.look_alikes.hypotheses import rotations
+from course_lib.spherical_stereo.semantic_map.association import Observation
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+
+BLUE, RED = (240.0, 60.0), (0.0, 60.0)
+SYMMETRIC = SemanticMap(
+    [
+        Landmark("sofa", 2.0, 1.0, *BLUE),
+        Landmark("sofa", -2.0, -1.0, *BLUE),
+        Landmark("sofa", 0.0, 0.0, *BLUE),
+        Landmark("chair", 1.0, -2.0, *RED),
+        Landmark("chair", -1.0, 2.0, *RED),
+    ],
+    walls=[[-3, -3], [3, -3], [3, 3], [-3, 3]],
+)
+POSE = np.array([1.2, -0.7, 0.4])
+OTHER_POSE = np.array([-1.2, 0.7, 0.4 - np.pi])
+
+
+def with_landmarks(semantic_map, *landmarks):
+    return SemanticMap((*semantic_map.landmarks, *landmarks), semantic_map.walls)
+
+
+PLANT = Landmark("potted plant", -1.5, -2.0, 120.0, 50.0)
+PLANTED = with_landmarks(SYMMETRIC, PLANT)
+
+
+def stereo_covariance(place):
+    """Certain across the ray, less so along it, as a stereo camera's places are."""
+    distance = np.hypot(*place)
+    along = np.asarray(place) / distance
+    across = np.array([-along[1], along[0]])
+    return (0.05 + 0.02 * distance**2) ** 2 * np.outer(along, along) + 0.05**2 * np.outer(across, across)
+
+
+def observed(semantic_map, pose, which=None, rng=None):
+    """Observations of landmarks (all, or those of the indices) from a pose; rng: with noise of their covariances."""
+    indices = range(len(semantic_map)) if which is None else which
+    observations = []
+    for index in indices:
+        one = semantic_map.landmarks[index]
+        place = rotations(np.array(pose[2])).T @ (semantic_map.positions[index] - pose[:2])
+        covariance = stereo_covariance(place)
+        if rng is not None:
+            place = rng.multivariate_normal(place, covariance)
+        observations.append(Observation(one.label, *map(float, place), one.hue, one.saturation, covariance))
+    return observations
+
+
+def turned(semantic_map, angle, shift=(0.0, 0.0)):
+    """The same map in another world frame."""
+    rotation = rotations(np.array(angle))
+    landmarks = [
+        Landmark(one.label, *map(float, rotation @ (one.x, one.y) + shift), one.hue, one.saturation)
+        for one in semantic_map.landmarks
+    ]
+    return SemanticMap(landmarks, np.asarray(semantic_map.walls) @ rotation.T + shift)
+
+
+def scattered(rng):
+    """A room of eight blue objects of four classes, anywhere."""
+    labels = ("sofa", "sofa", "sofa", "chair", "chair", "table", "table", "potted plant")
+    places = [rng.uniform(-3, 3, 2).round(1) for _ in labels]
+    return SemanticMap(
+        [Landmark(label, *map(float, place), *BLUE) for label, place in zip(labels, places, strict=True)],
+        SYMMETRIC.walls,
+    )

@@ -1,0 +1,210 @@
+"""Rooms that look alike: right where something tells them apart, "unable" with the alternatives where nothing does."""
+
+import numpy as np
+import pytest
+
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
+from course_lib.spherical_stereo.panorama import StereoRig
+from course_lib.beyond.look_alikes import consistent
+from course_lib.beyond.look_alikes.confidence import (
+    AMBIGUOUS,
+    LEAST_CONFIDENCE,
+    NOTHING_AGREES,
+    TOO_FEW_INLIERS,
+    confidence_of,
+)
+from course_lib.beyond.look_alikes.consistent import assign, associate_consistent, distinct, rank_poses
+from course_lib.beyond.look_alikes.evidence import Evidence
+from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+from course_lib.spherical_stereo.semantic_map.association import associate_greedy
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+from tests.beyond.look_alikes.look_alike_scene import (
+    OTHER_POSE,
+    PLANTED,
+    POSE,
+    RED,
+    SYMMETRIC,
+    observed,
+    scattered,
+    turned,
+    with_landmarks,
+)
+
+
+def localizer(semantic_map, **options):
+    return SemanticLocalizer(StereoRig(0.3), semantic_map, association="consistent", **options)
+
+
+def near(pose, other, metres=0.05, radians=0.02):
+    return np.hypot(*(np.array(pose)[:2] - other[:2])) < metres and abs(wrap_angle(pose[2] - other[2])) < radians
+
+
+def test_three_sofas_in_a_symmetric_room_have_two_poses_and_no_answer():
+    found = localizer(SYMMETRIC).localize_observations(observed(SYMMETRIC, POSE))
+    assert (found.status, found.reason, found.pose) == ("unable", AMBIGUOUS, None)
+    first, second = found.alternatives[:2]
+    assert {near(first.pose, POSE), near(second.pose, POSE)} == {True, False}
+    assert {near(first.pose, OTHER_POSE), near(second.pose, OTHER_POSE)} == {True, False}
+    assert first.share == pytest.approx(0.5, abs=0.02)
+    assert second.share == pytest.approx(0.5, abs=0.02)
+    assert "50%" in found.explanation
+
+
+def test_one_plant_tells_the_two_apart():
+    found = localizer(PLANTED).localize_observations(observed(PLANTED, POSE))
+    assert found.status == "ok"
+    assert near(found.pose, POSE)
+    assert found.used_pairs == tuple((k, k) for k in range(6))
+    assert found.confidence > LEAST_CONFIDENCE
+    assert found.covariance.shape == (3, 3)
+    assert found.rms_residual < 0.01
+
+
+def test_a_plant_that_should_be_seen_and_is_not_tells_too_but_only_as_negative_evidence():
+    """From POSE the plant would be in plain sight, from OTHER_POSE it is behind the middle sofa."""
+    hidden = with_landmarks(SYMMETRIC, Landmark("potted plant", 2.0, -0.5, 120.0, 50.0))
+    at_other = observed(hidden, OTHER_POSE, which=range(5))
+    with_negative, without = (rank_poses(at_other, hidden, Evidence(negative=value)) for value in (True, False))
+    assert near(with_negative[0].pose, OTHER_POSE)
+    assert with_negative[0].share > without[0].share + 0.2
+    assert with_negative[1].missed == (5,)
+
+
+def test_colour_tells_look_alikes_apart_where_they_have_any():
+    landmarks = list(SYMMETRIC.landmarks)
+    landmarks[0] = Landmark("sofa", 2.0, 1.0, *RED)
+    coloured = SemanticMap(landmarks, SYMMETRIC.walls)
+    with_colour, without = (
+        associate_consistent(observed(coloured, POSE), coloured, evidence=Evidence(colour=value))
+        for value in (True, False)
+    )
+    assert with_colour.confidence > 0.8 > 0.6 > without.confidence
+
+
+MIDDLE = np.array([0.5, 0.3, 1.0])
+
+
+def test_the_room_in_a_mirror_is_refused_however_far_ahead_its_best_pose_is():
+    """Wrong poses with large gaps: by the gap alone one is sure of a pose that no rotation makes right."""
+    room = scattered(np.random.default_rng(6))
+    seen = observed(room, MIDDLE)
+    flip = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    mirrored = [one._replace(y=-one.y, covariance=flip * one.covariance) for one in seen]
+    assert localizer(room).localize_observations(seen).status == "ok"
+    assert associate_consistent(mirrored, room, evidence=Evidence(absolute=False)).confidence > LEAST_CONFIDENCE
+    found = localizer(room).localize_observations(mirrored)
+    assert (found.status, found.reason) == ("unable", AMBIGUOUS)
+
+
+def test_another_room_is_refused_however_far_ahead_its_best_pose_is():
+    rng = np.random.default_rng(27)
+    room, other = scattered(rng), scattered(rng)
+    seen = observed(room, MIDDLE)
+    assert associate_consistent(seen, other, evidence=Evidence(absolute=False)).confidence > LEAST_CONFIDENCE
+    assert associate_consistent(seen, other).confidence < 0.5
+
+
+def test_two_matches_fit_always_and_are_never_enough():
+    found = localizer(PLANTED).localize_observations(observed(PLANTED, POSE, which=(3, 5)))
+    assert (found.status, found.reason) == ("unable", TOO_FEW_INLIERS)
+    assert found.alternatives
+
+
+def test_nothing_agrees_with_one_observation():
+    found = localizer(PLANTED).localize_observations(observed(PLANTED, POSE, which=(5,)))
+    assert (found.status, found.reason, found.alternatives) == ("unable", NOTHING_AGREES, ())
+    assert found.confidence == 0.0
+
+
+def test_a_false_observation_is_left_unmatched():
+    seen = observed(PLANTED, POSE)
+    false = seen[0]._replace(x=seen[0].x + 1.4, y=seen[0].y - 1.0)
+    found = localizer(PLANTED).localize_observations([false, *seen])
+    assert near(found.pose, POSE)
+    assert found.used_pairs == tuple((k + 1, k) for k in range(6))
+    assert found.association.unassigned == (0,)
+
+
+def test_the_order_of_the_observations_changes_nothing():
+    seen = observed(PLANTED, POSE, rng=np.random.default_rng(5))
+    order = [4, 2, 5, 0, 3, 1]
+    first, second = rank_poses(seen, PLANTED), rank_poses([seen[k] for k in order], PLANTED)
+    np.testing.assert_allclose(first[0].pose, second[0].pose, atol=1e-6)
+    assert {(order[i], j) for i, j in second[0].pairs} == set(first[0].pairs)
+    assert first[0].share == pytest.approx(second[0].share, abs=1e-6)
+
+
+@pytest.mark.parametrize("angle", [np.pi / 2, 1.0, -2.5])
+def test_another_world_frame_changes_nothing_but_the_frame(angle):
+    seen, shift = observed(PLANTED, POSE, rng=np.random.default_rng(6)), np.array([7.0, -3.0])
+    here, there = rank_poses(seen, PLANTED)[0], rank_poses(seen, turned(PLANTED, angle, shift))[0]
+    moved = consistent.Pose2D(0.0, 0.0, angle).apply(np.array(here.pose)[:2]) + shift
+    np.testing.assert_allclose(np.array(there.pose)[:2], moved, atol=1e-5)
+    assert wrap_angle(there.pose.theta - here.pose.theta - angle) == pytest.approx(0.0, abs=1e-6)
+    assert there.score == pytest.approx(here.score, abs=1e-5)
+    assert there.pairs == here.pairs
+
+
+def test_the_refit_is_better_than_the_pose_of_two():
+    rng = np.random.default_rng(8)
+    errors = {True: [], False: []}
+    for _ in range(15):
+        seen = observed(PLANTED, POSE, rng=rng)
+        for refit in errors:
+            best = rank_poses(seen, PLANTED, Evidence(refit=refit))[0]
+            errors[refit].append(np.hypot(*(np.array(best.pose)[:2] - POSE[:2])))
+    assert np.mean(errors[True]) < 0.8 * np.mean(errors[False])
+
+
+def test_the_stereo_covariance_is_worth_something():
+    rng = np.random.default_rng(9)
+    errors = {True: [], False: []}
+    for _ in range(15):
+        seen = observed(PLANTED, POSE, rng=rng)
+        for weighed in errors:
+            best = rank_poses(seen, PLANTED, Evidence(stereo_covariance=weighed))[0]
+            errors[weighed].append(np.hypot(*(np.array(best.pose)[:2] - POSE[:2])))
+    assert np.mean(errors[True]) < 0.9 * np.mean(errors[False])
+
+
+def test_an_assignment_is_one_to_one_and_leaves_out_what_costs_more_than_nothing():
+    cost = np.array([[-5.0, -4.0, np.inf], [-4.5, 1.0, np.inf], [2.0, 3.0, 0.5]])
+    assert assign(cost) == ((0, 1), (1, 0))
+    assert assign(cost, one_to_one=False) == ((0, 0), (1, 0))
+
+
+def test_poses_within_half_a_metre_and_ten_degrees_are_one_answer():
+    poses = np.array([[0, 0, 3.1], [0.3, 0, -3.1], [0, 0.6, 3.1], [0, 0, 2.8]])
+    assert distinct(poses, np.array([1.0, 2.0, 0.5, 0.2]), 9) == [1, 2, 3]
+    assert distinct(poses, np.array([1.0, 2.0, 0.5, 0.2]), 2) == [1, 2]
+
+
+def test_residuals_too_large_to_be_noise_take_the_confidence():
+    best = rank_poses(observed(PLANTED, POSE), PLANTED)[0]
+    assert confidence_of(best) == pytest.approx(best.share)
+    assert confidence_of(best._replace(chi_square=60.0)) < 0.01
+    assert confidence_of(best._replace(chi_square=60.0), Evidence(absolute=False)) == best.share
+
+
+def test_the_matchers_are_called_alike_and_found_by_name():
+    assert ASSOCIATIONS["greedy"] is associate_greedy
+    seen = observed(PLANTED, POSE)
+    for matcher in ASSOCIATIONS.values():
+        found = matcher(seen, PLANTED)
+        assert len(found.penalties) == len(found.pairs) == len(found.same_class)
+        assert found.table.total.shape == (6, 6)
+        assert len({j for _, j in found.pairs}) == len(found.pairs)
+    assert ASSOCIATIONS["greedy"](seen, PLANTED).confidence is None
+
+
+def test_the_threshold_is_the_callers():
+    seen = observed(SYMMETRIC, POSE)
+    assert localizer(SYMMETRIC, least_confidence=0.3).localize_observations(seen).status == "ok"
+    with pytest.raises(LocalizerError, match="between 0 and 1"):
+        localizer(SYMMETRIC, least_confidence=1.2)
+
+
+def test_no_observations_at_all():
+    found = associate_consistent([], PLANTED)
+    assert (found.pairs, found.hypotheses, found.confidence) == ((), (), 0.0)

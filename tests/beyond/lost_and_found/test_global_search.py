@@ -1,0 +1,147 @@
+"""From anywhere in a small furnished room: the right place, several where it looks alike, found when carried off."""
+
+import numpy as np
+import pytest
+
+from course_lib.beyond.lost_and_found.free_space import FreeSpace, FreeSpaceError
+from course_lib.beyond.lost_and_found.global_search import GlobalSearch, upright_poses
+from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
+from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix
+from tests.rendering.shapes import SMALL, furnished_room, room, wall
+
+PLACE = np.array([-1.2, 0.5, -0.6, 0.15, 0.2, -0.3])
+ELSEWHERE = np.array([-1.5, -1.5, 0.5, 0.1, 0.3, 0.8])
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    with DepthRenderer(furnished_room(), SMALL) as opened:
+        yield opened
+
+
+def down(state):
+    return -optical_pose(state)[2, :3]
+
+
+def walk(start, n):
+    return start + np.arange(n)[:, None] * np.array([0.03, 0.02, 0.01, 0.005, 0.01, 0.02])
+
+
+def watched(search, renderer, states, gravity=down):
+    return [search.step(renderer.render(state)[0], gravity(state)) for state in states]
+
+
+@pytest.mark.parametrize("start", [PLACE, ELSEWHERE])
+def test_the_camera_is_found_from_nowhere(renderer, start):
+    states = walk(start, 6)
+    answers = watched(GlobalSearch(renderer, seed=1, least=200, most=1_500), renderer, states)
+    assert answers[0].status == "searching", "one frame is not enough to believe"
+    assert answers[-1].status == "found"
+    best = answers[-1].places[0]
+    assert best.state[:3] == pytest.approx(states[-1][:3], abs=0.02)
+    assert best.evidence > 0.9
+    assert answers[0].particles == 1_500
+    assert answers[-1].particles < 1_500, "a place that is known needs fewer"
+
+
+def test_it_knows_no_direction_of_the_world():
+    """The room turned by a quarter, and carried away."""
+    turn = pose_matrix(np.array([20.0, -10.0, 3.0, 0.0, 0.0, np.pi / 2]))
+    states = state_from_matrix(turn @ pose_matrix(walk(PLACE, 5)))
+    with DepthRenderer(furnished_room().transformed(turn), SMALL) as turned:
+        answer = watched(GlobalSearch(turned, seed=1, least=200, most=1_500), turned, states)[-1]
+    assert answer.status == "found"
+    assert answer.places[0].state[:3] == pytest.approx(states[-1][:3], abs=0.02)
+
+
+@pytest.mark.slow
+def test_in_an_empty_cube_four_places_are_as_good(renderer):
+    """The cube looks the same turned by 90 degrees: four headings, and no frame can tell."""
+    with DepthRenderer(room(), SMALL) as renderer:
+        answer = watched(GlobalSearch(renderer, seed=2, least=300, most=1_500), renderer, walk(PLACE, 5))[-1]
+    assert answer.status == "several"
+    assert len(answer.places) >= 2
+    reach = [np.hypot(*place.state[:2]) for place in answer.places[:2]]
+    assert reach == pytest.approx([np.hypot(*walk(PLACE, 5)[-1][:2])] * 2, abs=0.1)
+
+
+def test_what_no_place_explains_is_not_found(renderer):
+    search = GlobalSearch(renderer, seed=1, least=200, most=1_000)
+    noise = np.random.default_rng(3)
+    for _ in range(5):
+        answer = search.step(noise.uniform(0.5, 6.0, SMALL.shape), np.array([0.0, 1.0, 0.0]))
+    assert answer.status == "searching"
+
+
+def test_the_same_seed_gives_the_same_places(renderer):
+    runs = [
+        watched(GlobalSearch(renderer, seed=4, least=200, most=500), renderer, walk(PLACE, 2))[-1] for _ in range(2)
+    ]
+    assert [p.state.tobytes() for p in runs[0].places] == [p.state.tobytes() for p in runs[1].places]
+    assert runs[0].particles == runs[1].particles
+
+
+def test_drawn_poses_have_the_measured_down(rng):
+    positions = rng.uniform(-1, 1, (500, 3))
+    for state in (PLACE, ELSEWHERE, np.array([0, 0, 0, 0, np.pi / 2, 0.0]), np.array([0, 0, 0, np.pi, 0, 0.0])):
+        poses = upright_poses(positions, 9.81 * down(state), 1e-6, rng)
+        assert poses[:, :3, :3] @ down(state) == pytest.approx(np.tile([0.0, 0.0, -1.0], (500, 1)), abs=1e-4)
+        forward = np.arctan2(poses[:, 1, 0], poses[:, 0, 0])
+        assert np.abs(np.exp(1j * forward).mean()) < 0.15, "any heading"
+        assert poses[:, :3, 3] == pytest.approx(positions)
+
+
+@pytest.mark.parametrize("gravity", [[0, 0, 0], [0, 1], [np.nan, 0, 1]])
+def test_gravity_that_is_none_is_named(renderer, gravity):
+    with pytest.raises(ValueError, match="gravity"):
+        GlobalSearch(renderer).step(np.ones(SMALL.shape), gravity)
+
+
+def test_free_places_are_inside_and_clear_of_furniture(rng):
+    """A house of two rooms in an empty field; its box holds as much outside as inside."""
+    rooms = [room(6.0, (0.0, 0.0, 0.0)), room(6.0, (12.0, 12.0, 0.0))]
+    corners = np.concatenate([r.vertices for r in rooms])
+    space = FreeSpace(SceneMap(corners, np.concatenate([rooms[0].faces, rooms[1].faces + len(rooms[0].vertices)])))
+    places = space.draw(400, rng)
+    assert len(places) == 400
+    inside = [(np.abs(places - centre) < 2.95).all(axis=1) for centre in ([0, 0, 0], [12, 12, 0])]
+    assert (inside[0] | inside[1]).all()
+    assert 0.3 < inside[0].mean() < 0.7
+
+
+def test_a_map_without_free_space_is_named(rng):
+    slab = SceneMap(wall(2.0).vertices * [1, 20, 20] + [0, 0, 0], wall(2.0).faces)
+    with pytest.raises(FreeSpaceError, match="hardly a free place"):
+        FreeSpace(SceneMap(np.vstack([slab.vertices, [[40.0, 0, 0]]]), slab.faces)).draw(10, rng)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:this frame holds no measurement")
+def test_carried_away_in_the_dark_it_finds_itself_again(renderer):
+    localizer = RecoveringLocalizer(renderer, seed=1, least=200, most=2_000)
+    localizer.initialize(PLACE)
+    modes = [localizer.step(renderer.render(state)[0], gravity=down(state)).mode for state in walk(PLACE, 6)]
+    assert modes == ["following"] * 6
+    dark = np.full(SMALL.shape, np.nan)
+    for _ in range(3):
+        localizer.step(dark)
+    states = walk(ELSEWHERE, 7)
+    found = [localizer.step(renderer.render(state)[0], gravity=down(state)) for state in states]
+    assert found[0].mode == "searching", "after the dark nothing is taken for granted"
+    assert "found again" in {f.mode for f in found}
+    assert found[-1].mode == "following"
+    assert found[-1].estimate.status == "tracked"
+    assert found[-1].estimate.state[:3] == pytest.approx(states[-1][:3], abs=0.02)
+    assert found[0].short < found[0].long
+
+
+def test_a_person_who_walks_by_raises_no_alarm(renderer):
+    localizer = RecoveringLocalizer(renderer, seed=1)
+    localizer.initialize(PLACE)
+    for number, state in enumerate(walk(PLACE, 12)):
+        depth = renderer.render(state)[0].copy()
+        if 4 <= number < 9:
+            depth[:, 8 * (number - 4) : 8 * (number - 4) + 24] = 0.6
+        assert localizer.step(depth, gravity=down(state)).mode == "following"

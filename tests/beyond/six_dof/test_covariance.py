@@ -1,0 +1,126 @@
+"""How far off a refined pose may be: direction by direction the image or the prediction, and what rivals leave open."""
+
+import numpy as np
+import pytest
+
+from course_lib.beyond.six_dof.covariance import (
+    PREDICTED,
+    fused,
+    pose_information,
+    predicted_covariance,
+    sigmas,
+    with_rivals,
+)
+from course_lib.beyond.six_dof.prediction import Rival
+from course_lib.beyond.six_dof.twists import motion_between, moved
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.geometry import optical_pose
+from tests.rendering.shapes import SMALL, furnished_room, rough_wall, wall
+
+
+def image_of(scene_map, pose):
+    with DepthRenderer(scene_map, SMALL) as renderer:
+        return renderer.render_poses(pose[None])[0]
+
+
+def random_covariance(rng, scale):
+    root = rng.standard_normal((6, 6)) * scale
+    return root @ root.T + 1e-6 * np.eye(6)
+
+
+def test_before_a_bare_wall_an_image_shows_three_directions_of_six():
+    pose = optical_pose(np.zeros(6))
+    image = image_of(wall(0.9, 5.0), pose)
+    information = pose_information(image, image, SMALL)
+    assert np.linalg.matrix_rank(information, hermitian=True) == 3
+    right, down, forward, about_right, about_down, about_forward = np.diag(information)
+    assert max(right, down, about_forward) < 1e-6 * min(forward, about_right, about_down)
+
+
+def test_a_rough_map_of_a_bare_wall_shows_no_more(rng):
+    """The camera sees a flat wall with noise; the map's roughness, of which it has nothing, is no information."""
+    pose = optical_pose(np.zeros(6))
+    measured = image_of(wall(0.9, 5.0), pose) + 0.01 * rng.standard_normal(SMALL.shape)
+    known = []
+    for _ in range(20):
+        information = pose_information(measured, image_of(rough_wall(rng), pose), SMALL)
+        known.append(np.diag(information)[[0, 1, 5]] > 0.01 * np.diag(information)[[2, 3, 3]])
+    assert np.mean(known) < 0.15
+
+
+def test_in_a_furnished_room_an_image_shows_all_six():
+    pose = optical_pose(np.array([-1.0, 0.3, -0.3, 0.05, 0.1, -0.4]))
+    image = image_of(furnished_room(), pose)
+    assert np.linalg.matrix_rank(pose_information(image, image, SMALL), hermitian=True) == 6
+
+
+def test_nothing_in_view_is_no_information():
+    nothing = np.full(SMALL.shape, np.nan)
+    assert not pose_information(nothing, np.full(SMALL.shape, np.inf), SMALL).any()
+
+
+def test_an_error_is_carried_along_as_poses_carry_it(rng):
+    """To first order: errors x of T, each carried by the motion M, are those that the predicted covariance has."""
+    pose = optical_pose(np.array([1.0, 2.0, 0.5, 0.4, -0.2, 2.0]))
+    motion = np.array([0.4, -0.2, 0.6, 0.3, -0.5, 0.2])
+    small = random_covariance(rng, 1e-4)
+    errors = rng.multivariate_normal(np.zeros(6), small, 20_000)
+    carried = motion_between(moved(pose, motion), moved(moved(pose, errors), motion))
+    expected = np.cov(carried, rowvar=False)
+    got = predicted_covariance(small, motion, np.full(6, 1e-9))
+    scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
+    assert np.abs(got - expected).max() < 0.03 * scale.max()
+    assert (np.abs(got - expected) < 0.05 * scale).all()
+
+
+def test_a_wrong_velocity_is_wrong_the_same_way_frame_after_frame():
+    """Deviations add: after ten frames ten times the spread, not the root of ten times."""
+    spread, covariance = np.full(6, 0.01 / PREDICTED), 0.01**2 * np.eye(6)
+    for _ in range(9):
+        covariance = predicted_covariance(covariance, np.zeros(6), spread)
+    assert np.sqrt(np.diag(covariance)) == pytest.approx(np.full(6, 0.1), rel=1e-6)
+
+
+def test_no_dependence_between_the_two_errors_exceeds_the_predicted_covariance(rng):
+    for _ in range(20):
+        before, spread = random_covariance(rng, 0.1), rng.uniform(0.01, 0.3, 6)
+        bound = predicted_covariance(before, np.zeros(6), spread / PREDICTED)
+        turn = np.linalg.qr(rng.standard_normal((6, 6)))[0]
+        shared = np.linalg.cholesky(before) @ turn @ np.diag(spread)  # fully dependent errors, any way
+        together = before + np.diag(spread**2) + shared + shared.T
+        assert np.linalg.eigvalsh(bound - together).min() > -1e-9
+
+
+def test_along_each_direction_the_surer_is_believed():
+    prior = np.diag(np.square([0.1, 0.1, 0.1, 0.2, 0.2, 0.2]))
+    information = np.diag([1 / 0.01**2, 0.0, 1 / 0.3**2, 0.0, 1 / 0.02**2, 0.0])
+    covariance, gain = fused(prior, information)
+    assert np.sqrt(np.diag(covariance)) == pytest.approx([0.01, 0.1, 0.1, 0.2, 0.02, 0.2])
+    assert np.diag(gain) == pytest.approx([1 - 0.01**2 / 0.1**2, 0, 0, 0, 1 - 0.02**2 / 0.2**2, 0])
+
+
+def test_it_knows_no_axes(rng):
+    """Turned, it gives the same, turned."""
+    prior, information = random_covariance(rng, 0.1), np.linalg.inv(random_covariance(rng, 0.1))
+    turn = np.linalg.qr(rng.standard_normal((6, 6)))[0]
+    covariance, gain = fused(prior, information)
+    turned_covariance, turned_gain = fused(turn @ prior @ turn.T, turn @ information @ turn.T)
+    assert turned_covariance == pytest.approx(turn @ covariance @ turn.T, rel=1e-6, abs=1e-9)
+    assert turned_gain == pytest.approx(turn @ gain @ turn.T, abs=1e-6)
+
+
+def test_the_same_image_again_makes_it_no_surer(rng):
+    information = np.linalg.inv(random_covariance(rng, 0.05))
+    covariance, _ = fused(random_covariance(rng, 1.0), information)
+    again, gain_again = fused(covariance, information)
+    assert again == pytest.approx(covariance, rel=1e-6, abs=1e-12)
+    assert gain_again == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_rival_widens_it_towards_itself_by_how_likely_it_is():
+    pose, small = optical_pose(np.zeros(6)), np.eye(6) * 1e-6
+    there = np.array([0.4, 0, 0, 0, 0, 0])
+    equal = with_rivals(small, pose, [Rival(moved(pose, there), 0.0)])
+    assert sigmas(equal) == pytest.approx([0.4 / np.sqrt(2), 1e-3], rel=1e-3)
+    hardly = with_rivals(small, pose, [Rival(moved(pose, there), -0.2)])
+    assert sigmas(hardly) == pytest.approx([2.1e-3, 1e-3], rel=0.05)

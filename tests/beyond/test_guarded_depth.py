@@ -1,0 +1,150 @@
+"""A watched filter: exactly the filter where nothing is wrong; where something is, it says so and comes back."""
+
+import numpy as np
+import pytest
+
+from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
+from course_lib.depth_mcl.likelihood import DepthImageError
+from course_lib.depth_mcl.localizer import MonteCarloLocalizer
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.beyond.guarded_depth import OUTCOMES, WatchedLocalizer
+from tests.rendering.shapes import SMALL, furnished_room
+
+START = np.array([-1.0, 0.3, -0.3, 0.0, 0.0, -0.4])
+SIGMA = [0.06, 0.06, 0, 0, 0, 0.04]
+PERIOD = 0.1
+GATE = 0.3  # metres
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    with DepthRenderer(furnished_room(), SMALL) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def walk(renderer):
+    """States `(n, 6)` and their noisy images."""
+    steps = np.zeros((30, 6))
+    steps[:, 0], steps[:, 5] = 0.04, 0.02
+    true = START + np.cumsum(steps, axis=0)
+    noise = 0.01 * np.random.default_rng(5).standard_normal((30, *SMALL.shape))
+    return true, (renderer.render(true) + noise).astype(np.float32)
+
+
+def filters(renderer):
+    return {
+        "paper": MonteCarloLocalizer(renderer, 150, SIGMA, seed=1),
+        "annealed": AnnealedLocalizer(renderer, 100, seed=1),
+    }
+
+
+def run(renderer, kind, frames):
+    """What a watched filter says of (image, time)s."""
+    watched = WatchedLocalizer(filters(renderer)[kind], PERIOD)
+    watched.initialize(START)
+    return [watched.step(image, time) for image, time in frames]
+
+
+def timed(images):
+    return [(image, PERIOD * k) for k, image in enumerate(images)]
+
+
+def off(watched, true):
+    return [float(np.linalg.norm(one.estimate.state[:3] - state[:3])) for one, state in zip(watched, true, strict=True)]
+
+
+@pytest.mark.parametrize("kind", ["paper", "annealed"])
+def test_where_nothing_is_wrong_it_is_the_filter_to_the_last_bit(renderer, walk, kind):
+    images = walk[1]
+    alone = filters(renderer)[kind]
+    alone.initialize(START)
+    plain = [alone.step(image) for image in images[:12]]
+    seen = run(renderer, kind, timed(images[:12]))
+    for one, other in zip(seen, plain, strict=True):
+        assert np.array_equal(one.estimate.state, other.state)
+        assert np.array_equal(one.estimate.particles, other.particles)
+        assert np.array_equal(one.estimate.error_covariance, other.error_covariance)
+    assert [one.outcome for one in seen] == ["tracked"] * 12
+
+
+@pytest.mark.parametrize("kind", ["paper", "annealed"])
+@pytest.mark.parametrize(
+    ("trouble", "outcome"),
+    [("black", "no return"), ("old", "repeated"), ("stop", "saturated"), ("noise", "noise"), ("half", "half covered")],
+)
+def test_every_trouble_is_named_and_it_comes_back(renderer, walk, rng, kind, trouble, outcome):
+    true, images = walk
+    frames = timed(images)
+    for k in (10, 11, 12):
+        bad = {
+            "black": np.full(SMALL.shape, np.nan),
+            "old": images[9],
+            "stop": np.full(SMALL.shape, 9.99),
+            "noise": rng.uniform(0.5, 9.0, SMALL.shape),
+            "half": np.where(np.arange(SMALL.width) < 32, np.nan, images[k]),
+        }[trouble]
+        frames[k] = bad.astype(np.float32), PERIOD * k
+    seen = run(renderer, kind, frames)
+    assert [one.outcome for one in seen[10:13]] == [outcome] * 3
+    assert {one.outcome for one in seen} <= set(OUTCOMES)
+    errors = off(seen, true)
+    assert max(errors[23:]) < 0.1, "ten good frames later it is where it was"
+    assert seen[-1].outcome == "tracked"
+    assert [error for one, error in zip(seen, errors, strict=True) if one.outcome == "tracked" and error > GATE] == []
+
+
+def test_a_frame_at_fault_moves_the_particles_as_no_measurement_does(renderer, walk):
+    images = walk[1]
+    plain = filters(renderer)["paper"]
+    plain.initialize(START)
+    for image in images[:5]:
+        plain.step(image)
+    with pytest.warns(UserWarning, match="no measurement"):
+        expected = plain.step(np.full(SMALL.shape, np.nan))
+    seen = run(renderer, "paper", [*timed(images[:5]), (images[4], 0.5)])
+    assert seen[-1].outcome == "repeated"
+    assert seen[-1].estimate.status == "no measurement"
+    assert np.array_equal(seen[-1].estimate.particles, expected.particles)
+
+
+def test_frames_that_never_came_move_the_filter_once_each(renderer, walk):
+    images = walk[1]
+    seen = run(renderer, "paper", [*timed(images[:5]), (images[8], 0.8)])
+    assert len(seen[-1].missed) == 3
+    assert {one.status for one in seen[-1].missed} == {"no measurement"}
+    assert [len(one.missed) for one in seen[:-1]] == [0] * 5
+
+
+def test_a_frame_out_of_order_changes_nothing(renderer, walk):
+    images = walk[1]
+    seen = run(renderer, "paper", [*timed(images[:5]), (images[5], 0.2), (images[6], 0.5)])
+    assert seen[5].outcome == "out of order"
+    assert seen[5].estimate is seen[4].estimate
+    undisturbed = run(renderer, "paper", [*timed(images[:5]), (images[6], 0.5)])
+    assert np.array_equal(seen[6].estimate.state, undisturbed[5].estimate.state)
+
+
+def test_after_long_trouble_one_good_frame_is_no_proof(renderer, walk):
+    images = walk[1]
+    frames = timed(images)
+    for k in range(10, 16):
+        frames[k] = np.full(SMALL.shape, np.nan), PERIOD * k
+    outcomes = [one.outcome for one in run(renderer, "annealed", frames)]
+    assert "tracked" not in outcomes[10:18]
+    assert outcomes[-1] == "tracked"
+
+
+def test_an_image_of_another_size_is_refused_and_not_remembered(renderer):
+    watched = WatchedLocalizer(filters(renderer)["paper"], PERIOD)
+    watched.initialize(START)
+    with pytest.raises(DepthImageError, match="the camera gives"):
+        watched.step(np.zeros((3, 4)), 0.0)
+
+
+def test_a_new_start_forgets_what_was(renderer, walk):
+    images = walk[1]
+    watched = WatchedLocalizer(filters(renderer)["paper"], PERIOD)
+    for _ in range(2):
+        watched.initialize(START)
+        assert watched.step(images[0], 7.0).outcome == "tracked"

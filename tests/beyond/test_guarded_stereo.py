@@ -1,0 +1,93 @@
+"""Pairs in a stream: each has an outcome by name, and a pair at fault changes nothing for the others."""
+
+import numpy as np
+import pytest
+
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.matching.alignment import LEAST_AGREEING, camera_alignment
+from course_lib.spherical_stereo.matching.features import find_features
+from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, open_view
+from course_lib.spherical_stereo.pose import localization as outcomes
+from course_lib.beyond.guarded_stereo import WatchedRig
+from tests.spherical_stereo.moved_rig import KnowingDetector, pair_from
+from tests.spherical_stereo.stereo_scene import mapped_scene
+from tests.spherical_stereo.vertical_pair import BASELINE
+
+MAP = mapped_scene()[2]
+HERE, THERE = pair_from(0.0, 0.0), pair_from(0.35, 0.1)
+
+
+@pytest.fixture
+def localizer():
+    return SemanticLocalizer(StereoRig(BASELINE), MAP, KnowingDetector(HERE, THERE))
+
+
+@pytest.fixture
+def rig(localizer):
+    return WatchedRig(localizer, period=1.0)
+
+
+def test_a_good_pair_is_what_the_localizer_says(rig, localizer):
+    alone = localizer.localize(*HERE[:2])
+    seen = rig.localize(*HERE[:2], 0.0)
+    assert (seen.outcome, seen.missed) == ("ok", 0)
+    assert seen.localization.pose == alone.pose
+    assert np.array_equal(seen.localization.covariance, alone.covariance)
+
+
+def test_a_pair_that_is_not_new_is_named_and_not_looked_into(rig):
+    rig.localize(*HERE[:2], 0.0)
+    again = rig.localize(HERE[0].copy(), HERE[1].copy(), 1.0)
+    assert (again.outcome, again.localization) == ("repeated", None)
+    late = rig.localize(*THERE[:2], 0.5)
+    assert (late.outcome, late.localization) == ("out of order", None)
+    assert rig.localize(*THERE[:2], 4.0).missed == 2
+
+
+def test_exchanged_images_are_named(rig):
+    assert rig.localize(HERE[1], HERE[0], 0.0).outcome == outcomes.SWAPPED
+    assert rig.localize(*HERE[:2], 1.0).outcome == "ok"
+
+
+@pytest.mark.parametrize("dark", [0, 1])
+def test_a_dark_camera_with_hot_pixels_is_named(rig, rng, dark):
+    images = list(HERE[:2])
+    images[dark] = rng.integers(0, 9, images[dark].shape, dtype=np.uint8)
+    images[dark][5, 7] = images[dark][80, 300] = 255
+    assert rig.localize(*images, 0.0).outcome == outcomes.BLANK
+
+
+def test_a_dim_image_with_lamps_is_not_blank():
+    image = np.zeros((256, 512, 3), np.uint8)
+    image[100:106, 200:206, 1] = 200
+    assert not open_view(image).is_blank
+
+
+@pytest.mark.parametrize(("upper", "lower"), [(HERE, THERE), (THERE, HERE)])
+def test_images_of_different_moments_are_named(rig, upper, lower):
+    seen = rig.localize(upper[0], lower[1], 0.0)
+    assert seen.outcome == outcomes.MOMENTS
+    assert seen.localization.pose is None
+    assert "were they taken at one moment" in seen.localization.explanation
+
+
+def test_the_papers_method_does_not_ask_for_the_moment():
+    localizer = SemanticLocalizer(StereoRig(BASELINE), MAP, KnowingDetector(HERE, THERE), reject_implausible=False)
+    assert localizer.localize(HERE[0], THERE[1]).reason != outcomes.MOMENTS
+
+
+def test_matches_of_one_moment_agree_and_of_two_do_not():
+    def features(image):
+        return find_features(open_view(image)).features
+
+    same = camera_alignment(features(HERE[0]), features(HERE[1]))
+    other = camera_alignment(features(HERE[0]), features(THERE[1]))
+    assert same.agreeing > LEAST_AGREEING + 0.1
+    assert other.agreeing < LEAST_AGREEING - 0.1
+    assert same.of_one_moment
+    assert not other.of_one_moment
+
+
+def test_what_is_no_pair_is_still_an_error(rig):
+    with pytest.raises(PanoramaError, match="must have one size"):
+        rig.localize(HERE[0], HERE[1][::2, ::2], 0.0)

@@ -1,0 +1,131 @@
+"""Several views: what one view leaves open the next one closes, and odometry says which way."""
+
+import numpy as np
+import pytest
+
+from course_lib.geometry import wrap_angle
+from course_lib.beyond.look_alikes.confidence import (
+    AMBIGUOUS,
+    NOTHING_AGREES,
+    TOO_FEW_INLIERS,
+    area,
+    score_of_nothing,
+)
+from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, rotations
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.beyond.several_views import CarriedPose, Motion, SemanticTracker, carried_on, fused
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed
+
+SURE = np.diag([0.02, 0.02, 0.02]) ** 2
+
+
+def motion(start, end, covariance=SURE):
+    forward, left = rotations(np.array(start[2])).T @ (end[:2] - start[:2])
+    return Motion(forward, left, wrap_angle(end[2] - start[2]), covariance)
+
+
+WALK = list(POSE + np.array([[0.0, 0.0, 0.0], [0.3, -0.1, 0.2], [0.5, 0.2, 0.3]]))
+
+
+def near(pose, other):
+    return np.hypot(*(np.array(pose)[:2] - other[:2])) < 0.1 and abs(wrap_angle(pose[2] - other[2])) < 0.05
+
+
+def test_a_carried_pose_goes_where_the_rig_went():
+    start = CarriedPose(np.array([1.0, 2.0, np.pi / 2]), np.zeros((3, 3)), 0.0, None)
+    moved = carried_on(start, Motion(0.5, 0.1, 3.0, np.diag([0.1, 0.2, 0.3]) ** 2))
+    np.testing.assert_allclose(moved.mean, [0.9, 2.5, np.pi / 2 + 3.0 - 2 * np.pi])
+    np.testing.assert_allclose(np.diag(moved.covariance), [0.2**2, 0.1**2, 0.3**2])  # forward is north
+
+
+def test_an_uncertain_heading_makes_the_way_uncertain():
+    start = CarriedPose(np.zeros(3), np.diag([0.0, 0.0, 0.1]) ** 2, 0.0, None)
+    moved = carried_on(start, Motion(2.0, 0.0, 0.0, np.zeros((3, 3))))
+    np.testing.assert_allclose(np.sqrt(np.diag(moved.covariance)), [0.0, 0.2, 0.1])
+
+
+def test_fusing_two_equally_sure_poses_meets_in_the_middle_also_across_the_cut_of_the_circle():
+    spread = np.diag([0.1, 0.1, 0.1]) ** 2
+    carried = CarriedPose(np.array([0.0, 0.0, 3.1]), spread, 0.0, None)
+    view = PoseHypothesis(Pose2D(0.2, 0.0, -3.1), spread, (), 4.0, 0.0, ())
+    found = fused(carried, view, prior_log_density=0.0)
+    np.testing.assert_allclose(found.mean[:2], [0.1, 0.0])
+    assert abs(wrap_angle(found.mean[2] - np.pi)) < 1e-9
+    np.testing.assert_allclose(found.covariance, spread / 2)
+    further = fused(carried._replace(mean=np.array([-1.0, 0.0, 3.1])), view, prior_log_density=0.0)
+    assert further.log_weight < found.log_weight - 10
+
+
+def test_a_symmetric_room_stays_two_rooms_however_often_it_is_looked_at():
+    tracker = SemanticTracker(SYMMETRIC)
+    for start, end in zip([None, *WALK], WALK, strict=False):
+        track = tracker.step(observed(SYMMETRIC, end), None if start is None else motion(start, end))
+    assert (track.status, track.reason, track.pose) == ("unable", AMBIGUOUS, None)
+    assert [share for _, share in track.alternatives[:2]] == pytest.approx([0.5, 0.5], abs=0.05)
+    assert any(near(pose, WALK[-1]) for pose, _ in track.alternatives[:2])
+
+
+def test_odometry_resolves_what_the_last_view_alone_cannot():
+    """The plant is seen in the first view only: what it told is carried to the last."""
+    tracker, alone = SemanticTracker(PLANTED), SemanticTracker(PLANTED)
+    tracker.step(observed(PLANTED, WALK[0]))
+    tracker.step(observed(PLANTED, WALK[1], which=range(5)), motion(WALK[0], WALK[1]))
+    track = tracker.step(observed(PLANTED, WALK[2], which=range(5)), motion(WALK[1], WALK[2]))
+    unsure = alone.step(observed(PLANTED, WALK[2], which=range(5)))
+    assert track.status == "ok"
+    assert near(track.pose, WALK[2])
+    assert unsure.confidence < 0.75 < track.confidence
+
+
+def test_without_odometry_a_step_is_short_and_that_is_enough():
+    tracker = SemanticTracker(PLANTED)
+    for k, pose in enumerate(WALK):
+        track = tracker.step(observed(PLANTED, pose, which=None if k == 0 else range(5)))
+    assert track.status == "ok"
+    assert near(track.pose, WALK[-1])
+
+
+def test_a_last_view_of_two_objects_is_enough_where_the_place_is_known():
+    tracker = SemanticTracker(PLANTED)
+    tracker.step(observed(PLANTED, WALK[0]))
+    track = tracker.step(observed(PLANTED, WALK[1], which=(3, 5)), motion(WALK[0], WALK[1]))
+    assert track.status == "ok"
+    assert near(track.pose, WALK[1])
+    assert SemanticTracker(PLANTED).step(observed(PLANTED, WALK[1], which=(3, 5))).reason == TOO_FEW_INLIERS
+
+
+def test_a_rig_that_is_carried_away_is_found_again():
+    tracker, elsewhere = SemanticTracker(PLANTED), np.array([0.9, 1.6, -2.0])  # no alternative of the first view's
+    tracker.step(observed(PLANTED, POSE))
+    for _ in range(2):
+        track = tracker.step(observed(PLANTED, elsewhere), Motion(0.0, 0.0, 0.0, SURE))
+    assert track.status == "ok"
+    assert near(track.pose, elsewhere)
+
+
+def test_a_view_of_nothing_moves_the_belief_and_makes_it_no_surer():
+    tracker = SemanticTracker(PLANTED)
+    first = tracker.step(observed(PLANTED, WALK[0]))
+    second = tracker.step([], motion(WALK[0], WALK[1]))
+    assert near(second.pose, WALK[1])
+    assert np.trace(second.covariance) > np.trace(first.covariance)
+    assert SemanticTracker(PLANTED).step([]).reason == NOTHING_AGREES
+
+
+def test_views_make_the_pose_better():
+    rng, errors = np.random.default_rng(12), {1: [], 3: []}
+    for _ in range(12):
+        tracker = SemanticTracker(PLANTED)
+        for k, pose in enumerate([WALK[0]] * 3):
+            track = tracker.step(observed(PLANTED, pose, rng=rng), Motion(0.0, 0.0, 0.0, SURE) if k else None)
+            if k + 1 in errors:
+                errors[k + 1].append(np.hypot(*(np.array(track.alternatives[0][0])[:2] - pose[:2])))
+    assert np.mean(errors[3]) < 0.8 * np.mean(errors[1])
+
+
+def test_the_area_is_that_of_the_walls_or_of_the_landmarks_and_a_margin():
+    assert area(PLANTED) == pytest.approx(36.0)
+    assert area(SemanticMap(PLANTED.landmarks)) == pytest.approx(6.0 * 6.0)  # 4 by 4 metres, and one all around
+    hall = SemanticMap(PLANTED.landmarks, [[-90, -90], [90, -90], [90, 90], [-90, 90]])
+    assert 1.5 < score_of_nothing(hall) < score_of_nothing(PLANTED), "nobody sees all of a hall"

@@ -1,0 +1,130 @@
+"""The loss: its overlap, who answers for an object, and what is neither object nor background."""
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
+
+from tools.detector_training.assignment import assign, make_targets, not_background  # noqa: E402
+from tools.detector_training.loss import complete_iou, yolo_loss  # noqa: E402
+from tools.detector_training.network import YoloHead  # noqa: E402
+
+WIDTH, ROWS, COLUMNS, STRIDE, CLASSES = 160, 4, 10, 16.0, 7
+HEAD = YoloHead(
+    anchors=torch.tensor([[20.0, 20.0], [40.0, 20.0], [60.0, 50.0]]),
+    classes=CLASSES,
+    scale_xy=2.0,
+    iou_threshold=0.213,
+    ignore_threshold=0.7,
+)
+
+
+def targets(boxes, labels=None, ignored=None):
+    boxes = np.array(boxes, float).reshape(-1, 4)
+    labels = np.zeros(len(boxes), int) if labels is None else np.array(labels)
+    return make_targets([(labels, boxes, np.zeros(len(boxes), bool) if ignored is None else np.array(ignored))])
+
+
+def empty_map(requires_grad=False):
+    raw = torch.zeros(1, 3, 5 + CLASSES, ROWS, COLUMNS)
+    raw[:, :, 4:] = -4.0
+    return raw.requires_grad_(requires_grad)
+
+
+def random_boxes(n, seed=0):
+    generator = torch.Generator().manual_seed(seed)
+    return torch.rand(n, 4, generator=generator) * torch.tensor([100.0, 50.0, 40.0, 30.0]) + 5.0
+
+
+def test_equal_boxes_have_complete_iou_one():
+    boxes = random_boxes(20)
+    torch.testing.assert_close(complete_iou(boxes, boxes), torch.ones(20))
+
+
+def test_complete_iou_is_symmetric_and_never_above_one():
+    a, b = random_boxes(200, 1), random_boxes(200, 2)
+    torch.testing.assert_close(complete_iou(a, b), complete_iou(b, a))
+    assert float(complete_iou(a, b).max()) <= 1.0
+
+
+def test_complete_iou_falls_as_boxes_that_do_not_meet_move_apart():
+    fixed = torch.tensor([[50.0, 50.0, 10.0, 10.0]]).repeat(5, 1)
+    moved = fixed + torch.tensor([[20.0, 0, 0, 0]]) * torch.arange(1, 6)[:, None]
+    assert (complete_iou(fixed, moved).diff() < 0).all()
+
+
+def test_equal_centres_and_shapes_reduce_to_plain_iou():
+    small, large = torch.tensor([[50.0, 50.0, 10.0, 20.0]]), torch.tensor([[50.0, 50.0, 20.0, 40.0]])
+    assert float(complete_iou(small, large)) == pytest.approx(0.25)
+
+
+def test_every_object_has_a_box_that_answers_even_if_no_anchor_fits():
+    # 150 x 10 fits no anchor with an IoU of 0.213.
+    (found,) = assign(targets([[5, 20, 155, 30]]), [HEAD], [(ROWS, COLUMNS, STRIDE)])
+    assert len(found.target) >= 1
+
+
+def test_the_cell_of_the_centre_and_its_two_nearest_neighbours_answer():
+    # Centre (70, 36): cell column 4, row 2; nearer to column 3 than 5 (70 / 16 = 4.4) and to row 1 than 3.
+    (found,) = assign(targets([[60, 26, 80, 46]]), [HEAD], [(ROWS, COLUMNS, STRIDE)])
+    cells = set(zip(found.column[found.anchor == 0].tolist(), found.row[found.anchor == 0].tolist(), strict=True))
+    assert cells == {(4, 2), (3, 2), (4, 1)}
+
+
+def test_where_two_objects_collide_the_smaller_one_is_answered_for():
+    (found,) = assign(targets([[58, 24, 82, 48], [60, 26, 80, 46]]), [HEAD], [(ROWS, COLUMNS, STRIDE)])
+    centre = (found.column == 4) & (found.row == 2) & (found.anchor == 0)
+    assert found.target[centre].tolist() == [1]
+
+
+def test_no_box_answers_for_two_objects():
+    generator = np.random.default_rng(0)
+    low = generator.uniform([0, 0], [120, 40], (30, 2))
+    boxes = np.concatenate([low, low + generator.uniform(5, 40, (30, 2))], axis=1)
+    (found,) = assign(targets(boxes), [HEAD], [(ROWS, COLUMNS, STRIDE)])
+    keys = set(zip(found.anchor.tolist(), found.row.tolist(), found.column.tolist(), strict=True))
+    assert len(keys) == len(found.target)
+
+
+def test_a_step_against_the_gradient_lowers_the_loss():
+    raw = empty_map(requires_grad=True)
+    wanted = targets([[60, 26, 80, 46], [100, 10, 140, 30]], labels=[1, 4])
+    first = yolo_loss([raw], [HEAD], wanted, WIDTH)
+    first.total.backward()
+    with torch.no_grad():
+        second = yolo_loss([raw - 0.05 * raw.grad], [HEAD], wanted, WIDTH)
+    assert second.total < first.total
+
+
+def test_the_gradient_raises_the_right_class_and_the_objectness_of_the_object():
+    raw = empty_map(requires_grad=True)
+    yolo_loss([raw], [HEAD], targets([[60, 26, 80, 46]], labels=[3]), WIDTH).total.backward()
+    gradient = raw.grad[0, 0, :, 2, 4]
+    assert gradient[4] < 0
+    assert gradient[5 + 3] < 0
+    assert (np.delete(gradient[5:].numpy(), 3) > 0).all()
+    # Far away is background: objectness is pushed down, and box and class are left alone.
+    far = raw.grad[0, 0, :, 0, 9]
+    assert far[4] > 0
+    assert far[:4].abs().sum() == 0
+    assert far[5:].abs().sum() == 0
+
+
+def test_boxes_in_an_ignored_object_are_not_taught_to_be_background():
+    raw = empty_map(requires_grad=True)
+    yolo_loss([raw], [HEAD], targets([[90, 0, 160, 40]], ignored=[True]), WIDTH).total.backward()
+    assert raw.grad[0, 0, 4, 1, 7] == 0
+    assert raw.grad[0, 0, 4, 3, 1] > 0
+
+
+def test_a_box_on_an_object_that_another_answers_for_is_not_background():
+    wanted = targets([[60, 26, 80, 46]])
+    boxes = torch.tensor([[70.0, 36.0, 20.0, 22.0], [70.0, 36.0, 40.0, 40.0], [20.0, 20.0, 20.0, 20.0]])
+    assert not_background(boxes, 0, wanted, ignore_threshold=0.7).tolist() == [True, False, False]
+
+
+def test_a_batch_without_objects_teaches_background_and_stays_finite():
+    loss = yolo_loss([empty_map()], [HEAD], targets([]), WIDTH)
+    assert loss.box == 0.0
+    assert loss.objectness > 0.0
+    assert torch.isfinite(loss.total)

@@ -1,0 +1,110 @@
+"""The network that is trained and the one that OpenCV runs from the written files are the same function."""
+
+import cv2
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
+
+from tools.detector_training.export import read_weights, write_weights  # noqa: E402
+from tools.detector_training.network import PRIOR_OBJECTNESS, TrainableNetwork, decode, decode_boxes  # noqa: E402
+from course_lib.spherical_stereo.detection.darknet import DetectorError, expected_weight_floats, parse_cfg, read_cfg  # noqa: E402
+from tests.tools.detector_training.toy_panoramas import ROOM_CFG, TINY_CFG  # noqa: E402
+
+
+def randomized(network, seed=0):
+    """Statistics and scales as a trained network has them: with the first ones, batch normalization does nothing."""
+    generator = torch.Generator().manual_seed(seed)
+    for module in network.modules():
+        if isinstance(module, torch.nn.BatchNorm2d):
+            module.running_mean.normal_(0, 0.2, generator=generator)
+            module.running_var.uniform_(0.5, 2.0, generator=generator)
+            module.weight.data.uniform_(0.5, 1.5, generator=generator)
+            module.bias.data.normal_(0, 0.3, generator=generator)
+    return network.eval()
+
+
+def outputs_of_both(cfg, network, weights, images):
+    with torch.no_grad():
+        width = images.shape[-1]
+        ours = decode(network(torch.from_numpy(images)), network.heads, width)[0].numpy()
+    net = cv2.dnn.readNetFromDarknet(str(cfg), str(weights))
+    net.setInput(images)
+    theirs = np.concatenate(net.forward(net.getUnconnectedOutLayersNames()))
+    return ours, theirs * np.array([width, images.shape[-2]] * 2 + [1] * (theirs.shape[1] - 4), np.float32)
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory):
+    path = tmp_path_factory.mktemp("cfg") / "tiny.cfg"
+    path.write_text(TINY_CFG)
+    return path
+
+
+@pytest.mark.parametrize("which", ["room", "tiny"])
+def test_pytorch_and_opencv_compute_the_same_boxes_and_scores(which, tiny, tmp_path):
+    cfg = ROOM_CFG if which == "room" else tiny
+    sections = read_cfg(cfg)
+    network = randomized(TrainableNetwork(sections))
+    weights = write_weights(network, tmp_path / "a.weights")
+    shape = (1, 3, sections[0].integer("height"), sections[0].integer("width"))
+    images = np.random.default_rng(1).random(shape, dtype=np.float32)
+    ours, theirs = outputs_of_both(cfg, network, weights, images)
+    assert ours[:, 4].std() > 1e-4, "a network that sees nothing would prove nothing"
+    np.testing.assert_allclose(ours, theirs, atol=1e-3)
+
+
+def test_the_room_network_is_small():
+    assert expected_weight_floats(read_cfg(ROOM_CFG)) * 4 <= 6_000_000
+
+
+def test_weights_read_back_give_the_same_network(tmp_path):
+    sections = parse_cfg(TINY_CFG)
+    network = randomized(TrainableNetwork(sections))
+    write_weights(network, tmp_path / "a.weights", images_seen=1234)
+    other = TrainableNetwork(sections, torch.Generator().manual_seed(5)).eval()
+    assert read_weights(other, tmp_path / "a.weights") == 1234
+    images = torch.rand(1, 3, 64, 160, generator=torch.Generator().manual_seed(2))
+    with torch.no_grad():
+        for a, b in zip(network(images), other(images), strict=True):
+            torch.testing.assert_close(a, b)
+
+
+def test_weights_of_another_network_are_refused(tmp_path):
+    write_weights(TrainableNetwork(parse_cfg(TINY_CFG)), tmp_path / "a.weights")
+    with pytest.raises(DetectorError, match="too short"):
+        read_weights(TrainableNetwork(read_cfg(ROOM_CFG)), tmp_path / "a.weights")
+
+
+def test_one_seed_gives_one_network():
+    first, second, third = (
+        TrainableNetwork(parse_cfg(TINY_CFG), torch.Generator().manual_seed(seed)).layers[0][0].weight
+        for seed in (1, 1, 2)
+    )
+    assert torch.equal(first, second)
+    assert not torch.equal(first, third)
+
+
+def test_an_untrained_network_expects_hardly_any_object():
+    network = TrainableNetwork(parse_cfg(TINY_CFG)).eval()
+    with torch.no_grad():
+        table = decode(network(torch.rand(1, 3, 64, 160)), network.heads, 160)
+    assert float(table[..., 4].mean()) == pytest.approx(PRIOR_OBJECTNESS, rel=0.5)
+
+
+def test_a_zero_map_puts_an_anchor_in_the_middle_of_every_cell():
+    head = TrainableNetwork(parse_cfg(TINY_CFG)).heads[0]
+    boxes = decode_boxes(torch.zeros(1, len(head.anchors), 12, 2, 3), head, stride=16.0)
+    assert boxes[0, 0, 1, 2, :2].tolist() == [40.0, 24.0]
+    torch.testing.assert_close(boxes[0, :, 0, 0, 2:], head.anchors)
+
+
+def test_sections_that_cannot_be_trained_are_named():
+    with pytest.raises(DetectorError, match=r"cannot build \[reorg\]"):
+        TrainableNetwork(parse_cfg(TINY_CFG.replace("[yolo]", "[reorg]\nstride=2\n[yolo]")))
+    with pytest.raises(DetectorError, match="mish is not known"):
+        TrainableNetwork(parse_cfg(TINY_CFG.replace("leaky", "mish")))
+    with pytest.raises(DetectorError, match=r"no \[yolo\]"):
+        TrainableNetwork(parse_cfg(TINY_CFG.split("[yolo]")[0]))
+    with pytest.raises(DetectorError, match="does not choose from"):
+        TrainableNetwork(parse_cfg(TINY_CFG.replace("mask=0,1,2", "mask=0,1,3")))

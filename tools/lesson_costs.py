@@ -1,0 +1,173 @@
+"""What one student's kernel costs in each lesson and project: memory and processor time, measured, nothing stored.
+
+`course.py bench --lessons` runs each notebook once in a fresh kernel, as `refresh` does, in a folder that is thrown
+away. Neither number depends on how fast the machine is or on what else it does, so no time of the clock is told.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import threading
+import time
+from contextlib import AbstractContextManager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from urllib.error import URLError
+from urllib.request import urlopen
+
+import nbformat
+import psutil
+
+from course_lib.child import start
+from course_lib.commands.lab import lab_command
+from tools.refresh import HANGS_S, execute
+from course_lib.scratch import scratch_folder
+
+EVERY_S = 0.1
+"""Between two looks at the processes [s]; the kernel's own peak is the system's, which misses nothing."""
+SERVER_STARTS_S = 1200.0  # only what hangs takes so long
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What one kernel and its children took.
+
+    peak_mb: most resident memory at one moment [10^6 bytes], libraries included. own_mb: most of it that no other
+    process can share (anonymous and shared memory, without the files of libraries); None where the system does not
+    tell (only Linux does). processor_s: user and system time of the whole tree [s], the kernel's start included.
+    """
+
+    name: str
+    peak_mb: float
+    own_mb: float | None
+    processor_s: float
+
+
+class ProcessWatch(AbstractContextManager):
+    """Looks at process `pid` and all its descendants, every `EVERY_S` and once more at the end; then has `.cost`.
+
+    A child's peak that lasts less than `EVERY_S` may be missed; the time of children that ended is in their parent's.
+    """
+
+    def __init__(self, pid: int, name: str = "") -> None:
+        self._process, self._name = psutil.Process(pid), name
+        self._peak = self._own = self._processor_s = 0.0
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._sample, daemon=True)
+
+    def __enter__(self) -> ProcessWatch:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ended.set()
+        self._thread.join()
+        self._look()
+
+    @property
+    def cost(self) -> Cost:
+        own = self._own / 1e6 if self._own else None
+        return Cost(self._name, self._peak / 1e6, own, self._processor_s)
+
+    def _sample(self) -> None:
+        while not self._ended.wait(EVERY_S):
+            self._look()
+
+    def _look(self) -> None:
+        resident = own = processor_s = 0.0
+        try:
+            tree = [self._process, *self._process.children(recursive=True)]
+        except psutil.Error:  # it ended by itself: what was seen before stands
+            return
+        for process in tree:
+            try:
+                times, resident_now = process.cpu_times(), process.memory_info().rss
+            except psutil.Error:  # ended since the list was made; its parent has its time now
+                continue
+            processor_s += times.user + times.system + times.children_user + times.children_system
+            resident += resident_now
+            own += own_bytes(process.pid)
+        self._peak = max(self._peak, resident, resident_peak(self._process.pid))
+        self._own = max(self._own, own)
+        self._processor_s = max(self._processor_s, processor_s)
+
+
+def own_bytes(pid: int) -> int:
+    """Resident bytes of process `pid` that are no file's; 0 where the system does not tell."""
+    sizes = _status(pid)
+    return sizes.get("RssAnon", 0) + sizes.get("RssShmem", 0)
+
+
+def resident_peak(pid: int) -> int:
+    """Most resident bytes that process `pid` ever had; 0 where the system does not tell."""
+    return _status(pid).get("VmHWM", 0)
+
+
+def _status(pid: int) -> dict[str, int]:
+    """Sizes in /proc/PID/status [bytes] by name; none where there is no such file."""
+    try:
+        lines = Path(f"/proc/{pid}/status").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return {}
+    words = [line.split() for line in lines]
+    return {word[0].rstrip(":"): int(word[1]) * 1024 for word in words if len(word) == 3 and word[2] == "kB"}
+
+
+def notebook_cost(path: Path) -> Cost:
+    """What running all cells of the notebook `path` takes; the file and its folder stay as they are.
+
+    Raises `refresh.RefreshError` where a cell fails.
+    """
+    watches = []
+
+    def watch(pid: int) -> ProcessWatch:
+        watches.append(ProcessWatch(pid, path.name.partition("_")[0]))
+        return watches[0]
+
+    with scratch_folder() as folder:
+        execute(nbformat.read(path, as_version=4), folder, HANGS_S, watch)
+    return watches[0].cost
+
+
+def server_cost() -> Cost:
+    """What the server of `course.py lab` takes once it has shown its first page, without a kernel."""
+    with scratch_folder() as folder:
+        command, environment = lab_command(port=0, state_folder=folder)
+        server = start(
+            command, environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        )
+        try:
+            with ProcessWatch(server.pid, "server") as watch:
+                _first_page(server, folder / "runtime")
+        finally:
+            server.terminate()
+            server.wait()
+    return watch.cost
+
+
+def _first_page(server: subprocess.Popen, runtime: Path) -> str:
+    """What the server shows first, once it has written down its address and answers there."""
+    until = time.monotonic() + SERVER_STARTS_S
+    while time.monotonic() < until and server.poll() is None:
+        for path in runtime.glob("jpserver-*.json"):
+            try:
+                told = json.loads(path.read_text(encoding="utf-8"))
+                with urlopen(f"{told['url']}lab?token={told['token']}", timeout=SERVER_STARTS_S) as page:
+                    return page.read().decode("utf-8")
+            except (ValueError, URLError):  # half written, or written before anybody listens
+                continue
+        time.sleep(EVERY_S)
+    raise RuntimeError("JupyterLab did not start; try python3 course.py lab --no-browser to see why")
+
+
+def measure(paths: list[Path], tell=lambda cost: None) -> dict:
+    """Costs of these notebooks and of the server, and the machine: the object that `bench --lessons --json` prints."""
+    costs = []
+    for path in paths:
+        costs.append(notebook_cost(path))
+        tell(costs[-1])
+    server = server_cost()
+    machine = {"processors": os.cpu_count(), "date": time.strftime("%Y-%m-%d")}
+    return {"lessons": [asdict(cost) for cost in costs], "server": asdict(server), "machine": machine}

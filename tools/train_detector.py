@@ -1,0 +1,128 @@
+"""Train the room detector on folders of panoramas with boxes, and choose its threshold on validation rooms.
+
+It needs PyTorch, which the course does not install: nothing else uses it. Folders come from make-data training-rooms.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import json
+import sys
+from pathlib import Path
+
+from course_lib.writing import write_at_once
+
+DATA = Path(__file__).parents[2] / "data" / "detector"
+
+
+class PyTorchMissing(ValueError):
+    """PyTorch is not installed."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declares the options of `train-detector`."""
+    folder = {"required": True, "type": Path, "metavar": "FOLDER"}
+    parser.add_argument("--images", **folder, nargs="+", help="panoramas to train on, with boxes.json (no default)")
+    parser.add_argument(
+        "--validation", **folder, nargs="+", help="panoramas of other rooms, which choose the threshold (no default)"
+    )
+    parser.add_argument("--out", **folder, help="checkpoints, weights and results go here (no default)")
+    parser.add_argument("--minutes", type=float, metavar="M", help="training time (default: 60, unless --epochs)")
+    parser.add_argument("--epochs", type=int, metavar="N", help="stop after N epochs, if the time has not run out")
+    parser.add_argument("--batch", type=int, default=8, metavar="N", help="images a step (default: 8)")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on from the checkpoint in --out (default: start anew, or from --weights)",
+    )
+    parser.add_argument(
+        "--weights", type=Path, metavar="FILE", help="start from these Darknet weights (default: random)"
+    )
+    parser.add_argument(
+        "--learning-rate", type=float, default=1.5e-3, metavar="R", help="the largest (default: 0.0015)"
+    )
+    for option, what in (("cfg", "the network"), ("names", "its classes")):
+        name = f"room_yolo.{option}"
+        parser.add_argument(
+            f"--{option}",
+            type=Path,
+            default=DATA / name,
+            metavar="FILE",
+            help=f"{what} (default: data/detector/{name})",
+        )
+    parser.add_argument(
+        "--processes", type=int, default=1, metavar="N", help="with one thread each (default: 1, with all threads)"
+    )
+    parser.add_argument("--threads", type=int, metavar="N", help="processor threads (default: PyTorch's choice)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Trains, writes the weights, and measures the finished detector on the validation images; 0 when all was done."""
+    from course_lib.commands.arguments import require_output_folder, require_seed
+
+    require_seed(arguments.seed)
+    require_output_folder(arguments.out)
+    _require_positive(arguments)
+    if importlib.util.find_spec("torch") is None:
+        raise PyTorchMissing(
+            "train-detector needs PyTorch, which is not installed here. Install it into the Python that runs this "
+            f"course ({sys.executable}): pip install 'torch>=2.6', or pip install -e '.[train]' in the course's folder"
+        )
+    import torch
+
+    from tools.detector_training.report import measure_detector, write_report
+    from tools.detector_training.train import TrainingPlan, train
+
+    if arguments.threads:
+        torch.set_num_threads(arguments.threads)
+    minutes = 60.0 if arguments.minutes is None and arguments.epochs is None else arguments.minutes
+    plan = TrainingPlan(
+        epochs=arguments.epochs,
+        minutes=minutes,
+        batch_size=arguments.batch,
+        learning_rate=arguments.learning_rate,
+        seed=arguments.seed,
+        processes=arguments.processes,
+    )
+    result = train(
+        arguments.cfg,
+        arguments.names,
+        arguments.images,
+        arguments.validation,
+        arguments.out,
+        plan,
+        resume=arguments.resume,
+        initial_weights=arguments.weights,
+        log=_log,
+        progress=_bar,
+    )
+    for path in (arguments.cfg, arguments.names):
+        if path.resolve().parent != arguments.out.resolve():
+            write_at_once(arguments.out / path.name, path.read_bytes())
+    cfg, names = arguments.out / arguments.cfg.name, arguments.out / arguments.names.name
+    _log("measuring the finished detector (OpenCV) on the validation images")
+    validation = measure_detector(cfg, result.weights, names, arguments.validation)
+    path = write_report(arguments.out / "training.json", plan, result, validation, arguments.weights)
+    print(json.dumps(json.loads(path.read_text(encoding="utf-8")), indent=1))
+    print(f"Written to {arguments.out}: {result.weights.name}, {cfg.name}, {names.name}, {path.name}")
+    return 0
+
+
+def _require_positive(arguments: argparse.Namespace) -> None:
+    for name in ("minutes", "epochs", "batch", "learning_rate", "threads", "processes"):
+        value = getattr(arguments, name)
+        if value is not None and not value > 0:
+            raise ValueError(f"--{name.replace('_', '-')} must be above 0; got {value}")
+
+
+def _log(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def _bar(batches, count: int):
+    from tqdm import tqdm
+
+    # On a terminal a bar that goes away after its epoch; in a log the lines between epochs say enough.
+    return tqdm(batches, total=count, desc="training", unit="batch", file=sys.stderr, leave=False, disable=None)
