@@ -14,52 +14,56 @@ import os
 import sys
 import traceback
 import warnings
+from collections.abc import Callable
+from types import ModuleType
 
 from course_lib.command_parser import VERY_LIKE, CommandParser, meant
 from course_lib.scratch import clear_scratch
 from course_lib.standard_output import told_output
 from course_lib.told_to_end import told_to_end
 
-# Name as typed -> (module of course_lib.commands, one line for the list of commands).
-COMMANDS: dict[str, tuple[str, str]] = {
-    "lab": ("lab", "open the lessons in JupyterLab (on this computer only)"),
-    "test": ("test", "run every test, the notebooks included; arguments go on to pytest"),
-    "progress": ("progress_page", "show how far you have come: predictions typed, checks right"),
-    "check": ("check", "look at the environment: packages, OpenGL, one rendered depth image"),
-    "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
-    "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
-    "demo rooms": ("demo_rooms", "run paper 2's experiment in generated rooms that nobody shaped, with intervals"),
-    "demo walk": ("demo_walk", "carry a depth camera through generated rooms: errors in six degrees of freedom"),
-    "demo lost": ("demo_lost", "kidnap the camera, start it anywhere, and count how often it finds itself"),
-    "demo trouble": (
-        "demo_trouble",
-        "trouble the sensors: what becomes of each frame, recovery, confident wrong poses",
-    ),
-    "demo finale": (
-        "demo_finale",
-        "both papers in one world: panoramas find the robot, the depth camera makes it exact",
-    ),
-    "sweep": ("sweep", "run an experiment for many seeds on all processors: table 1 with confidence intervals"),
-    "bench": ("bench", "measure the depth filter side by side with Embree, PyVista and others"),
-    "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
-    "compare": ("compare", "compare filters in six degrees of freedom on a recording with its truth"),
-    "locate": ("locate", "find where two panoramas were taken, on a semantic map"),
-    "ambiguity": ("ambiguity", "tell of a semantic map from where its objects would be confused"),
-    "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),
-    "make-data corridor": ("make_data", "make data/corridor again: the world, its map and the recorded runs"),
-    "make-data room": ("make_room", "make data/room again: stereo panoramas, exact boxes, the semantic map"),
-    "make-data finale": ("make_finale", "make data/finale again: both maps of the room of the last lesson"),
-    "make-data projects": ("make_projects", "make data/projects again: what is seen in the rooms of P2 and P3"),
-    "make-data training-rooms": (
-        "make_training_rooms",
-        "photograph generated rooms: a detector's training and test pictures",
-    ),
-    "train-detector": ("train_detector", "train the room detector (needs PyTorch, which the course does not install)"),
-    "score-detector": ("score_detector", "measure a detector's precision and recall on known rooms"),
-    "score": ("score", "score a project that was handed in, on its hidden seeds"),
-    "handout": ("handout", "make a class's folder: lessons without solutions, and the teacher's with graded tests"),
-    "grade": ("grade", "grade a folder of submissions in a sandbox: points and hints as CSV and as a page"),
-    "refresh": ("refresh", "run the lessons again and store their outputs"),
+# For whom -> name as typed -> (module of course_lib.commands, one line for the list of commands).
+GROUPS: dict[str, dict[str, tuple[str, str]]] = {
+    "learn": {
+        "lab": ("lab", "open the lessons in JupyterLab (on this computer only)"),
+        "progress": ("progress_page", "show how far you have come: predictions typed, checks right"),
+        "check": ("check", "look at the environment: packages, OpenGL, one rendered depth image"),
+        "test": ("test", "run every test, the notebooks included; arguments go on to pytest"),
+    },
+    "use": {
+        "localize": ("localize", "localize a recorded depth-camera sequence in a mesh map"),
+        "locate": ("locate", "find where two panoramas were taken, on a semantic map"),
+        "stereo": ("stereo", "match a pair of panoramas and list the distances of boxed objects"),
+        "ambiguity": ("ambiguity", "show where in a semantic map the objects could be confused"),
+        "compare": ("compare", "compare filters in six degrees of freedom on a recording with its truth"),
+        "demo corridor": ("demo_corridor", "run paper 1's corridor experiment and print its table"),
+        "demo room": ("demo_room", "run paper 2's room experiment and print its tables"),
+        "demo rooms": ("demo_rooms", "run paper 2's experiment in randomly generated rooms, with intervals"),
+        "demo walk": ("demo_walk", "carry a depth camera through generated rooms: errors in six degrees of freedom"),
+        "demo lost": ("demo_lost", "kidnap the camera, start it anywhere, and count how often it finds itself"),
+        "demo trouble": ("demo_trouble", "disturb the sensors: the outcome of each frame, recovery, wrong poses"),
+        "demo finale": ("demo_finale", "both papers in one world: panoramas find the robot, the depth camera refines"),
+    },
+    "teach": {
+        "handout": ("handout", "make a class's folder: lessons without solutions, and the teacher's graded tests"),
+        "grade": ("grade", "grade a folder of submissions in a sandbox: points and hints as CSV and as a page"),
+        "score": ("score", "score a project that was handed in, on its hidden seeds"),
+    },
+}
+COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items()}
+
+# Commands of version 0.1 that are maintainers' tools now.
+MOVED = {
+    "sweep": "sweep",
+    "bench": "bench",
+    "make-data corridor": "make_corridor",
+    "make-data room": "make_room",
+    "make-data finale": "make_finale",
+    "make-data projects": "make_projects",
+    "make-data training-rooms": "make_training_rooms",
+    "train-detector": "train_detector",
+    "score-detector": "score_detector",
+    "refresh": "refresh",
 }
 
 EXIT_BAD_INPUT = 2
@@ -68,9 +72,11 @@ EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
 
 
 def usage() -> str:
-    """The list of commands."""
-    lines = [f"  {name:<24}  {line}" for name, (_, line) in COMMANDS.items()]
-    return "usage: python3 course.py COMMAND [options]\n\n" + "\n".join(lines) + "\n"
+    """Return the list of commands, grouped by the people who use them."""
+    lines = ["usage: python3 course.py COMMAND [options]"]
+    for group, commands in GROUPS.items():
+        lines += ["", f"{group}:", *(f"  {name:<13}  {line}" for name, (_, line) in commands.items())]
+    return "\n".join(lines) + "\n"
 
 
 def find_command(words: list[str]) -> tuple[str, list[str]] | None:
@@ -83,24 +89,42 @@ def find_command(words: list[str]) -> tuple[str, list[str]] | None:
 
 
 def main(words: list[str]) -> int:
-    """Runs the command named by `words`; returns its exit code, and prints one line instead of a traceback."""
+    """Runs the command named by `words`; returns its exit code."""
     if not words or words[0] in ("-h", "--help"):
         print(usage(), end="")
         return 0 if words else EXIT_BAD_INPUT
     found = find_command(words)
     if found is None:
-        longer = [name for name in COMMANDS if name.split()[0] == words[0]]
-        like = meant(" ".join(words[:2]), COMMANDS, VERY_LIKE) if len(words) > 1 else ""
-        like = like or (f"; did you mean: {', '.join(longer)}?" if longer else meant(words[0], COMMANDS))
-        told = like or f"; the commands are: {', '.join(COMMANDS)}"
-        print(f"error: there is no command {' '.join(words[:2])!r}{told}", file=sys.stderr)
+        print(f"error: there is no command {' '.join(words[:2])!r}{what_instead(words)}", file=sys.stderr)
         return EXIT_BAD_INPUT
+    name, rest = found
+    return call(lambda: importlib.import_module(f"course_lib.commands.{COMMANDS[name][0]}"), f"course.py {name}", rest)
+
+
+def what_instead(words: list[str]) -> str:
+    """Return how to go on where the words name no command: the tool it has become, a similar name, or all names."""
+    for old, tool in MOVED.items():
+        if words[: len(old.split())] == old.split():
+            return f" any more; it is a tool now: .venv/bin/python -m tools.{tool} --help"
+    longer = [name for name in COMMANDS if name.split()[0] == words[0]]
+    like = meant(" ".join(words[:2]), COMMANDS, VERY_LIKE) if len(words) > 1 else ""
+    like = like or (f"; did you mean: {', '.join(longer)}?" if longer else meant(words[0], COMMANDS))
+    return like or f"; the commands are: {', '.join(COMMANDS)}"
+
+
+def tool(module_name: str) -> int:
+    """Run a maintainers' tool, a module of `tools` that was started by name, with the words of the command line."""
+    module = sys.modules["__main__"]
+    return call(lambda: module, f"python -m {module_name}", sys.argv[1:])
+
+
+def call(load: Callable[[], ModuleType], program: str, words: list[str]) -> int:
+    """Run a command's module with `words` and return its exit code; an error is one line instead of a traceback."""
     debug = os.environ.get("COURSE_DEBUG", "") not in ("", "0")
     warnings.formatwarning = one_line
     try:
-        name, rest = found
-        module = importlib.import_module(f"course_lib.commands.{COMMANDS[name][0]}")
-        arguments = parse(name, module, rest)
+        module = load()
+        arguments = parse(program, module, words)
         debug = debug or arguments.debug
         with told_to_end(), told_output() as output:
             code = module.run(arguments)
@@ -122,10 +146,10 @@ def main(words: list[str]) -> int:
         return report(error)
 
 
-def parse(name: str, module, words: list[str]) -> argparse.Namespace:
+def parse(program: str, module: ModuleType, words: list[str]) -> argparse.Namespace:
     """The arguments of one command; the parser itself exits, with code 2 and a sentence, on those that do not fit."""
     description = (module.__doc__ or "").strip().split("\n")[0]
-    parser = CommandParser(prog=f"course.py {name}", description=description, allow_abbrev=False)
+    parser = CommandParser(prog=program, description=description, allow_abbrev=False)
     module.add_arguments(parser)
     words = module.join_words(words) if hasattr(module, "join_words") else words
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")

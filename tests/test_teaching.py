@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from course_lib.cli import COMMANDS, find_command, parse
-from tools.lesson_costs_table import capacity_sentence, table
 from course_lib.lessons.kit import exercises as kit
 from course_lib.lessons.kit.exercises import Exercise, Mistake, find_exercise, judge, lesson_exercises
 from course_lib.paths import REPOSITORY, notebook_paths, project_paths
+from tools.lesson_costs_table import capacity_sentence, table
 
 TEACHING = (REPOSITORY / "TEACHING.md").read_text(encoding="utf-8")
 PATHS = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
@@ -147,7 +147,7 @@ COSTS = re.search(r"<!-- costs: measured on \S+, \d+ processors, by (.*?) -->\n(
 
 
 def test_the_costs_have_a_row_for_every_lesson_and_project_and_say_where_from():
-    assert COSTS[1] == "python3 course.py bench --lessons"
+    assert COSTS[1] == ".venv/bin/python -m tools.bench --lessons"
     lines = re.findall(r"^\|.*$", COSTS[2], re.M)
     _, _, *rows, greatest, together, server = cells_of(lines)
     assert [row[0] for row in rows] == list(PATHS)

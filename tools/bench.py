@@ -23,7 +23,7 @@ from course_lib.child import run as run_child
 from course_lib.commands.arguments import require_output_folder
 from course_lib.output_folder import replaced_outputs
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "environment-bench.txt"
 TOOLS = ROOT / ".bench"
 STAMP = "course-bench.txt"
@@ -99,7 +99,7 @@ def run_renders(arguments: argparse.Namespace) -> int:
     from tools import bench_renders
 
     told = bench_renders.measure(
-        ROOT / "tools.tools/benchmarks" / "renders.py",
+        ROOT / "tools/benchmarks" / "renders.py",
         tools_environment(),
         arguments.backends,
         arguments.renders,
@@ -150,7 +150,7 @@ def measure(arguments: argparse.Namespace, out: Path) -> int:
     words = ["--quick"] if arguments.quick else ["--figure", str(out / "bench.png")]
     words += ["--recording", str(arguments.recording.resolve())] if arguments.recording else []
     done = run_child(
-        python(ROOT / "tools.tools/benchmarks" / "measure.py", *words),
+        python(ROOT / "tools/benchmarks" / "measure.py", *words),
         tools_environment(),
         stdout=subprocess.PIPE,
         text=True,
@@ -164,8 +164,8 @@ def measure(arguments: argparse.Namespace, out: Path) -> int:
 
 
 def tools_environment() -> dict[str, str]:
-    """What the environment of a process that finds tools.tools/benchmarks/ and the tools in `.bench` has besides."""
-    environment = {"PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tools.tools/benchmarks"), str(TOOLS)])}
+    """What the environment of a process that finds tools/benchmarks/ and the tools in `.bench` has besides."""
+    environment = {"PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tools/benchmarks"), str(TOOLS)])}
     if sys.platform.startswith("linux"):
         environment["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
     return environment
@@ -190,3 +190,9 @@ def install_tools() -> str | None:
         return " / ".join(lines[-2:]) or f"pip ended with code {done.returncode}"
     stamp.write_text(wanted, encoding="utf-8")
     return None
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.bench"))

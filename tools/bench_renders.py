@@ -18,7 +18,7 @@ WHAT = {"renders": "renders, one renderer", "renderers": "renderers, a render ea
 def measure(
     script: Path, environment: dict[str, str], backends: Sequence[str], n_renders: int, n_renderers: int
 ) -> Iterator[tuple[str, dict]]:
-    """What `script` (tools.tools/benchmarks/renders.py) tells of every backend, each as soon as it is known: it takes minutes.
+    """What `script` (tools/benchmarks/renders.py) tells of every backend, each as soon as it is known.
 
     environment: in which it finds its modules. Raises `ValueError` for fewer than `LEAST` renders or renderers,
     `RuntimeError` for a measurement that ended otherwise than with its numbers.

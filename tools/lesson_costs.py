@@ -1,6 +1,6 @@
 """What one student's kernel costs in each lesson and project: memory and processor time, measured, nothing stored.
 
-`course.py bench --lessons` runs each notebook once in a fresh kernel, as `refresh` does, in a folder that is thrown
+`tools.bench --lessons` runs each notebook once in a fresh kernel, as `refresh` does, in a folder that is thrown
 away. Neither number depends on how fast the machine is or on what else it does, so no time of the clock is told.
 """
 
@@ -22,8 +22,8 @@ import psutil
 
 from course_lib.child import start
 from course_lib.commands.lab import lab_command
-from tools.refresh import HANGS_S, execute
 from course_lib.scratch import scratch_folder
+from tools.refresh import HANGS_S, execute
 
 EVERY_S = 0.1
 """Between two looks at the processes [s]; the kernel's own peak is the system's, which misses nothing."""

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder, require_seed
 
 SEED = 4  # the shipped data's
-FOLDER = Path(__file__).resolve().parents[2] / "data" / "corridor"
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "corridor"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,3 +44,9 @@ def run(arguments: argparse.Namespace) -> int:
     print(json.dumps(summary["measured"], indent=2))
     print(f"wrote {out}")
     return 0
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.make_corridor"))

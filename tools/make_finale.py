@@ -6,12 +6,13 @@ Old data are replaced at the end, all at once: a run that is stopped leaves them
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder, require_seed
 
 SEED = 10_001  # the shipped data's
-FOLDER = Path(__file__).resolve().parents[2] / "data" / "finale"
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "finale"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,3 +40,9 @@ def run(arguments: argparse.Namespace) -> int:
     summary = make_finale_data(out, arguments.seed)
     print(f"wrote the maps of a room with {summary['objects']} objects, {summary['triangles']} triangles, to {out}")
     return 0
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.make_finale"))

@@ -6,6 +6,7 @@ It takes half an hour on two cores. A run that is stopped goes on where it was w
 from __future__ import annotations
 
 import argparse
+import sys
 from functools import partial
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from course_lib.commands.detector_options import chosen_detector
 from course_lib.output_folder import replaced_outputs
 from course_lib.processors import processors
 
-FOLDER = Path(__file__).resolve().parents[2] / "data" / "projects"
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "projects"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,3 +53,9 @@ def run(arguments: argparse.Namespace) -> int:
         (new / "SHA256SUMS").write_text(checksums(new, [f"rooms_{name}.json" for name in counts]))
     print(f"wrote {' and '.join(f'{n} views ({name})' for name, n in counts.items())} to {out}")
     return 0
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.make_projects"))

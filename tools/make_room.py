@@ -6,12 +6,13 @@ Old data are replaced at the end, all at once: a run that is stopped leaves them
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder, require_seed
 
 SEED = 4  # the shipped data's
-FOLDER = Path(__file__).resolve().parents[2] / "data" / "room"
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "room"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,3 +41,9 @@ def run(arguments: argparse.Namespace) -> int:
     summary = make_room_data(out, arguments.seed, progress=progress_bar("photographs", "pair"))
     print(f"wrote {summary['pairs']} pairs of a room with {summary['objects']} objects to {out}")
     return 0
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.make_room"))

@@ -6,6 +6,7 @@ A run that is stopped goes on where it was when the same command is given again.
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder
@@ -62,3 +63,9 @@ def run(arguments: argparse.Namespace) -> int:
     )
     print(f"{arguments.out}: {len(images)} pictures of {len({image['room_seed'] for image in images})} rooms")
     return 0
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.make_training_rooms"))

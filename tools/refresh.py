@@ -11,6 +11,7 @@ import argparse
 import json
 import math
 import re
+import sys
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -188,3 +189,9 @@ def merge_streams(outputs: list) -> list:
 def strip_colour(text: str) -> str:
     """Text of a traceback without its terminal colours."""
     return re.sub(r"\x1b\[[0-9;]*m", "", text)
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.refresh"))

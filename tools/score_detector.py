@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from pathlib import Path
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+from course_lib.scratch import scratch_folder
 from tools.make_training_rooms import (
     FIRST_TEST_ROOM,
     FIRST_VALIDATION_ROOM,
@@ -17,7 +19,6 @@ from tools.make_training_rooms import (
     N_TEST_ROOMS,
     N_VALIDATION_ROOMS,
 )
-from course_lib.scratch import scratch_folder
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -125,3 +126,9 @@ def _compare_voting(arguments: argparse.Namespace, detector) -> int:
             f"{one.score.recall:.3f}{used}"
         )
     return 0
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.score_detector"))

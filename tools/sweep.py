@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import re
+import sys
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -108,3 +109,9 @@ def corridor(seed: int, frames: int | None, n_particles: int) -> dict:
         options = {"seed": seed, "frames": frames, "n_particles": n_particles}
         rows = run_rows(Maps.load(data), even, by_hand, METHODS_BY_HAND, **options)
     return {"seed": seed, "frames": len(rows["proposed"].run.frames), **rows_by_part(rows)}
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.sweep"))

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from course_lib.writing import write_at_once
 
-DATA = Path(__file__).parents[2] / "data" / "detector"
+DATA = Path(__file__).parents[1] / "data" / "detector"
 
 
 class PyTorchMissing(ValueError):
@@ -126,3 +126,9 @@ def _bar(batches, count: int):
 
     # On a terminal a bar that goes away after its epoch; in a log the lines between epochs say enough.
     return tqdm(batches, total=count, desc="training", unit="batch", file=sys.stderr, leave=False, disable=None)
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.train_detector"))

@@ -21,13 +21,13 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from course_lib.beyond.frame_check import Fault, FrameCheck
 from course_lib.beyond.six_dof.certainty import CONFIRMED, KNOWN
 from course_lib.beyond.six_dof.covariance import sigmas
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
-from course_lib.beyond.frame_check import Fault, FrameCheck
+from course_lib.beyond.tracking import Agreement, TrackStatus, agreement, judge_track
 from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
-from course_lib.beyond.tracking import Agreement, TrackStatus, agreement, judge_track
 
 Outcome = TrackStatus | Fault | Literal["no image"]
 OUTCOMES: tuple[Outcome, ...] = (

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from filterpy.kalman import KalmanFilter
 
-from course_lib.geometry import wrap_angle
 from course_lib.beyond.look_alikes.confidence import (
     FEWEST_INLIERS,
     LEAST_CONFIDENCE,
@@ -25,6 +24,7 @@ from course_lib.beyond.look_alikes.confidence import (
 from course_lib.beyond.look_alikes.consistent import SHORT_LIST, distinct, explain, rank_poses
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, rotations, scene_of
+from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Status
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation

@@ -44,11 +44,11 @@ def run(arguments: argparse.Namespace) -> int:
     """Imagines, draws a picture for each matcher, prints."""
     import numpy as np
 
+    from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.ambiguity import ambiguity_map
     from course_lib.experiments.results import write_results
     from course_lib.plots.look_alike_figures import ambiguity_figure
-    from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
     names = arguments.association.split(",")

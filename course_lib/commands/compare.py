@@ -54,12 +54,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, then tells what all runs of a method and a thinning gave together."""
     from course_lib.commands.progress import progress_bar
     from course_lib.commands.six_degrees_table import row_name, six_degrees_table
-    from course_lib.rendering.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments import sweep
     from course_lib.experiments.results import write_results
     from course_lib.experiments.six_degrees import pooled, require_methods, thinned_points, thinned_run
     from course_lib.plots.covariance_figure import covariance_figure
+    from course_lib.rendering.scene_map import SceneMap
 
     seeds = parse_seeds(arguments.seeds)
     everies = parse_numbers("--every", arguments.every)
@@ -100,7 +100,7 @@ def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, di
         raise RuntimeError(f"--icp needs Open3D, which could not be installed: {why}")
     words = ["--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
     done = run_child(
-        python(ROOT / "tools.tools/benchmarks" / "icp.py", *words),
+        python(ROOT / "tools/benchmarks" / "icp.py", *words),
         tools_environment(),
         stdout=subprocess.PIPE,
         text=True,

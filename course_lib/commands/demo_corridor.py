@@ -197,9 +197,9 @@ def _run_by_hand(arguments: argparse.Namespace, seeds: list[int]) -> int:
 def _run_kindnesses(arguments: argparse.Namespace, seeds: list[int]) -> int:
     """The paper's method on recordings with no hardship, with each alone, and with all."""
     from course_lib.commands.progress import progress_bar
-    from course_lib.rendering.camera import DepthCamera
     from course_lib.experiments.corridor_seeds import hardship_errors, spread
     from course_lib.experiments.results import write_results
+    from course_lib.rendering.camera import DepthCamera
     from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
 
     camera = DepthCamera.sr4000().resized(*KINDNESS_SIZE)

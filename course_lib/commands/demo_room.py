@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
-from tools.make_room import SEED
 from course_lib.commands.room_tables import EXACT, FITS, WEIGHTED, tables
 from course_lib.output_folder import replaced_outputs
 from course_lib.scratch import scratch_folder
+from tools.make_room import SEED
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from matplotlib.figure import Figure
@@ -74,9 +74,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs both experiments, from images and from exact boxes; returns the exit code."""
+    from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
     from course_lib.commands.arguments import require_count, require_output_folder, require_seed
     from course_lib.paths import data_path
-    from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
 
     if arguments.seed is not None and arguments.data is not None:
         raise ValueError(

@@ -27,10 +27,10 @@ def measure(backend: str) -> dict[str, str | float | int]:
     """
     import numpy as np
 
+    from course_lib.geometry import optical_pose
     from course_lib.rendering.camera import DepthCamera
     from course_lib.rendering.renderer import DepthRenderer
     from course_lib.rendering.scene_map import SceneMap
-    from course_lib.geometry import optical_pose
 
     camera = DepthCamera.sr4000()
     normal = np.array(PLANE_NORMAL)

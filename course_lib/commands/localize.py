@@ -124,7 +124,6 @@ def run(arguments: argparse.Namespace) -> int:
         warn_of_fewer,
     )
     from course_lib.commands.progress import progress_bar
-    from course_lib.rendering.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments.recordings import (
         pose_error_summary,
@@ -133,6 +132,7 @@ def run(arguments: argparse.Namespace) -> int:
         run_sequence,
         system_noise,
     )
+    from course_lib.rendering.scene_map import SceneMap
 
     method = _method(arguments)
     require_seed(arguments.seed)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
-    from course_lib.rendering.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import DepthSequence
     from course_lib.experiments.recordings import Run
+    from course_lib.rendering.scene_map import SceneMap
 
 
 def believed(frames: list[int], statuses: list[str]) -> str:

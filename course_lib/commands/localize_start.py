@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
-    from course_lib.rendering.scene_map import SceneMap
     from course_lib.depth_mcl.sequence import DepthSequence
+    from course_lib.rendering.scene_map import SceneMap
 
 
 def join_words(words: list[str]) -> list[str]:

@@ -16,8 +16,8 @@ def write_scene(path: Path, title: str, make: Callable[[], tuple[pyvista.Plotter
     A command's numbers do not depend on its page: without PyVista, or where nothing can be drawn, the reason is told
     instead of the file's name.
     """
-    from course_lib.rendering.renderer import OpenGLError
     from course_lib.plots.scene_page import ScenePageError, write_page
+    from course_lib.rendering.renderer import OpenGLError
 
     try:
         plotter, words = make()

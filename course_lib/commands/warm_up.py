@@ -11,10 +11,10 @@ def compile_loops() -> None:
     """Renders one depth image, weighs it and refines by it, as every frame of the filters does."""
     import numpy as np
 
-    from course_lib.commands.depth_image_probe import measure
     from course_lib.beyond.six_dof.compiled_refinement import normal_equations
-    from course_lib.rendering.camera import DepthCamera
+    from course_lib.commands.depth_image_probe import measure
     from course_lib.depth_mcl.compiled_likelihood import likelihood
+    from course_lib.rendering.camera import DepthCamera
 
     measure("raster")
     likelihood(np.ones((2, 2), dtype=np.float32), np.ones((1, 2, 2), dtype=np.float32))
@@ -24,9 +24,9 @@ def compile_loops() -> None:
 
 def simplify_corridor() -> None:
     """Simplifies the map that most lessons render."""
+    from course_lib.paths import data_path
     from course_lib.rendering.scene_map import SceneMap
     from course_lib.rendering.simplification import simplified
-    from course_lib.paths import data_path
 
     simplified(SceneMap.load(data_path("corridor/map.ply")))
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.rendering.compiled import compiled
 from course_lib.depth_mcl.likelihood import ALPHA, checked_alpha, paired_pixels
+from course_lib.rendering.compiled import compiled
 
 
 def likelihood(measured: np.ndarray, simulated: np.ndarray, alpha: float = ALPHA) -> np.ndarray:

@@ -19,10 +19,10 @@ import numpy as np
 from course_lib.depth_mcl.likelihood import ALPHA, BETA, DepthImageError, valid_pixels
 from course_lib.depth_mcl.motion import BODY_AXES, Motion, checked_sigma
 from course_lib.depth_mcl.particle_filter import Scheme, effective_sample_size, initial_particles, resample
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, positive_part
 from course_lib.depth_mcl.weighting import Weighting, paper_weighting
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 
 # Standard deviations of the system noise a frame for the paper's experiment (x, y, yaw), metres and radians: x is
 # forward and y left where the body's axes count, as they do unless another motion is given. Chosen on tuning seeds; the

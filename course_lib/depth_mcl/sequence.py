@@ -22,7 +22,6 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_poses, write_tum
 from course_lib.depth_mcl.sequence_files import (
     UNITS_PER_METRE,
@@ -39,6 +38,7 @@ from course_lib.depth_mcl.sequence_files import (
 from course_lib.geometry import UP_AXES
 from course_lib.output_folder import replaced_outputs
 from course_lib.reading import is_given
+from course_lib.rendering.camera import DepthCamera
 
 NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
 

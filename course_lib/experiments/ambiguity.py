@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.beyond.look_alikes.evidence import detection_probabilities, free_space_costs
 from course_lib.beyond.look_alikes.hypotheses import rotations
 from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS, Matcher
+from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.ranging.object_places import BOX_CENTRE_SIGMA, CENTROID_SIGMA
 from course_lib.spherical_stereo.ranging.triangulation import triangulation_covariance
 from course_lib.spherical_stereo.semantic_map.association import Association, Observation

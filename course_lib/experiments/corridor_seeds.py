@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import quantile_test
 
-from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import PositionError
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.experiments.corridor import METHODS, path_errors, run_method
 from course_lib.experiments.recordings import Run
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, Hardship, building_of_data, record_seed
 

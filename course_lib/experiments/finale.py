@@ -15,13 +15,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
-from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import MAP_MARGIN, NoMeasurementWarning
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
 from course_lib.geometry import optical_pose, wrap_angle
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.depth_world import (
     CAMERA,

@@ -13,6 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE
+from course_lib.beyond.look_alikes.consistent import associate_consistent
+from course_lib.beyond.look_alikes.evidence import Evidence
+from course_lib.beyond.look_alikes.hypotheses import rotations
+from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+from course_lib.beyond.several_views import Motion, SemanticTracker
 from course_lib.experiments.room import PairResult
 from course_lib.experiments.room_evaluation import NO_OBJECT
 from course_lib.experiments.room_views import stored_sequences
@@ -21,13 +27,7 @@ from course_lib.experiments.rooms_summary import bootstrap_percent, wilson_perce
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE
-from course_lib.beyond.look_alikes.consistent import associate_consistent
-from course_lib.beyond.look_alikes.evidence import Evidence
-from course_lib.beyond.look_alikes.hypotheses import rotations
-from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.beyond.several_views import Motion, SemanticTracker
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 CORRECT, WRONG, UNANSWERED = "correct", "wrong", "unanswered"

@@ -13,14 +13,14 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.beyond.lost_and_found.global_search import GlobalSearch
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
+from course_lib.depth_mcl.evaluation import pose_errors
+from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.geometry import optical_pose, state_from_optical_pose
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed
 

@@ -16,12 +16,12 @@ from course_lib.beyond.six_dof.prediction import MotionPrediction, Rival
 from course_lib.beyond.six_dof.pyramid import pyramid
 from course_lib.beyond.six_dof.refinement import refine
 from course_lib.beyond.six_dof.schedule import LAYERS, STEPS
+from course_lib.beyond.tracking import agreement, judge_refined
 from course_lib.depth_mcl.evaluation import pose_errors
+from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.experiments.recordings import SIGMA, Run, run_annealed, run_sequence, system_noise
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
-from course_lib.beyond.tracking import agreement, judge_refined
-from course_lib.experiments.recordings import SIGMA, Run, run_annealed, run_sequence, system_noise
 from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
 

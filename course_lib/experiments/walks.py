@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.six_degrees import run_frames
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.walk import record_walk
 

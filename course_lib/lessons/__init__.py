@@ -28,7 +28,8 @@ A project n is `notebooks/projects/Pn_title.ipynb` and `lessons/project_n/`: `ex
 and `project.py` with its `PROJECT` (`kit/projects.py`); tests/notebooks/test_projects.py checks its parts. Its model
 solution stands apart, in `notebooks/projects/solutions/`, and its rivals' numbers in data/projects/.
 
-Then `python3 course.py refresh NN` runs the notebook and stores its outputs. The tests find all of it by the names.
+Then `.venv/bin/python -m tools.refresh NN` runs the notebook and stores its outputs. The tests find all of it by the
+names.
 """
 
 from course_lib.lessons.kit.display import show

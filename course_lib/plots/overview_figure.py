@@ -6,11 +6,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
-from course_lib.rendering.renderer import Backend, DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.experiments.corridor import Run
 from course_lib.plots.figures import depth_images
+from course_lib.rendering.renderer import Backend, DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 
 BESIDE = np.array([-0.5, 0.0, 0.0, 0.0, 0.0, np.deg2rad(4.0)])  # from the estimate: half a metre back, four degrees
 

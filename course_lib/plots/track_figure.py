@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.beyond.tracking import TrackStatus
 from course_lib.plots.figures import BLUE, ORANGE, VERMILION, new_figure
+from course_lib.rendering.scene_map import SceneMap
 
 _MARGIN = 2.0  # metres that are drawn around the paths (chosen: what a room's walls need)
 _LEAST_SHAPE = 0.5  # of the plan: its shorter side over its longer one (chosen)

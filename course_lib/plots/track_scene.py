@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
-from course_lib.rendering.simplification import simplified
 from course_lib.experiments.recordings import Run
 from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
 from course_lib.plots.figures import BLUE, ORANGE, PURPLE, VERMILION
 from course_lib.plots.scenes import frustum, map_mesh, new_plotter, path
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.simplification import simplified
 
 if TYPE_CHECKING:
     import pyvista

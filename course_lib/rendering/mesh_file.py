@@ -17,8 +17,8 @@ import numpy as np
 import trimesh
 
 from course_lib.child import ChildError, run_apart
-from course_lib.rendering.mesh_rows import row_fault
 from course_lib.reading import MEGABYTE, read_bytes
+from course_lib.rendering.mesh_rows import row_fault
 
 MOST_TIMES = 40
 """Times the size of a file that its triangles may take in memory."""

@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from course_lib.geometry import as_states, is_rotation, optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.large_triangles import cut_large_triangles
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.geometry import as_states, is_rotation, optical_pose
 
 if TYPE_CHECKING:  # imported when asked for: Numba and VTK take their time, and VTK needs OpenGL's libraries
     from course_lib.rendering.raster_backend import RasterBackend

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from course_lib.rendering.mesh_file import read_mesh
 from course_lib.geometry import is_rotation
+from course_lib.rendering.mesh_file import read_mesh
 
 # Below this area (square metres) a triangle has no inside that a pixel centre could hit.
 _DEGENERATE_AREA = 1e-16

@@ -21,10 +21,6 @@ The walk of an image, figure 2 in order; each folder imports only those above it
   semantic_map/        2.5. The map, its files, eq. (1) and the greedy search: observations to landmarks
     assignment         for comparison: the assignment of least cost on class and colour alone
   pose/                2.6. The least-squares fit, whether its residuals contradict it, and what is answered
-    hypotheses, evidence, confidence, consistent
-                       beyond the paper: rooms that look alike. Poses of two matches, what speaks for each, how sure
-    tracker            several views over time
-    matchers           the matchers by name
   localizer            the walk itself
 
 Beside it: recording, a folder of stereo panoramas with the truth beside them.
@@ -49,12 +45,8 @@ from course_lib.spherical_stereo.panorama import (
     pixel_to_direction,
     read_panorama,
 )
-from course_lib.beyond.look_alikes.consistent import associate_consistent, rank_poses
-from course_lib.beyond.look_alikes.evidence import Evidence
-from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
-from course_lib.beyond.several_views import Motion, SemanticTracker, Track
 from course_lib.spherical_stereo.ranging.triangulation import (
     TriangulationError,
     triangulate,
@@ -62,7 +54,6 @@ from course_lib.spherical_stereo.ranging.triangulation import (
     triangulation_outcome,
 )
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
-from course_lib.beyond.look_alikes.assignment import associate_hungarian
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     AssociationError,
@@ -74,7 +65,6 @@ from course_lib.spherical_stereo.semantic_map.association import (
     penalty_table,
 )
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
-from course_lib.beyond.guarded_stereo import WatchedPair, WatchedRig
 
 __all__ = [
     "Association",
@@ -82,34 +72,25 @@ __all__ = [
     "Detection",
     "DetectionError",
     "DetectorError",
-    "Evidence",
     "Landmark",
     "Localization",
     "LocalizerError",
-    "Motion",
     "ObjectMatch",
     "Observation",
     "PanoramaError",
     "Penalty",
     "PenaltyWeights",
     "Pose2D",
-    "PoseHypothesis",
     "RigidFitError",
     "SemanticLocalizer",
     "SemanticMap",
     "SemanticMapError",
-    "SemanticTracker",
     "StereoRig",
     "SwappedImagesError",
-    "Track",
     "TriangulationError",
     "View",
-    "WatchedPair",
-    "WatchedRig",
     "YoloDetector",
-    "associate_consistent",
     "associate_greedy",
-    "associate_hungarian",
     "direction_to_pixel",
     "disparity_distance",
     "extend_seam",
@@ -121,7 +102,6 @@ __all__ = [
     "penalty",
     "penalty_table",
     "pixel_to_direction",
-    "rank_poses",
     "read_panorama",
     "triangulate",
     "triangulation_covariance",

@@ -11,6 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE, why_unable
+from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS, Matcher
 from course_lib.spherical_stereo.detection.boxes import boxes_on
 from course_lib.spherical_stereo.detection.detector import find_objects
 from course_lib.spherical_stereo.detection.labels import canonical_label
@@ -19,9 +21,7 @@ from course_lib.spherical_stereo.matching.features import find_features
 from course_lib.spherical_stereo.matching.object_matching import match_views, matched_indices
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 from course_lib.spherical_stereo.pose import localization as outcomes
-from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE, why_unable
 from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Localization, PlacedObject
-from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS, Matcher
 from course_lib.spherical_stereo.pose.plausibility import residual_statistics
 from course_lib.spherical_stereo.pose.rigid_fit import TOO_FEW_PAIRS, RigidFitError, fit_covariance, fit_rigid_2d
 from course_lib.spherical_stereo.ranging.object_places import DISTANCES, Distance, greatest_range, place_objects

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from course_lib.beyond.guarded_depth import OUTCOMES, WatchedLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.rendering.renderer import DepthRenderer
-from course_lib.beyond.guarded_depth import OUTCOMES, WatchedLocalizer
 from tests.rendering.shapes import SMALL, furnished_room
 
 START = np.array([-1.0, 0.3, -0.3, 0.0, 0.0, -0.4])

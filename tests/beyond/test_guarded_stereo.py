@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from course_lib.beyond.guarded_stereo import WatchedRig
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.alignment import LEAST_AGREEING, camera_alignment
 from course_lib.spherical_stereo.matching.features import find_features
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, open_view
 from course_lib.spherical_stereo.pose import localization as outcomes
-from course_lib.beyond.guarded_stereo import WatchedRig
 from tests.spherical_stereo.moved_rig import KnowingDetector, pair_from
 from tests.spherical_stereo.stereo_scene import mapped_scene
 from tests.spherical_stereo.vertical_pair import BASELINE

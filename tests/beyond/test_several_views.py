@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from course_lib.geometry import wrap_angle
 from course_lib.beyond.look_alikes.confidence import (
     AMBIGUOUS,
     NOTHING_AGREES,
@@ -12,8 +11,9 @@ from course_lib.beyond.look_alikes.confidence import (
     score_of_nothing,
 )
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, rotations
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.beyond.several_views import CarriedPose, Motion, SemanticTracker, carried_on, fused
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed
 

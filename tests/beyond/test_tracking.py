@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.likelihood import DepthImageError, likelihood
 from course_lib.beyond.tracking import (
     LOST_SUPPORT,
     RECOVERED_SUPPORT,
@@ -13,6 +12,7 @@ from course_lib.beyond.tracking import (
     judge_refined,
     judge_track,
 )
+from course_lib.depth_mcl.likelihood import DepthImageError, likelihood
 
 MIDDLE = (TRACKED_SUPPORT + LOST_SUPPORT) / 2
 VERY_GOOD, GOOD, MIDDLING, BAD = (

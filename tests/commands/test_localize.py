@@ -10,9 +10,9 @@ from course_lib.cli import main
 from course_lib.commands.localize_report import believed
 from course_lib.commands.localize_start import join_words
 from course_lib.depth_mcl.poses import SequenceError, read_tum
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
+from course_lib.rendering.renderer import DepthRenderer
 
 KEYS = {
     "frames", "median_position_m", "p90_position_m", "median_rotation_deg", "p90_rotation_deg",

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from course_lib.commands.scene_output import write_scene
-from course_lib.rendering.renderer import OpenGLError
 from course_lib.plots.scene_page import ScenePageError
 from course_lib.plots.scenes import body_axes, new_plotter
+from course_lib.rendering.renderer import OpenGLError
 
 
 def axes():

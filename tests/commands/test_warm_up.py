@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from course_lib.beyond import AnnealedLocalizer
+from course_lib.beyond.six_dof import compiled_refinement
 from course_lib.commands.warm_up import compile_loops, simplify_corridor
 from course_lib.depth_mcl import (
-    AnnealedLocalizer,
     DepthCamera,
     DepthRenderer,
     MonteCarloLocalizer,
@@ -13,7 +14,6 @@ from course_lib.depth_mcl import (
     compiled_likelihood,
     simplification,
 )
-from course_lib.beyond.six_dof import compiled_refinement
 from course_lib.rendering import rasterizer
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import optical_pose, rotation_angle, state_from_optical_pose
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.data import PRODUCTS, CorridorModels
 from course_lib.simulation.corridor.mesh_files import read_world_ply
 from course_lib.simulation.corridor.parameters import corridor_parameters

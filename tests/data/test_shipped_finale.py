@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tools.make_finale import SEED as COMMAND_SEED
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.room.depth_world import depth_caster
 from course_lib.simulation.room.finale_data import PRODUCTS, SEED, FinaleModels, finale_parameters
 from course_lib.simulation.room.look_alike_room import make_look_alike_room
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from tools.make_finale import SEED as COMMAND_SEED
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "finale"
 

@@ -11,9 +11,9 @@ from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normali
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES
 from course_lib.depth_mcl.particle_filter import resample
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.weighting import paper_weighting
 from course_lib.geometry import wrap_angle
+from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, random_triangles, room, room_depth
 
 START = np.array([0.5, -0.3, 0.2, 0.0, 0.0, 0.4])

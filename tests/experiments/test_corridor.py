@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.corridor import METHODS, path_errors, run_method
 from course_lib.experiments.recordings import SIGMA, run_sequence
 from course_lib.geometry import state_from_optical_pose
+from course_lib.rendering.scene_map import SceneMap
 
 REPORTING_SEEDS = (1, 2, 3, 4, 5)
 

@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.experiments.finale import (
     CAMERA_HEIGHT,
     FRAMES,
@@ -19,6 +18,7 @@ from course_lib.experiments.finale import (
     robot_states,
     summarize,
 )
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.simulation.room.depth_world import depth_caster, room_triangles
 from course_lib.simulation.room.look_alike_room import make_look_alike_room
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.lost_on_purpose import WAYS, Judged, judged_run
+from course_lib.rendering.scene_map import SceneMap
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,9 @@ import pytest
 
 from course_lib.beyond.six_dof.prediction import START_SPREAD
 from course_lib.beyond.six_dof.twists import moved
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.six_degrees import ABLATIONS, METHODS, StandingStill, pooled, run_frames, thinned_points
+from course_lib.rendering.scene_map import SceneMap
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,9 @@ import ast
 import re
 import statistics
 
-from tools.refresh import MAX_BYTES, METADATA
 from course_lib.commands.saved_panels import WIDGET_VIEW
 from course_lib.paths import REPOSITORY
+from tools.refresh import MAX_BYTES, METADATA
 
 FORBIDDEN_WIDGETS = {"Output", "interact", "interactive", "interactive_output", "interact_manual", "Play"}
 MAX_SCENE_BYTES, MAX_SCENES_BYTES = 1_300_000, 15_000_000

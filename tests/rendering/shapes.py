@@ -3,9 +3,9 @@
 import numpy as np
 import trimesh
 
+from course_lib.geometry import optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.geometry import optical_pose
 
 SMALL = DepthCamera.from_fov(64, 48, 60, 45, near=0.1, far=15.0)
 OFF_CENTRE = DepthCamera(61, 47, 55.0, 83.0, 21.3, 30.8, near=0.1, far=15.0)  # fx unlike fy, odd sizes

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
+from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.large_triangles import LONGEST, LargeTrianglesError, cut_large_triangles
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix
 
 QUAD = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
 FACES = np.array([[0, 1, 2], [0, 2, 3]])

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.chunks import MeshChunks
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.geometry import state_from_optical_pose
 
 CAMERA = DepthCamera.from_fov(80, 60, 65, 52, near=0.2, far=9.0)
 

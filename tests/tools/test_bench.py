@@ -16,11 +16,11 @@ import pytest
 
 from course_lib.cli import main
 from course_lib.commands import bench, bench_renders
-from tools.bench_table import table
 from course_lib.depth_mcl import DepthRenderer, SceneMap
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.motion import BODY_AXES
 from course_lib.depth_mcl.sequence import read_sequence
+from tools.bench_table import table
 
 ROOT = Path(__file__).parents[2]
 SPREAD = {"median": 100.0, "least": 90.0, "greatest": 130.0}
@@ -132,12 +132,12 @@ def test_a_recording_without_its_map_is_named(tmp_path, capsys):
 
 
 @pytest.fixture
-def tools.benchmarks(monkeypatch):
-    """The tools.tools/benchmarks' modules, importable."""
-    monkeypatch.syspath_prepend(str(ROOT / "tools.tools/benchmarks"))
+def benchmarks(monkeypatch):
+    """The tools/benchmarks' modules, importable."""
+    monkeypatch.syspath_prepend(str(ROOT / "tools/benchmarks"))
 
 
-def test_images_that_differ_are_counted_and_what_nobody_hits_is_alike(tools.tools/benchmarks):
+def test_images_that_differ_are_counted_and_what_nobody_hits_is_alike(benchmarks):
     from side_by_side import share_apart
 
     ours = np.array([[[1.0, 2.0, np.inf, 5.0]]])
@@ -146,7 +146,7 @@ def test_images_that_differ_are_counted_and_what_nobody_hits_is_alike(tools.tool
     assert share_apart(ours, ours, far=30.0) == 0.0
 
 
-def test_a_finer_survey_is_the_same_building_in_nine_times_the_triangles(tools.tools/benchmarks):
+def test_a_finer_survey_is_the_same_building_in_nine_times_the_triangles(benchmarks):
     from growth import finer_survey
 
     cube = np.array([[x, y, z] for x in (0, 2.0) for y in (0, 3.0) for z in (0, 1.0)])
@@ -172,7 +172,7 @@ def test_a_finer_survey_is_the_same_building_in_nine_times_the_triangles(tools.t
     assert (counts == 1).sum() == 12, "open where the box is open, and nowhere else"
 
 
-def test_a_step_is_timed_from_the_pose_that_is_asked(tools.benchmarks, corridor_folder):
+def test_a_step_is_timed_from_the_pose_that_is_asked(benchmarks, corridor_folder):
     from side_by_side import Scene, timed_step
 
     sequence = read_sequence(corridor_folder / "wagon")
@@ -240,7 +240,7 @@ def test_memory_is_flat_and_images_stay_over_hundreds_of_renders(backend, capsys
 
 
 @pytest.mark.parametrize("kept", ["nothing", "one image in twenty", "an image is another"])
-def test_what_a_call_leaves_behind_or_changes_is_told(tools.benchmarks, kept):
+def test_what_a_call_leaves_behind_or_changes_is_told(benchmarks, kept):
     from renders import CLOUDS, _over
 
     # Mapped afresh: an array of any size may come from what earlier tests of this process gave back.

@@ -13,9 +13,9 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
+from course_lib.paths import REPOSITORY
 from tools import refresh
 from tools.refresh import RefreshError
-from course_lib.paths import REPOSITORY
 
 SANITIZE = REPOSITORY / "tests" / "nbval_sanitize.cfg"
 

@@ -1,4 +1,4 @@
-"""`course.py train-detector` says what it needs before it does anything."""
+"""`tools.train_detector` says what it needs before it does anything."""
 
 import importlib.util
 

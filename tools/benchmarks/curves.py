@@ -12,10 +12,10 @@ from side_by_side import IMAGE, N_PARTICLES, Scene, timed_step
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
 
+from course_lib.geometry import optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.rendering.simplification import _welded
-from course_lib.geometry import optical_pose
 
 PARTICLES = (25, 50, 100, 200, 400, 800, 1600)
 IMAGES = ((44, 36), (88, 72), (176, 144), (352, 288))

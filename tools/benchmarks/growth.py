@@ -9,10 +9,10 @@ from collections.abc import Iterable
 import numpy as np
 from side_by_side import N_PARTICLES, Scene, timed_step
 
+from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering import simplification
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.geometry import state_from_optical_pose
 
 NOISE_OF_FINER_SURVEY = 0.002  # metres, across the surface: what a scanner leaves after fusion
 

@@ -17,8 +17,8 @@ import numpy as np
 import open3d as o3d
 
 from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.rendering.scene_map import SceneMap
 
 # The gates are those that served best on the kitchen and on recordings with larger motions.
 GATES = {"0.15, 0.05 m": (0.15, 0.05), "0.5, 0.15, 0.05 m": (0.5, 0.15, 0.05)}

@@ -1,4 +1,4 @@
-"""Everything that `python3 course.py bench` tells, measured in this process: prints one JSON object.
+"""Everything that `.venv/bin/python -m tools.bench` tells, measured in this process: prints one JSON object.
 
 The command runs it with the tools of environment-bench.txt on its path (tools/bench.py).
 """
@@ -24,13 +24,13 @@ from side_by_side import Measured, Scene
 
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.motion import BODY_AXES
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.recordings import system_noise
 from course_lib.experiments.results import versions
 from course_lib.paths import data_path, notebook_paths
 from course_lib.processors import processors
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 
 QUICK_LESSONS = ("00", "07", "15")
 

@@ -1,7 +1,7 @@
 """Is memory flat over many renders, and does the same pose give the same image to the last bit, every time?
 
-`python3 course.py bench --renders` runs this in a process of its own for each backend, so that one's memory is not
-another's: prints one JSON object.
+`.venv/bin/python -m tools.bench --renders` runs this in a process of its own for each backend, so that one's memory
+is not another's: prints one JSON object.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from measure import corridor
 from side_by_side import Scene
 from start_up import held_mb
 
-from course_lib.rendering.renderer import Backend, DepthRenderer, OpenGLError
 from course_lib.geometry import state_from_optical_pose
+from course_lib.rendering.renderer import Backend, DepthRenderer, OpenGLError
 
 CLOUDS, VIEWS = 10, 4
 SPREAD = np.array([0.1, 0.1, 0.05, 0.05, 0.05, 0.2])  # metres and radians: standard deviation about the true pose

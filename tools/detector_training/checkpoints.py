@@ -9,8 +9,8 @@ from pathlib import Path
 import torch
 from torch import nn
 
-from tools.detector_training.schedule import AveragedNetwork
 from course_lib.writing import write_at_once
+from tools.detector_training.schedule import AveragedNetwork
 
 FILE = "checkpoint.pt"
 

@@ -12,9 +12,9 @@ import numpy as np
 import torch
 from torch import nn
 
-from tools.detector_training.network import TrainableNetwork
 from course_lib.spherical_stereo.detection.darknet import check_weights, header_bytes
 from course_lib.writing import write_at_once
+from tools.detector_training.network import TrainableNetwork
 
 VERSION = (0, 2, 5)
 

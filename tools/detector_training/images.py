@@ -91,7 +91,7 @@ def read_boxes(folder: str | Path) -> list[dict]:
     """The entries of a folder's boxes.json. Raises `TrainingDataError`: missing, no JSON, or another version."""
     path = Path(folder) / "boxes.json"
     if not path.is_file():
-        raise TrainingDataError(f"{path} is missing: give a folder made by `course.py make-data training-rooms`")
+        raise TrainingDataError(f"{path} is missing: give a folder made by `tools.make_training_rooms`")
     content = read_json(path, "list of images", TrainingDataError)
     if not isinstance(content, dict) or content.get("version") != 1 or not isinstance(content.get("images"), list):
         raise TrainingDataError(f'{path}: expected {{"version": 1, "images": [...]}}: make the folder again')

@@ -13,13 +13,13 @@ import numpy as np
 import torch
 from tqdm import tqdm
 
-from tools.detector_training.images import LabelledPanorama, PanoramaFolders
-from tools.detector_training.train import TrainingPlan, TrainingResult
-from tools.detector_training.validation import LEAST_SCORE, Validation, validate
 from course_lib.experiments.detection_scores import Boxes
 from course_lib.spherical_stereo.detection.darknet import read_names
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.writing import write_at_once
+from tools.detector_training.images import LabelledPanorama, PanoramaFolders
+from tools.detector_training.train import TrainingPlan, TrainingResult
+from tools.detector_training.validation import LEAST_SCORE, Validation, validate
 
 # Width of the recorded panoramas; the detector sees them as they are, not scaled as the training keeps them.
 PANORAMA_WIDTH = 1280

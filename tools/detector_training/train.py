@@ -10,6 +10,9 @@ from pathlib import Path
 import cv2
 import torch
 
+from course_lib.experiments.detection_scores import DetectionScoreError
+from course_lib.scratch import scratch_folder
+from course_lib.spherical_stereo.detection.darknet import check_names, read_cfg, read_names
 from tools.detector_training.augmentation import AugmentationRanges
 from tools.detector_training.batches import Batch, epoch_batches
 from tools.detector_training.checkpoints import Position, load_checkpoint, save_checkpoint
@@ -26,9 +29,6 @@ from tools.detector_training.workers import (
     average_statistics,
     start_others,
 )
-from course_lib.experiments.detection_scores import DetectionScoreError
-from course_lib.scratch import scratch_folder
-from course_lib.spherical_stereo.detection.darknet import check_names, read_cfg, read_names
 
 # Gradients longer than this are shortened: one odd batch must not undo the ones before.
 LONGEST_GRADIENT = 10.0

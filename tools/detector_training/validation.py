@@ -8,10 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from tools.detector_training.augmentation import panorama_window
-from tools.detector_training.batches import images_to_tensor
-from tools.detector_training.images import LabelledPanorama, PanoramaFolders
-from tools.detector_training.network import TrainableNetwork, decode
 from course_lib.experiments.detection_scores import (
     Boxes,
     Matching,
@@ -22,6 +18,10 @@ from course_lib.experiments.detection_scores import (
     scores_at,
 )
 from course_lib.spherical_stereo.detection.seam import appended_columns, select_on_circle
+from tools.detector_training.augmentation import panorama_window
+from tools.detector_training.batches import images_to_tensor
+from tools.detector_training.images import LabelledPanorama, PanoramaFolders
+from tools.detector_training.network import TrainableNetwork, decode
 
 # Boxes below this score are not looked at: far below any threshold that could be chosen.
 LEAST_SCORE = 0.05

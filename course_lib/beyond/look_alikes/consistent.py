@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from course_lib.geometry import wrap_angle
+from course_lib.beyond.look_alikes.assignment import association_of
 from course_lib.beyond.look_alikes.confidence import confidence_of, score_of_nothing, with_shares
 from course_lib.beyond.look_alikes.evidence import (
     CLUTTER_DENSITY,
@@ -22,8 +22,8 @@ from course_lib.beyond.look_alikes.evidence import (
     place_distances,
 )
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, Scene, fit_poses, pair_poses, scene_of
+from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.beyond.look_alikes.assignment import association_of
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     Observation,

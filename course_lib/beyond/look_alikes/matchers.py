@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Literal
 
-from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.assignment import associate_hungarian
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.spherical_stereo.semantic_map.association import Association, associate_greedy
 
 Matcher = Literal["greedy", "hungarian", "consistent"]

@@ -20,17 +20,17 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from course_lib.beyond.lost_and_found.adaptive_count import kld_count, occupied_bins
+from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.six_dof.hypotheses import distinct
 from course_lib.beyond.six_dof.prediction import MotionPrediction
 from course_lib.beyond.six_dof.pyramid import Level, pyramid
 from course_lib.beyond.six_dof.refinement import gauss_newton_step
 from course_lib.beyond.six_dof.twists import lengths, motion_between
-from course_lib.beyond.lost_and_found.adaptive_count import kld_count, occupied_bins
-from course_lib.beyond.lost_and_found.free_space import FreeSpace
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.beyond.tracking import THROUGH_WEIGHT, agreement
 from course_lib.depth_mcl.weighting import paper_weighting
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
+from course_lib.rendering.renderer import DepthRenderer
 
 # All chosen on development recordings (the kitchen, the shipped corridor, corridor seeds from 10,001 on).
 COARSEST = (20, 15)  # pixels: of these, thousands are drawn

@@ -13,10 +13,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, GlobalSearch, Places, same_place
-from course_lib.rendering.renderer import DepthRenderer
+from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.geometry import optical_pose
+from course_lib.rendering.renderer import DepthRenderer
 
 # All chosen on development recordings (the kitchen, the shipped corridor, corridor seeds from 10,001 on).
 SHORT, LONG = 0.4, 0.03  # shares of a new frame in the two means

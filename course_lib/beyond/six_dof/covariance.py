@@ -20,8 +20,8 @@ import numpy as np
 from course_lib.beyond.six_dof.prediction import Rival
 from course_lib.beyond.six_dof.refinement import surface_normals
 from course_lib.beyond.six_dof.twists import motion_between
-from course_lib.rendering.camera import DepthCamera
 from course_lib.geometry import BODY_FROM_OPTICAL, rotation_exp
+from course_lib.rendering.camera import DepthCamera
 
 # Chosen on development recordings: the kitchen, the shipped corridor, and walks through rooms (seeds from 10,041 on).
 INDEPENDENT_PIXELS = 20.0

@@ -13,19 +13,19 @@ from typing import Literal
 
 import numpy as np
 
+from course_lib.beyond.guarded_depth import WatchedLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
-from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
-from course_lib.beyond.guarded_depth import WatchedLocalizer
 from course_lib.experiments.lost_on_purpose import LOST_POSITION, LOST_ROTATION
 from course_lib.experiments.sensor_trouble.depth_frames import TROUBLES, troubled_recording
 from course_lib.experiments.sensor_trouble.placing import Arrival, generator
 from course_lib.experiments.sensor_trouble.score import Gate
 from course_lib.geometry import optical_pose, state_from_optical_pose
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed
 

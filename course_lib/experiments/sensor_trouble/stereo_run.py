@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from course_lib.beyond.guarded_stereo import NO_IMAGE, WatchedRig
 from course_lib.experiments.look_alikes import LARGEST_ERROR_M, LARGEST_TURN_DEG, pose_errors
 from course_lib.experiments.sensor_trouble.panoramas import PERIOD, TROUBLES, Pair, troubled_walk
 from course_lib.experiments.sensor_trouble.placing import Arrival, generator
@@ -22,7 +23,6 @@ from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose.localization import OK
-from course_lib.beyond.guarded_stereo import NO_IMAGE, WatchedRig
 
 GATE = Gate(LARGEST_ERROR_M, LARGEST_TURN_DEG)
 

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.paths import data_path
 from course_lib.plots.corridor_figures import plane_cut
+from course_lib.rendering.scene_map import SceneMap
 
 
 @functools.cache

@@ -1,6 +1,6 @@
 """How a lesson shows a scene in three dimensions: a page to be turned by hand, and its picture where no script runs.
 
-The page that comes with the lesson is `notebooks/scenes/NAME.html`; only `course.py refresh` writes it. Whoever changes
+The page that comes with the lesson is `notebooks/scenes/NAME.html`; only `tools.refresh` writes it. Whoever changes
 the lines of a cell sees a page of their own, `scenes/yours/NAME.html`, which git ignores.
 """
 

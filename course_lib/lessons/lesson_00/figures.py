@@ -7,12 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from course_lib.depth_mcl.localizer import Estimate
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.lessons.lesson_00.recorded import Moment
 from course_lib.plots import figures
 from course_lib.plots.corridor_figures import floor_plan
 from course_lib.plots.panorama_drawing import add_list, draw_box, draw_numbers, panorama
 from course_lib.plots.room_figures import draw_pose, map_axes
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.recording import StereoPair
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap

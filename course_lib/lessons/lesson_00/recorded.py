@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.likelihood import ALPHA, likelihood, valid_pixels
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
 from course_lib.lessons.kit.box_world import box_map
 from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
 
 FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
 CEILING = 2.6  # metres above the floor, in the corridor

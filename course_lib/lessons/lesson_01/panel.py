@@ -8,8 +8,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.text import Text
 
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.geometry import optical_pose, pose_matrix
 from course_lib.lessons.kit.corridor_views import corridor_map, draw_walls
 from course_lib.lessons.kit.live_figure import LiveFigure
@@ -17,6 +15,8 @@ from course_lib.lessons.kit.panel import Drawing, Panel, Slider
 from course_lib.lessons.lesson_01.figures import STYLES
 from course_lib.lessons.lesson_01.poses import AXES
 from course_lib.plots import figures
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
 
 _STRETCH = (8.0, 20.5)  # x [m] of the corridor that the panel shows: portal, side corridor (chosen)
 _AXIS_LENGTH = 0.7  # m, as drawn in the panel (chosen)

@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.lessons.lesson_02.views import cut, room_cut
 from course_lib.plots import figures
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.sensors.laser_survey import Scan
 
 

@@ -8,14 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import wagon_run
 from course_lib.lessons.lesson_02.small_room import MapQuality, room
 from course_lib.paths import data_path
 from course_lib.plots.corridor_figures import plane_cut
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 
 EYE = np.array([1.2, 2.6, 1.2, 0.0, 0.05, np.deg2rad(8)])  # state of the camera that looks through the room
 CUT = 1.2  # metres, height of the cuts
@@ -62,7 +62,7 @@ def view_camera() -> DepthCamera:
 
 
 def shipped_numbers() -> dict:
-    """What was measured on the corridor's map when it was made (`python3 course.py make-data corridor`)."""
+    """What was measured on the corridor's map when it was made (`.venv/bin/python -m tools.make_corridor`)."""
     return json.loads(data_path("corridor/summary.json").read_text(encoding="utf-8"))["measured"]["map"]
 
 

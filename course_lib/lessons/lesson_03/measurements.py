@@ -6,10 +6,10 @@ import time
 
 import numpy as np
 
+from course_lib.lessons.kit.progress_bar import progress
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.lessons.kit.progress_bar import progress
 
 # Bits that tell depths apart in a depth buffer, whether 24-bit whole numbers or float32 just below 1.
 DEPTH_BUFFER_BITS = 24

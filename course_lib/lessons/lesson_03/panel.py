@@ -7,13 +7,13 @@ import functools
 import numpy as np
 from matplotlib.colors import LogNorm
 
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider
 from course_lib.lessons.lesson_03.measurements import buffer_step
 from course_lib.lessons.lesson_03.scenes import corridor
 from course_lib.plots import figures
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
 
 _LEAST_HALF_WIDTH = 0.5  # metres, of the near plane as it is drawn (chosen)
 _NEAR_PLANES = ("1", "0.5", "0.1", "0.01", "0.001", "0.0001")

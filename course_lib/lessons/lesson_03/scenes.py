@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.lessons.kit.box_world import box_map
+from course_lib.rendering.scene_map import SceneMap
 
 # The side view of the idea: two surfaces (ends as depth, height in metres) and the slopes of seven rays.
 SURFACES = (((3.0, -0.75), (3.4, 0.35)), ((5.2, -1.5), (5.2, 1.6)))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import norm
 
-from course_lib.rendering.camera import DepthCamera
 from course_lib.lessons.kit.exercises import Exercise, Mistake
+from course_lib.rendering.camera import DepthCamera
 
 SPEED_OF_LIGHT = 299_792_458.0  # m/s
 

@@ -6,12 +6,12 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import Colormap
 
-from course_lib.rendering.camera import DepthCamera
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.lesson_04.figures import ERRORS, counts, error_axis
 from course_lib.lessons.lesson_04.time_of_flight import FAULTS, LENGTH, capture
 from course_lib.plots import figures
+from course_lib.rendering.camera import DepthCamera
 
 DEPTHS = np.linspace(-0.05, 13.15, 67)  # metres; the walls stand at whole decimetres, no edge of a bin does
 _FREQUENCIES = {"15 MHz (10 m model)": 15e6, "30 MHz (5 m model)": 30e6}

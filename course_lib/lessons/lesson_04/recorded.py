@@ -7,13 +7,13 @@ import functools
 import numpy as np
 from scipy.spatial import cKDTree
 
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.geometry import state_from_optical_pose
 from course_lib.lessons.lesson_04.time_of_flight import MODEL
 from course_lib.paths import data_path
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 
 
 @functools.cache

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.rendering.camera import DepthCamera
 from course_lib.lessons.kit.box_world import Box, BoxWorld
+from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.sensors.time_of_flight import Frame, TimeOfFlightCamera, TimeOfFlightModel
 
 MODEL = TimeOfFlightModel()

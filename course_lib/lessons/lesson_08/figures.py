@@ -6,12 +6,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.depth_mcl.localizer import Estimate
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.lessons.lesson_08.along import STRETCH
 from course_lib.lessons.lesson_08.stored_runs import StoredRun
 from course_lib.plots import figures
 from course_lib.plots.corridor_figures import floor_plan
+from course_lib.rendering.scene_map import SceneMap
 
 
 def experiment_figure(scene_map: SceneMap, sequence: DepthSequence) -> Figure:

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl import AnnealedLocalizer, DepthCamera, DepthRenderer, SceneMap
+from course_lib.beyond import AnnealedLocalizer
+from course_lib.depth_mcl import DepthCamera, DepthRenderer, SceneMap
 from course_lib.lessons.kit.box_world import box_map
 
 STEP = 0.1  # metres between two images

@@ -12,10 +12,10 @@ from course_lib.beyond.six_dof.refinement import refine
 from course_lib.beyond.six_dof.schedule import STEPS
 from course_lib.beyond.six_dof.twists import moved
 from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.lesson_09.hand import hand_run
+from course_lib.rendering.renderer import DepthRenderer
 
 OFFSETS = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4)  # metres; turned by `DEGREES_PER_METRE` as much at once
 DEGREES_PER_METRE = 60.0

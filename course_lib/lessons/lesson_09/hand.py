@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl import AnnealedLocalizer, MonteCarloLocalizer
+from course_lib.beyond import AnnealedLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate
+from course_lib.depth_mcl import MonteCarloLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import Estimate
 from course_lib.depth_mcl.motion import TANGENT_SPACE

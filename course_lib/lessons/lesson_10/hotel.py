@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from course_lib.geometry import optical_pose
+from course_lib.lessons.kit.box_world import box_map
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.geometry import optical_pose
-from course_lib.lessons.kit.box_world import box_map
 
 CAMERA = DepthCamera.from_fov(40, 30, 75, 58, near=0.1, far=9.0)
 NOISE = 0.005  # of the distance, standard deviation

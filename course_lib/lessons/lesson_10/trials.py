@@ -9,11 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
-from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.beyond.lost_and_found.global_search import CLEAR_GAP, GlobalSearch, Places
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer, RecoveryEstimate
-from course_lib.rendering.renderer import DepthRenderer
+from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
+from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.lesson_10.hotel import (
     ALIKE,
@@ -25,6 +24,7 @@ from course_lib.lessons.lesson_10.hotel import (
     walk,
 )
 from course_lib.lessons.lesson_10.narrowing import OUT_OF_101, leaving_101
+from course_lib.rendering.renderer import DepthRenderer
 
 LEAST, MOST = 200, 2_000  # of the search: the hotel is small
 PARTICLES = 150

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.hypotheses import fit_poses, scene_of
 from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
-from course_lib.beyond.look_alikes.hypotheses import fit_poses, scene_of
 from course_lib.spherical_stereo.pose.rigid_fit import fit_rigid_2d
 
 

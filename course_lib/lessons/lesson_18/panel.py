@@ -9,6 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
+from course_lib.beyond.look_alikes.confidence import confidence_of
+from course_lib.beyond.look_alikes.consistent import rank_poses
+from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, Scene, scene_of
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider
 from course_lib.lessons.kit.room_observations import MatchingScene, room_scenes
@@ -19,9 +22,6 @@ from course_lib.lessons.lesson_18.terms import TERMS, residual_sigmas, score_ter
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.room_figures import map_axes
-from course_lib.beyond.look_alikes.confidence import confidence_of
-from course_lib.beyond.look_alikes.consistent import rank_poses
-from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, Scene, scene_of
 
 ROOM, MIRROR = "the room", "its mirror image"
 ALL = 99

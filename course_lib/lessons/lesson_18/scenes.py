@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.hypotheses import MAP_SIGMA
+from course_lib.beyond.several_views import Motion
 from course_lib.experiments.ambiguity import stereo_covariance
 from course_lib.experiments.look_alikes import measured_motion
 from course_lib.lessons.kit.room_observations import MatchingScene, in_body_frame
-from course_lib.beyond.look_alikes.hypotheses import MAP_SIGMA
-from course_lib.beyond.several_views import Motion
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 

@@ -6,6 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE
+from course_lib.beyond.look_alikes.consistent import associate_consistent
+from course_lib.beyond.look_alikes.evidence import Evidence
+from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+from course_lib.beyond.several_views import SemanticTracker
 from course_lib.experiments.look_alikes import (
     Answer,
     OdometryModel,
@@ -20,12 +25,7 @@ from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.lessons.lesson_18.scenes import half_seen, mirrored, thinned
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE
-from course_lib.beyond.look_alikes.consistent import associate_consistent
-from course_lib.beyond.look_alikes.evidence import Evidence
-from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.beyond.several_views import SemanticTracker
 
 NOWHERE = (np.inf, np.inf, 0.0)  # the true pose on a map of another room
 GAP_ALONE = Evidence(absolute=False)

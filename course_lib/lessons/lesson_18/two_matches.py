@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.consistent import assign, match_costs
+from course_lib.beyond.look_alikes.evidence import Evidence
+from course_lib.beyond.look_alikes.hypotheses import PairPoses, pair_poses, scene_of
 from course_lib.lessons.kit.room_observations import MatchingScene
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.beyond.look_alikes.consistent import assign, match_costs
-from course_lib.beyond.look_alikes.evidence import Evidence
-from course_lib.beyond.look_alikes.hypotheses import PairPoses, pair_poses, scene_of
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 
 Pairs = tuple[tuple[int, int], ...]

@@ -12,12 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import FAR
 from course_lib.experiments.finale import look_around, robot_states
 from course_lib.paths import data_path
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.room.depth_world import CAMERA, PLACE, STREAM, depth_caster
 from course_lib.simulation.room.finale_data import SEED
 from course_lib.simulation.room.footprints import distance_to, footprint

@@ -9,15 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.mesh_file import mesh_endings
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import Run, run_sequence
 from course_lib.geometry import rotation_exp
 from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.paths import data_path
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.mesh_file import mesh_endings
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.scratch import scratch_folder
 
 STAND_IN_FRAMES = 24  # of the corridor run that was carried by hand: as many as the panel steps through (chosen)

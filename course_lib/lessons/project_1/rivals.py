@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.depth_mcl import DepthCamera
 from course_lib.beyond.six_dof.refinement import gauss_newton_step
 from course_lib.beyond.six_dof.tempering import temper
+from course_lib.depth_mcl import DepthCamera
 from course_lib.depth_mcl.compiled_likelihood import likelihood
 from course_lib.depth_mcl.likelihood import normalize_likelihood, valid_pixels, weights
 from course_lib.depth_mcl.motion import propagate, propagate_body

@@ -14,9 +14,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from course_lib.output_folder import replaced_outputs
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.output_folder import replaced_outputs
 from course_lib.simulation.corridor.measurements import hole_share, map_error, noise_on_a_wall
 from course_lib.simulation.corridor.mesh_building import WorldMesh
 from course_lib.simulation.corridor.mesh_files import write_ply, write_world_ply

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.rendering.camera import DepthCamera
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose, wrap_angle
+from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor.mesh_files import write_ply
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, depth_caster, surveyed_mesh
 from course_lib.simulation.room.footprints import NoFreePlace, clear_of, footprint, free_places

@@ -14,8 +14,8 @@ from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkTexture
 from vtkmodules.vtkRenderingOpenGL2 import vtkPanoramicProjectionPass, vtkRenderStepsPass
 
-from course_lib.rendering.off_screen import off_screen_window
 from course_lib.geometry import pose_matrix
+from course_lib.rendering.off_screen import off_screen_window
 from course_lib.simulation.room.scene import Room
 from course_lib.simulation.textured_mesh import TexturedMesh
 

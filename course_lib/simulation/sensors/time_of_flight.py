@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from course_lib.rendering.camera import DepthCamera
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix
+from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 
 SPEED_OF_LIGHT = 299_792_458.0  # m/s, exact

@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 
-from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
-from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.beyond.look_alikes import consistent
 from course_lib.beyond.look_alikes.confidence import (
     AMBIGUOUS,
@@ -17,6 +14,9 @@ from course_lib.beyond.look_alikes.confidence import (
 from course_lib.beyond.look_alikes.consistent import assign, associate_consistent, distinct, rank_poses
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
+from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.semantic_map.association import associate_greedy
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from tests.beyond.look_alikes.look_alike_scene import (

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from course_lib.geometry import wrap_angle
 from course_lib.beyond.look_alikes.hypotheses import (
     UNKNOWN_SIGMA,
     fit_poses,
@@ -10,6 +9,7 @@ from course_lib.beyond.look_alikes.hypotheses import (
     pairs_of_matches,
     scene_of,
 )
+from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, observed
 

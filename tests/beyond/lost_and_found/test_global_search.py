@@ -6,9 +6,9 @@ import pytest
 from course_lib.beyond.lost_and_found.free_space import FreeSpace, FreeSpaceError
 from course_lib.beyond.lost_and_found.global_search import GlobalSearch, upright_poses
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
+from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix
 from tests.rendering.shapes import SMALL, furnished_room, room, wall
 
 PLACE = np.array([-1.2, 0.5, -0.6, 0.15, 0.2, -0.3])

@@ -13,8 +13,8 @@ from course_lib.beyond.six_dof.covariance import (
 )
 from course_lib.beyond.six_dof.prediction import Rival
 from course_lib.beyond.six_dof.twists import motion_between, moved
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.geometry import optical_pose
+from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, furnished_room, rough_wall, wall
 
 

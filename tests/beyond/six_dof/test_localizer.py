@@ -9,10 +9,10 @@ from course_lib.beyond.six_dof.schedule import Layer
 from course_lib.beyond.six_dof.twists import motion_between, moved
 from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.experiments.six_degrees import image_alone
 from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix, state_from_optical_pose
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from tests.rendering.shapes import SMALL, fence, furnished_room, rough_wall, wall
 
 START = np.array([-1.0, 0.3, -0.3, 0.05, 0.1, -0.4])

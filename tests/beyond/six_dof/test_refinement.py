@@ -15,9 +15,9 @@ from course_lib.beyond.six_dof.refinement import (
     solve,
 )
 from course_lib.beyond.six_dof.twists import lengths, motion_between, moved
+from course_lib.geometry import optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
-from course_lib.geometry import optical_pose
 from tests.rendering.shapes import OFF_CENTRE, SMALL, furnished_room, random_triangles, wall
 
 TRUE = optical_pose(np.array([-0.5, 0.2, -0.4, 0.05, 0.1, 0.6]))

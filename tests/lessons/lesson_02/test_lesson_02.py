@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.lessons.kit.box_world import Box, BoxWorld
 from course_lib.lessons.lesson_02 import small_room
 from course_lib.lessons.lesson_02.exercises import lateral_sigma, off_the_sigma
@@ -21,6 +20,7 @@ from course_lib.lessons.lesson_02.small_room import (
     seen_places,
 )
 from course_lib.lessons.lesson_02.views import camera_view, cut, row, shipped_numbers, true_view
+from course_lib.rendering.scene_map import SceneMap
 
 
 def test_a_cut_through_a_box_is_its_outline():

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.lessons.lesson_03.exercises import cut_at_near, off_the_cut
 from course_lib.lessons.lesson_03.measurements import buffer_step, slanted_wall_error
 from course_lib.lessons.lesson_03.panel import camera_panel
 from course_lib.lessons.lesson_03.scenes import corridor
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
 
 
 def corridor_views(states: list[list[float]], near: float = 0.1, backend: str = "vtk") -> np.ndarray:

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl import depth_image_from_points
-from course_lib.rendering.camera import DepthCamera
 from course_lib.lessons.lesson_04.exercises import nearest_of
 from course_lib.lessons.lesson_04.figures import counts
 from course_lib.lessons.lesson_04.panel import DEPTHS, faults_panel
 from course_lib.lessons.lesson_04.recorded import KINDS, kinds_of, on_a_surface, sort_errors
 from course_lib.lessons.lesson_04.time_of_flight import FAULTS, MODEL, capture, frames_of, model, returns, wall
+from course_lib.rendering.camera import DepthCamera
 
 SMALL = DepthCamera.sr4000().resized(88, 72)
 

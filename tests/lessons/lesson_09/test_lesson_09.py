@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from course_lib.depth_mcl import AnnealedLocalizer, DepthRenderer
+from course_lib.beyond import AnnealedLocalizer
+from course_lib.depth_mcl import DepthRenderer
 from course_lib.experiments.six_degrees import ABLATIONS
 from course_lib.geometry import optical_pose
 from course_lib.lessons.kit.corridor_views import corridor_map

@@ -7,7 +7,6 @@ import pytest
 
 from course_lib.beyond.lost_and_found.adaptive_count import kld_count
 from course_lib.beyond.lost_and_found.global_search import Place, Places
-from course_lib.rendering.renderer import DepthRenderer
 from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.lesson_10.hotel import (
     ALIKE,
@@ -41,6 +40,7 @@ from course_lib.lessons.lesson_10.trials import (
     running_mean,
     traces,
 )
+from course_lib.rendering.renderer import DepthRenderer
 
 
 def test_rooms_101_and_102_look_alike_and_103_does_not():

@@ -5,6 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from course_lib.beyond import Evidence, SemanticTracker, rank_poses
+from course_lib.beyond.look_alikes.confidence import confidence_of
+from course_lib.beyond.look_alikes.evidence import detection_probabilities
+from course_lib.beyond.look_alikes.hypotheses import pair_poses, scene_of
 from course_lib.experiments.look_alikes import CORRECT, UNANSWERED, WRONG, is_right, pose_errors
 from course_lib.lessons import lesson_18
 from course_lib.lessons.kit.display import require_labels
@@ -14,10 +18,7 @@ from course_lib.lessons.lesson_18.panel import MIRROR, MOST_HIDDEN, PAIRS, ROOM,
 from course_lib.lessons.lesson_18.scenes import mirrored
 from course_lib.lessons.lesson_18.terms import residual_sigmas, score_terms, share_of_nothing
 from course_lib.lessons.lesson_18.trials import answers_of_confidence
-from course_lib.spherical_stereo import Evidence, Pose2D, SemanticLocalizer, SemanticTracker, StereoRig, rank_poses
-from course_lib.beyond.look_alikes.confidence import confidence_of
-from course_lib.beyond.look_alikes.evidence import detection_probabilities
-from course_lib.beyond.look_alikes.hypotheses import pair_poses, scene_of
+from course_lib.spherical_stereo import Pose2D, SemanticLocalizer, StereoRig
 
 TRUTH = np.array([1.2, -0.7, 0.4])
 

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor import data
 from course_lib.simulation.corridor.materials import WALL_PAINT
 from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement

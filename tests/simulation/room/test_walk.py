@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.rendering.scene_map import SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import state_from_optical_pose
+from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.recorded_runs import steps_and_turns
 from course_lib.simulation.corridor.surface_fusion import FusionModel
 from course_lib.simulation.room.depth_world import DepthSurveyModel

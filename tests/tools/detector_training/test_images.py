@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
+from tests.tools.detector_training.toy_panoramas import CLASSES, write_toy_folder
 from tools.detector_training.augmentation import AugmentationRanges, augmented_sample, panorama_window, recoloured
 from tools.detector_training.images import (
     LabelledPanorama,
@@ -14,7 +15,6 @@ from tools.detector_training.images import (
     labelled_panorama,
     read_boxes,
 )
-from tests.tools.detector_training.toy_panoramas import CLASSES, write_toy_folder
 
 NAMES = list(CLASSES)
 WIDTH, HEIGHT = 256, 128

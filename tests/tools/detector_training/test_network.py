@@ -6,10 +6,10 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
 
-from tools.detector_training.export import read_weights, write_weights  # noqa: E402
-from tools.detector_training.network import PRIOR_OBJECTNESS, TrainableNetwork, decode, decode_boxes  # noqa: E402
 from course_lib.spherical_stereo.detection.darknet import DetectorError, expected_weight_floats, parse_cfg, read_cfg  # noqa: E402
 from tests.tools.detector_training.toy_panoramas import ROOM_CFG, TINY_CFG  # noqa: E402
+from tools.detector_training.export import read_weights, write_weights  # noqa: E402
+from tools.detector_training.network import PRIOR_OBJECTNESS, TrainableNetwork, decode, decode_boxes  # noqa: E402
 
 
 def randomized(network, seed=0):

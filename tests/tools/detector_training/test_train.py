@@ -9,6 +9,8 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
 
+from course_lib.spherical_stereo.detection.darknet import check_weights, parse_cfg  # noqa: E402
+from tests.tools.detector_training.toy_panoramas import CLASSES, ROOM_NAMES, TINY_CFG, write_toy_folder  # noqa: E402
 from tools.detector_training.augmentation import AugmentationRanges  # noqa: E402
 from tools.detector_training.batches import QUEUE_LENGTH, _made_ahead  # noqa: E402
 from tools.detector_training.checkpoints import CheckpointError, Position  # noqa: E402
@@ -19,8 +21,6 @@ from tools.detector_training.report import write_report  # noqa: E402
 from tools.detector_training.schedule import AveragedNetwork, learning_rate  # noqa: E402
 from tools.detector_training.train import TrainingPlan, TrainingResult, train  # noqa: E402
 from tools.detector_training.validation import Validation, network_detector, validate  # noqa: E402
-from course_lib.spherical_stereo.detection.darknet import check_weights, parse_cfg  # noqa: E402
-from tests.tools.detector_training.toy_panoramas import CLASSES, ROOM_NAMES, TINY_CFG, write_toy_folder  # noqa: E402
 
 STILL = AugmentationRanges((1.0, 1.0), 0.0, 0.0, 0.0, 0.0, (1.0, 1.0), 0.0, 0.0)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-ROOM_CFG = Path(__file__).parents[2] / "data" / "detector" / "room_yolo.cfg"
+ROOM_CFG = Path(__file__).parents[3] / "data" / "detector" / "room_yolo.cfg"
 ROOM_NAMES = ROOM_CFG.with_suffix(".names")
 
 # A network with every kind of section that the training knows, for panoramas 256 columns wide.
