@@ -1,7 +1,6 @@
 """Paper 1: Hatakeyama, Kanai, Date, "3D Monte Carlo localization with a depth camera". A module for each step.
 
     sequence             recordings on disk; poses, sequence_files: their files, each read and checked
-    sensor               3.3.2, eq. (7): the camera's own points, made comparable
     likelihood           3.3.3 and 3.3.4, eqs (8) to (11): A-2
     compiled_likelihood  eq. (8) once more, in a compiled loop
     weighting            both as a part of the filter that can be exchanged
@@ -12,7 +11,8 @@
     fallon               the method that table 1 compares with
     evaluation           section 4: table 1
 
-The camera, the map, and eq. (6), a depth image of the map for every particle, are in `course_lib.rendering`.
+The camera, the map, eq. (6), a depth image of the map for every particle, and eq. (7), the camera's own points made
+comparable, are in `course_lib.rendering`.
 State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`. What the paper leaves open is in
 `course_lib.beyond`.
 """
@@ -28,11 +28,11 @@ from course_lib.depth_mcl.particle_filter import (
     weighted_mean_state,
 )
 from course_lib.depth_mcl.poses import SequenceError
-from course_lib.depth_mcl.sensor import depth_image_from_points
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from course_lib.rendering.scene_map import SceneMap, SceneMapError
+from course_lib.rendering.sensor import depth_image_from_points
 
 __all__ = [
     "BODY_AXES",

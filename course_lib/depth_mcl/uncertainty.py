@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.beyond.six_dof.tempering import temper
+from course_lib.depth_mcl.tempering import temper
 
 # How many independent pixels an image is worth, kappa, and how many effective particles beyond the number of moving
 # components are left at least. Both chosen on tuning worlds: see above.

@@ -17,11 +17,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import SIGMA, run_sequence, system_noise
 from course_lib.geometry import rotation_exp
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.sensor import subsample_depth
 from course_lib.scratch import scratch_folder
 
 # A frame is truly lost beyond either (chosen: what makes an estimate useless for going through a door).

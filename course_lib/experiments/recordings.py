@@ -23,13 +23,13 @@ from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, Estimate, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, Motion
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import FAR, NEAR, DepthSequence
 from course_lib.depth_mcl.uncertainty import normalized_error
 from course_lib.depth_mcl.weighting import Weighting
 from course_lib.geometry import optical_pose, rotation_to_z_up, state_from_optical_pose
 from course_lib.rendering.renderer import Backend, DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.sensor import subsample_depth
 
 # Standard deviations of the system noise a frame, metres and degrees (chosen: for six degrees of freedom about the
 # steps of a camera carried by hand, median 0.04 m and 2 degrees in the kitchen recording; for x, y, yaw one and a half

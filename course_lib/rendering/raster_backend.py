@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.sensor import depth_image_from_points
 from course_lib.processors import processors
 from course_lib.rendering import rasterizer
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.chunks import MeshChunks, inward_normals
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.sensor import depth_image_from_points
 
 VIEWS_A_TASK = 8  # small enough that no thread waits long for the last, large enough that starting one costs nothing
 

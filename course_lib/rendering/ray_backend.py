@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 
-from course_lib.depth_mcl.sensor import depth_image_from_points
 from course_lib.rendering import embree
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.sensor import depth_image_from_points
 
 
 class RayBackend:

@@ -12,9 +12,8 @@ from course_lib.depth_mcl import (
     MonteCarloLocalizer,
     SceneMap,
     compiled_likelihood,
-    simplification,
 )
-from course_lib.rendering import rasterizer
+from course_lib.rendering import rasterizer, simplification
 
 
 def compiled_forms():

@@ -6,11 +6,11 @@ import pytest
 from course_lib.depth_mcl.evaluation import timed_error
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.depth_mcl.motion import WORLD_AXES
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import pose_matrix, state_from_matrix, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.sensor import subsample_depth
 
 FRAMES = 90
 LOST = 0.5  # metres; the wagon goes 8.6 m

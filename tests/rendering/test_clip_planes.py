@@ -5,11 +5,11 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from course_lib.depth_mcl.sensor import depth_image_from_points
 from course_lib.geometry import optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.sensor import depth_image_from_points
 
 # Half a metre to both sides of the outer rays of a board one metre away.
 BOARD = np.array([[-1.5, -1.2, 1.0], [1.5, -1.2, 1.0], [1.5, 1.2, 1.0], [-1.5, 1.2, 1.0]])

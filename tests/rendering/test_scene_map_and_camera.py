@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from course_lib.depth_mcl.sensor import depth_image_from_points, subsample_depth
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap, SceneMapError, SceneMapWarning
+from course_lib.rendering.sensor import depth_image_from_points, subsample_depth
 from tests.rendering.shapes import OFF_CENTRE, SMALL, room
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])

@@ -5,9 +5,10 @@ import warnings
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl import DepthCamera, DepthRenderer, SceneMap, simplification
+from course_lib.depth_mcl import DepthCamera, DepthRenderer, SceneMap
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import state_from_optical_pose
+from course_lib.rendering import simplification
 
 
 @pytest.fixture(autouse=True)

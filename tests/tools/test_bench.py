@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands import bench, bench_renders
 from course_lib.depth_mcl import DepthRenderer, SceneMap
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.motion import BODY_AXES
 from course_lib.depth_mcl.sequence import read_sequence
+from tools import bench, bench_renders
 from tools.bench_table import table
 
 ROOT = Path(__file__).parents[2]

@@ -12,7 +12,7 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
 from course_lib.cli import main
-from course_lib.commands import lesson_costs, lesson_costs_table, refresh
+from tools import lesson_costs, lesson_costs_table, refresh
 from tools.lesson_costs import Cost, ProcessWatch
 
 HELD_MB = 300

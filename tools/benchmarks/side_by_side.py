@@ -17,12 +17,12 @@ from other_tools import LOOPED_IMAGES, Tool, course_backend, open3d_embree, pyvi
 
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.depth_mcl.motion import Motion
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.sensor import subsample_depth
 
 N_PARTICLES = 200
 IMAGE = (176, 144)  # pixels: the paper's camera

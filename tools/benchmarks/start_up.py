@@ -11,10 +11,10 @@ import numpy as np
 from side_by_side import Scene
 
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.geometry import state_from_optical_pose
 from course_lib.paths import REPOSITORY, data_path, notebook_paths
 from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.sensor import subsample_depth
 
 SMALL_IMAGE, FEW_PARTICLES = (44, 36), 30
 

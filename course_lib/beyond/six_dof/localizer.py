@@ -38,13 +38,13 @@ from course_lib.beyond.six_dof.prediction import GREATEST_SPREAD, MotionPredicti
 from course_lib.beyond.six_dof.pyramid import Level, pyramid
 from course_lib.beyond.six_dof.refinement import gauss_newton_step
 from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, Layer, Step
-from course_lib.beyond.six_dof.tempering import Tempered, temper
 from course_lib.beyond.six_dof.twists import motion_between, moved
 from course_lib.beyond.tracking import Agreement, TrackStatus, agreement, judge_refined
 from course_lib.depth_mcl.likelihood import ALPHA, DepthImageError, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.particle_filter import resample
+from course_lib.depth_mcl.tempering import Tempered, temper
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from course_lib.depth_mcl.likelihood import ALPHA
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.depth_mcl.weighting import Weighting, paper_weighting
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.sensor import subsample_depth
 
 # Pixels of the coarse and the middle image; the finest is the camera's own, up to so many (all chosen).
 COARSE, MIDDLE, FINE = 1_200, 4_800, 25_600

@@ -10,11 +10,11 @@ import numpy as np
 
 from course_lib.depth_mcl.fallon import DEPTH_CUT, DEPTH_SIGMA, depth_log_likelihood, disparity_log_likelihood
 from course_lib.depth_mcl.likelihood import ALPHA, likelihood, normalize_likelihood
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.geometry import state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 from course_lib.lessons.lesson_06.gaussian import gaussian_log_likelihood
 from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.sensor import subsample_depth
 
 FRAME = 100  # of the wagon's run: two people stand before the camera who are not in the map
 SMALL = (44, 36)  # pixels of the small images: a sixteenth, so that a profile takes milliseconds

@@ -21,11 +21,11 @@ from course_lib.depth_mcl.particle_filter import (
     resample,
     weighted_mean_state,
 )
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.geometry import state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 from course_lib.plots.corridor_figures import floor_plan
 from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.sensor import subsample_depth
 
 FRAMES = range(60, 84)  # of the wagon's run, the stretch of lesson 08
 SMALL = (32, 26)  # pixels of the images: few, so that a hundred views take milliseconds

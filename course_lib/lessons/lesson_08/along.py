@@ -11,11 +11,11 @@ from course_lib.depth_mcl.evaluation import PositionError, nearest_path_error, s
 from course_lib.depth_mcl.likelihood import likelihood, normalize_likelihood, valid_pixels, weights
 from course_lib.depth_mcl.motion import propagate
 from course_lib.depth_mcl.particle_filter import initial_particles, resample, weighted_mean_state
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.geometry import state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.sensor import subsample_depth
 
 STRETCH = range(60, 84)  # frames that are localized live: a good two metres of the run (chosen)
 # Where the panel's table is read off, metres from the true x: finely near it, where the hill is steep, and far back,

@@ -11,10 +11,10 @@ from course_lib.beyond.lost_and_found.adaptive_count import kld_count, occupied_
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, upright_poses
 from course_lib.depth_mcl import likelihood, normalize_likelihood, propagate, resample, weights
-from course_lib.depth_mcl.sensor import subsample_depth
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.lessons.lesson_10.hotel import ALIKE, CAMERA, Recording, boxes_on_the_plan, hotel_map, record, walk
 from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.sensor import subsample_depth
 
 # All chosen on this world, with seeds from 10,000 up.
 COARSE = CAMERA.resized(20, 15)
