@@ -14,8 +14,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from course_lib.reading import MEGABYTE
-from course_lib.scratch import scratch_folder
+from course_lib.files import MEGABYTE, temporary_folder
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -122,7 +121,7 @@ def run_apart(code: str, path: str, memory: int, seconds: float = HANGS_S) -> by
     memory: bytes that it may take beyond the libraries themselves. Returns what it wrote. Raises `ChildError`: it
     stopped with an error (whose text is told), was killed by a signal, took more memory or time.
     """
-    with scratch_folder() as folder:
+    with temporary_folder() as folder:
         result = folder / "result.npz"
         program = f"{_LIMITS}\nCODE = {code!r}\n{_CALLED}"
         command = [sys.executable, "-I", "-c", program, path, str(result), str(memory)]

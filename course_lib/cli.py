@@ -11,16 +11,15 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import signal
 import sys
+import threading
 import traceback
 import warnings
 from collections.abc import Callable
 from types import ModuleType
 
 from course_lib.command_parser import VERY_LIKE, CommandParser, meant
-from course_lib.scratch import clear_scratch
-from course_lib.standard_output import told_output
-from course_lib.told_to_end import told_to_end
 
 # For whom -> name as typed -> (module of course_lib.commands, one line for the list of commands).
 GROUPS: dict[str, dict[str, tuple[str, str]]] = {
@@ -126,16 +125,15 @@ def call(load: Callable[[], ModuleType], program: str, words: list[str]) -> int:
         module = load()
         arguments = parse(program, module, words)
         debug = debug or arguments.debug
-        with told_to_end(), told_output() as output:
-            code = module.run(arguments)
-            output.flush()
-        return max(code, EXIT_BAD_INPUT) if output.failed else code
+        raise_on_sigterm()
+        code = module.run(arguments)
+        sys.stdout.flush()
+        return code
     except KeyboardInterrupt as stop:
-        clear_scratch()  # a worker's, which ended in the midst of its work
         if debug:
             traceback.print_exc()
         print("\nStopped.", file=sys.stderr)
-        return getattr(stop, "exit_code", EXIT_INTERRUPTED)
+        return stop.args[0] if stop.args else EXIT_INTERRUPTED
     except BrokenPipeError:
         # Whoever read our output (head, less) has gone; Python would complain once more when it closes stdout.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -144,6 +142,20 @@ def call(load: Callable[[], ModuleType], program: str, words: list[str]) -> int:
         if debug:
             traceback.print_exc()
         return report(error)
+
+
+def raise_on_sigterm() -> None:
+    """Let SIGTERM and SIGHUP end a command as Ctrl-C does, so that temporary files are removed. Exit codes 143, 129."""
+
+    def end(number: int, _: object) -> None:
+        raise KeyboardInterrupt(128 + number)
+
+    if threading.current_thread() is not threading.main_thread():
+        return
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number and signal.getsignal(number) is signal.SIG_DFL:  # nohup stays as it is
+            signal.signal(number, end)
 
 
 def parse(program: str, module: ModuleType, words: list[str]) -> argparse.Namespace:

@@ -21,7 +21,7 @@ from pathlib import Path
 from course_lib.child import python
 from course_lib.child import run as run_child
 from course_lib.commands.arguments import require_output_folder
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import run_folder
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "environment-bench.txt"
@@ -139,7 +139,7 @@ def run_tools(arguments: argparse.Namespace) -> int:
         why = install_tools()
         if why:
             print(f"The tools to compare with could not be installed, and are left out: {why}", file=sys.stderr)
-    with replaced_outputs(arguments.out, "bench") as out:
+    with run_folder(arguments.out, "bench") as out:
         return measure(arguments, out)
 
 

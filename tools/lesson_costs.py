@@ -22,7 +22,7 @@ import psutil
 
 from course_lib.child import start
 from course_lib.commands.lab import lab_command
-from course_lib.scratch import scratch_folder
+from course_lib.files import temporary_folder
 from tools.refresh import HANGS_S, execute
 
 EVERY_S = 0.1
@@ -126,14 +126,14 @@ def notebook_cost(path: Path) -> Cost:
         watches.append(ProcessWatch(pid, path.name.partition("_")[0]))
         return watches[0]
 
-    with scratch_folder() as folder:
+    with temporary_folder() as folder:
         execute(nbformat.read(path, as_version=4), folder, HANGS_S, watch)
     return watches[0].cost
 
 
 def server_cost() -> Cost:
     """What the server of `course.py lab` takes once it has shown its first page, without a kernel."""
-    with scratch_folder() as folder:
+    with temporary_folder() as folder:
         command, environment = lab_command(port=0, state_folder=folder)
         server = start(
             command, environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True

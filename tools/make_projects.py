@@ -12,7 +12,7 @@ from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder, require_processes
 from course_lib.commands.detector_options import chosen_detector
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import staging_dir
 from course_lib.processors import processors
 
 FOLDER = Path(__file__).resolve().parents[1] / "data" / "projects"
@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments.project_rooms import make_project_rooms
     from course_lib.simulation.data_folder import checksums
 
-    with replaced_outputs(out, "make-data projects") as new:
+    with staging_dir(out) as new:
         counts = make_project_rooms(
             new,
             partial(chosen_detector, arguments),

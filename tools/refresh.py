@@ -24,9 +24,8 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernel
 
 from course_lib.child import KERNEL_PATH, clean_environment
 from course_lib.commands.saved_panels import drop_widgets
+from course_lib.files import atomic_write, temporary_folder
 from course_lib.paths import STORE_SCENES, notebook_paths, project_paths
-from course_lib.scratch import scratch_folder
-from course_lib.writing import write_at_once
 
 MAX_BYTES = 400_000
 HANGS_S = 1800.0  # only what hangs takes so long
@@ -106,7 +105,7 @@ def refresh(path: Path, cell_timeout: float = HANGS_S) -> tuple[float, int]:
             f"{size / 1000:.0f} kB with its outputs, at most {MAX_BYTES / 1000:.0f}: use smaller pictures"
         )
     json.loads(text)
-    write_at_once(path, text)
+    atomic_write(path, text)
     return seconds, size
 
 
@@ -120,7 +119,7 @@ def execute(
 
     watch: from the process id of the kernel, what is entered before its first cell and left after its last.
     """
-    with scratch_folder() as home:
+    with temporary_folder() as home:
         startup = home / "profile_default" / "startup"
         startup.mkdir(parents=True)
         (startup / "00-offline.py").write_text(OFFLINE_STARTUP, encoding="utf-8")

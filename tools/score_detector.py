@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
-from course_lib.scratch import scratch_folder
+from course_lib.files import temporary_folder
 from tools.make_training_rooms import (
     FIRST_TEST_ROOM,
     FIRST_VALIDATION_ROOM,
@@ -52,8 +52,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.detector_evaluation import labelled_panoramas, score_detector
+    from course_lib.files import require_file
     from course_lib.paths import data_path
-    from course_lib.reading import require_file
     from course_lib.simulation.room.training_images import labelled_images, make_room_images, read_image_list
     from course_lib.spherical_stereo.recording import read_stereo_recording
 
@@ -73,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
             progress_bar("the experiment's room", "image")(chain.from_iterable(map(labelled_panoramas, recordings))),
         )
     }
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         images = arguments.images
         if images is None:
             images = temporary
@@ -106,7 +106,7 @@ def _compare_voting(arguments: argparse.Namespace, detector) -> int:
     from course_lib.simulation.room.training_images import labelled_images, make_room_images
     from course_lib.spherical_stereo.detection.suppression import VOTE_IOU, VOTE_SCORE
 
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         images = arguments.images or temporary
         if arguments.images is None:
             bar = progress_bar("photographs", "room")

@@ -15,7 +15,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from course_lib.commands.arguments import MOST_PARTICLES, parse_seeds, require_count, require_output_folder
-from course_lib.scratch import scratch_folder
+from course_lib.files import temporary_folder
 
 EXPERIMENTS = ("corridor",)
 CONNECT_S = 30
@@ -104,7 +104,7 @@ def corridor(seed: int, frames: int | None, n_particles: int) -> dict:
     from course_lib.paths import data_path
 
     data = data_path("corridor")
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         even, by_hand = own_recordings(data, temporary, seed, frames)
         options = {"seed": seed, "frames": frames, "n_particles": n_particles}
         rows = run_rows(Maps.load(data), even, by_hand, METHODS_BY_HAND, **options)

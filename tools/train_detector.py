@@ -11,7 +11,7 @@ import json
 import sys
 from pathlib import Path
 
-from course_lib.writing import write_at_once
+from course_lib.files import atomic_write
 
 DATA = Path(__file__).parents[1] / "data" / "detector"
 
@@ -100,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     for path in (arguments.cfg, arguments.names):
         if path.resolve().parent != arguments.out.resolve():
-            write_at_once(arguments.out / path.name, path.read_bytes())
+            atomic_write(arguments.out / path.name, path.read_bytes())
     cfg, names = arguments.out / arguments.cfg.name, arguments.out / arguments.names.name
     _log("measuring the finished detector (OpenCV) on the validation images")
     validation = measure_detector(cfg, result.weights, names, arguments.validation)

@@ -22,10 +22,10 @@ from course_lib.classroom.confinement import Limits
 from course_lib.classroom.judging import Graded, Task, grade, not_judged
 from course_lib.classroom.model_answers import function_name
 from course_lib.classroom.probe import missing_protections
-from course_lib.classroom.sandbox import Sandbox, SandboxError
+from course_lib.classroom.sandbox import Sandbox, SandboxError, remove
 from course_lib.classroom.submissions import Collection, collect
+from course_lib.files import temporary_folder
 from course_lib.lessons.kit.projects import find_project
-from course_lib.scratch import remove, scratch_folder
 
 JUDGE_SECONDS = 300.0
 SCORE_SECONDS = 7200.0
@@ -97,7 +97,7 @@ def _order(graded: Graded) -> tuple[str, str]:
 @contextlib.contextmanager
 def working_folder() -> Iterator[Path]:
     """A folder for everything that is written meanwhile; it goes, however the grading ends."""
-    with scratch_folder() as path:
+    with temporary_folder() as path:
         try:
             yield path
         finally:

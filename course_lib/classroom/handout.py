@@ -25,8 +25,7 @@ from course_lib.classroom.model_answers import model_solution_path
 from course_lib.classroom.nbgrader_course import canary_of, write_course, write_grading_module
 from course_lib.classroom.rubric import rubric
 from course_lib.classroom.student_copies import solved_notebook, write_copies
-from course_lib.output_folder import replaced_outputs
-from course_lib.unfinished import UNFINISHED
+from course_lib.files import staging_dir
 
 MARKER = "handout.json"
 MADE_BY = "course.py handout"
@@ -128,7 +127,7 @@ def make_handout(
     out = out.absolute()
     require_place(out)
     canary = canary_of(seed)
-    with replaced_outputs(out, None, [path.name for path in out.glob("*")]) as made:
+    with staging_dir(out, [path.name for path in out.glob("*")]) as made:
         for step in progress(steps(made, assignments, seed, canary, solved)):
             step()
         leaks = find_leaks(made / "student", teachers_words(seed, canary) | solutions(assignments))
@@ -198,7 +197,7 @@ def require_place(out: Path) -> None:
         return
     if out.is_symlink() or not out.is_dir():
         raise HandoutError(f"--out {out} is no folder: name one that is new, or a handout to be replaced")
-    if any(UNFINISHED not in path.name for path in out.iterdir()) and not is_handout(out):
+    if any(not path.name.startswith(".") for path in out.iterdir()) and not is_handout(out):
         raise HandoutError(
             f"--out {out} holds something that is no handout of ours: name a new folder, or an empty one"
         )

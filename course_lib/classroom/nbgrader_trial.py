@@ -23,9 +23,9 @@ from course_lib.classroom.model_answers import function_name, model_bodies, solv
 from course_lib.classroom.nbgrader_course import canary_of, write_course, write_grading_module
 from course_lib.classroom.points import points_of
 from course_lib.classroom.score_worlds import MOST
+from course_lib.files import temporary_folder
 from course_lib.lessons.kit.exercises import Exercise, Mistake, find_exercise
 from course_lib.lessons.kit.projects import find_project
-from course_lib.scratch import scratch_folder
 
 HEADER = "lesson  most  solved  untouched  mistaken (expected)  leaks  seconds"
 NOISE = """import logging, os, sys, warnings
@@ -71,7 +71,7 @@ def try_assignment(assignment: Assignment, seed: int, answers_only: bool = True,
     answers_only: only the cells that matter run. folder: new or empty, kept; a temporary one for None.
     """
     if folder is None:
-        with scratch_folder() as temporary:
+        with temporary_folder() as temporary:
             return try_assignment(assignment, seed, answers_only, temporary)
     started = time.monotonic()
     warnings.filterwarnings("ignore", module="nbgrader")  # its database's, about itself

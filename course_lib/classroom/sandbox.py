@@ -7,6 +7,7 @@ import json
 import os
 import pickle
 import select
+import shutil
 import signal
 import socket
 import struct
@@ -23,7 +24,6 @@ from course_lib.classroom.answers import AnswerFormatError, dump, load, printabl
 from course_lib.classroom.confinement import Limits
 from course_lib.classroom.sandbox_process import Assignment
 from course_lib.paths import REPOSITORY
-from course_lib.scratch import remove
 
 LOOK_EVERY_S = 0.05
 """How often threads and the folder are looked at."""
@@ -308,3 +308,15 @@ def _told_exit(code: int, limits: Limits) -> str:
     name = signal.Signals(-code).name if -code in set(signal.Signals) else str(-code)
     why = {"SIGKILL": "; was it out of memory?", "SIGSEGV": ", an access to memory that is not its own"}.get(name, "")
     return f"crashes its process ({name}{why})"
+
+
+def remove(folder: Path) -> None:
+    """Remove a folder and all in it, whatever rights its files have; what cannot be removed stays."""
+
+    def once_more(function: Callable, path: str, _: object) -> None:
+        with contextlib.suppress(OSError):
+            os.chmod(path, 0o700)
+            function(path)
+
+    if folder.exists():
+        shutil.rmtree(folder, onerror=once_more)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course_lib.commands.arguments import require_output_folder, require_positive, require_seed
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import run_folder
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from course_lib.experiments.ambiguity import AmbiguityMap
@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
     summary = {"map": str(arguments.map), "step_m": arguments.step, "draws": arguments.draws, "seed": arguments.seed}
     text = "\n\n".join(ambiguity_text(name, numbers) for name, numbers in results.items())
     print(json.dumps(summary | {"matchers": results}) if arguments.json else text, flush=True)
-    with replaced_outputs(arguments.out, "ambiguity") as out:
+    with run_folder(arguments.out, "ambiguity") as out:
         write_results(out / "ambiguity.json", summary | {"matchers": results})
         for name, figure in figures.items():
             figure.savefig(out / f"ambiguity_{name}.png", dpi=110)

@@ -8,9 +8,8 @@ import re
 import warnings
 from pathlib import Path
 
-from course_lib.output_folder import require_writable
+from course_lib.files import require_writable
 from course_lib.processors import processors
-from course_lib.writing import WriteError
 
 MOST_PARTICLES = 1_000_000
 """5,000 times the paper's; chosen: a set of these takes 50 MB, and a thousand times as many no machine has room for."""
@@ -97,5 +96,5 @@ def require_output_folder(folder: Path, option: str = "--out") -> None:
         raise ValueError(f"{option} {folder} is a file: give a folder")
     try:
         require_writable(folder)
-    except WriteError as error:
-        raise ValueError(f"{option} {error}") from error
+    except OSError as error:
+        raise ValueError(f"{option} {folder} cannot be written to: {error.strerror}. Give another folder") from error

@@ -14,7 +14,7 @@ from pathlib import Path
 from course_lib.child import python
 from course_lib.child import run as run_child
 from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import run_folder
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
         rows |= {name: pooled([run]) for name, run in icp_runs(arguments.map, arguments.sequence, everies).items()}
     result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
     print(json.dumps(result) if arguments.json else six_degrees_table(rows), flush=True)
-    with replaced_outputs(arguments.out, "compare") as out:
+    with run_folder(arguments.out, "compare") as out:
         write_results(out / "compare.json", result)
         covariance_figure(grouped).savefig(out / "covariance.png", dpi=110)
     return 0

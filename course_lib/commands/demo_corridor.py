@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 
 from course_lib.commands.arguments import add_backend_argument
 from course_lib.commands.corridor_tables import table_1, table_of_kindnesses, table_over_recordings
-from course_lib.output_folder import replaced_outputs
-from course_lib.scratch import scratch_folder
+from course_lib.files import run_folder, temporary_folder
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
     from matplotlib.figure import Figure
@@ -118,11 +117,11 @@ def _require_methods(arguments: argparse.Namespace) -> None:
 
 def _run_seed(arguments: argparse.Namespace) -> int:
     """One seed: table 1, figures, results."""
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         maps, sequence, rows = _rows_of(arguments, arguments.seed, temporary)
         summary = summarize(arguments, arguments.seed, rows)
         print(json.dumps(summary) if arguments.json else table_1(summary), flush=True)
-        with replaced_outputs(arguments.out, "demo corridor") as out:
+        with run_folder(arguments.out, "demo corridor") as out:
             write(out / "corridor.json", summary, rows)
             figures = write_figures(out, sequence, rows, draw(maps, sequence, rows, arguments.backend))
             written = [*figures, "corridor.json", "corridor.csv", _write_scene(out, maps, sequence, rows)]
@@ -143,7 +142,7 @@ def _run_seeds(arguments: argparse.Namespace, seeds: list[int]) -> int:
         path = arguments.out / f"seed_{seed}.json"
         summary = _finished(path, _settings(arguments, seed))
         if summary is None:
-            with scratch_folder() as temporary:
+            with temporary_folder() as temporary:
                 _, _, rows = _rows_of(arguments, seed, temporary)
             summary = summarize(arguments, seed, rows)
             write(path, summary, rows)
@@ -188,7 +187,7 @@ def _run_by_hand(arguments: argparse.Namespace, seeds: list[int]) -> int:
     rows = {name: pooled(own) for name, own in by_row.items()}
     each = {name: [pooled([run]) for run in own] for name, own in by_row.items()}
     print(json.dumps({"seeds": seeds, "rows": rows}) if arguments.json else six_degrees_table(rows), flush=True)
-    with replaced_outputs(arguments.out, "demo corridor --dof 6") as out:
+    with run_folder(arguments.out, "demo corridor --dof 6") as out:
         write_results(out / "hand.json", {"seeds": seeds, "rows": rows, "recordings": each})
         covariance_figure(by_row).savefig(out / "covariance.png", dpi=110)
     return 0

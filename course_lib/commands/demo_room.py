@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.commands.room_tables import EXACT, FITS, WEIGHTED, tables
-from course_lib.output_folder import replaced_outputs
-from course_lib.scratch import scratch_folder
+from course_lib.files import run_folder, temporary_folder
 from tools.make_room import SEED
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
@@ -96,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
     if seed == SEED:
         return _run_on(arguments.data or data_path("room"), arguments)
     detector = chosen_detector(arguments)  # before the photographs: an error then costs no minutes
-    with scratch_folder() as folder:
+    with temporary_folder() as folder:
         _photograph(folder, seed)
         return _run_on(folder, arguments, detector)
 
@@ -164,7 +163,7 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
         )
     text = tables(summary) + ("\n\n" + views_table(summary) if arguments.views > 1 else "")
     print(json.dumps(summary) if arguments.json else text, flush=True)
-    with replaced_outputs(arguments.out, "demo room") as out:
+    with run_folder(arguments.out, "demo room") as out:
         written = write(out, summary, results, draw(semantic_map, results))
         written += _write_scenes(out, semantic_map, results)
     if not arguments.json:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from course_lib.commands.arguments import parse_seeds, require_count, require_output_folder, require_processes
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import run_folder
 from course_lib.processors import processors
 
 SEEDS = "1-20"
@@ -139,7 +139,7 @@ def run(arguments: argparse.Namespace) -> int:
     text = f"{tables(summary)}\n\n{answer_tables(summary['answers'])}"
     text += "\n\n" + tilt_table(summary["tilts"]) if arguments.tilts else ""
     print(json.dumps(summary) if arguments.json else text, flush=True)
-    with replaced_outputs(arguments.out, "demo rooms") as out:
+    with run_folder(arguments.out, "demo rooms") as out:
         write_results(out / "rooms.json", summary, pose_rows(judged))
         if "risk_coverage" in summary["answers"]:
             figure = risk_coverage_figure({"consistent, one view": summary["answers"]["risk_coverage"]})

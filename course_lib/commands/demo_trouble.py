@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     from course_lib.commands.trouble_table import trouble_table
     from course_lib.experiments.results import write_results
-    from course_lib.output_folder import replaced_outputs
+    from course_lib.files import run_folder
     from course_lib.plots.trouble_figure import trouble_figure
 
     methods = [arguments.method] if arguments.method else ["depth", "stereo"]
@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
         json.dumps(results) if arguments.json else "\n\n".join(trouble_table(one) for one in results.values()),
         flush=True,
     )
-    with replaced_outputs(arguments.out, "demo trouble") as out:
+    with run_folder(arguments.out, "demo trouble") as out:
         for name, result in results.items():
             write_results(out / f"{name}.json", result)
         trouble_figure(results).savefig(out / "trouble.png", dpi=110)

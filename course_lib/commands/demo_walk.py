@@ -11,7 +11,7 @@ import json
 from pathlib import Path
 
 from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import run_folder
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -60,7 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
             runs.setdefault(row_name(one["method"]) + thinned, []).append(one["run"])
     rows = {name: pooled(own) for name, own in runs.items()}
     print(json.dumps({"seeds": seeds, "rows": rows}) if arguments.json else six_degrees_table(rows), flush=True)
-    with replaced_outputs(arguments.out, "demo walk") as out:
+    with run_folder(arguments.out, "demo walk") as out:
         write_results(out / "walk.json", {"seeds": seeds, "rows": rows})
         covariance_figure(runs).savefig(out / "covariance.png", dpi=110)
     return 0

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder, require_processes
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import run_folder
 from course_lib.processors import processors
 
 TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"
@@ -98,7 +98,7 @@ def progress_bar(graded: Iterable, total: int) -> Iterator:
 
 def write(out: Path, pages: dict[str, str]) -> None:
     """All the files in the place of an earlier grading's, at once: the table and the page are of one grading."""
-    with replaced_outputs(out, "grade") as new:
+    with run_folder(out, "grade") as new:
         for name, text in pages.items():
             (new / name).write_bytes(text.encode("utf-8"))
 

@@ -21,7 +21,7 @@ from course_lib.commands.lab_port import FIRST, reserve_port
 from course_lib.commands.lesson_versions import NOTEBOOKS, lessons
 from course_lib.commands.saved_panels import HOOK
 from course_lib.commands.working_copies import WORK, copy_of, make_copies
-from course_lib.writing import write_at_once
+from course_lib.files import atomic_write
 
 ROOT = Path(__file__).resolve().parents[2]
 EXTENSION = Path(__file__).with_name("lab_extension")
@@ -180,7 +180,7 @@ def write_settings(state: Path) -> None:
     for name, content in files.items():
         path = state / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_at_once(path, json.dumps(content, indent=1))  # another lab may be reading it
+        atomic_write(path, json.dumps(content, indent=1))  # another lab may be reading it
 
 
 def install_extension(state: Path) -> None:
@@ -190,7 +190,7 @@ def install_extension(state: Path) -> None:
         if path.is_file():
             target = state / "data" / "labextensions" / name / path.relative_to(EXTENSION)
             target.parent.mkdir(parents=True, exist_ok=True)
-            write_at_once(target, path.read_bytes())
+            atomic_write(target, path.read_bytes())
 
 
 def trust_lessons(state: Path, root: Path = ROOT) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 from course_lib.commands.arguments import add_backend_argument
 from course_lib.commands.localize_report import believed, localize_table, write_localized
 from course_lib.commands.localize_start import found_start, given_start, join_words
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import run_folder
 
 __all__ = ["add_arguments", "join_words", "run"]
 
@@ -194,7 +194,7 @@ def run(arguments: argparse.Namespace) -> int:
     }
     print(json.dumps(summary) if arguments.json else localize_table(summary), flush=True)
     if arguments.out:
-        with replaced_outputs(arguments.out, "localize") as out:
+        with run_folder(arguments.out, "localize") as out:
             written = write_localized(out, summary, result, sequence, scene_map)
         if not arguments.json:
             print(f"Written to {arguments.out}: " + ", ".join(written))

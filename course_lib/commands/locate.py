@@ -14,7 +14,7 @@ import numpy as np
 
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.commands.stereo import add_pair_arguments
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import run_folder
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from course_lib.spherical_stereo.panorama import View
@@ -98,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
     print(json.dumps(summary) if arguments.json else _text(summary), flush=True)
     if arguments.out:
-        with replaced_outputs(arguments.out, "locate") as out:
+        with run_folder(arguments.out, "locate") as out:
             written = _write(out, summary, views, found, localizer.semantic_map)
         if not arguments.json:
             print(f"\nWritten to {arguments.out}: " + ", ".join(written))

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import run_folder
 
 BOXES_FORMAT = """\
 the boxes file, in pixels (left, top, right, bottom) of images of that size; "name" may be left out:
@@ -90,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     # NaN is no JSON: what has no value is null.
     print(json.dumps(_nan_to_none(summary)) if arguments.json else _table(summary, boxes is not None), flush=True)
     if arguments.out:
-        with replaced_outputs(arguments.out, "stereo") as out:
+        with run_folder(arguments.out, "stereo") as out:
             _write(out, summary, (upper, lower), features, objects)
         if not arguments.json:
             drawn = "disparity.png" + (", distances.png, room.png" if objects else "")

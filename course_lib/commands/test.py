@@ -15,8 +15,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from course_lib.child import JUPYTER
+from course_lib.files import temporary_folder
 from course_lib.processors import processors
-from course_lib.scratch import scratch_folder
 
 ROOT = Path(__file__).resolve().parents[2]
 PASSES_ARGUMENTS_ON = True
@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     started = time.monotonic()
-    with scratch_folder() as home:
+    with temporary_folder() as home:
         words = pytest_arguments(
             arguments.passed_on, arguments.fast, arguments.no_notebooks, arguments.only_notebooks, processors()
         )

@@ -12,6 +12,7 @@ import contextlib
 import datetime
 import json
 import os
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -25,8 +26,6 @@ from course_lib.commands.lesson_versions import (
     text_version,
     whole_version,
 )
-from course_lib.output_folder import staged
-from course_lib.unfinished import clear_unfinished, flush_below
 
 WORK, MEMORY = "work", ".copies.json"
 _EARLIER = "earlier"  # in an entry of the memory: the entry before it, until the copy has changed as well
@@ -223,11 +222,12 @@ class _Copies:
         copies go to their places the earlier beside it, for a run that is killed then. Last the new alone.
         """
         if not self.contents:
-            return clear_unfinished(self.work)
+            return None
         empty = not self.work.exists()
         self.work.mkdir(exist_ok=True)
         try:
-            with staged(self.work) as stage:
+            with tempfile.TemporaryDirectory(dir=self.work, prefix=".") as folder:
+                stage = Path(folder)
                 beside = {name: stage / str(index) for index, name in enumerate(self.contents)}
                 for name, path in beside.items():
                     path.write_bytes(self.contents[name])
@@ -236,7 +236,6 @@ class _Copies:
                     for name, entry in self.memory.items()
                 }
                 (stage / MEMORY).write_text(json.dumps(meanwhile, indent=1), encoding="utf-8")
-                flush_below(stage)
                 if MEMORY in self.contents:
                     self._put(stage / MEMORY, MEMORY)
                 for name in sorted(beside, key=lambda name: name == MEMORY):

@@ -12,9 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
+from course_lib.files import atomic_write, read_text
 from course_lib.geometry import is_rotation, rotation_mean
-from course_lib.reading import read_text
-from course_lib.writing import write_at_once
 
 
 class SequenceError(ValueError):
@@ -46,7 +45,7 @@ def write_tum(path: str | Path, times: np.ndarray, poses: np.ndarray) -> None:
     rows = np.column_stack([times, poses[:, :3, 3], quaternions])
     text = io.StringIO()
     np.savetxt(text, rows, fmt="%.9f", header="t tx ty tz qx qy qz qw")
-    write_at_once(path, text.getvalue())
+    atomic_write(path, text.getvalue())
 
 
 def read_pose(path: str | Path) -> np.ndarray:

@@ -35,9 +35,8 @@ from course_lib.depth_mcl.sequence_files import (
     require_units,
     write_depth_png,
 )
+from course_lib.files import is_given, staging_dir
 from course_lib.geometry import UP_AXES
-from course_lib.output_folder import replaced_outputs
-from course_lib.reading import is_given
 from course_lib.rendering.camera import DepthCamera
 
 NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
@@ -214,7 +213,7 @@ def write_sequence(
         raise ValueError("frame numbers must ascend, each once")
     if len({np.shape(depth) for depth in depths}) > 1:
         raise ValueError(f"images must have one size; got {sorted({np.shape(depth) for depth in depths})}")
-    with replaced_outputs(folder, None) as new:  # as a whole: without its last files it would pass for another one
+    with staging_dir(folder) as new:  # as a whole: without its last files it would pass for another one
         if (folder / "poses.txt").exists() or any((folder / "depth").glob("*.png")):
             raise ValueError(
                 f"{folder} already holds a recording, or part of one: give a new folder, or delete it first"

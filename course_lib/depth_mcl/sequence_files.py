@@ -11,9 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_tum
+from course_lib.files import atomic_write, is_file, is_given, read_image, read_text
 from course_lib.geometry import UP_AXES
-from course_lib.reading import is_file, is_given, read_image, read_text
-from course_lib.writing import write_at_once
 
 UNITS_PER_METRE = 1000.0  # of depth images: millimetres (7-Scenes); files of the TUM RGB-D dataset have 5000
 
@@ -50,7 +49,7 @@ def write_depth_png(path: str | Path, depth: np.ndarray) -> None:
     ok, encoded = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 9])
     if not ok:
         raise SequenceError(f"{path}: the image of shape {depth.shape} could not be encoded as PNG")
-    write_at_once(path, encoded.tobytes())
+    atomic_write(path, encoded.tobytes())
 
 
 def depth_files(folder: Path) -> dict[int, Path]:

@@ -17,9 +17,9 @@ from course_lib.depth_mcl.evaluation import PositionError
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.experiments.corridor import METHODS, path_errors, run_method
 from course_lib.experiments.recordings import Run
+from course_lib.files import temporary_folder
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, Hardship, building_of_data, record_seed
 
 # Methods of table 1 that also run on the less kind recording: the paper's, and the comparison as it was published.
@@ -157,7 +157,7 @@ def hardship_errors(
     """Median errors of the paper's method on a seed's recording with these hardships and no others, metres."""
     name = ", ".join(hardships) or "none"
     building, maps = building_of_data(data), Maps.load(data)
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         folder = temporary / "run"
         record_seed(folder, building, seed, hardships, camera=camera, frames=frames, progress=bar(f"recording, {name}"))
         row = _row("proposed", maps, read_sequence(folder), bar(f"seed {seed}, {name}"), seed=seed, **options)

@@ -18,11 +18,11 @@ from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocali
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import MAP_MARGIN, NoMeasurementWarning
 from course_lib.depth_mcl.sequence import FAR
+from course_lib.files import temporary_folder
 from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.depth_world import (
     CAMERA,
     MAP,
@@ -64,7 +64,7 @@ def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[
     )
     network, caster = YoloDetector.load(detector), depth_caster(room)
     results = []
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         # Two headings at each place of the paper's table; here every place is one of its own.
         recording = read_stereo_recording(photograph_room(temporary, room, seed, 2 * places, models)[camera - 1])
         size = (recording.width, recording.height)

@@ -18,10 +18,10 @@ from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.files import temporary_folder
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed
 
 GRAVITY_SIGMA = np.deg2rad(1.0)
@@ -47,7 +47,7 @@ def trial(map_file: str, sequence: str, seed: int) -> dict[str, dict]:
 
 def corridor_trial(data: str, seed: int) -> dict[str, dict]:
     """A point of a sweep: the same on a recording of the seed's own, carried by hand through the corridor."""
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         folder = temporary / "hand"
         record_seed(folder, building_of_data(data), seed, carried="hand")
         return trial(str(Path(data) / "map.ply"), str(folder), seed)

@@ -19,10 +19,10 @@ import numpy as np
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import SIGMA, run_sequence, system_noise
+from course_lib.files import temporary_folder
 from course_lib.geometry import rotation_exp
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.rendering.sensor import subsample_depth
-from course_lib.scratch import scratch_folder
 
 # A frame is truly lost beyond either (chosen: what makes an estimate useless for going through a door).
 LOST_POSITION = 0.3  # metres
@@ -85,7 +85,7 @@ def judged_run(
     start[:3, 3] += way.shift
     start[:3, :3] = start[:3, :3] @ rotation_exp(np.deg2rad([0.0, way.turn_deg, 0.0]))
     position, rotation_deg = SIGMA[dof]
-    with scratch_folder() as folder:
+    with temporary_folder() as folder:
         _write_thinned(folder, sequence, kept)
         run = run_sequence(
             _mirrored(scene_map) if way.mirrored else scene_map,

@@ -24,7 +24,7 @@ from course_lib.experiments.rooms import (
     stored_map,
     stored_observations,
 )
-from course_lib.scratch import scratch_folder
+from course_lib.files import atomic_write, temporary_folder
 from course_lib.simulation.room.look_alike_recording import photograph_room, surveyed_room
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -32,7 +32,6 @@ from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
-from course_lib.writing import write_at_once
 
 RoomSet = Literal["practice", "hidden"]
 SEEDS: dict[RoomSet, tuple[int, ...]] = {"practice": tuple(range(10_601, 10_605)), "hidden": tuple(range(6101, 6113))}
@@ -74,7 +73,7 @@ def record_room(seed: int, options: RoomsOptions, detector) -> dict:
     """
     room, semantic_map = surveyed_room(seed, options.models)
     views = []
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         for folder in photograph_room(temporary, room, seed, options.poses, options.models):
             recording = read_stereo_recording(folder)
             size = (recording.width, recording.height)
@@ -122,7 +121,7 @@ def make_project_rooms(
         rooms = observe_rooms(seeds, options, load_detector, work, processes, progress, record_room)
         kept = [{key: value for key, value in room.items() if key != "options"} for room in rooms]
         text = json.dumps({"version": 1, "rooms": kept}, separators=(",", ":"))
-        write_at_once(Path(out) / f"rooms_{name}.json", text.replace('{"seed"', '\n{"seed"') + "\n")
+        atomic_write(Path(out) / f"rooms_{name}.json", text.replace('{"seed"', '\n{"seed"') + "\n")
         counts[name] = sum(len(room["views"]) for room in rooms)
     return counts
 

@@ -10,7 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import course_lib
-from course_lib.writing import write_at_once
+from course_lib.files import atomic_write
 
 
 def versions() -> dict[str, str]:
@@ -24,7 +24,7 @@ def versions() -> dict[str, str]:
 def write_results(path: str | Path, results: dict, rows: list[dict] | None = None) -> None:
     """Writes results as JSON, with the versions inside, and per-frame rows beside it as CSV of the same name.
 
-    A file is complete or not there. Raises `ValueError` for NaN or infinite numbers, which JSON has not, `WriteError`
+    A file is complete or not there. Raises `ValueError` for NaN or infinite numbers, which JSON has not, `OSError`
     where it cannot be written.
     """
     path = Path(path)
@@ -35,5 +35,5 @@ def write_results(path: str | Path, results: dict, rows: list[dict] | None = Non
         writer = csv.DictWriter(table, fieldnames=list(rows[0]))
         writer.writeheader()
         writer.writerows(rows)
-        write_at_once(path.with_suffix(".csv"), table.getvalue())
-    write_at_once(path, text)
+        atomic_write(path.with_suffix(".csv"), table.getvalue())
+    atomic_write(path, text)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.experiments.rooms import RoomsOptions, record_of_observations, stored_observations
-from course_lib.scratch import scratch_folder
+from course_lib.files import temporary_folder
 from course_lib.simulation.room.look_alike_recording import surveyed_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
 from course_lib.simulation.room.nearby_views import WalkModel, experiment_of, photograph_walks
@@ -40,7 +40,7 @@ def observe_views(seed: int, options: ViewsOptions, detector) -> dict:
     models = options.rooms.models
     room, semantic_map = surveyed_room(seed, models)
     sequences = []
-    with scratch_folder() as folder:
+    with temporary_folder() as folder:
         walks = photograph_walks(folder, room, seed, options.rooms.poses, options.views - 1, models, options.walk)
         for k, walk in enumerate(walks):
             upper, lower = CAMERA_HEIGHTS[experiment_of(k)]

@@ -21,7 +21,7 @@ from course_lib.experiments.detector_evaluation import match_image
 from course_lib.experiments.results import write_results
 from course_lib.experiments.room import SOURCES, PairResult, localize_pair
 from course_lib.experiments.sweeps import finished
-from course_lib.scratch import scratch_folder
+from course_lib.files import temporary_folder
 from course_lib.simulation.room.look_alike_recording import RecordingModels, photograph_room, surveyed_room
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.recording import read_stereo_recording
@@ -59,7 +59,7 @@ def observe_room(seed: int, options: RoomsOptions, detector) -> dict:
     room, semantic_map = surveyed_room(seed, options.models)
     alike = room.objects[0].label
     poses = []
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         folders = photograph_room(temporary, room, seed, options.poses, options.models)
         for number, folder in enumerate(folders, start=1):
             recording = read_stereo_recording(folder)

@@ -20,9 +20,9 @@ from course_lib.beyond.tracking import agreement, judge_refined
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.experiments.recordings import SIGMA, Run, run_annealed, run_sequence, system_noise
+from course_lib.files import temporary_folder
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
 
 METHODS = ("annealed", "paper", "floor")
@@ -170,7 +170,7 @@ def corridor_hand(data: str, seed: int, frames: int | None, methods: list[str]) 
     """
     scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
     result = {}
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         for part, hardships in (("methods", ()), ("methods_less_kind", HAND_HARDSHIPS)):
             folder = temporary / part
             record_seed(folder, building, seed, hardships, frames=frames, carried="hand")

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.six_degrees import run_frames
+from course_lib.files import temporary_folder
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.scratch import scratch_folder
 from course_lib.simulation.room.walk import record_walk
 
 
@@ -16,7 +16,7 @@ def room_walk(seed: int, methods: Sequence[str], everies: Sequence[int]) -> list
 
     Each: {"method", "every", "run"}. The floor is taken once, of every frame.
     """
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         folder = temporary / "walk"
         record_walk(folder, seed)
         recording, scene_map = read_sequence(folder), SceneMap.load(folder / "map.ply")

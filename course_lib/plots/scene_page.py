@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from course_lib.files import atomic_write
 from course_lib.plots.scenes import SceneError
-from course_lib.writing import write_at_once
 
 if TYPE_CHECKING:
     import pyvista
@@ -84,7 +84,7 @@ def write_page(plotter: pyvista.Plotter, path: str | Path, title: str, alt: str,
     path = Path(path)
     text = page_html(plotter, title, alt, legend)
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_at_once(path, text)
+    atomic_write(path, text)
     return path
 
 

@@ -17,7 +17,7 @@ import numpy as np
 import trimesh
 
 from course_lib.child import ChildError, run_apart
-from course_lib.reading import MEGABYTE, read_bytes
+from course_lib.files import MEGABYTE, read_bytes
 from course_lib.rendering.mesh_rows import row_fault
 
 MOST_TIMES = 40

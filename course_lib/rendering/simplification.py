@@ -22,8 +22,8 @@ from vtkmodules.vtkCommonCore import VTK_DOUBLE, mutable, vtkPoints, vtkVersion
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStaticCellLocator
 from vtkmodules.vtkFiltersCore import vtkQuadricDecimation, vtkStaticCleanPolyData
 
+from course_lib.files import atomic_write
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.writing import write_at_once
 
 # Metres. A pixel that is off by so much still counts seven eighths in the likelihood (alpha = 0.1 m).
 TOLERANCE = 0.015
@@ -142,4 +142,4 @@ def _keep(path: Path, found: SceneMap) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         packed = io.BytesIO()
         np.savez(packed, vertices=found.vertices, faces=found.faces)
-        write_at_once(path, packed.getvalue())
+        atomic_write(path, packed.getvalue())

@@ -6,11 +6,11 @@ import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 
-from course_lib.output_folder import require_writable
+from course_lib.files import require_writable
 
 
 def require_folder(out: str | Path) -> Path:
-    """`out` as an absolute path. Raises `ValueError` where it cannot be a folder, `WriteError` where nothing
+    """`out` as an absolute path. Raises `ValueError` where it cannot be a folder, `OSError` where nothing
     can be written there: now, not after minutes of work.
     """
     out = Path(out).resolve()

@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from course_lib.files import read_image
 from course_lib.geometry import wrap_angle
-from course_lib.reading import read_image
 
 
 class PanoramaError(ValueError):

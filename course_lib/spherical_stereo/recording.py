@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.reading import read_json
+from course_lib.files import read_json
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, read_panorama
 
 VERSION = 1

@@ -10,7 +10,6 @@ import types
 import pytest
 
 from course_lib import cli
-from course_lib.output_folder import replaced_outputs
 
 
 @pytest.fixture
@@ -103,28 +102,6 @@ def test_an_error_is_one_line_and_a_code(command, capsys, error, code):
     assert len(errors.strip().splitlines()) == 1
     assert str(error) in errors
     assert "Traceback" not in errors
-
-
-@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-@pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGHUP", 129), ("SIGINT", 130)])
-def test_whatever_asks_it_to_end_its_work_is_cleared(command, capsys, name, code, tmp_path):
-    sent = getattr(signal, name)
-    usual = signal.default_int_handler if name == "SIGINT" else signal.SIG_DFL
-    before = signal.signal(sent, usual)  # the suite itself may run under nohup
-
-    def run(arguments):
-        with replaced_outputs(tmp_path / "out", "try it") as out:
-            (out / "a").write_text("half")
-            signal.raise_signal(sent)
-
-    try:
-        command(run)
-        assert cli.main(["try", "it"]) == code
-        assert signal.getsignal(sent) is usual
-    finally:
-        signal.signal(sent, before)
-    assert capsys.readouterr().err.strip() == "Stopped."
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")

@@ -9,7 +9,7 @@ from pathlib import Path
 import torch
 from torch import nn
 
-from course_lib.writing import write_at_once
+from course_lib.files import atomic_write
 from tools.detector_training.schedule import AveragedNetwork
 
 FILE = "checkpoint.pt"
@@ -46,7 +46,7 @@ def save_checkpoint(
     }
     packed = io.BytesIO()
     torch.save(content, packed)
-    write_at_once(path, packed.getvalue())
+    atomic_write(path, packed.getvalue())
     return path
 
 

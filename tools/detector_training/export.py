@@ -12,8 +12,8 @@ import numpy as np
 import torch
 from torch import nn
 
+from course_lib.files import atomic_write
 from course_lib.spherical_stereo.detection.darknet import check_weights, header_bytes
-from course_lib.writing import write_at_once
 from tools.detector_training.network import TrainableNetwork
 
 VERSION = (0, 2, 5)
@@ -29,7 +29,7 @@ def write_weights(network: TrainableNetwork, path: str | Path, images_seen: int 
     parts = [np.array(VERSION, "<i4"), np.array([images_seen], "<i8")]
     for tensor in _tensors_in_file_order(network):
         parts.append(tensor.detach().cpu().contiguous().numpy().astype("<f4"))
-    write_at_once(path, b"".join(part.tobytes() for part in parts))
+    atomic_write(path, b"".join(part.tobytes() for part in parts))
     return path
 
 

@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 
 from course_lib.experiments.room import LEAST_HEIGHT, LEAST_VISIBLE
-from course_lib.reading import read_json
+from course_lib.files import read_json
 
 # Width of a whole panorama in memory: a 1280 x 512 network input is one and a quarter panorama, 1.25 * 1024 columns.
 STORED_WIDTH = 1024

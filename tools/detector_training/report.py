@@ -14,9 +14,9 @@ import torch
 from tqdm import tqdm
 
 from course_lib.experiments.detection_scores import Boxes
+from course_lib.files import atomic_write
 from course_lib.spherical_stereo.detection.darknet import read_names
 from course_lib.spherical_stereo.detection.detector import YoloDetector
-from course_lib.writing import write_at_once
 from tools.detector_training.images import LabelledPanorama, PanoramaFolders
 from tools.detector_training.train import TrainingPlan, TrainingResult
 from tools.detector_training.validation import LEAST_SCORE, Validation, validate
@@ -69,5 +69,5 @@ def write_report(
             "numpy": np.__version__,
         },
     }
-    write_at_once(path, json.dumps(content, indent=1) + "\n")
+    atomic_write(path, json.dumps(content, indent=1) + "\n")
     return path

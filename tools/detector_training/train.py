@@ -11,7 +11,7 @@ import cv2
 import torch
 
 from course_lib.experiments.detection_scores import DetectionScoreError
-from course_lib.scratch import scratch_folder
+from course_lib.files import temporary_folder
 from course_lib.spherical_stereo.detection.darknet import check_names, read_cfg, read_names
 from tools.detector_training.augmentation import AugmentationRanges
 from tools.detector_training.batches import Batch, epoch_batches
@@ -102,7 +102,7 @@ def train(
         return _train(Alone(), *given, log, progress)
     # Read here first: what is wrong with a folder is said once, not by every process.
     PanoramaFolders(images, read_names(names_file), plan.panorama_width, (0, 10**9))
-    with scratch_folder() as folder:
+    with temporary_folder() as folder:
         meeting_file = folder / "meeting"
         others = start_others(plan.processes, meeting_file, _train_beside, given)
         try:

@@ -22,11 +22,11 @@ from course_lib.experiments.lost_on_purpose import LOST_POSITION, LOST_ROTATION
 from course_lib.experiments.sensor_trouble.depth_frames import TROUBLES, troubled_recording
 from course_lib.experiments.sensor_trouble.placing import Arrival, generator
 from course_lib.experiments.sensor_trouble.score import Gate
+from course_lib.files import temporary_folder
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed
 
 IMAGE = (88, 72)  # pixels, width and height
@@ -69,7 +69,7 @@ def corridor_trouble(data: str, seed: int, frames: int, shares: Sequence[float],
     {"undisturbed": frames, "troubles": [{"trouble", "share", "runs", "frames"}]}, frames as `watched_frames` has them.
     """
     scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         folder = temporary / "recording"
         camera = DepthCamera.sr4000().resized(*IMAGE)
         carried = "wagon" if dof == "xyyaw" else "hand"

@@ -15,7 +15,7 @@ from course_lib.experiments.look_alikes import LARGEST_ERROR_M, LARGEST_TURN_DEG
 from course_lib.experiments.sensor_trouble.panoramas import PERIOD, TROUBLES, Pair, troubled_walk
 from course_lib.experiments.sensor_trouble.placing import Arrival, generator
 from course_lib.experiments.sensor_trouble.score import Gate
-from course_lib.scratch import scratch_folder
+from course_lib.files import temporary_folder
 from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
 from course_lib.simulation.room.nearby_views import WalkModel, experiment_of, photograph_walks
@@ -75,7 +75,7 @@ def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float])
     """
     models = RecordingModels()
     room, semantic_map = surveyed_room(seed, models)
-    with scratch_folder() as folder:
+    with temporary_folder() as folder:
         walk = next(photograph_walks(folder, room, seed, 1, frames, models, WalkModel()))
     upper, lower = CAMERA_HEIGHTS[experiment_of(0)]
     localizer = SemanticLocalizer(

@@ -8,9 +8,9 @@ import html
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from course_lib.files import atomic_write
 from course_lib.lessons.kit.lesson_progress import Progress, Table, strangers, tables
 from course_lib.lessons.kit.student_record import record_folder
-from course_lib.writing import write_at_once
 
 PAGE = "progress.html"
 
@@ -65,7 +65,7 @@ def bring_up_to_date() -> None:
 
 def write_page(path: Path) -> None:
     """Write the page of the present progress."""
-    write_at_once(path, as_page(tables(), strangers(), datetime.datetime.now()))
+    atomic_write(path, as_page(tables(), strangers(), datetime.datetime.now()))
 
 
 def as_page(parts: Sequence[Table], said: Sequence[str], now: datetime.datetime) -> str:

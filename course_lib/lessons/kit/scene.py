@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 from IPython.display import display
 from PIL import Image
 
+from course_lib.files import atomic_write
 from course_lib.lessons.kit.display import Picture
 from course_lib.paths import STORE_SCENES
 from course_lib.plots.figures import compress
 from course_lib.plots.scene_page import ScenePageError, page_html, same_scene
 from course_lib.plots.scenes import SceneError
-from course_lib.writing import write_at_once
 
 if TYPE_CHECKING:
     import pyvista
@@ -108,5 +108,5 @@ def _written(page: str, name: str) -> str:
 
 def _write(path: Path, page: str) -> str:
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_at_once(path, page)
+    atomic_write(path, page)
     return path.as_posix()

@@ -15,8 +15,8 @@ from pathlib import Path
 
 from PIL import Image
 
+from course_lib.files import atomic_write
 from course_lib.paths import REPOSITORY, notebook_paths
-from course_lib.writing import write_at_once
 
 CHOSEN = {
     "00": "00-second-picture",
@@ -89,7 +89,7 @@ def write_pictures(folder: Path) -> list[Path]:
     for path in notebook_paths():
         number = path.name[:2]
         target = folder / f"{number}.png"
-        write_at_once(target, small_png(stored_picture(path, CHOSEN.get(number))))
+        atomic_write(target, small_png(stored_picture(path, CHOSEN.get(number))))
         written.append(target)
     return written
 

@@ -11,7 +11,7 @@ import json
 import os
 from pathlib import Path
 
-from course_lib.writing import write_at_once
+from course_lib.files import atomic_write
 
 RECORD = "COURSE_RECORD"
 
@@ -90,4 +90,4 @@ def _write(lesson: str, record: dict) -> None:
         return
     folder.mkdir(parents=True, exist_ok=True)
     text = json.dumps({"lesson": lesson, **record}, indent=1, ensure_ascii=False) + "\n"
-    write_at_once(folder / f"{lesson}.json", text)
+    atomic_write(folder / f"{lesson}.json", text)

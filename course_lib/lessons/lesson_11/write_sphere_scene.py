@@ -13,9 +13,9 @@ from __future__ import annotations
 import base64
 from pathlib import Path
 
+from course_lib.files import atomic_write
 from course_lib.lessons.lesson_11.views import SCENE
 from course_lib.paths import REPOSITORY, data_path
-from course_lib.writing import write_at_once
 
 PICTURE = "room/experiment_1/05_b_upper.jpg"
 """A panorama with a sofa across its seam."""
@@ -34,7 +34,7 @@ def scene_html() -> str:
 def write_scene(path: Path) -> Path:
     """Write the scene to `path` and return it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_at_once(path, scene_html())
+    atomic_write(path, scene_html())
     return path
 
 

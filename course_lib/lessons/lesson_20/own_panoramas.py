@@ -10,10 +10,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.experiments.room import exact_detections
+from course_lib.files import is_given
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import draw_box, panorama
-from course_lib.reading import is_given
 from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
 from course_lib.spherical_stereo.matching.feature_matching import FeatureMatches
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair, read_panorama

@@ -11,6 +11,7 @@ import numpy as np
 
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import Run, run_sequence
+from course_lib.files import temporary_folder
 from course_lib.geometry import rotation_exp
 from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.paths import data_path
@@ -18,7 +19,6 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.mesh_file import mesh_endings
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.scratch import scratch_folder
 
 STAND_IN_FRAMES = 24  # of the corridor run that was carried by hand: as many as the panel steps through (chosen)
 _OPENGL_TO_OPTICAL = np.diag([1.0, -1.0, -1.0, 1.0])
@@ -145,7 +145,7 @@ def misread_run(given: Recording, reading: str, frames: int, **options: object) 
     k = sequence.intrinsics * np.array([[way.focal_scale, 1, 1], [1, way.focal_scale, 1], [1, 1, 1]])
     depths = [sequence.depth(index) * np.float32(way.depth_scale) for index in range(frames)]
     poses = [way.pose(pose) for pose in sequence.camera_to_world[:frames]]
-    with scratch_folder() as folder:
+    with temporary_folder() as folder:
         write_sequence(folder, k, sequence.frames[:frames], depths, poses, up=sequence.up)
         return run_sequence(given.scene_map, read_sequence(folder), **options)
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, SceneMap, read_sequence
+from course_lib.files import temporary_folder
 from course_lib.geometry import state_from_optical_pose
 from course_lib.paths import data_path
-from course_lib.scratch import scratch_folder
 from course_lib.simulation.corridor.recorded_runs import WagonModel
 from course_lib.simulation.corridor.seeded_recording import SeedModels, building_of_data, record_seed
 
@@ -67,7 +67,7 @@ class Recording(NamedTuple):
 @cache
 def recording(seed: int) -> Recording:
     """The recording of a seed: another day in the building of the map, another run of the wagon."""
-    with scratch_folder() as temporary:
+    with temporary_folder() as temporary:
         folder = temporary / "run"
         building = building_of_data(data_path("corridor"))
         record_seed(folder, building, seed, models=SeedModels(wagon=WAGON), camera=CAMERA)

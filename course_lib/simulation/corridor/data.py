@@ -14,7 +14,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import staging_dir
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.measurements import hole_share, map_error, noise_on_a_wall
@@ -79,7 +79,7 @@ def make_corridor_data(
     out, models = require_folder(out), models or CorridorModels()
     generators = np.random.default_rng(seed).spawn(7)
     world_rng, survey_rng, planar_rng, camera_rng, wagon_rng, hand_rng, measure_rng = generators
-    with replaced_outputs(out, "make-data", PRODUCTS) as folder:
+    with staging_dir(out, PRODUCTS) as folder:
         world = make_corridor(world_rng)
         write_world_ply(folder / "true_world.ply", world.run_day, "corridor, true world of the run day; CC BY 4.0")
         measured = {"map": _make_map(folder, world.survey_day, models, survey_rng, planar_rng, measure_rng, progress)}

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import staging_dir
 from course_lib.simulation.data_folder import checksums, require_folder
 from course_lib.simulation.parameter_tables import parameter_tables
 from course_lib.simulation.room.experiment_room import make_experiment_room
@@ -61,7 +61,7 @@ def make_room_data(
     survey_rng, rng = np.random.default_rng(seed).spawn(2)
     room = make_experiment_room()
     mount = None if models.rig.assembled_anew else assemble(models.rig, rng.spawn(1)[0])
-    with replaced_outputs(out, "make-data", PRODUCTS) as folder:
+    with staging_dir(out, PRODUCTS) as folder:
         survey_room(room, models.survey, survey_rng).save(folder / "semantic_map.json")
         shots = [
             (experiment, upper_height, place, turn)

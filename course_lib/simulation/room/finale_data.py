@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.output_folder import replaced_outputs
+from course_lib.files import staging_dir
 from course_lib.simulation.corridor.mesh_files import write_ply
 from course_lib.simulation.data_folder import checksums, require_folder
 from course_lib.simulation.parameter_tables import parameter_table
@@ -38,7 +38,7 @@ def make_finale_data(out: str | Path, seed: int, models: FinaleModels | None = N
     Raises `ValueError` where `out` cannot be a folder.
     """
     models, out = models or FinaleModels(), require_folder(out)
-    with replaced_outputs(out, "make-data", PRODUCTS) as folder:
+    with staging_dir(out, PRODUCTS) as folder:
         room, semantic_map = surveyed_room(seed, models.recording)
         semantic_map.save(folder / "semantic_map.json")
         vertices, faces = surveyed_mesh(room, models.mesh, np.random.default_rng([STREAM, seed, MAP]))

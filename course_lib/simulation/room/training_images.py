@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.reading import read_json
+from course_lib.files import atomic_write, read_json
 from course_lib.simulation.room.footprints import free_places
 from course_lib.simulation.room.object_boxes import object_boxes
 from course_lib.simulation.room.random_room import make_room
@@ -21,7 +21,6 @@ from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, stand_up
 from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.recording import TrueObject, true_object
-from course_lib.writing import write_at_once
 
 VERSION = 1
 BOXES_FILE = "boxes.json"
@@ -124,4 +123,4 @@ def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:
 
 
 def _write_image_list(folder: Path, images: list[dict]) -> None:
-    write_at_once(folder / BOXES_FILE, json.dumps({"version": VERSION, "images": images}))
+    atomic_write(folder / BOXES_FILE, json.dumps({"version": VERSION, "images": images}))

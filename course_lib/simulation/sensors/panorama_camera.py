@@ -11,7 +11,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from course_lib.writing import write_at_once
+from course_lib.files import atomic_write
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,6 @@ def photograph(light: np.ndarray, model: PanoramaCameraModel, rng: np.random.Gen
 
 
 def write_photograph(path: str | Path, image: np.ndarray, model: PanoramaCameraModel, rng: np.random.Generator) -> None:
-    """Write a photograph as JPEG with a quality of its own. Raises `WriteError` when it cannot be written."""
+    """Write a photograph as JPEG with a quality of its own. Raises `OSError` when it cannot be written."""
     quality = int(rng.integers(model.jpeg_quality[0], model.jpeg_quality[1] + 1))
-    write_at_once(path, cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes())
+    atomic_write(path, cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes())

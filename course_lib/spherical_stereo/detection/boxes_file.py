@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.reading import read_json
+from course_lib.files import read_json
 from course_lib.spherical_stereo.detection.boxes import DetectionError, checked_boxes, wrapped_box
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection

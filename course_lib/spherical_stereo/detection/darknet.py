@@ -15,7 +15,7 @@ Source: paper 2, section 2.2 (its detector is YOLOv4).
 import struct
 from pathlib import Path
 
-from course_lib.reading import read_text, require_file
+from course_lib.files import read_text, require_file
 from course_lib.spherical_stereo.detection.darknet_cfg import (
     DETECTION_KINDS,
     DetectorError,

@@ -10,7 +10,7 @@ would make the count of weights wrong. Source: paper 2, section 2.2 (YOLOv4 is p
 from dataclasses import dataclass
 from pathlib import Path
 
-from course_lib.reading import read_text
+from course_lib.files import read_text
 
 INPUT_KINDS = ("net", "network")
 DETECTION_KINDS = ("yolo", "region")

@@ -13,7 +13,7 @@ from typing import Protocol
 import cv2
 import numpy as np
 
-from course_lib.reading import is_given, read_json
+from course_lib.files import is_given, read_json
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.darknet import DetectorError, read_names
 from course_lib.spherical_stereo.detection.darknet_network import DarknetNetwork

@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 
 from course_lib.child import ChildError, ChildStopped, run_apart
-from course_lib.reading import MEGABYTE, require_file
+from course_lib.files import MEGABYTE, require_file
 from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
 from course_lib.spherical_stereo.detection.darknet_network import require_numbers
 from course_lib.spherical_stereo.detection.shared_network import SharedNetwork

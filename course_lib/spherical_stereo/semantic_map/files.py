@@ -23,9 +23,8 @@ import math
 import re
 from pathlib import Path
 
-from course_lib.reading import read_json, read_text
+from course_lib.files import atomic_write, read_json, read_text
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
-from course_lib.writing import write_at_once
 
 VERSION = 1
 _FIELDS = ("label", "x", "y", "hue", "saturation")
@@ -52,13 +51,13 @@ def read_semantic_map(path: str | Path) -> SemanticMap:
 def write_semantic_map(semantic_map: SemanticMap, path: str | Path) -> None:
     """Writes `.json` (everything) or `.csv` (landmarks only).
 
-    Nothing is ever half-written. Raises `SemanticMapError` for another ending, `WriteError` where it cannot be written.
+    Nothing is ever half-written. Raises `SemanticMapError` for another ending, `OSError` where it cannot be written.
     """
     path = Path(path)
     as_text = {".json": _to_json, ".csv": _to_csv}.get(path.suffix.lower())
     if as_text is None:
         raise SemanticMapError(f"{path}: a semantic map is saved as .json or .csv")
-    write_at_once(path, as_text(semantic_map))
+    atomic_write(path, as_text(semantic_map))
 
 
 def _to_json(semantic_map: SemanticMap) -> str:

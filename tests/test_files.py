@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib import reading
-from course_lib.reading import image_header, is_given, read_bytes, read_image, read_json, read_text
+from course_lib import files
+from course_lib.files import image_header, is_given, read_bytes, read_image, read_json, read_text
 
 
 class AskedError(ValueError):
@@ -76,7 +76,7 @@ def test_brackets_in_a_text_are_no_levels(tmp_path):
 
 def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path, monkeypatch):
     with (tmp_path / "a").open("wb") as file:
-        file.truncate(reading.MOST_TEXT + 1)
+        file.truncate(files.MOST_TEXT + 1)
     with pytest.raises(AskedError, match="has 64 MB; at most 64 MB"):
         read_text(tmp_path / "a", "names", AskedError)
     with (tmp_path / "a").open("wb") as file:
@@ -196,7 +196,7 @@ def test_an_image_is_bounded_by_the_bytes_it_takes(tmp_path, monkeypatch, bits, 
     data[24:26] = bits, colour
     assert image_header(bytes(data)).pixel_bytes == taken
     (tmp_path / "a.png").write_bytes(data)
-    monkeypatch.setattr(reading, "MOST_IMAGE", 100 * 100 * taken - 1)
+    monkeypatch.setattr(files, "MOST_IMAGE", 100 * 100 * taken - 1)
     with pytest.raises(AskedError, match=rf"a\.png would take .* \({taken} bytes a pixel\)"):
         read_image(tmp_path / "a.png", "image", AskedError)
 

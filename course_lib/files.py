@@ -1,4 +1,4 @@
-"""The one way to read what a user hands over: bounded before memory is taken, and every error has a name.
+"""Read what a user hands over, with bounds and named errors; write files so that nothing is ever half-written.
 
 Each reader takes `what` the file is ("depth image"), for the message, and the `error` that its caller raises; a message
 says which file, what was found and what was expected. A missing file is the caller's error too, unless `missing` names
@@ -7,14 +7,22 @@ another one.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
+import os
 import re
 import struct
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from datetime import datetime
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
 import numpy as np
+
+from course_lib.paths import REPOSITORY
 
 MEGABYTE = 1_000_000
 
@@ -261,3 +269,86 @@ def image_header(data: bytes) -> ImageHeader | None:
             return ImageHeader("JPEG", width, height, 1, 3)
         at += 1 if marker == 0xFF else 2 + length
     return None
+
+
+def atomic_write(path: str | Path, content: bytes | str) -> None:
+    """Write a file, or replace it, in one step. Text is written as UTF-8.
+
+    Raises `OSError` with the path where it cannot be written. The old file is then still there, and whole.
+    """
+    path = Path(os.path.realpath(path))
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
+    try:
+        handle, beside = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+            os.chmod(beside, mode)
+            os.replace(beside, path)
+        except BaseException:
+            os.unlink(beside)
+            raise
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+@contextlib.contextmanager
+def staging_dir(out: str | Path, products: Sequence[str] = ()) -> Iterator[Path]:
+    """Yield an empty folder. When the body ends, its files take their places in `out`, each in one step.
+
+    products: names in `out` that belong to the caller. What the body did not make again under these names is removed.
+    Everything else in `out` stays. If the body raises, `out` stays as it was.
+    """
+    out = Path(os.path.realpath(out))
+    out.parent.mkdir(parents=True, exist_ok=True)
+    inside = out if out.is_dir() else out.parent  # on the same disk as `out`
+    with tempfile.TemporaryDirectory(dir=inside, prefix=f".{out.name}.") as stage:
+        new = Path(stage) / "new"
+        new.mkdir()
+        yield new
+        if not out.exists():
+            os.rename(new, out)
+            return
+        earlier = [p for name in products for p in (out / name, *(out / name).rglob("*")) if p.is_file()]
+        made = [path.relative_to(new) for path in sorted(new.rglob("*")) if not path.is_dir()]
+        for name in made:
+            (out / name).parent.mkdir(parents=True, exist_ok=True)
+            os.replace(new / name, out / name)
+        for path in earlier:
+            if path.relative_to(out) not in made:
+                path.unlink()
+
+
+@contextlib.contextmanager
+def run_folder(out: str | Path | None, command: str) -> Iterator[Path]:
+    """Yield a folder for the results of one run of `command`, and say where they are when the body has ended.
+
+    out: the folder; None makes `results/COMMAND/TIME`. `run.json` is written last: a folder without it is not whole.
+    """
+    if out is None:
+        out = REPOSITORY / "results" / command.replace(" ", "_") / datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
+    out = Path(out)
+    with staging_dir(out) as new:
+        yield new
+        (out / "run.json").unlink(missing_ok=True)
+        files = sorted(path.relative_to(new).as_posix() for path in new.rglob("*") if path.is_file())
+    atomic_write(out / "run.json", json.dumps({"command": command, "files": files}, indent=1) + "\n")
+    print(f"results: {out}", file=sys.stderr)
+
+
+def require_writable(folder: str | Path) -> None:
+    """Raise `OSError` unless something can be written into `folder`, or it can be made: before the work, not after."""
+    folder = Path(os.path.realpath(folder))
+    nearest = next(path for path in (folder, *folder.parents) if path.exists())
+    with tempfile.TemporaryFile(dir=nearest) as file:
+        file.write(bytes(1 << 16))
+
+
+@contextlib.contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """Yield an empty folder in the system's temporary folder; it is removed when the body ends."""
+    with tempfile.TemporaryDirectory(prefix="course-", ignore_cleanup_errors=True) as folder:
+        yield Path(folder)
