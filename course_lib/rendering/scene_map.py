@@ -10,7 +10,7 @@ import numpy as np
 import trimesh
 
 from course_lib.geometry import is_rotation
-from course_lib.rendering.mesh_file import read_mesh
+from course_lib.rendering.mesh_file import SceneMapError, read_mesh
 
 # Below this area (square metres) a triangle has no inside that a pixel centre could hit.
 _DEGENERATE_AREA = 1e-16
@@ -32,10 +32,6 @@ COARSE = 1.5e-3
 # Metres between the points that coordinates are taken from (`SceneMap.anchor`). Drawn 0.7 km from it a wall is wrong by
 # 1 mm, at 80 m by 0.1 mm.
 _ANCHOR_STEP = 100.0
-
-
-class SceneMapError(ValueError):
-    """A map that cannot be used: unreadable, empty, or with values that are no geometry."""
 
 
 class SceneMapWarning(UserWarning):
@@ -94,7 +90,7 @@ class SceneMap:
         holds no triangles, or fewer than its own header announces (PLY, OFF, STL, GLB; an OBJ file has no header, so
         one that was cut off at the end of a line goes unnoticed).
         """
-        vertices, faces = read_mesh(path, SceneMapError)
+        vertices, faces = read_mesh(path)
         try:
             found = cls(vertices, _of_one_building(vertices, faces, drop_far))
         except SceneMapError as error:

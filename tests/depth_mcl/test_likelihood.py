@@ -17,8 +17,7 @@ from course_lib.depth_mcl.fallon import (
     normalized_disparity,
     weights_from_log_likelihood,
 )
-from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
-from course_lib.depth_mcl.weighting import paper_weighting
+from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, paper_weighting, weights
 
 
 def weigh(rule, measured, simulated):

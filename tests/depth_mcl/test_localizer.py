@@ -7,11 +7,10 @@ import pytest
 
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
-from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
+from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, paper_weighting, weights
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES
 from course_lib.depth_mcl.particle_filter import resample
-from course_lib.depth_mcl.weighting import paper_weighting
 from course_lib.geometry import wrap_angle
 from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, random_triangles, room, room_depth

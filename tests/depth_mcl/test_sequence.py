@@ -3,9 +3,15 @@
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.poses import SequenceError, read_pose, read_tum, write_tum
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
-from course_lib.depth_mcl.sequence_files import read_depth_png, write_depth_png
+from course_lib.depth_mcl.sequence_files import (
+    SequenceError,
+    read_depth_png,
+    read_pose,
+    read_tum,
+    write_depth_png,
+    write_tum,
+)
 from course_lib.geometry import UP_AXES, optical_pose, rotation_to_z_up, state_from_optical_pose
 from tests.rendering.shapes import SMALL, random_states
 

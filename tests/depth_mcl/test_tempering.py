@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.tempering import SHARPEST, temper
+from course_lib.depth_mcl.uncertainty import SHARPEST, temper
 
 
 @pytest.mark.parametrize("sample_size", [1.5, 8.0, 40.0, 99.0])

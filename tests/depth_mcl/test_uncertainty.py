@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from course_lib.depth_mcl.likelihood import Weighting
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.depth_mcl.motion import BODY_AXES
 from course_lib.depth_mcl.particle_filter import effective_sample_size
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, normalized_error, tempered_weights
-from course_lib.depth_mcl.weighting import Weighting
 from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap

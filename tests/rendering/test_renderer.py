@@ -12,7 +12,7 @@ import trimesh
 from course_lib.geometry import optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.chunks import MeshChunks
-from course_lib.rendering.embree import EmbreeCaster
+from course_lib.rendering.ray import EmbreeCaster
 from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.rendering.sensor import depth_image_from_points
