@@ -2,14 +2,13 @@
 
 `DepthRenderer` is one door with three rooms behind it. Backend "vtk" is the paper's way, for a graphics card: it draws
 the map once per particle, as tiles of one off-screen window, and reads OpenGL's z-buffer back once (vtk_backend.py).
-Backend "raster" fills a z-buffer in the course's own compiled loops, on every processor (raster.py). Backend "ray"
-shoots one ray through every pixel centre (ray.py): the reference that tests compare with. All take float64 states,
-subtract the map's anchor before anything becomes float32, and give depth along the optical axis, `inf` where nothing
-between the camera's near and far planes is hit. The paper has a graphics card; "auto" does without where there is none.
+Backend "raster" fills a z-buffer in compiled loops, on every processor (raster.py). Backend "ray" shoots one ray
+through every pixel centre (ray.py): the reference that tests compare with. "auto" is "vtk" on a graphics card, else
+"raster". All take float64 states, subtract the map's anchor before anything becomes float32, and give depth along the
+optical axis, `inf` where nothing between the camera's near and far planes is hit.
 
-Threads may share a renderer. Processes: a forked child may use one that it inherits, unless it is "vtk", which says by
-name that it cannot. Pickled, as "spawn" does it, a renderer takes its map and camera along and opens again when first
-used.
+Threads may share a renderer. A forked child may use one that it inherits, unless it is "vtk", which says by name that
+it cannot. A pickled renderer takes its map and camera along and opens again when first used.
 """
 
 from __future__ import annotations
@@ -64,10 +63,10 @@ def _automatic_backend() -> Backend:
     """Decide once in a process. On Linux no window is opened where there is no card; any error means "raster"."""
     if sys.platform.startswith("linux") and not any(any(Path("/dev").glob(card)) for card in CARDS):
         return "raster"
+    triangle, camera = SceneMap(np.eye(3), np.array([[0, 1, 2]])), DepthCamera(8, 8, 8.0, 8.0, 3.5, 3.5)
     try:
-        from course_lib.rendering.vtk_backend import renderer_name
-
-        name = renderer_name().lower()
+        with DepthRenderer(triangle, camera, "vtk") as trial:
+            name = trial.describe().lower()
     except Exception:
         return "raster"
     return "raster" if any(word in name for word in SOFTWARE) else "vtk"
@@ -198,10 +197,7 @@ class DepthRenderer:
             self._open_backend = None
 
     def _backend(self) -> RasterBackend | VtkBackend | RayBackend:
-        """What draws; after a journey to another process it is opened here, at first use.
-
-        Not on arrival, where an error would kill a pool's worker and leave the pool waiting for its answer.
-        """
+        """What draws. After unpickling it is opened at first use, because an error on arrival would hang a pool."""
         if self._closed:
             raise RendererClosedError("this renderer was closed; make a new DepthRenderer(scene_map, camera)")
         backend = self._open_backend

@@ -1,11 +1,11 @@
 """Depth images by VTK's z-buffer: every particle's view is a tile of one off-screen window, read back once.
 
-One window lives as long as the renderer. Tile k has a vtkRenderer of its own (a viewport and a camera); all share one
-actor, the map. The colour of a pixel is never looked at. Threads take turns with the window (`_drawing`).
+Tile k has a vtkRenderer of its own (a viewport and a camera); all share one actor, the map. The colour of a pixel is
+never looked at. Threads take turns with the window (`_drawing`).
 
-A window lives in the process that opened it. After a fork the child has OpenGL's memory without its threads, and
-whatever it asks of OpenGL waits for them for ever: to draw, to open another window, even to free the one it inherited.
-So a child never touches the windows of its parent, and is refused one of its own.
+After a fork the child has OpenGL's memory without its threads, and whatever it asks of OpenGL waits for them for ever:
+to draw, to open another window, even to free the one it inherited. So a child never touches the windows of its parent,
+and is refused one of its own.
 """
 
 from __future__ import annotations
@@ -95,39 +95,6 @@ if hasattr(os, "register_at_fork"):  # not on Windows, which cannot fork
     os.register_at_fork(after_in_child=_leave_windows_to_the_parent)
 
 
-@contextmanager
-def _silent_vtk() -> Iterator[None]:
-    """VTK does not report on the console what an error here says better."""
-    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    try:
-        yield
-    finally:
-        vtkLogger.SetStderrVerbosity(verbosity)
-
-
-def renderer_name(window: vtkRenderWindow | None = None) -> str:
-    """Return OpenGL's renderer string of a window, for example llvmpipe (a processor) or a graphics card's name.
-
-    None: of a small window, opened for the purpose. Raises `OpenGLError` where OpenGL cannot start.
-    """
-    if window is None:
-        with _silent_vtk():
-            window = off_screen_window()
-            window.SetSize(16, 16)
-            window.Render()
-            try:
-                if not window.SupportsOpenGL():
-                    raise OpenGLError(f"OpenGL cannot draw. {CURE}")
-                return renderer_name(window)
-            finally:
-                window.Finalize()
-    for line in window.ReportCapabilities().splitlines():
-        if line.startswith("OpenGL renderer string:"):
-            return line.split(":", 1)[1].strip()
-    return window.GetClassName()
-
-
 class VtkBackend:
     """Draws batches of at most `batch_size` views, fewer where a window would grow beyond what OpenGL allows."""
 
@@ -199,7 +166,10 @@ class VtkBackend:
     def describe(self) -> str:
         """The OpenGL renderer's name, for example llvmpipe (a CPU) or a graphics card."""
         with self._drawing():
-            return renderer_name(self._window)
+            for line in self._window.ReportCapabilities().splitlines():
+                if line.startswith("OpenGL renderer string:"):
+                    return line.split(":", 1)[1].strip()
+            return self._window.GetClassName()
 
     def close(self) -> None:
         """Free the window with its framebuffers; after a fork it stays the parent's."""
@@ -232,10 +202,12 @@ class VtkBackend:
                 self._window.ReleaseCurrent()
 
     def _open_window(self) -> None:
-        with _silent_vtk():
+        # VTK reports on the console what the errors here say better.
+        verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+        try:
             self._window = window = off_screen_window()
             self._resize_window(1)
-            self._points_tile.SetViewport(*self._viewport(0))
             self._set_projection(self._points_tile)
             _place(self._points_tile.GetActiveCamera(), np.eye(3), np.zeros(3))
             window.AddRenderer(self._points_tile)
@@ -244,6 +216,8 @@ class VtkBackend:
                 raise OpenGLError(f"OpenGL gives no 24-bit depth buffer. {CURE}")
             self._points_tile.DrawOff()
             window.ReleaseCurrent()
+        finally:
+            vtkLogger.SetStderrVerbosity(verbosity)
 
     def _resize_window(self, rows: int) -> None:
         self._window_rows = rows
