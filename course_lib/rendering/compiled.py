@@ -28,7 +28,7 @@ def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]
 
 
 def _or_none(step: Callable) -> Callable:
-    """A step of Numba's cache that gives None, as where nothing is kept, when it fails (a damaged file, a full disk)."""
+    """A step of Numba's cache that gives None, as where nothing is kept, when it fails: a damaged file, a full disk."""
 
     def tried(*arguments: object) -> object:
         with contextlib.suppress(Exception):

@@ -156,7 +156,7 @@ def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) ->
 
 def _doubts(scene_map: SceneMap) -> Iterator[str]:
     """Why a map that can be used looks as if it were not meant."""
-    vertices, corners = scene_map.vertices, scene_map.vertices[scene_map.faces]
+    corners = scene_map.vertices[scene_map.faces]
     size = scene_map.bounds[1] - scene_map.bounds[0]
     told = f"{size[0]:,.0f} x {size[1]:,.0f} x {size[2]:,.0f} m"
     if size.min() > MAX_BUILDING:
@@ -171,9 +171,9 @@ def _doubts(scene_map: SceneMap) -> Iterator[str]:
             f"the map is {told} large, but 98 % of its triangles lie within {most:,.0f} m: triangle {away.argmax()} at "
             f"({x:g}, {y:g}, {z:g}) is {away.max():,.0f} m from the middle. Does it belong to the building?"
         )
-    step = float(np.spacing(np.float32(np.abs(vertices).max())))
-    if step > MAX_STEP and np.array_equal(vertices, vertices.astype(np.float32)):
+    step = float(np.spacing(np.float32(np.abs(corners).max())))
+    if step > MAX_STEP and np.array_equal(corners, corners.astype(np.float32)):
         yield (
-            f"coordinates of {np.abs(vertices).max():,.0f} m in single precision have steps of {step * 1000:g} mm: "
+            f"coordinates of {np.abs(corners).max():,.0f} m in single precision have steps of {step * 1000:g} mm: "
             "move the map's zero into the building before saving it"
         )
