@@ -1,20 +1,21 @@
-"""How far off may the estimate be: a covariance that covers, from the particles and raw scores that a frame has anyway.
+"""How far off may the estimate be? A covariance from the particles and raw scores that a frame has anyway.
 
 The paper's weights cannot say it. With beta = 0.01 they leave about one particle in 200, and the spread of one particle
-is nothing: a median of 2e-7 m was reported where the error was 0.024 m. Nor can a likelihood of independent pixels: its
-exponent is a sum over 25,000 of them, and the best particle takes all again. Pixels are not independent, since a
-displaced door or a bias of the map moves thousands at once.
+is nothing: they reported a median of 2e-7 m where the error was 0.024 m. A likelihood of independent pixels cannot say
+it either. Its exponent is a sum over 25,000 pixels, so the best particle takes all the weight again. But pixels are not
+independent, because a displaced door or a bias of the map moves thousands of them at once.
 
-So the particles are weighed a second time, by exp(kappa l/m), as if the whole image were worth kappa independent
-pixels; and kappa is lowered where it would leave too few particles to span the space they move in, which happens where
-particles are sparse, so that the spacing between them, an error too, is in the answer. What counts is their spread
-about the estimate that the filter gives, whatever its own weights were.
+So we weigh the particles a second time, by exp(kappa l/m), as if the whole image were worth kappa independent pixels.
+Where particles are sparse we lower kappa, so that enough of them are left to span the space they move in. Then the
+spacing between them, which is an error too, is in the answer. We take the spread about the estimate that the filter
+gives, whatever its own weights were.
 
-That is one frame's share of the error. Particles lie within a frame's noise of where the last frame left them, and
-what that frame got wrong is still in them: `carried_covariance` takes it along, as a Kalman filter would.
+That is one frame's share of the error. Particles lie within a frame's noise of where the last frame left them, so the
+error of that frame is still in them. `carried_covariance` takes it along, as a Kalman filter would.
 
-kappa is calibrated where nothing is reported from, on one frame's share: a wagon's run of the corridor of seed 10,001.
-What neither can say: a filter that is lost has all its particles in the wrong place (course_lib.beyond.tracking).
+kappa was calibrated on one frame's share, with a run that no result is reported from: a wagon in the corridor of seed
+10,001. No such covariance can say that the filter is lost, because then all its particles are in the wrong place
+(course_lib.beyond.tracking).
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ SHARPEST = 1e4  # kappa at most: scores that differ by 1e-4 are then told apart;
 INDEPENDENT_PIXELS = 50.0
 SPARE_PARTICLES = 2
 _NO_VARIANCE = 1e-18  # a nanometre's, or a nanoradian's: what is less is rounding
-_SMALLEST_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cloud is flat there
+_MIN_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cloud is flat there
 
 
 class Tempered(NamedTuple):
@@ -115,7 +116,7 @@ def carried_covariance(covariance: np.ndarray, deviations: np.ndarray, earlier: 
     scale = np.std(deviations, axis=0)
     scale[scale == 0] = 1.0  # metres and radians, in units of the cloud's own widths
     values, axes = np.linalg.eigh(np.cov(deviations / scale, rowvar=False, bias=True))
-    spanned = values > _SMALLEST_SHARE
+    spanned = values > _MIN_SHARE
     width, axes = np.sqrt(values[spanned]), axes[:, spanned]
     whiten, unwhiten = (axes / width).T / scale, (axes * width) * scale[:, None]
     shares, directions = np.linalg.eigh(whiten @ covariance @ whiten.T)
@@ -147,7 +148,7 @@ def normalized_error(deviation: np.ndarray, covariance: np.ndarray) -> float:
     c = np.asarray(covariance, dtype=np.float64)[np.ix_(estimated, estimated)]
     sigma = np.sqrt(np.diag(c))  # metres and radians, in units of their own spread
     correlation = c / np.outer(sigma, sigma)
-    if not len(c) or np.linalg.eigvalsh(correlation)[0] < _SMALLEST_SHARE:
+    if not len(c) or np.linalg.eigvalsh(correlation)[0] < _MIN_SHARE:
         return float("nan")
     e = np.asarray(deviation, dtype=np.float64)[estimated] / sigma
     return float(e @ np.linalg.solve(correlation, e)) / len(estimated)

@@ -181,16 +181,6 @@ def test_particles_that_are_rendered_in_batches_are_weighed_together(weighting):
     assert estimates[0].score == estimates[1].score
 
 
-def test_particles_that_all_miss_the_map_keep_equal_weights(renderer):
-    """All likelihoods are zero, hence equal: nothing is known, nothing is NaN."""
-    localizer = MonteCarloLocalizer(renderer, 40, [0] * 6)
-    localizer.initialize([3.9, 0, 0, 0, 0, 0])  # outside, looking away
-    estimate = localizer.step(np.full(SMALL.shape, 2.0))
-    assert estimate.weights == pytest.approx(np.full(40, 1 / 40))
-    assert estimate.score == 0
-    assert np.isfinite(estimate.state).all()
-
-
 def test_the_score_falls_when_the_filter_is_lost_though_the_best_weight_does_not(renderer):
     depth = room_depth(SMALL, START)[0]
     at_home, lost = (MonteCarloLocalizer(renderer, 40, SIGMA) for _ in range(2))
@@ -249,9 +239,3 @@ def test_sigma_is_the_root_mean_square_about_zero():
     errors = nearest_path_error(np.array([[0, 0.3], [0, -0.4]]), np.zeros((1, 2)))
     assert errors.sigma == pytest.approx(np.sqrt((0.09 + 0.16) / 2))
     assert errors.within_3sigma == 0.5
-
-
-@pytest.mark.parametrize("positions", [np.zeros((0, 3)), np.zeros(3), [[np.nan, 0, 0]]])
-def test_positions_without_numbers_are_refused(positions):
-    with pytest.raises(ValueError, match="estimated_xyz"):
-        nearest_path_error(positions, np.zeros((4, 3)))

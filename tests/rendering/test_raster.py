@@ -66,16 +66,6 @@ def test_a_small_thing_before_a_wall_and_one_behind_it(rng):
     assert share_that_differs(scene_map, CAMERA, np.zeros((1, 6))) < 2e-4
 
 
-def test_every_triangle_stands_in_one_chunk_with_its_own_corners(rng):
-    scene_map = triangles(rng, 500)
-    chunks = MeshChunks(scene_map.vertices, scene_map.faces)
-    vertices, starts, faces = chunks.with_own_vertices(scene_map.faces, scene_map.vertices)
-    chunk = np.repeat(np.arange(len(starts) - 1), np.diff(chunks.starts))
-    again = vertices[faces + starts[chunk][:, None]]
-    assert np.array_equal(again, scene_map.vertices[scene_map.faces[chunks.order]])
-    assert (faces < np.diff(starts)[chunk][:, None]).all()
-
-
 def test_a_chunk_that_a_view_can_see_is_never_left_out(rng):
     scene = random_triangles(2000, rng, spread=20.0)
     chunks = MeshChunks(scene.vertices, scene.faces)

@@ -5,9 +5,7 @@ import subprocess
 import sys
 
 import numpy as np
-import psutil
 import pytest
-import trimesh
 
 from course_lib.geometry import optical_pose
 from course_lib.rendering import renderer as renderer_module
@@ -61,22 +59,6 @@ def test_a_room_corner_reads_its_closed_form(backend, camera, offset, rng):
         images = renderer.render(states + np.array([*offset, 0, 0, 0]))
     assert np.isfinite(images).all()
     assert np.mean(np.abs(images - room_depth(camera, states)) < HALF_MILLIMETRE) >= 0.999
-
-
-def test_a_sphere_reads_its_closed_form(backend):
-    ball = trimesh.creation.icosphere(subdivisions=6, radius=1.0)
-    ball.apply_translation([4.0, 0.0, 0.0])
-    with DepthRenderer(SceneMap(ball.vertices, ball.faces), OFF_CENTRE, backend, exact=True) as renderer:
-        image = renderer.render(np.zeros(6))[0]
-    rays = OFF_CENTRE.rays()
-    # |t ray - centre| = 1 with the centre 4 m ahead: the smaller root of a quadratic in t.
-    a, b, c = (rays**2).sum(axis=-1), -8.0 * rays[..., 2], 15.0
-    root = b**2 - 4 * a * c
-    expected = np.where(root >= 0, (-b - np.sqrt(np.maximum(root, 0))) / (2 * a), np.inf)
-    well_inside = root > 1.0  # a mesh of chords differs from the ball at its silhouette
-    assert well_inside.sum() > 200
-    assert np.abs(image[well_inside] - expected[well_inside]).max() < HALF_MILLIMETRE
-    assert np.isinf(image[root < 0]).all()
 
 
 @pytest.mark.parametrize("drawn", ["raster", "vtk"])
@@ -246,40 +228,12 @@ def test_the_cameras_points_through_the_z_buffer_agree_with_numpy(backend, camer
     with DepthRenderer(room(), camera, backend) as renderer:
         drawn, reference = renderer.render_points(points), depth_image_from_points(points, camera)
         assert np.isnan(renderer.render_points(np.full((5, 3), np.nan))).all()
+        assert np.isfinite(renderer.render(np.zeros(6))).all()  # the map is still there
     # A point within a thousandth of a pixel of a border may fall on either side of it.
     assert np.mean(np.isnan(drawn) == np.isnan(reference)) > 0.995
     both = np.isfinite(drawn) & np.isfinite(reference)
     assert both.sum() > 300
     assert np.mean(np.abs(drawn - reference)[both] < HALF_MILLIMETRE) > 0.995
-
-
-def test_a_depth_image_comes_back_from_its_own_points(backend, rng):
-    camera = DepthCamera.sr4000(far=15.0)
-    depth = rng.uniform(0.5, 10, camera.shape).astype(np.float32)
-    depth[rng.random(camera.shape) < 0.2] = np.nan
-    with DepthRenderer(room(), camera, backend) as renderer:
-        again = renderer.render_points(camera.points(depth))
-        assert np.isfinite(renderer.render(np.zeros(6))).all()  # the map is still there
-    assert np.array_equal(np.isnan(again), np.isnan(depth))
-    assert np.nanmax(np.abs(again - depth)) < HALF_MILLIMETRE
-
-
-def test_a_thousand_renders_and_many_windows_keep_memory_flat(rng):
-    scene, states, process = random_triangles(2000, rng), random_states(20, rng), psutil.Process()
-    with DepthRenderer(scene, SMALL, "vtk") as renderer:
-        for i in range(70):
-            if i == 20:
-                before = process.memory_info().rss
-            renderer.render(states + 0.01 * rng.standard_normal(6))
-            renderer.render_points(rng.uniform([-1, -1, 1], [1, 1, 3], (3000, 3)))
-        # Keeping every one of these 1,000 images would take 12 MB.
-        assert process.memory_info().rss - before < 8e6
-    for i in range(14):
-        if i == 4:
-            before = process.memory_info().rss
-        with DepthRenderer(scene, SMALL, "vtk") as renderer:
-            renderer.render(states)
-    assert process.memory_info().rss - before < 15e6
 
 
 def test_a_closed_renderer_says_so(backend):

@@ -85,16 +85,6 @@ def test_a_file_that_holds_less_than_it_announces_is_refused(tmp_path, data, kin
         load(tmp_path, data, kind)
 
 
-@pytest.mark.parametrize("share", [0.8, 0.95, 0.999])
-@pytest.mark.parametrize("kind", ["ply", "off", "stl_ascii"])
-def test_a_text_file_that_was_cut_off_anywhere_is_refused(kind, share, tmp_path):
-    options = {"encoding": "ascii"} if kind == "ply" else {}
-    data = trimesh.creation.icosphere().export(file_type=kind, **options)
-    data = data.encode() if isinstance(data, str) else data
-    with pytest.raises(SceneMapError, match="complete"):
-        load(tmp_path, data[: int(share * len(data))], kind[:3])
-
-
 @pytest.mark.parametrize(
     ("data", "kind", "old", "new"),
     [

@@ -5,7 +5,6 @@ measure of speed: it only has to be longer than a slow, busy machine takes, for 
 in memory) and for a new process.
 """
 
-import copy
 import gc
 import multiprocessing
 import os
@@ -103,18 +102,6 @@ def test_threads_that_share_a_renderer_each_get_their_own_images_and_measurement
         renderer.render(np.zeros(6))
 
 
-def test_closing_while_another_thread_draws_is_named(renderer, rng):
-    states = random_states(4, rng, spread=2.5)
-
-    def draw_until_closed():
-        while True:
-            assert is_right(renderer.render(states), states)
-
-    drawing, closing = run_together([draw_until_closed, renderer.close])
-    assert isinstance(drawing, RendererClosedError)
-    assert closing is None
-
-
 @needs_fork
 @pytest.mark.parametrize(
     "use",
@@ -168,14 +155,3 @@ def test_a_worker_opens_the_renderer_again_or_names_why_not(renderer, method, rn
                 answer.get(timeout=PATIENCE)
         else:
             assert is_right(answer.get(timeout=PATIENCE), states)
-
-
-@pytest.mark.parametrize("travel", [copy.copy, copy.deepcopy])
-def test_a_copy_has_a_window_of_its_own_and_what_it_is_made_of(renderer, travel):
-    states = np.zeros((1, 6))
-    with travel(renderer) as other:
-        assert is_right(other.render(states), states)
-        assert (other.backend, other.camera, other.batch_size) == (renderer.backend, CAMERA, renderer.batch_size)
-    assert is_right(renderer.render(states), states)
-    with pytest.raises(RendererClosedError):
-        travel(other).render(states)
