@@ -177,8 +177,6 @@ def rotation_to_z_up(up: str) -> np.ndarray:
     """Rotation `(4, 4)` that turns the named up axis ("y", "-z", ...) of a world into +z, by the shortest turn."""
     if up not in UP_AXES:
         raise ValueError(f"up must be one of {', '.join(UP_AXES)}; got {up!r}")
-    from scipy.spatial.transform import Rotation
-
     matrix = np.eye(4)
     axis = np.asarray(UP_AXES[up], dtype=np.float64)
     if up == "-z":

@@ -14,7 +14,7 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-METHODS = ("geometry.py", "depth_mcl", "spherical_stereo")
+METHODS = ("geometry.py", "rendering", "depth_mcl", "spherical_stereo", "beyond")
 # What only the lessons, the commands or the tests have.
 LESSONS_ONLY = ("jupyterlab", "ipywidgets", "IPython", "matplotlib", "pyvista", "tqdm", "pytest", "nbval")
 
@@ -27,8 +27,8 @@ class Refuse:
         if name.split(".")[0] in refused:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 sys.meta_path.insert(0, Refuse())
-import course_lib.depth_mcl, course_lib.spherical_stereo
-for method in (course_lib.depth_mcl, course_lib.spherical_stereo):
+import course_lib.beyond, course_lib.depth_mcl, course_lib.rendering, course_lib.spherical_stereo
+for method in (course_lib.rendering, course_lib.depth_mcl, course_lib.spherical_stereo, course_lib.beyond):
     for module in pkgutil.walk_packages(method.__path__, method.__name__ + "."):
         importlib.import_module(module.name)
 import numpy as np

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import course_lib.geometry as geometry
-from course_lib import depth_mcl, spherical_stereo
+from course_lib import beyond, depth_mcl, spherical_stereo
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer, SceneMap
 from course_lib.spherical_stereo import Detection, Landmark, Observation, SemanticMap, StereoRig
 from tests.rendering.shapes import room
@@ -64,9 +64,9 @@ def matched(x, y, saturation):
 
 def tracked(forward, left, turn, covariance):
     """Two views, and odometry from one to the other."""
-    tracker = spherical_stereo.SemanticTracker(MAP)
+    tracker = beyond.SemanticTracker(MAP)
     tracker.step(SEEN)
-    return tracker.step(SEEN, spherical_stereo.Motion(forward, left, turn, covariance))
+    return tracker.step(SEEN, beyond.Motion(forward, left, turn, covariance))
 
 
 # Door -> (function, arguments that are right). Every argument that is a number or an array of them is tried.

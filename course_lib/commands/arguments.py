@@ -21,11 +21,19 @@ PROCESSES_EACH, LEAST_PROCESSES = 4, 16
 
 def add_backend_argument(parser: argparse.ArgumentParser) -> None:
     """Declares `--backend` and `--exact`: how depth images are rendered (`DepthRenderer`)."""
+
+    def chosen(name: str) -> str:
+        from course_lib.rendering.renderer import chosen_backend
+
+        return chosen_backend(name)  # results say what drew, not "auto"
+
     parser.add_argument(
         "--backend",
-        choices=["raster", "vtk", "ray"],
-        default="raster",
-        help="z-buffer on the processors (default), OpenGL's z-buffer (for a graphics card), or ray casting",
+        choices=["auto", "vtk", "raster", "ray"],
+        default="auto",
+        type=chosen,
+        help="OpenGL's z-buffer (vtk), a compiled z-buffer on the processors (raster), or ray casting (ray); default: "
+        "vtk on a graphics card, else raster",
     )
     parser.add_argument(
         "--exact",

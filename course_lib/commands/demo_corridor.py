@@ -168,9 +168,11 @@ def _run_by_hand(arguments: argparse.Namespace, seeds: list[int]) -> int:
     from course_lib.experiments.results import write_results
     from course_lib.experiments.six_degrees import METHODS, corridor_hand, pooled
     from course_lib.plots.covariance_figure import covariance_figure
+    from course_lib.rendering.renderer import chosen_backend
 
-    for option, usual in (("recording", "own"), ("kindnesses", False), ("particles", 200), ("backend", "raster")):
-        if getattr(arguments, option) != usual:
+    usual = {"recording": "own", "kindnesses": False, "particles": 200, "backend": chosen_backend("auto")}
+    for option, value in usual.items():
+        if getattr(arguments, option) != value:
             raise ValueError(f"--{option} does not go with --dof 6")
     methods = arguments.methods.split(",") if arguments.methods else list(METHODS)
     if not set(methods) <= set(METHODS):
@@ -336,7 +338,7 @@ def write_figures(out: Path, sequence: DepthSequence, rows: dict[str, Row], figu
     """Writes the figures and the trajectory (TUM); the names of the files."""
     import numpy as np
 
-    from course_lib.depth_mcl.poses import write_tum
+    from course_lib.depth_mcl.sequence_files import write_tum
 
     ours = rows["proposed"].run
     times = np.asarray(ours.frames, float) if sequence.times is None else sequence.times[: len(ours.frames)]

@@ -72,7 +72,7 @@ def write_localized(
     """Writes options and numbers (JSON), a row a frame (CSV), the trajectory (TUM), figure and scene; says what."""
     from course_lib.commands.scene_output import write_scene
     from course_lib.depth_mcl.evaluation import pose_errors
-    from course_lib.depth_mcl.poses import write_tum
+    from course_lib.depth_mcl.sequence_files import write_tum
     from course_lib.experiments.results import write_results
     from course_lib.plots.track_figure import track_figure
     from course_lib.plots.track_scene import track_scene

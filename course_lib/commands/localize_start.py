@@ -66,7 +66,7 @@ def found_start(
 
 def given_start(given: str | None, sequence: DepthSequence, up: str) -> np.ndarray:
     """Camera-to-world matrix `(4, 4)` of the first frame in the map's own world, optical convention."""
-    from course_lib.depth_mcl.poses import read_pose
+    from course_lib.depth_mcl.sequence_files import read_pose
     from course_lib.geometry import optical_pose, rotation_to_z_up
 
     if given is None and not sequence.has_poses:

@@ -1,6 +1,6 @@
 """What takes seconds once is done before the first lesson: `python -m course_lib.commands.warm_up`.
 
-`course.py` runs this at the end of a set-up. Compiled loops are kept beside their source (course_lib/depth_mcl/
+`course.py` runs this at the end of a set-up. Compiled loops are kept beside their source (course_lib/rendering/
 compiled.py), the simplified map of the corridor in the user's cache (simplification.py).
 """
 
@@ -13,11 +13,11 @@ def compile_loops() -> None:
 
     from course_lib.beyond.six_dof.compiled_refinement import normal_equations
     from course_lib.commands.depth_image_probe import measure
-    from course_lib.depth_mcl.compiled_likelihood import likelihood
+    from course_lib.depth_mcl.likelihood import compiled_likelihood
     from course_lib.rendering.camera import DepthCamera
 
     measure("raster")
-    likelihood(np.ones((2, 2), dtype=np.float32), np.ones((1, 2, 2), dtype=np.float32))
+    compiled_likelihood(np.ones((2, 2), dtype=np.float32), np.ones((1, 2, 2), dtype=np.float32))
     small = DepthCamera.from_fov(4, 3, 60.0, 45.0)
     normal_equations(np.ones(small.shape, dtype=np.float32), np.ones((1, *small.shape), dtype=np.float32), small, 0.1)
 

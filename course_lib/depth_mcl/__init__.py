@@ -1,15 +1,13 @@
 """Paper 1: Hatakeyama, Kanai, Date, "3D Monte Carlo localization with a depth camera". A module for each step.
 
-    sequence             recordings on disk; poses, sequence_files: their files, each read and checked
-    likelihood           3.3.3 and 3.3.4, eqs (8) to (11): A-2
-    compiled_likelihood  eq. (8) once more, in a compiled loop
-    weighting            both as a part of the filter that can be exchanged
-    motion               3.2, eq. (5): A-1, as printed and in the body's axes
-    particle_filter      3.1 and 3.4, eqs (3), (4), (12): start, A-3
-    localizer            figure 1: all of it in order
-    uncertainty          how far off the estimate may be, which the paper's weights cannot say
-    fallon               the method that table 1 compares with
-    evaluation           section 4: table 1
+    sequence         recordings on disk; sequence_files reads and checks each of their files
+    likelihood       3.3.3 and 3.3.4, eqs (8) to (11): A-2, as one part of the filter that can be exchanged
+    motion           3.2, eq. (5): A-1, as printed and in the body's axes
+    particle_filter  3.1 and 3.4, eqs (3), (4), (12): start, A-3
+    localizer        figure 1: all of it in order
+    uncertainty      how far off the estimate may be, which the paper's weights cannot say
+    fallon           the method that table 1 compares with
+    evaluation       section 4: table 1
 
 The camera, the map, eq. (6), a depth image of the map for every particle, and eq. (7), the camera's own points made
 comparable, are in `course_lib.rendering`.
@@ -27,8 +25,8 @@ from course_lib.depth_mcl.particle_filter import (
     resample,
     weighted_mean_state,
 )
-from course_lib.depth_mcl.poses import SequenceError
 from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.depth_mcl.sequence_files import SequenceError
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from course_lib.rendering.scene_map import SceneMap, SceneMapError

@@ -16,8 +16,7 @@ from typing import Literal
 import numpy as np
 from scipy.stats import norm
 
-from course_lib.depth_mcl.likelihood import paired_pixels, valid_pixels
-from course_lib.depth_mcl.weighting import Weighting
+from course_lib.depth_mcl.likelihood import Weighting, paired_pixels, valid_pixels
 
 COARSE_WIDTH, COARSE_HEIGHT = 20, 15  # pixels, the size the constants below were made for
 

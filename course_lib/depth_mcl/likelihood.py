@@ -1,8 +1,20 @@
-"""Likelihood and weight of every particle (paper 1, sections 3.3.3 and 3.3.4, step A-2)."""
+"""Likelihood and weight of every particle (paper 1, sections 3.3.3 and 3.3.4, step A-2), in the order of the paper.
+
+likelihood            eq. (8), as one reads it; `compiled_likelihood` gives the same numbers faster
+normalize_likelihood  eq. (9)
+weights               eqs (10), (11)
+paper_weighting       all of them as one part of the filter, which can be exchanged (fallon.py has another)
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
 import numpy as np
+
+from course_lib.rendering.compiled import compiled
 
 ALPHA = 0.1  # metres, paper 1, section 4
 BETA = 0.01  # no unit (a normalized likelihood), paper 1, section 4
@@ -64,6 +76,38 @@ def likelihood(measured: np.ndarray, simulated: np.ndarray, alpha: float = ALPHA
     return result
 
 
+def compiled_likelihood(measured: np.ndarray, simulated: np.ndarray, alpha: float = ALPHA) -> np.ndarray:
+    """Return what `likelihood` returns, computed in a compiled loop: 200 images in a few milliseconds, not in forty.
+
+    The filter uses this one. Arguments and errors are those of `likelihood`; a test holds the two together.
+    """
+    alpha = checked_alpha(alpha)
+    valid, simulated = paired_pixels(measured, simulated)
+    z = np.where(valid, measured, 0.0).astype(np.float32)
+    images = np.ascontiguousarray(simulated, dtype=np.float32).reshape(len(simulated), valid.size)
+    return _sums(z.ravel(), valid.ravel().astype(np.float32), images, np.float32(alpha))
+
+
+# Sums may be taken in any order, several pixels at a time; infinity keeps its meaning (a miss counts 0).
+@compiled(fastmath={"reassoc", "nsz", "contract", "arcp"})
+def _sums(z, counts, images, alpha):
+    """Return sum_j counts_j alpha / (alpha + |z_j - image_j|) of each image."""
+    result = np.empty(len(images))
+    for i in range(len(images)):
+        image = images[i]
+        total = 0.0
+        # In pieces: a float32 sum of few terms rounds little, and several are added at once.
+        for start in range(0, len(z), 128):
+            piece = slice(start, start + 128)
+            z_piece, image_piece, counts_piece = z[piece], image[piece], counts[piece]
+            subtotal = np.float32(0)
+            for j in range(len(z_piece)):
+                subtotal += counts_piece[j] * alpha / (alpha + abs(z_piece[j] - image_piece[j]))
+            total += subtotal
+        result[i] = total
+    return result
+
+
 def normalize_likelihood(l: np.ndarray) -> np.ndarray:  # noqa: E741 - the paper's letter
     """Likelihoods `(N,)` spread over [0, 1]: 0 for the worst particle, 1 for the best.
 
@@ -101,3 +145,34 @@ def weights(l_normalized: np.ndarray, beta: float = BETA) -> np.ndarray:
     with np.errstate(over="ignore"):
         w = np.exp(-(below - best) / beta * ((below + best) / beta))
     return w / w.sum()
+
+
+class Weighting(NamedTuple):
+    """How particles are weighed: the filter's part that is exchanged for another rule. Both functions are pure.
+
+    The two are apart because images are many and large: they are rendered, scored and dropped a batch at a time, and
+    only the scores are kept.
+    """
+
+    score: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    """(measured `(H, W)`, simulated `(n, H, W)`) -> `(n,)`: how well each image agrees, a mean over pixels, so that it
+    may be compared from frame to frame. Larger is better."""
+    weigh: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    """(measured `(H, W)`, scores `(N,)` of all particles) -> weights `(N,)`, summing to one."""
+
+
+def paper_weighting(alpha: float = ALPHA, beta: float = BETA) -> Weighting:
+    """Return the paper's weighting: eqs (8) to (11) one after the other.
+
+    The score is l_(i) divided by the number of pixels compared: 1 for perfect agreement, whatever the camera saw. The
+    division changes no weight, because the normalization cancels every common factor.
+    """
+    return Weighting(partial(_score, alpha), partial(_weigh, beta))
+
+
+def _score(alpha: float, measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
+    return compiled_likelihood(measured, simulated, alpha) / max(1, valid_pixels(measured).sum())
+
+
+def _weigh(beta: float, measured: np.ndarray, scores: np.ndarray) -> np.ndarray:
+    return weights(normalize_likelihood(scores), beta)

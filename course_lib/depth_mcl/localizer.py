@@ -6,7 +6,7 @@
         estimate = localizer.step(depth)
 
 How particles move and how they are weighed are parts that can be exchanged: the motions are in motion.py,
-the paper's weighting in weighting.py, Fallon's in fallon.py.
+the paper's weighting in likelihood.py, Fallon's in fallon.py.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.likelihood import ALPHA, BETA, DepthImageError, valid_pixels
+from course_lib.depth_mcl.likelihood import ALPHA, BETA, DepthImageError, Weighting, paper_weighting, valid_pixels
 from course_lib.depth_mcl.motion import BODY_AXES, Motion, checked_sigma
 from course_lib.depth_mcl.particle_filter import Scheme, effective_sample_size, initial_particles, resample
 from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, positive_part
-from course_lib.depth_mcl.weighting import Weighting, paper_weighting
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 
@@ -110,7 +109,7 @@ class MonteCarloLocalizer:
         self._centre_covariance = np.zeros((6, 6))  # of the error of the particles' centre, beyond their own spread
 
     def initialize(self, state0: np.ndarray) -> None:
-        """Puts every particle at the initial state `(6,)`, eqs (3), (4).
+        """Put every particle at the initial state `(6,)`, eqs (3), (4).
 
         Raises `ValueError` for a state that is not finite or lies outside the map (by more than a metre).
         """
@@ -128,22 +127,16 @@ class MonteCarloLocalizer:
         """
         if self.particles is None:
             raise RuntimeError("call initialize(state0) before the first step: the paper's filter is given its start")
-        measured = self._measure(depth)
-        particles = self.motion.propagate(self.particles, self.sigma, self.rng)
+        measured = self._measure(depth)  # 3.3.2, eq. (7)
+        particles = self.motion.propagate(self.particles, self.sigma, self.rng)  # A-1, eq. (5)
         if not valid_pixels(measured).any():
-            warnings.warn(
-                "this frame holds no measurement between the camera's near and far planes; particles were moved only",
-                NoMeasurementWarning,
-                stacklevel=2,
-            )
-            self.particles = particles.copy()
-            w = np.full(self.n_particles, 1.0 / self.n_particles)
-            return self._estimate(particles, w, np.full(self.n_particles, np.nan), "no measurement")
-        batches = self.renderer.batches(particles)
-        scores = np.concatenate([self.weighting.score(measured, images) for images in batches])
-        w = self.weighting.weigh(measured, scores)
-        self.particles = particles[resample(w, self.rng, self.resampling)]
-        return self._estimate(particles, w, scores, "ok")
+            return self._moved_only(particles)
+        batches = self.renderer.batches(particles)  # 3.3.1, eq. (6): as many images at a time as memory holds
+        scores = np.concatenate([self.weighting.score(measured, images) for images in batches])  # A-2, eq. (8)
+        w = self.weighting.weigh(measured, scores)  # A-2, eqs (9) to (11)
+        estimate = self._estimate(particles, w, scores, "ok")  # A-3, eq. (12)
+        self.particles = particles[resample(w, self.rng, self.resampling)]  # 3.4
+        return estimate
 
     def _measure(self, depth: np.ndarray) -> np.ndarray:
         """Eq. (7): the camera's own points through the projection and z-buffer of the simulated views."""
@@ -154,6 +147,17 @@ class MonteCarloLocalizer:
                 f"the depth image has shape {depth.shape}; the camera gives {camera.shape} (height, width)"
             )
         return self.renderer.render_points(camera.points(depth))
+
+    def _moved_only(self, particles: np.ndarray) -> Estimate:
+        """The estimate of a frame without measurement: the particles as they moved, each with the same weight."""
+        warnings.warn(
+            "this frame holds no measurement between the camera's near and far planes; particles were moved only",
+            NoMeasurementWarning,
+            stacklevel=3,
+        )
+        self.particles = particles.copy()
+        w, scores = np.full(self.n_particles, 1.0 / self.n_particles), np.full(self.n_particles, np.nan)
+        return self._estimate(particles, w, scores, "no measurement")
 
     def _estimate(self, particles: np.ndarray, w: np.ndarray, scores: np.ndarray, status: Status) -> Estimate:
         state = self.motion.mean(particles, w)

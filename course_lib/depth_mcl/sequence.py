@@ -17,23 +17,28 @@ and when, groundtruth.txt has times of its own, and intrinsics.txt must be added
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from course_lib.depth_mcl.poses import SequenceError, read_numbers, read_poses, write_tum
 from course_lib.depth_mcl.sequence_files import (
     UNITS_PER_METRE,
+    SequenceError,
     depth_files,
     read_depth_png,
     read_gravity,
+    read_numbers,
+    read_path_on_floor,
+    read_poses,
     read_times,
     read_tum_folder,
     read_up,
     require_same_frames,
-    require_units,
     write_depth_png,
+    write_tum,
 )
 from course_lib.files import is_given, staging_dir
 from course_lib.geometry import UP_AXES
@@ -42,51 +47,42 @@ from course_lib.rendering.camera import DepthCamera
 NEAR, FAR = 0.1, 11.0  # metres, clip planes: just beyond what an SR4000 (10 m) or a Kinect (5 m) measures
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class DepthSequence:
-    """A recording on disk; images are read when asked for.
+    """A recording on disk; images are read when asked for."""
 
-    frames: frame numbers, ascending. camera_to_world: `(T, 4, 4)` float64, optical convention; None where the truth is
-    not known, and asking for it is then a `SequenceError`. intrinsics: `(3, 3)`. image_shape: (height, width). up: "z"
-    and the like, or None where nothing is known. times: `(T,)` seconds or None. path_on_floor: `(P, 3)` metres or None.
-    units_per_metre: of the depth images. gravity: `(T, 3)` down in the camera's optical frame, or None.
-    """
-
-    def __init__(
-        self,
-        folder: Path,
-        frames: list[int],
-        files: list[Path],
-        camera_to_world: np.ndarray | None,
-        intrinsics: np.ndarray,
-        image_shape: tuple[int, int],
-        up: str | None,
-        times: np.ndarray | None,
-        path_on_floor: np.ndarray | None,
-        units_per_metre: float = UNITS_PER_METRE,
-        gravity: np.ndarray | None = None,
-    ) -> None:
-        self.folder = folder
-        self.frames = frames
-        self.files = files
-        self._camera_to_world = camera_to_world
-        self.intrinsics = intrinsics
-        self.image_shape = image_shape
-        self.up = up
-        self.times = times
-        self.path_on_floor = path_on_floor
-        self.units_per_metre = units_per_metre
-        self.gravity = gravity
+    folder: Path
+    frames: list[int]
+    """Frame numbers, ascending."""
+    files: list[Path]
+    """One depth image a frame."""
+    true_poses: np.ndarray | None
+    """`(T, 4, 4)` float64, camera-to-world, optical convention; None where the truth is not known."""
+    intrinsics: np.ndarray
+    """K `(3, 3)`, pixels."""
+    image_shape: tuple[int, int]
+    """(height, width)."""
+    up: str | None
+    """World axis that points up, such as "z"; None where nothing is known."""
+    times: np.ndarray | None
+    """`(T,)` seconds."""
+    path_on_floor: np.ndarray | None
+    """`(P, 3)` metres."""
+    units_per_metre: float = UNITS_PER_METRE
+    """What the depth images count in."""
+    gravity: np.ndarray | None = None
+    """`(T, 3)` down in the camera's optical frame."""
 
     @property
     def has_poses(self) -> bool:
         """Whether the true poses are known."""
-        return self._camera_to_world is not None
+        return self.true_poses is not None
 
     @property
     def camera_to_world(self) -> np.ndarray:
         """The true poses `(T, 4, 4)`, optical convention; `SequenceError` for a recording that came without."""
         self.require_poses()
-        return self._camera_to_world
+        return self.true_poses
 
     def require_poses(self) -> None:
         """Raises `SequenceError` for a recording that came without its true poses."""
@@ -107,18 +103,10 @@ class DepthSequence:
         kept = slice(offset, None, every)
         if every < 1 or offset < 0 or not self.frames[kept]:
             raise ValueError(f"every {every}-th of {len(self)} frames from {offset} on: no frame is left")
-        return DepthSequence(
-            self.folder,
-            self.frames[kept],
-            self.files[kept],
-            None if self._camera_to_world is None else self._camera_to_world[kept],
-            self.intrinsics,
-            self.image_shape,
-            self.up,
-            None if self.times is None else self.times[kept],
-            self.path_on_floor,
-            self.units_per_metre,
-            None if self.gravity is None else self.gravity[kept],
+        per_frame = ("frames", "files", "true_poses", "times", "gravity")
+        values = {name: getattr(self, name) for name in per_frame}
+        return dataclasses.replace(
+            self, **{name: None if value is None else value[kept] for name, value in values.items()}
         )
 
     def camera(self, near: float = NEAR, far: float = FAR) -> DepthCamera:
@@ -139,7 +127,7 @@ class DepthSequence:
     def __iter__(self) -> Iterator[tuple[int, np.ndarray, np.ndarray | None]]:
         """Yields (frame number, depth image, camera-to-world matrix or None where the truth is not known)."""
         for index, frame in enumerate(self.frames):
-            yield frame, self.depth(index), self._camera_to_world[index] if self.has_poses else None
+            yield frame, self.depth(index), self.true_poses[index] if self.has_poses else None
 
     def __repr__(self) -> str:
         return f"DepthSequence({str(self.folder)!r}, {len(self)} frames, up={self.up!r})"
@@ -155,7 +143,11 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
     folder = Path(folder)
     if not folder.is_dir():
         raise FileNotFoundError(f"no sequence at {folder}: give a folder with depth/ and intrinsics.txt")
-    require_units(units_per_metre)
+    if not (np.isfinite(units_per_metre) and units_per_metre > 0):
+        raise ValueError(
+            "a metre must have a positive number of depth units (1000 for millimetres, 5000 in TUM files); got "
+            f"{units_per_metre!r}"
+        )
     if is_given(folder / "depth.txt"):
         images, times, camera_to_world = read_tum_folder(folder)
         frames = sorted(images)
@@ -175,13 +167,9 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
         DepthCamera.from_matrix(intrinsics, width=image_shape[1], height=image_shape[0])
     except ValueError as error:
         raise SequenceError(f"{folder / 'intrinsics.txt'}: {error}") from error
-    path_file = folder / "path_on_floor.txt"
-    path_on_floor = read_numbers(path_file) if is_given(path_file) else None
-    if path_on_floor is not None and (path_on_floor.ndim != 2 or path_on_floor.shape[1] != 3):
-        raise SequenceError(f"{path_file} must hold x y z per row; got shape {path_on_floor.shape}")
     return DepthSequence(
         folder, frames, [images[f] for f in frames], camera_to_world, intrinsics, image_shape, read_up(folder),
-        times, path_on_floor, units_per_metre, read_gravity(folder, frames),
+        times, read_path_on_floor(folder), units_per_metre, read_gravity(folder, frames),
     )  # fmt: skip
 
 
@@ -195,7 +183,7 @@ def write_sequence(
     up: str | None = None,
     path_on_floor: np.ndarray | None = None,
 ) -> None:
-    """Writes a recording as `read_sequence` reads it.
+    """Write a recording as `read_sequence` reads it.
 
     depths: one `(H, W)` float array a frame, metres, NaN = no measurement. camera_to_world: `(T, 4, 4)`, optical.
     times: `(T,)` seconds; with them the poses are also written as a TUM trajectory. Raises `ValueError`, before any

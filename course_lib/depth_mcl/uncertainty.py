@@ -1,43 +1,85 @@
-"""How far off may the estimate be: a covariance that covers, from the particles and raw scores that a frame has anyway.
+"""How far off may the estimate be? A covariance from the particles and raw scores that a frame has anyway.
 
 The paper's weights cannot say it. With beta = 0.01 they leave about one particle in 200, and the spread of one particle
-is nothing: a median of 2e-7 m was reported where the error was 0.024 m. Nor can a likelihood of independent pixels: its
-exponent is a sum over 25,000 of them, and the best particle takes all again. Pixels are not independent, since a
-displaced door or a bias of the map moves thousands at once.
+is nothing: they reported a median of 2e-7 m where the error was 0.024 m. A likelihood of independent pixels cannot say
+it either. Its exponent is a sum over 25,000 pixels, so the best particle takes all the weight again. But pixels are not
+independent, because a displaced door or a bias of the map moves thousands of them at once.
 
-So the particles are weighed a second time, by exp(kappa l/m), as if the whole image were worth kappa independent
-pixels; and kappa is lowered where it would leave too few particles to span the space they move in, which happens where
-particles are sparse, so that the spacing between them, an error too, is in the answer. What counts is their spread
-about the estimate that the filter gives, whatever its own weights were.
+So we weigh the particles a second time, by exp(kappa l/m), as if the whole image were worth kappa independent pixels.
+Where particles are sparse we lower kappa, so that enough of them are left to span the space they move in. Then the
+spacing between them, which is an error too, is in the answer. We take the spread about the estimate that the filter
+gives, whatever its own weights were.
 
-That is one frame's share of the error. Particles lie within a frame's noise of where the last frame left them, and
-what that frame got wrong is still in them: `carried_covariance` takes it along, as a Kalman filter would.
+That is one frame's share of the error. Particles lie within a frame's noise of where the last frame left them, so the
+error of that frame is still in them. `carried_covariance` takes it along, as a Kalman filter would.
 
-kappa is calibrated where nothing is reported from, on one frame's share: a wagon's run of the corridor of seed 10,001.
-What neither can say: a filter that is lost has all its particles in the wrong place (tracking.py).
+kappa was calibrated on one frame's share, with a run that no result is reported from: a wagon in the corridor of seed
+10,001. No such covariance can say that the filter is lost, because then all its particles are in the wrong place
+(course_lib.beyond.tracking).
 """
 
 from __future__ import annotations
 
-import numpy as np
+from typing import NamedTuple
 
-from course_lib.depth_mcl.tempering import temper
+import numpy as np
+from scipy.optimize import brentq
+
+from course_lib.depth_mcl.particle_filter import effective_sample_size
+
+SHARPEST = 1e4  # kappa at most: scores that differ by 1e-4 are then told apart; sharper only tells rounding apart
 
 # How many independent pixels an image is worth, kappa, and how many effective particles beyond the number of moving
 # components are left at least. Both chosen on tuning worlds: see above.
 INDEPENDENT_PIXELS = 50.0
 SPARE_PARTICLES = 2
 _NO_VARIANCE = 1e-18  # a nanometre's, or a nanoradian's: what is less is rounding
-_SMALLEST_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cloud is flat there
+_MIN_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cloud is flat there
 
 
-def tempered_weights(scores: np.ndarray, least_sample_size: float) -> np.ndarray:
-    """Weights `(N,)` proportional to exp(kappa s), summing to one.
+class Tempered(NamedTuple):
+    """Weights and how sharp they are."""
 
-    scores: `(N,)` raw scores s, a mean over pixels. kappa is `INDEPENDENT_PIXELS`, or the smaller number at which the
-    effective sample size is `least_sample_size`; N where that is more than N.
+    weights: np.ndarray
+    """`(N,)`, summing to one."""
+    sharpness: float
+    """kappa: how many independent pixels the image would be worth if these weights were its likelihood."""
+    ess: float
+    """Effective sample size of the weights."""
+
+
+def temper(scores: np.ndarray, sample_size: float, sharpest: float = SHARPEST) -> Tempered:
+    """Return weights of exponential form, as sharp as leaves `sample_size` effective particles.
+
+    w_i ~ exp(kappa s_i),    kappa such that 1 / sum w_i^2 = sample_size
+
+    The paper's beta = 0.01 asks the other way round, and leaves about one particle in 200. In x, y and yaw that works,
+    because 200 particles lie close together there. In six dimensions the best of 200 is far from the best place, and a
+    filter that copies it alone throws the cloud away (course_lib.beyond.six_dof).
+    scores: `(N,)` raw scores s, means over pixels. kappa is between 0, where all weigh the same (so few particles that
+    they do not reach the sample size), and `sharpest` (so alike that even then more remain).
+    Raises `ValueError` for no scores or scores that are not finite.
     """
-    return temper(scores, least_sample_size, sharpest=INDEPENDENT_PIXELS).weights
+    scores = np.asarray(scores, dtype=np.float64)
+    if scores.ndim != 1 or len(scores) == 0 or not np.isfinite(scores).all():
+        raise ValueError(f"scores must be a non-empty array (N,) of finite numbers; got shape {scores.shape}")
+    below = scores - scores.max()
+
+    def at(kappa: float) -> np.ndarray:
+        w = np.exp(kappa * below)
+        return w / w.sum()
+
+    def missing(kappa: float) -> float:
+        return effective_sample_size(at(kappa)) - sample_size
+
+    if len(scores) <= sample_size:
+        kappa = 0.0
+    elif missing(sharpest) >= 0:
+        kappa = sharpest
+    else:
+        kappa = brentq(missing, 0.0, sharpest)
+    w = at(kappa)
+    return Tempered(w, float(kappa), effective_sample_size(w))
 
 
 def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
@@ -45,6 +87,8 @@ def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
 
     C = sum_i v_i d_i d_i',    v_i ~ exp(kappa s_i)
 
+    kappa is `INDEPENDENT_PIXELS`, or less where that leaves fewer than d + `SPARE_PARTICLES` effective particles of
+    the d components that move.
     deviations: `(N, 6)` of the particles from the estimate (`Motion.deviations`), metres and radians; scores: `(N,)`,
     raw, equal where nothing was measured. Components that no particle moved in have a variance of 0: they are given,
     not estimated.
@@ -52,7 +96,7 @@ def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
     deviations = np.asarray(deviations, dtype=np.float64)
     moving = np.ptp(deviations, axis=0) > 0
     deviations = np.where(moving, deviations, 0.0)  # the mean of equal numbers may differ from them by rounding
-    v = tempered_weights(scores, np.count_nonzero(moving) + SPARE_PARTICLES)
+    v = temper(scores, np.count_nonzero(moving) + SPARE_PARTICLES, sharpest=INDEPENDENT_PIXELS).weights
     return (v[:, None] * deviations).T @ deviations
 
 
@@ -72,7 +116,7 @@ def carried_covariance(covariance: np.ndarray, deviations: np.ndarray, earlier: 
     scale = np.std(deviations, axis=0)
     scale[scale == 0] = 1.0  # metres and radians, in units of the cloud's own widths
     values, axes = np.linalg.eigh(np.cov(deviations / scale, rowvar=False, bias=True))
-    spanned = values > _SMALLEST_SHARE
+    spanned = values > _MIN_SHARE
     width, axes = np.sqrt(values[spanned]), axes[:, spanned]
     whiten, unwhiten = (axes / width).T / scale, (axes * width) * scale[:, None]
     shares, directions = np.linalg.eigh(whiten @ covariance @ whiten.T)
@@ -104,7 +148,7 @@ def normalized_error(deviation: np.ndarray, covariance: np.ndarray) -> float:
     c = np.asarray(covariance, dtype=np.float64)[np.ix_(estimated, estimated)]
     sigma = np.sqrt(np.diag(c))  # metres and radians, in units of their own spread
     correlation = c / np.outer(sigma, sigma)
-    if not len(c) or np.linalg.eigvalsh(correlation)[0] < _SMALLEST_SHARE:
+    if not len(c) or np.linalg.eigvalsh(correlation)[0] < _MIN_SHARE:
         return float("nan")
     e = np.asarray(deviation, dtype=np.float64)[estimated] / sigma
     return float(e @ np.linalg.solve(correlation, e)) / len(estimated)

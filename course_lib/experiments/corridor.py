@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from course_lib.depth_mcl.evaluation import PositionError, nearest_path_error, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
+from course_lib.depth_mcl.likelihood import Weighting
 from course_lib.depth_mcl.sequence import DepthSequence
-from course_lib.depth_mcl.weighting import Weighting
 from course_lib.experiments.recordings import Run, run_sequence
 from course_lib.rendering.scene_map import SceneMap
 

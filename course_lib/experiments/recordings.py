@@ -21,11 +21,11 @@ from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocali
 from course_lib.beyond.tracking import Agreement, TrackStatus, agreement, judge_track
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
+from course_lib.depth_mcl.likelihood import Weighting
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, Estimate, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, Motion
 from course_lib.depth_mcl.sequence import FAR, NEAR, DepthSequence
 from course_lib.depth_mcl.uncertainty import normalized_error
-from course_lib.depth_mcl.weighting import Weighting
 from course_lib.geometry import optical_pose, rotation_to_z_up, state_from_optical_pose
 from course_lib.rendering.renderer import Backend, DepthRenderer
 from course_lib.rendering.scene_map import SceneMap

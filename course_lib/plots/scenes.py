@@ -330,9 +330,9 @@ def _positive(value: float, name: str) -> float:
 
 def _pyvista():
     """PyVista, its windows off the screen; imported late, since it takes a second."""
-    from course_lib.rendering import off_screen  # first: no display is needed then
+    from course_lib.rendering import vtk_backend  # first: no display is needed then
 
-    off_screen.off_screen_window()  # raises OpenGLError with the cure, where VTK itself would crash
+    vtk_backend.off_screen_window()  # raises OpenGLError with the cure, where VTK itself would crash
     import pyvista
 
     return pyvista

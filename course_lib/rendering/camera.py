@@ -47,15 +47,10 @@ class DepthCamera:
             if int(value) != value or value < 1:
                 raise ValueError(f"{name} must be a whole number of pixels, at least 1; got {value!r}")
             object.__setattr__(self, name, int(value))
-        for name in ("fx", "fy", "near", "far"):
+        for name in ("fx", "fy", "near", "far", "cx", "cy"):
             value = float(getattr(self, name))
-            if not (np.isfinite(value) and value > 0):
-                raise ValueError(f"{name} must be positive and finite; got {value!r}")
-            object.__setattr__(self, name, value)
-        for name in ("cx", "cy"):
-            value = float(getattr(self, name))
-            if not np.isfinite(value):
-                raise ValueError(f"{name} must be finite; got {value!r}")
+            if not np.isfinite(value) or (value <= 0 and name not in ("cx", "cy")):
+                raise ValueError(f"{name} must be finite, and positive unless it is cx or cy; got {value!r}")
             object.__setattr__(self, name, value)
         if self.near >= self.far:
             raise ValueError(f"near must be below far; got near={self.near}, far={self.far}")

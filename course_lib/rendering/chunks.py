@@ -1,7 +1,8 @@
-"""The map cut into compact chunks, so that a batch of views draws only what one of its cameras can see.
+"""A map made ready to be drawn: large triangles are cut, and all are sorted into compact chunks.
 
-Leaving out what lies outside every camera's view changes no pixel: a chunk is left out only when its bounding sphere is
-wholly outside one of the five planes of *every* view (four sides and behind), or beyond far.
+A batch of views draws only the chunks that one of its cameras can see. Leaving out what lies outside every camera's
+view changes no pixel: a chunk is left out only when its bounding sphere is wholly outside one of the five planes of
+*every* view (four sides and behind), or beyond far.
 """
 
 from __future__ import annotations
@@ -9,6 +10,68 @@ from __future__ import annotations
 import numpy as np
 
 from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.mesh_file import SceneMapError
+
+# Metres: up to this length of edges OpenGL's depth of a plane seen from 2 m above it is right within half a millimetre.
+MAX_EDGE = 32.0
+# Metres: an edge that is longer is not cut. Such a triangle belongs to no building; `SceneMap.load` refuses it.
+MAX_CUT_EDGE = 20_000.0
+# A map that needs more pieces is refused.
+MAX_PIECES = 5_000_000
+
+
+def cut_large_triangles(
+    vertices: np.ndarray, faces: np.ndarray, max_edge: float = MAX_EDGE
+) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices `(V', 3)` and faces `(F', 3)` of the same surface, no edge longer than `max_edge` metres.
+
+    In float64, before anything becomes float32: a corner 10 km away is off by half a millimetre there, and the plane of
+    its triangle, seen from near, by centimetres. An edge that two triangles share is halved for both at one and the
+    same point, so no gap opens. Where no triangle is large, the same arrays come back. Raises `SceneMapError` above
+    `MAX_PIECES`.
+    """
+    done: list[np.ndarray] = []
+    while True:
+        corners = vertices[faces]
+        edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)  # 01, 12, 20
+        long = (edges > max_edge) & (edges.max(axis=1, keepdims=True) <= MAX_CUT_EDGE)
+        cut = long.any(axis=1)
+        if not cut.any():
+            return vertices, np.concatenate([*done, faces]) if done else faces
+        done.append(faces[~cut])
+        faces, long = faces[cut], long[cut]
+        if 4 * len(faces) + sum(map(len, done)) > MAX_PIECES:
+            raise SceneMapError(
+                f"the map has triangles so large that more than {MAX_PIECES:,} pieces of at most {max_edge:g} m "
+                "would have to be drawn: are its coordinates metres? Remove what does not belong to the building"
+            )
+        vertices, faces = _halved(vertices, faces, long)
+
+
+def _halved(vertices: np.ndarray, faces: np.ndarray, long: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles `faces` cut at the middle of their edges marked `long` `(F, 3)`: each into two, three or four."""
+    edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1), axis=-1)  # (F, 3, 2)
+    unique, index = np.unique(edges[long], axis=0, return_inverse=True)
+    middle = np.full(long.shape, -1)
+    middle[long] = len(vertices) + index.ravel()
+    vertices = np.concatenate([vertices, vertices[unique].mean(axis=1)])
+    pieces = []
+    for count in (1, 2, 3):
+        chosen = long.sum(axis=1) == count
+        if not chosen.any():
+            continue
+        # Turned so that edge 01 is long, and where two are long, 12 as well.
+        first = long[chosen].argmax(axis=1) if count != 2 else (long[chosen].argmin(axis=1) + 1) % 3
+        order = (first[:, None] + np.arange(3)) % 3
+        (a, b, c), (ab, bc, ca) = (np.take_along_axis(x[chosen], order, axis=1).T for x in (faces, middle))
+        rows = {
+            1: [(a, ab, c), (ab, b, c)],
+            2: [(a, ab, c), (ab, b, bc), (ab, bc, c)],
+            3: [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)],
+        }[count]
+        pieces += [np.stack(row, axis=1) for row in rows]
+    return vertices, np.concatenate(pieces).astype(faces.dtype)
+
 
 # Edge of the cubes that triangles are sorted into, metres (chosen: some hundred triangles of a 100,000-triangle map).
 CHUNK_SIZE = 0.5

@@ -12,24 +12,23 @@ def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]
     """Decorator: Numba compiles the function at its first call; threads run it side by side (without Python's lock).
 
     fastmath: what the compiler may take liberties with, all of it or LLVM's flags. Compiled code is kept beside the
-    source or in the user's cache; where neither can be written, every process compiles for itself. So it does where
-    the disk is full, and where what was kept is damaged: neither is a reason to stop in the middle of a filter's run.
+    source or in the user's cache. Where it cannot be kept, or what was kept is damaged, each process compiles anew.
     """
 
     def decorate(function: Callable) -> Callable:
         try:
             fast = njit(nogil=True, fastmath=fastmath, cache=True)(function)
-            fast._cache.load_overload = _or_none(fast._cache.load_overload)
-            fast._cache.save_overload = _or_none(fast._cache.save_overload)
-            return fast
-        except RuntimeError:  # Numba's, where it has no place to keep code in
+        except RuntimeError:  # Numba's, where it has no folder to keep code in
             return njit(nogil=True, fastmath=fastmath)(function)
+        fast._cache.load_overload = _or_none(fast._cache.load_overload)
+        fast._cache.save_overload = _or_none(fast._cache.save_overload)
+        return fast
 
     return decorate
 
 
 def _or_none(step: Callable) -> Callable:
-    """A step of Numba's cache; None, as where nothing is kept, when it fails in whatever way a damaged pickle can."""
+    """A step of Numba's cache that gives None, as where nothing is kept, when it fails: a damaged file, a full disk."""
 
     def tried(*arguments: object) -> object:
         with contextlib.suppress(Exception):

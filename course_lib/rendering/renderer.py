@@ -1,20 +1,22 @@
 """GPU scene simulation (paper 1, 3.3.1): what a depth camera would measure at every particle's pose.
 
-`DepthRenderer` is one door with three rooms behind it. Backend "raster" fills a z-buffer in the course's own compiled
-loops, on every processor (rasterizer.py). Backend "vtk" is the paper's way, for whoever has a graphics card: it draws
+`DepthRenderer` is one door with three rooms behind it. Backend "vtk" is the paper's way, for a graphics card: it draws
 the map once per particle, as tiles of one off-screen window, and reads OpenGL's z-buffer back once (vtk_backend.py).
-Backend "ray" shoots one ray through every pixel centre (ray_backend.py): the reference that tests compare with. All
-take float64 states, subtract the map's anchor before anything becomes float32, and give depth along the optical axis,
-`inf` where nothing between the camera's near and far planes is hit.
+Backend "raster" fills a z-buffer in compiled loops, on every processor (raster.py). Backend "ray" shoots one ray
+through every pixel centre (ray.py): the reference that tests compare with. "auto" is "vtk" on a graphics card, else
+"raster". All take float64 states, subtract the map's anchor before anything becomes float32, and give depth along the
+optical axis, `inf` where nothing between the camera's near and far planes is hit.
 
-Threads may share a renderer. Processes: a forked child may use one that it inherits, unless it is "vtk", which says by
-name that it cannot. Pickled, as "spawn" does it, a renderer takes its map and camera along and opens again when first
-used.
+Threads may share a renderer. A forked child may use one that it inherits, unless it is "vtk", which says by name that
+it cannot. A pickled renderer takes its map and camera along and opens again when first used.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal
 
@@ -22,19 +24,24 @@ import numpy as np
 
 from course_lib.geometry import as_states, is_rotation, optical_pose
 from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.large_triangles import cut_large_triangles
+from course_lib.rendering.chunks import cut_large_triangles
 from course_lib.rendering.scene_map import SceneMap
 
 if TYPE_CHECKING:  # imported when asked for: Numba and VTK take their time, and VTK needs OpenGL's libraries
-    from course_lib.rendering.raster_backend import RasterBackend
-    from course_lib.rendering.ray_backend import RayBackend
+    from course_lib.rendering.raster import RasterBackend
+    from course_lib.rendering.ray import RayBackend
     from course_lib.rendering.vtk_backend import VtkBackend
 
 # Pixels of one off-screen window: 200 tiles of the SR4000, about 80 MB with colour and depth.
 MAX_BATCH_PIXELS = 200 * 176 * 144
 
+# Files in /dev that stand for a graphics card on Linux: most drivers', NVIDIA's, and that of Linux on Windows (WSL).
+CARDS = ("dri/renderD*", "nvidia[0-9]*", "dxg")
 
-Backend = Literal["raster", "vtk", "ray"]
+# Parts of the names under which OpenGL draws on the processor: Mesa's, Apple's, Microsoft's and Google's.
+SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "gdi generic", "basic render", "swiftshader")
+
+Backend = Literal["auto", "vtk", "raster", "ray"]
 
 
 class RendererClosedError(RuntimeError):
@@ -46,12 +53,32 @@ class OpenGLError(RuntimeError):
     do."""
 
 
+def chosen_backend(backend: Backend) -> Backend:
+    """Return `backend`, or what "auto" means on this computer: "vtk" on a graphics card, else "raster"."""
+    return _automatic_backend() if backend == "auto" else backend
+
+
+@cache
+def _automatic_backend() -> Backend:
+    """Decide once in a process. On Linux no window is opened where there is no card; any error means "raster"."""
+    if sys.platform.startswith("linux") and not any(any(Path("/dev").glob(card)) for card in CARDS):
+        return "raster"
+    triangle, camera = SceneMap(np.eye(3), np.array([[0, 1, 2]])), DepthCamera(8, 8, 8.0, 8.0, 3.5, 3.5)
+    try:
+        with DepthRenderer(triangle, camera, "vtk") as trial:
+            name = trial.describe().lower()
+    except Exception:
+        return "raster"
+    return "raster" if any(word in name for word in SOFTWARE) else "vtk"
+
+
 class DepthRenderer:
     """Depth images of a map from any number of poses.
 
     scene_map: triangles in the world. camera: the depth camera, its resolution, and its near and far planes.
-    backend: "raster" (z-buffer), "vtk" (OpenGL's) or "ray" (the reference). exact: draw every triangle of the map;
-    else a large map is drawn with fewer triangles, which lie within centimetres of it (simplification.py; `drawn`).
+    backend: "vtk" (OpenGL's z-buffer), "raster" (a compiled z-buffer), "ray" (the reference), or "auto": "vtk" on a
+    graphics card, else "raster"; the attribute `backend` says which. exact: draw every triangle of the map; else a
+    large map is drawn with fewer triangles, which lie within centimetres of it (simplification.py; `drawn`).
     max_batch_pixels bounds one batch's memory: as many images as fit are drawn at once, at least one.
     A context manager; `close()` frees the window, after which every call raises `RendererClosedError`.
     Raises `OpenGLError` where OpenGL cannot start (backend "vtk"), which is so in a process forked after the first
@@ -62,7 +89,7 @@ class DepthRenderer:
         self,
         scene_map: SceneMap,
         camera: DepthCamera,
-        backend: Backend = "raster",
+        backend: Backend = "auto",
         *,
         exact: bool = False,
         max_batch_pixels: int = MAX_BATCH_PIXELS,
@@ -71,11 +98,17 @@ class DepthRenderer:
             raise ValueError(f"max_batch_pixels must be a whole number, at least 1; got {max_batch_pixels!r}")
         self.scene_map = scene_map
         self.camera = camera
-        self.backend = backend
+        self.backend = chosen_backend(backend)
         self.exact = exact
         self.batch_size = max(1, int(max_batch_pixels) // (camera.width * camera.height))
         self._closed = False
-        self._open_backend = self._new_backend()
+        try:
+            self._open_backend = self._new_backend()
+        except (OpenGLError, ValueError):
+            if backend != "auto" or self.backend == "raster":
+                raise
+            self.backend = "raster"
+            self._open_backend = self._new_backend()
 
     def _new_backend(self) -> RasterBackend | VtkBackend | RayBackend:
         if self.backend == "vtk":
@@ -83,15 +116,15 @@ class DepthRenderer:
 
             return VtkBackend(self.drawn, self.camera, self.batch_size)
         if self.backend == "raster":
-            from course_lib.rendering.raster_backend import RasterBackend
+            from course_lib.rendering.raster import RasterBackend
 
             return RasterBackend(self.drawn, self.camera)
         if self.backend == "ray":
-            from course_lib.rendering.ray_backend import RayBackend
+            from course_lib.rendering.ray import RayBackend
 
             return RayBackend(self.drawn, self.camera)
         raise ValueError(
-            f"backend must be 'raster' (z-buffer), 'vtk' (OpenGL's z-buffer) or 'ray' (ray casting); "
+            "backend must be 'auto', 'vtk' (OpenGL's z-buffer), 'raster' (a compiled z-buffer) or 'ray' (ray casting); "
             f"got {self.backend!r}"
         )
 
@@ -157,17 +190,14 @@ class DepthRenderer:
         return self._backend().describe()
 
     def close(self) -> None:
-        """Frees the window and its memory; closing twice is harmless."""
+        """Free the window and its memory; closing twice is harmless."""
         self._closed = True
         if self._open_backend is not None:
             self._open_backend.close()
             self._open_backend = None
 
     def _backend(self) -> RasterBackend | VtkBackend | RayBackend:
-        """What draws; after a journey to another process it is opened here, at first use.
-
-        Not on arrival, where an error would kill a pool's worker and leave the pool waiting for its answer.
-        """
+        """What draws. After unpickling it is opened at first use, because an error on arrival would hang a pool."""
         if self._closed:
             raise RendererClosedError("this renderer was closed; make a new DepthRenderer(scene_map, camera)")
         backend = self._open_backend

@@ -10,32 +10,18 @@ import numpy as np
 import trimesh
 
 from course_lib.geometry import is_rotation
-from course_lib.rendering.mesh_file import read_mesh
+from course_lib.rendering.mesh_file import SceneMapError, read_mesh
 
-# Below this area (square metres) a triangle has no inside that a pixel centre could hit.
-_DEGENERATE_AREA = 1e-16
-
-# No place on Earth lies farther than this many metres, half its circumference, from where a map could have its zero.
-MAX_COORDINATE = 2e7
-
-# Nor is any part of a building farther than this many metres from its middle.
-MAX_DISTANCE = 5000.0
-
-# A building that is larger than this many metres in all three directions is doubtful; so is a part this far away.
-LARGEST_BUILDING = 200.0
-
-_CURE = "To leave such triangles out: SceneMap.load(path, drop_far=True), or `localize --drop-far`"
-
-# Metres between neighbouring numbers above which a file's single precision is worth a warning.
-COARSE = 1.5e-3
-
+_MIN_AREA = 1e-16  # square metres: a smaller triangle has no inside that a pixel centre could hit
+MAX_COORDINATE = 2e7  # metres, half the Earth's circumference: no map has its zero farther away
+MAX_DISTANCE = 5000.0  # metres: no part of a building lies farther from its middle
+MAX_BUILDING = 200.0  # metres: a map that is larger in all three directions is doubtful; so is a part this far away
+MAX_STEP = 1.5e-3  # metres between neighbouring numbers of a file in single precision; more is worth a warning
 # Metres between the points that coordinates are taken from (`SceneMap.anchor`). Drawn 0.7 km from it a wall is wrong by
 # 1 mm, at 80 m by 0.1 mm.
 _ANCHOR_STEP = 100.0
 
-
-class SceneMapError(ValueError):
-    """A map that cannot be used: unreadable, empty, or with values that are no geometry."""
+_CURE = "To leave such triangles out: SceneMap.load(path, drop_far=True), or `localize --drop-far`"
 
 
 class SceneMapWarning(UserWarning):
@@ -72,8 +58,9 @@ class SceneMap:
                 f"{faces.min()} to {faces.max()}"
             )
         corners = vertices[faces]
-        _require_places_on_earth(corners)
-        keep = trimesh.triangles.area(corners) > _DEGENERATE_AREA
+        if np.abs(corners).max() > MAX_COORDINATE:
+            raise SceneMapError(f"the map reaches beyond {MAX_COORDINATE:g} m: coordinates must be metres. {_CURE}")
+        keep = trimesh.triangles.area(corners) > _MIN_AREA
         if not keep.any():
             raise SceneMapError(f"none of the {len(faces)} triangles has an area")
         self.vertices = vertices
@@ -86,15 +73,15 @@ class SceneMap:
 
     @classmethod
     def load(cls, path: str | Path, drop_far: bool = False) -> SceneMap:
-        """Map from any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
+        """Return the map in any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
 
         drop_far: triangles farther than `MAX_DISTANCE` from the middle of the map are left out; else they are an error.
         Warns (`SceneMapWarning`) of what looks like millimetres, like a stray part, or like coordinates that the file
         holds too coarsely. Raises `FileNotFoundError` where there is no file, `SceneMapError` where it cannot be read,
-        holds no triangles, or fewer than its own header announces (PLY, OFF, STL, GLB; an OBJ file has no header, so
-        one that was cut off at the end of a line goes unnoticed).
+        holds no triangles, or fewer than its own header announces. An OBJ file has no header, so one that was cut off
+        at the end of a line goes unnoticed.
         """
-        vertices, faces = read_mesh(path, SceneMapError)
+        vertices, faces = read_mesh(path)
         try:
             found = cls(vertices, _of_one_building(vertices, faces, drop_far))
         except SceneMapError as error:
@@ -140,24 +127,13 @@ class SceneMap:
         return f"SceneMap({len(self.faces)} triangles, {size[0]:.1f} x {size[1]:.1f} x {size[2]:.1f} m)"
 
 
-def _require_places_on_earth(corners: np.ndarray) -> None:
-    """Raises `SceneMapError` where one of the triangles `(F, 3, 3)` is at no place on Earth."""
-    beyond = (np.abs(corners) > MAX_COORDINATE).any(axis=(1, 2))
-    if beyond.any():
-        first = int(np.argmax(beyond))
-        x, y, z = corners[first][np.abs(corners[first]).max(axis=1).argmax()]
-        raise SceneMapError(
-            f"{int(beyond.sum())} of {len(corners)} triangles lie beyond {MAX_COORDINATE:g} m, where no building is: "
-            f"triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Coordinates must be metres. {_CURE}"
-        )
-
-
 def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) -> np.ndarray:
     """The faces of a file without those that are absurdly far from its middle, the median of all corners.
 
     Raises `SceneMapError`, which names the first of them, unless they are to be dropped.
     """
-    if faces.ndim != 2 or faces.shape[1:] != (3,) or faces.min() < 0 or faces.max() >= len(vertices):
+    shapes = np.shape(vertices)[1:], np.shape(faces)[1:]
+    if shapes != ((3,), (3,)) or not len(faces) or faces.min() < 0 or faces.max() >= len(vertices):
         return faces  # the map itself says what is wrong
     corners = vertices[faces]
     with np.errstate(invalid="ignore", over="ignore"):
@@ -179,25 +155,25 @@ def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) ->
 
 
 def _doubts(scene_map: SceneMap) -> Iterator[str]:
-    """What about a map that can be used looks as if it were not meant."""
-    vertices, corners = scene_map.vertices, scene_map.vertices[scene_map.faces]
+    """Why a map that can be used looks as if it were not meant."""
+    corners = scene_map.vertices[scene_map.faces]
     size = scene_map.bounds[1] - scene_map.bounds[0]
     told = f"{size[0]:,.0f} x {size[1]:,.0f} x {size[2]:,.0f} m"
-    if size.min() > LARGEST_BUILDING:
+    if size.min() > MAX_BUILDING:
         yield f"the map is {told} large: are these millimetres? Coordinates must be metres"
     middles = corners.mean(axis=1)
     low, high = np.percentile(middles, (1, 99), axis=0)
     most = np.linalg.norm(high - low)
-    if np.linalg.norm(size) > max(10 * most, LARGEST_BUILDING):
+    if np.linalg.norm(size) > max(10 * most, MAX_BUILDING):
         away = np.linalg.norm(middles - scene_map.origin, axis=1)
         x, y, z = middles[away.argmax()]
         yield (
             f"the map is {told} large, but 98 % of its triangles lie within {most:,.0f} m: triangle {away.argmax()} at "
             f"({x:g}, {y:g}, {z:g}) is {away.max():,.0f} m from the middle. Does it belong to the building?"
         )
-    step = float(np.spacing(np.float32(np.abs(vertices).max())))
-    if step > COARSE and np.array_equal(vertices, vertices.astype(np.float32)):
+    step = float(np.spacing(np.float32(np.abs(corners).max())))
+    if step > MAX_STEP and np.array_equal(corners, corners.astype(np.float32)):
         yield (
-            f"coordinates of {np.abs(vertices).max():,.0f} m in single precision have steps of {step * 1000:g} mm: "
+            f"coordinates of {np.abs(corners).max():,.0f} m in single precision have steps of {step * 1000:g} mm: "
             "move the map's zero into the building before saving it"
         )

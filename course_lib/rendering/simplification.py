@@ -29,14 +29,14 @@ from course_lib.rendering.scene_map import SceneMap
 TOLERANCE = 0.015
 WITHIN_PERCENT = 99
 # A smaller map is drawn as it is: there is nothing to gain.
-LEAST_TRIANGLES = 20_000
+MIN_TRIANGLES = 20_000
 # Quadric errors (square metres, weighed by areas) at which the merging of edges stops, one after the other.
 _QUADRIC_ERRORS = (1e-8, 1e-7, 3e-7, 6e-7, 1e-6, 2e-6, 4e-6, 8e-6, 2e-5, 5e-5)
 _CHECKED_VERTICES = 20_000
 # Below, nobody waits long enough to be told why; a million took 16 s on one core of a server.
 QUICK_TRIANGLES = 300_000
 _SECONDS_A_TRIANGLE = 16e-6
-_KEEP_AT_LEAST = 0.01  # of the triangles: VTK wants a number
+_MIN_SHARE = 0.01  # of the triangles: VTK wants a number
 
 
 class LargeMapWarning(UserWarning):
@@ -45,14 +45,15 @@ class LargeMapWarning(UserWarning):
 
 @lru_cache(maxsize=4)
 def simplified(scene_map: SceneMap, tolerance: float = TOLERANCE) -> SceneMap:
-    """The map with fewer triangles: 99 % of its vertices are within `tolerance` metres of them; small maps as they are.
+    """Return the map with fewer triangles: 99 % of its vertices lie within `tolerance` metres of them.
 
+    A small map comes back as it is.
     The same for the same map, in every process. Warns (`LargeMapWarning`) before a wait of many seconds.
     Raises `ValueError` for a tolerance that is not positive and finite.
     """
     if not (np.isfinite(tolerance) and tolerance > 0):
         raise ValueError(f"tolerance must be a positive number of metres; got {tolerance}")
-    if len(scene_map) < LEAST_TRIANGLES:
+    if len(scene_map) < MIN_TRIANGLES:
         return scene_map
     path = _cache_path(scene_map, tolerance)
     found = _read(path)
@@ -77,7 +78,7 @@ def _simplify(scene_map: SceneMap, tolerance: float) -> SceneMap:
     for error in _QUADRIC_ERRORS:
         decimation = vtkQuadricDecimation()
         decimation.SetInputData(left)
-        decimation.SetTargetReduction(1 - _KEEP_AT_LEAST)
+        decimation.SetTargetReduction(1 - _MIN_SHARE)
         decimation.SetMaximumError(error)
         decimation.Update()
         fewer = decimation.GetOutput()

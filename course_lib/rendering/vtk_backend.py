@@ -1,29 +1,47 @@
 """Depth images by VTK's z-buffer: every particle's view is a tile of one off-screen window, read back once.
 
-One window lives as long as the renderer. Tile k has a vtkRenderer of its own (a viewport and a camera); all share one
-actor, the map. The colour of a pixel is never looked at. Threads take turns with the window (`_drawing`); processes do
-not share it (off_screen.py).
+Tile k has a vtkRenderer of its own (a viewport and a camera); all share one actor, the map. The colour of a pixel is
+never looked at. Threads take turns with the window (`_drawing`).
+
+After a fork the child has OpenGL's memory without its threads, and whatever it asks of OpenGL waits for them for ever:
+to draw, to open another window, even to free the one it inherited. So a child never touches the windows of its parent,
+and is refused one of its own.
 """
 
 from __future__ import annotations
 
 import os
+import sys
 import threading
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
+
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.chunks import MeshChunks
+from course_lib.rendering.renderer import OpenGLError, RendererClosedError
+from course_lib.rendering.scene_map import SceneMap
+
+if sys.platform.startswith("linux"):
+    # Before VTK is imported for the first time: no display is needed. An empty value would crash VTK.
+    os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW") or "vtkEGLRenderWindow"
+    # Mesa keeps its compiled shaders in a file that it maps into memory: where the disk of the user's cache is full, it
+    # ends the process (SIGBUS). Without it the first image takes as long as before.
+    os.environ.setdefault("MESA_SHADER_CACHE_DISABLE", "true")
+
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - registers the OpenGL classes behind the names below
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkLogger, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.chunks import MeshChunks
-from course_lib.rendering.off_screen import CURE, off_screen_window, require_own_process
-from course_lib.rendering.renderer import OpenGLError, RendererClosedError
-from course_lib.rendering.scene_map import SceneMap
+CURE = (
+    "On Debian or Ubuntu: apt-get install libegl1 libgl1-mesa-dri libgl1 (`python3 course.py check` tells what is "
+    'missing). Without OpenGL, DepthRenderer(..., backend="raster") gives the same images: leave out --backend vtk'
+)
 
 # The least that OpenGL 4.1 promises for a side of a framebuffer is 16,384 pixels; half of it is promised everywhere.
 MAX_WINDOW_SIDE = 8192
@@ -33,6 +51,48 @@ _NO_SHIFT_AND_SCALE = 0
 
 # Each tile costs VTK some 40 kB, however small its image, and is kept for the next frame.
 MAX_TILES = 1000
+
+_windows: weakref.WeakSet[vtkRenderWindow] = weakref.WeakSet()
+_process_of_the_first_window: int | None = None
+
+
+def off_screen_window() -> vtkRenderWindow:
+    """Return a new window off the screen, without multisampling, not yet of any size.
+
+    Raises `OpenGLError` where OpenGL cannot start, and in a process forked from one that had opened a window.
+    """
+    global _process_of_the_first_window
+    if _process_of_the_first_window is None:
+        _process_of_the_first_window = os.getpid()
+    _require_own_process(_process_of_the_first_window)
+    window = vtkRenderWindow()
+    if window.GetClassName() == "vtkOSOpenGLRenderWindow":
+        # VTK's last resort when EGL fails; drawing with it crashes where the OSMesa library is missing.
+        raise OpenGLError(f"OpenGL cannot start without a display (EGL failed). {CURE}")
+    window.SetOffScreenRendering(True)
+    window.SetMultiSamples(0)
+    _windows.add(window)
+    return window
+
+
+def _require_own_process(process: int) -> None:
+    """Raise `OpenGLError` unless this is the process that opened the window."""
+    if process != os.getpid():
+        raise OpenGLError(
+            f"OpenGL was started in process {process}, and this is process {os.getpid()}, forked from it: a fork "
+            'leaves the threads of OpenGL behind, and drawing would hang. Start workers with "spawn" or "forkserver" '
+            '(multiprocessing.get_context("spawn")), or fork before the first renderer, or use backend="raster"'
+        )
+
+
+def _leave_windows_to_the_parent() -> None:
+    """One reference too many, so that nothing in this forked child ever frees a window: that would hang as well."""
+    for window in _windows:
+        window.Register(None)
+
+
+if hasattr(os, "register_at_fork"):  # not on Windows, which cannot fork
+    os.register_at_fork(after_in_child=_leave_windows_to_the_parent)
 
 
 class VtkBackend:
@@ -70,7 +130,7 @@ class VtkBackend:
         self._open_window()
 
     def render(self, poses: np.ndarray, out: np.ndarray) -> None:
-        """Fills `out` `(N, H, W)` with the depth seen from camera poses `(N, 4, 4)`."""
+        """Fill `out` `(N, H, W)` with the depth seen from camera poses `(N, 4, 4)`."""
         for start in range(0, len(poses), self._n_tiles):
             batch = slice(start, start + self._n_tiles)
             with self._drawing():
@@ -112,7 +172,7 @@ class VtkBackend:
             return self._window.GetClassName()
 
     def close(self) -> None:
-        """Frees the window with its framebuffers; after a fork it stays the parent's."""
+        """Free the window with its framebuffers; after a fork it stays the parent's."""
         if self._process != os.getpid():
             return
         with self._turn:
@@ -131,7 +191,7 @@ class VtkBackend:
         OpenGL draws in the thread that holds the window's context. A thread that did not hold it would draw nothing and
         read the depth of an earlier image, without an error; so each takes the context and gives it back.
         """
-        require_own_process(self._process)  # before the lock: a fork copies it as it is, held or not
+        _require_own_process(self._process)  # before the lock: a fork copies it as it is, held or not
         with self._turn:
             if self._window is None:
                 raise RendererClosedError("this renderer was closed by another thread while it drew")
@@ -142,13 +202,12 @@ class VtkBackend:
                 self._window.ReleaseCurrent()
 
     def _open_window(self) -> None:
-        # VTK reports on the console what the error below says better.
+        # VTK reports on the console what the errors here say better.
         verbosity = vtkLogger.GetCurrentVerbosityCutoff()
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
         try:
             self._window = window = off_screen_window()
             self._resize_window(1)
-            self._points_tile.SetViewport(*self._viewport(0))
             self._set_projection(self._points_tile)
             _place(self._points_tile.GetActiveCamera(), np.eye(3), np.zeros(3))
             window.AddRenderer(self._points_tile)
@@ -174,7 +233,7 @@ class VtkBackend:
         return column / columns, row / rows, (column + 1) / columns, (row + 1) / rows
 
     def _prepare_tiles(self, count: int) -> None:
-        """Makes the window and its tiles large and many enough; they only ever grow."""
+        """Make the window and its tiles large and many enough; they only ever grow."""
         rows = -(-count // self._columns)
         if rows > self._window_rows:
             self._resize_window(rows)
@@ -195,7 +254,7 @@ class VtkBackend:
         vtk_camera.SetClippingRange(self._drawn.near, self._drawn.far)
 
     def _upload_vertices(self, anchor: np.ndarray) -> None:
-        """Gives OpenGL the map's vertices, float32, relative to `anchor` `(3,)`."""
+        """Give OpenGL the map's vertices, float32, relative to `anchor` `(3,)`."""
         points = vtkPoints()
         points.SetData(numpy_to_vtk((self._scene_map.vertices - anchor).astype(np.float32), deep=True))
         self._map_data.SetPoints(points)
@@ -203,7 +262,7 @@ class VtkBackend:
         self._anchor = anchor
 
     def _draw_only(self, poses: np.ndarray) -> None:
-        """Puts the triangles that one of the views may see into the map's actor; uploads only what is new."""
+        """Put the triangles that one of the views may see into the map's actor; uploads only what is new."""
         visible = self._chunks.visible(self._drawn, poses)
         if (visible & ~self._drawn_chunks).any() or 2 * visible.sum() < self._drawn_chunks.sum():
             cells = vtkCellArray()
@@ -214,7 +273,7 @@ class VtkBackend:
             self._drawn_chunks = visible
 
     def _draw_and_read(self, tiles: list[vtkRenderer], out: np.ndarray) -> None:
-        """Draws just these tiles and fills `out` `(n, H, W)` from them."""
+        """Draw just these tiles and fill `out` `(n, H, W)` from them."""
         try:
             for tile in tiles:
                 tile.DrawOn()
@@ -226,7 +285,7 @@ class VtkBackend:
                 tile.DrawOff()
 
     def _read_tiles(self, out: np.ndarray) -> None:
-        """Fills `out` `(n, H, W)` from the first n tiles: the window's z-buffer read once, cut up and linearized."""
+        """Fill `out` `(n, H, W)` from the first n tiles: the window's z-buffer read once, cut up and linearized."""
         height, width = self.camera.shape
         columns, rows = self._columns, -(-len(out) // self._columns)
         self._window.GetZbufferData(0, 0, columns * width - 1, rows * height - 1, self._buffer)

@@ -9,8 +9,8 @@ import pytest
 from course_lib.cli import main
 from course_lib.commands.localize_report import believed
 from course_lib.commands.localize_start import join_words
-from course_lib.depth_mcl.poses import SequenceError, read_tum
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
+from course_lib.depth_mcl.sequence_files import SequenceError, read_tum
 from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 

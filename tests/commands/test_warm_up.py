@@ -1,32 +1,32 @@
 """What a set-up compiles is what the filter then runs: a loop with other types would be compiled again, for seconds."""
 
+import importlib
+
 import numpy as np
 import pytest
 
 from course_lib.beyond import AnnealedLocalizer
 from course_lib.beyond.six_dof import compiled_refinement
 from course_lib.commands.warm_up import compile_loops, simplify_corridor
-from course_lib.depth_mcl import (
-    DepthCamera,
-    DepthRenderer,
-    MonteCarloLocalizer,
-    SceneMap,
-    compiled_likelihood,
-)
-from course_lib.rendering import rasterizer, simplification
+from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer, SceneMap
+from course_lib.rendering import raster, simplification
+
+LIKELIHOOD = importlib.import_module("course_lib.depth_mcl.likelihood")  # the package's name for it is the function
+LOOPS = ((raster, "draw_views"), (LIKELIHOOD, "_sums"), (compiled_refinement, "_sums"))
 
 
 def compiled_forms():
     """How many forms, one for each set of types, of each compiled loop there are."""
-    modules = (rasterizer, compiled_likelihood, compiled_refinement)
-    loops = {(m.__name__, name): loop for m in modules for name, loop in vars(m).items() if hasattr(loop, "signatures")}
+    loops = {
+        (m.__name__, name): loop for m, _ in LOOPS for name, loop in vars(m).items() if hasattr(loop, "signatures")
+    }
     return {name: len(loop.signatures) for name, loop in loops.items()}
 
 
 def test_the_filter_compiles_nothing_that_the_set_up_did_not():
     compile_loops()
     before = compiled_forms()
-    for module, loop in ((rasterizer, "draw_views"), (compiled_likelihood, "_sums"), (compiled_refinement, "_sums")):
+    for module, loop in LOOPS:
         assert before[module.__name__, loop]
     vertices = np.array([[2.0, -5, -5], [-2, 5, -5], [2, 0, 5]])
     camera = DepthCamera.from_fov(16, 12, 60.0, 45.0)

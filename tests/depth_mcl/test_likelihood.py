@@ -17,8 +17,14 @@ from course_lib.depth_mcl.fallon import (
     normalized_disparity,
     weights_from_log_likelihood,
 )
-from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
-from course_lib.depth_mcl.weighting import paper_weighting
+from course_lib.depth_mcl.likelihood import (
+    DepthImageError,
+    compiled_likelihood,
+    likelihood,
+    normalize_likelihood,
+    paper_weighting,
+    weights,
+)
 
 
 def weigh(rule, measured, simulated):
@@ -29,45 +35,62 @@ def weigh(rule, measured, simulated):
 finite_likelihoods = arrays(float, st.integers(1, 60), elements=st.floats(-1e6, 1e6))
 
 
-def test_perfect_agreement_counts_every_pixel():
-    image = np.full((4, 5), 2.0)
-    assert likelihood(image, image[None]) == pytest.approx([20])
+@pytest.fixture(params=[likelihood, compiled_likelihood], ids=["eq. (8) as one reads it", "its compiled twin"])
+def eq_8(request):
+    return request.param
 
 
-def test_a_difference_of_alpha_counts_half():
-    assert likelihood(np.full((1, 1), 2.0), np.full((1, 1, 1), 2.1), alpha=0.1) == pytest.approx([0.5])
-
-
-def test_the_sum_is_the_papers_sum(rng):
+def test_the_sum_is_the_papers_sum(eq_8, rng):
     z, simulated = rng.uniform(1, 5, (6, 7)), rng.uniform(1, 5, (9, 6, 7))
     difference = np.abs(z - simulated)
-    expected = (1 - difference / (0.1 + difference)).sum(axis=(1, 2))
-    assert likelihood(z, simulated, 0.1) == pytest.approx(expected, rel=1e-5)
-
-
-def test_pixels_that_the_camera_did_not_measure_are_left_out_for_all_particles_alike(rng):
-    z, simulated = rng.uniform(1, 5, (6, 7)), rng.uniform(1, 5, (3, 6, 7))
-    unmeasured = rng.random((6, 7)) < 0.4
-    z[unmeasured] = np.nan
-    elsewhere = simulated.copy()
-    elsewhere[:, unmeasured] = rng.uniform(1, 5, (3, unmeasured.sum()))
-    elsewhere[1, unmeasured] = np.inf
-    assert np.array_equal(likelihood(z, simulated), likelihood(z, elsewhere))
-    assert np.isfinite(likelihood(z, simulated)).all()
+    assert eq_8(z, simulated, 0.1) == pytest.approx((1 - difference / (0.1 + difference)).sum(axis=(1, 2)), rel=1e-5)
+    assert eq_8(z, z[None] + 0.1, 0.1) == pytest.approx([21.0], rel=1e-5)  # a difference of alpha counts half
 
 
 @pytest.mark.parametrize("no_return", [np.nan, 0.0, np.inf, -1.0])
-def test_every_mark_for_no_return_is_left_out(no_return):
-    z = np.array([[2.0, no_return]])
-    assert likelihood(z, np.array([[[2.0, 7.0]]])) == pytest.approx([1.0])
+def test_pixels_that_the_camera_did_not_measure_are_left_out_for_all_particles_alike(eq_8, no_return, rng):
+    z, simulated = rng.uniform(1, 5, (6, 7)), rng.uniform(1, 5, (3, 6, 7))
+    unmeasured = rng.random((6, 7)) < 0.4
+    z[unmeasured] = no_return
+    elsewhere = simulated.copy()
+    elsewhere[:, unmeasured] = rng.uniform(1, 5, (3, unmeasured.sum()))
+    elsewhere[1, unmeasured] = np.inf
+    assert np.array_equal(eq_8(z, simulated), eq_8(z, elsewhere))
+    assert np.isfinite(eq_8(z, simulated)).all()
+    assert eq_8(np.full((2, 3), no_return), np.ones((4, 2, 3))).tolist() == [0.0] * 4
 
 
-def test_a_simulated_miss_contributes_the_limit_of_the_term_and_stays_in_the_count():
+def test_a_simulated_miss_contributes_the_limit_of_the_term_and_stays_in_the_count(eq_8):
     z = np.full((1, 3), 2.0)
-    simulated = np.array([[[2.0, 2.0, np.inf]], [[2.0, 2.0, 1e9]]])
-    at_miss, far_away = likelihood(z, simulated)
+    at_miss, far_away = eq_8(z, np.array([[[2.0, 2.0, np.inf]], [[2.0, 2.0, 1e9]]]))
     assert at_miss == 2.0
     assert far_away == pytest.approx(at_miss, abs=1e-6)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (3, 7), (144, 176)])
+@pytest.mark.parametrize("alpha", [0.01, 0.1, 3.0])
+def test_the_compiled_twin_gives_the_same_numbers(shape, alpha, rng):
+    measured = rng.uniform(0.5, 9, shape)
+    measured[rng.random(shape) < 0.2] = np.nan
+    simulated = np.abs(np.nan_to_num(measured, nan=5.0) + rng.normal(0, 0.3, (12, *shape))).astype(np.float32)
+    simulated[rng.random(simulated.shape) < 0.1] = np.inf
+    expected = likelihood(measured, simulated, alpha)
+    assert compiled_likelihood(measured, simulated, alpha) == pytest.approx(expected, rel=2e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("measured", "simulated", "alpha", "said"),
+    [
+        (np.ones((2, 3)), np.ones((4, 3, 2)), 0.1, "shape"),
+        (np.ones(6), np.ones((1, 6)), 0.1, "shape"),
+        (np.ones((2, 3)), np.full((4, 2, 3), np.nan), 0.1, "inf"),
+        *((np.ones((2, 3)), np.ones((4, 2, 3)), alpha, "alpha") for alpha in (0.0, -0.1, np.nan, np.inf)),
+    ],
+)
+def test_what_eq_8_cannot_compare_is_named(eq_8, measured, simulated, alpha, said):
+    with pytest.raises(ValueError, match=said) as told:
+        eq_8(measured, simulated, alpha)
+    assert isinstance(told.value, DepthImageError) == (said != "alpha")
 
 
 def test_looking_into_a_hole_of_the_map_does_not_pay():
@@ -82,18 +105,6 @@ def test_looking_into_a_hole_of_the_map_does_not_pay():
     assert w == pytest.approx([1, 0])
 
 
-@pytest.mark.parametrize("alpha", [0.0, -0.1, np.nan, np.inf])
-def test_a_bad_alpha_is_named(alpha):
-    with pytest.raises(ValueError, match="alpha"):
-        likelihood(np.ones((2, 2)), np.ones((1, 2, 2)), alpha)
-
-
-@pytest.mark.parametrize("shapes", [((2, 3), (1, 3, 2)), ((2, 3), (2, 3)), ((6,), (1, 6))])
-def test_images_of_other_sizes_are_named(shapes):
-    with pytest.raises(DepthImageError, match="shape"):
-        likelihood(np.ones(shapes[0]), np.ones(shapes[1]))
-
-
 @given(finite_likelihoods)
 def test_normalized_likelihoods_span_zero_to_one(values):
     normalized = normalize_likelihood(values)
@@ -104,10 +115,6 @@ def test_normalized_likelihoods_span_zero_to_one(values):
     ) < len(np.unique(values))
 
 
-def test_likelihoods_that_all_agree_give_equal_weights_not_nan():
-    assert weights(normalize_likelihood(np.full(8, 123.4))) == pytest.approx(np.full(8, 1 / 8))
-
-
 @given(finite_likelihoods, st.floats(1e-3, 10))
 def test_weights_sum_to_one_and_the_best_particle_weighs_most(values, beta):
     w = weights(normalize_likelihood(values), beta)
@@ -116,27 +123,23 @@ def test_weights_sum_to_one_and_the_best_particle_weighs_most(values, beta):
     assert w[values.argmax()] == w.max()
 
 
+def test_weights_are_never_nan_and_what_is_no_number_is_refused():
+    """Likelihoods that all agree (0/0) give equal weights; a tiny beta leaves the best particle all the weight."""
+    assert weights(normalize_likelihood(np.full(8, 123.4))) == pytest.approx(np.full(8, 1 / 8))
+    assert weights(np.array([0.0, 0.5]), 1e-200) == pytest.approx([0, 1])
+    assert weights_from_log_likelihood([-1e5, -1e5 - np.log(3)]) == pytest.approx([0.75, 0.25])
+    for beta in (0, -1, np.nan):
+        with pytest.raises(ValueError, match="beta"):
+            weights(np.array([0.0, 1.0]), beta)
+    for values in ([], [np.nan, 1.0], [[1.0]]):
+        with pytest.raises(ValueError, match="likelihoods"):
+            normalize_likelihood(np.asarray(values))
+
+
 def test_the_weight_is_the_papers_formula():
     normalized = np.array([0.0, 0.985, 0.99, 1.0])
     expected = np.exp(-((normalized - 1) ** 2) / 0.01**2)
     assert weights(normalized, 0.01) == pytest.approx(expected / expected.sum())
-
-
-def test_the_order_of_particles_does_not_matter(rng):
-    values, order = rng.random(50), rng.permutation(50)
-    assert weights(normalize_likelihood(values))[order] == pytest.approx(weights(normalize_likelihood(values[order])))
-
-
-def test_a_simulated_nan_is_named_by_every_rule():
-    measured, simulated = np.full((1, 2), 2.0), np.array([[[2.0, np.nan]]])
-    for rule in (likelihood, depth_log_likelihood, disparity_log_likelihood):
-        with pytest.raises(DepthImageError, match="inf"):
-            rule(measured, simulated)
-
-
-def test_a_tiny_beta_leaves_the_best_particle_all_the_weight():
-    assert weights(np.array([0.0, 0.5, 1.0]), 1e-200) == pytest.approx([0, 0, 1])
-    assert weights(np.array([0.0, 0.5]), 1e-200) == pytest.approx([0, 1])
 
 
 def test_fallons_score_is_a_mean_over_the_pixels_that_it_compares():
@@ -154,18 +157,6 @@ def test_weighting_rules_can_be_sent_to_another_process():
         assert np.array_equal(weigh(again, z, simulated), weigh(rule, z, simulated))
 
 
-@pytest.mark.parametrize("beta", [0, -1, np.nan])
-def test_a_bad_beta_is_named(beta):
-    with pytest.raises(ValueError, match="beta"):
-        weights(np.array([0.0, 1.0]), beta)
-
-
-@pytest.mark.parametrize("values", [[], [np.nan, 1.0], [np.inf, 1.0], [[1.0]]])
-def test_likelihoods_without_a_number_are_refused(values):
-    with pytest.raises(ValueError, match="likelihoods"):
-        normalize_likelihood(np.asarray(values))
-
-
 def test_fallons_half_normal_is_a_density_on_zero_to_three_metres():
     def density(x):
         log_value = depth_log_likelihood(np.full((1, 1), 4.0), np.full((1, 1, 1), 4.0 + x))[0]
@@ -173,12 +164,9 @@ def test_fallons_half_normal_is_a_density_on_zero_to_three_metres():
 
     assert quad(density, 0, 3, points=[0.5, 1])[0] == pytest.approx(1, abs=1e-6)
     assert density(0.0) == pytest.approx(0.99 / 3 + 0.01 * 2 / (0.5 * np.sqrt(2 * np.pi)))
-    assert density(5.0) == pytest.approx(0.33)
-
-
-def test_fallons_miss_gets_the_uniform_part_alone():
-    z = np.full((1, 1), 2.0)
-    assert depth_log_likelihood(z, np.full((1, 1, 1), np.inf))[0] == pytest.approx(np.log(0.33))
+    assert density(5.0) == density(np.inf) == pytest.approx(0.33)  # a miss gets the uniform part alone
+    with pytest.raises(ValueError, match="disparity"):
+        fallon_weighting("squares")
 
 
 def test_normalized_disparity_runs_from_near_to_far():
@@ -204,10 +192,6 @@ def test_fallons_disparity_form_masks_measurements_outside_its_planes(outside):
     assert pair == pytest.approx(alone)
 
 
-def test_log_likelihoods_far_below_zero_still_give_weights():
-    assert weights_from_log_likelihood([-1e5, -1e5 - np.log(3)]) == pytest.approx([0.75, 0.25])
-
-
 def test_fallons_sum_collapses_onto_one_particle_at_full_size_only(rng):
     """The same difference between two particles: 84 times the terms, the 84th power of the weights' ratio."""
     near, far = 2.0, 2.5
@@ -215,8 +199,3 @@ def test_fallons_sum_collapses_onto_one_particle_at_full_size_only(rng):
         z = np.full(size, near)
         w = weigh(fallon_weighting("depth"), z, np.stack([z, np.full(size, far)]))
         assert least <= w[0] <= most
-
-
-def test_an_unknown_form_is_named():
-    with pytest.raises(ValueError, match="disparity"):
-        fallon_weighting("squares")

@@ -7,14 +7,13 @@ import pytest
 
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
-from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
+from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, paper_weighting, weights
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning
-from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES
-from course_lib.depth_mcl.particle_filter import resample
-from course_lib.depth_mcl.weighting import paper_weighting
+from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, propagate
+from course_lib.depth_mcl.particle_filter import initial_particles, resample, weighted_mean_state
 from course_lib.geometry import wrap_angle
 from course_lib.rendering.renderer import DepthRenderer
-from tests.rendering.shapes import SMALL, random_triangles, room, room_depth
+from tests.rendering.shapes import SMALL, room, room_depth
 
 START = np.array([0.5, -0.3, 0.2, 0.0, 0.0, 0.4])
 SIGMA = [0.05, 0.05, 0, 0, 0, 0.03]
@@ -71,36 +70,22 @@ def test_a_camera_that_is_carried_sideways_needs_as_much_noise_to_the_left_as_fo
     assert least < np.hypot(*(estimates[-1].state[:2] - true[-1, :2])) < most
 
 
-@pytest.mark.parametrize("motion", [BODY_AXES, WORLD_AXES])
-def test_components_without_noise_stay_at_their_start(renderer, motion):
-    tilted = START + np.array([0, 0, 0, 0.02, -0.1, 0])
-    localizer = MonteCarloLocalizer(renderer, 50, SIGMA, motion=motion)
-    localizer.initialize(tilted)
-    estimates = [localizer.step(room_depth(SMALL, s)[0]) for s in walk(3)]
-    assert estimates[-1].state[2:5] == pytest.approx(tilted[2:5])
-    assert (estimates[-1].state[[0, 1, 5]] != tilted[[0, 1, 5]]).all()
-
-
-def test_likelihood_is_greatest_at_the_true_pose(rng):
-    with DepthRenderer(random_triangles(300, rng), SMALL, "vtk") as renderer:
-        true = np.array([0.1, 0.2, -0.3, 0.1, 0.05, 1.0])
-        off = true + np.concatenate([s * d * np.eye(6) for s in (-1, 1) for d in (0.03, 0.1)])
-        measured = renderer.render(true)[0]
-        l = likelihood(np.where(np.isinf(measured), np.nan, measured), renderer.render(np.vstack([true, off])))  # noqa: E741
-    assert l.argmax() == 0
-
-
-def test_moving_world_and_particles_together_changes_nothing():
-    shift, true, estimates = np.array([300.0, -200.0, 50.0]), walk(12), []
-    for offset in (np.zeros(3), shift):
-        with DepthRenderer(room(offset=offset), SMALL, "vtk") as renderer:
-            localizer = MonteCarloLocalizer(renderer, 100, SIGMA, seed=3)
-            localizer.initialize(START + np.array([*offset, 0, 0, 0]))
-            for state in true:
-                estimate = localizer.step(room_depth(SMALL, state)[0])
-            estimates.append(estimate.state)
-    assert estimates[1] - [*shift, 0, 0, 0] == pytest.approx(estimates[0], abs=1e-4)
-    assert estimates[0][:2] == pytest.approx(true[-1, :2], abs=0.15)  # the walk is half a metre long
+@pytest.mark.parametrize("scheme", ["systematic", "stratified", "multinomial", "residual"])
+def test_a_step_is_figure_1_one_equation_after_the_other(renderer, scheme):
+    """Eq. (5), then (6) and (7), (8), (9) to (11), (12), and 3.4, each by its own function."""
+    depth = room_depth(SMALL, walk(1)[0])[0]
+    localizer = MonteCarloLocalizer(renderer, 40, SIGMA, 0.5, 0.3, seed=5, motion=WORLD_AXES, resampling=scheme)
+    localizer.initialize(START)
+    estimate = localizer.step(depth)
+    rng = np.random.default_rng(5)
+    particles = propagate(initial_particles(START, 40), SIGMA, rng)
+    values = likelihood(renderer.render_points(SMALL.points(depth)), renderer.render(particles), 0.5)
+    w = weights(normalize_likelihood(values), 0.3)
+    assert np.array_equal(estimate.particles, particles)
+    assert (particles[:, 2:5] == START[2:5]).all()  # what has no noise stays at its start
+    assert estimate.weights == pytest.approx(w, rel=1e-4)
+    assert estimate.state == pytest.approx(weighted_mean_state(particles, w), abs=1e-6)
+    assert np.array_equal(localizer.particles, particles[resample(estimate.weights, rng, scheme)])
 
 
 def test_the_same_seed_gives_the_same_bytes_and_another_seed_does_not(renderer):
@@ -184,14 +169,6 @@ def test_the_covariance_is_that_of_the_weighted_particles_across_the_wrap_too(re
     assert estimate.covariance == pytest.approx(expected, rel=1e-3, abs=1e-7)
 
 
-def test_alpha_and_beta_reach_the_weights(renderer):
-    localizer = MonteCarloLocalizer(renderer, 40, SIGMA, alpha=0.5, beta=0.3)
-    (estimate,) = run(localizer, walk(1))
-    measured = renderer.render_points(SMALL.points(room_depth(SMALL, walk(1)[0])[0]))
-    values = likelihood(measured, renderer.render(estimate.particles), 0.5)
-    assert estimate.weights == pytest.approx(weights(normalize_likelihood(values), 0.3), rel=1e-4)
-
-
 @pytest.mark.parametrize("weighting", [None, fallon_weighting("depth")])
 def test_particles_that_are_rendered_in_batches_are_weighed_together(weighting):
     """Seven images a batch, forty particles: nothing changes but the memory that it takes."""
@@ -202,34 +179,6 @@ def test_particles_that_are_rendered_in_batches_are_weighed_together(weighting):
             estimates += run(MonteCarloLocalizer(renderer, 40, SIGMA, seed=3, weighting=weighting), walk(1))
     assert np.array_equal(estimates[0].weights, estimates[1].weights)
     assert estimates[0].score == estimates[1].score
-
-
-@pytest.mark.parametrize("scheme", ["systematic", "stratified", "multinomial", "residual"])
-def test_the_particles_that_live_on_are_those_that_the_scheme_draws(renderer, scheme):
-    localizer = MonteCarloLocalizer(renderer, 40, SIGMA, seed=5, resampling=scheme, weighting=by_rank)
-    (estimate,) = run(localizer, walk(1))
-    rng = np.random.default_rng(5)
-    rng.standard_normal((40, 6))  # the system noise came first
-    assert np.array_equal(localizer.particles, estimate.particles[resample(estimate.weights, rng, scheme)])
-
-
-@pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
-@pytest.mark.parametrize("depth", [SMALL.near / 2, SMALL.far + 1])
-def test_what_the_views_cannot_show_is_no_measurement(renderer, depth):
-    """The measured image goes through the camera's near and far planes as the simulated ones do."""
-    localizer = MonteCarloLocalizer(renderer, 10, SIGMA)
-    localizer.initialize(START)
-    assert localizer.step(np.full(SMALL.shape, depth)).status == "no measurement"
-
-
-def test_particles_that_all_miss_the_map_keep_equal_weights(renderer):
-    """All likelihoods are zero, hence equal: nothing is known, nothing is NaN."""
-    localizer = MonteCarloLocalizer(renderer, 40, [0] * 6)
-    localizer.initialize([3.9, 0, 0, 0, 0, 0])  # outside, looking away
-    estimate = localizer.step(np.full(SMALL.shape, 2.0))
-    assert estimate.weights == pytest.approx(np.full(40, 1 / 40))
-    assert estimate.score == 0
-    assert np.isfinite(estimate.state).all()
 
 
 def test_the_score_falls_when_the_filter_is_lost_though_the_best_weight_does_not(renderer):
@@ -264,22 +213,16 @@ def test_bad_settings_are_named_before_the_first_frame(renderer, arguments, said
         MonteCarloLocalizer(renderer, **arguments)
 
 
-@pytest.mark.parametrize("state", [[20.0, 0, 0, 0, 0, 0], [np.nan] * 6, np.zeros(5)])
-def test_a_state_outside_the_map_or_no_state_at_all_is_refused(renderer, state):
-    with pytest.raises(ValueError, match=r"outside the map|state0"):
-        MonteCarloLocalizer(renderer, 10, SIGMA).initialize(state)
-
-
-def test_a_depth_image_of_the_wrong_size_is_named(renderer):
+def test_what_cannot_be_a_start_or_a_frame_is_named(renderer):
     localizer = MonteCarloLocalizer(renderer, 10, SIGMA)
+    with pytest.raises(RuntimeError, match="initialize"):
+        localizer.step(np.ones(SMALL.shape))
+    for state in ([20.0, 0, 0, 0, 0, 0], [np.nan] * 6, np.zeros(5)):
+        with pytest.raises(ValueError, match=r"outside the map|state0"):
+            localizer.initialize(state)
     localizer.initialize(START)
     with pytest.raises(DepthImageError, match=r"\(48, 64\)"):
         localizer.step(np.ones((64, 48)))
-
-
-def test_a_step_before_the_start_is_named(renderer):
-    with pytest.raises(RuntimeError, match="initialize"):
-        MonteCarloLocalizer(renderer, 10, SIGMA).step(np.ones(SMALL.shape))
 
 
 def test_the_nearest_path_error_hides_error_along_the_path_and_the_timed_error_does_not():
@@ -296,9 +239,3 @@ def test_sigma_is_the_root_mean_square_about_zero():
     errors = nearest_path_error(np.array([[0, 0.3], [0, -0.4]]), np.zeros((1, 2)))
     assert errors.sigma == pytest.approx(np.sqrt((0.09 + 0.16) / 2))
     assert errors.within_3sigma == 0.5
-
-
-@pytest.mark.parametrize("positions", [np.zeros((0, 3)), np.zeros(3), [[np.nan, 0, 0]]])
-def test_positions_without_numbers_are_refused(positions):
-    with pytest.raises(ValueError, match="estimated_xyz"):
-        nearest_path_error(positions, np.zeros((4, 3)))

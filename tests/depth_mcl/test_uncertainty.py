@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
+from course_lib.depth_mcl.likelihood import Weighting
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.depth_mcl.motion import BODY_AXES
-from course_lib.depth_mcl.particle_filter import effective_sample_size
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, normalized_error, tempered_weights
-from course_lib.depth_mcl.weighting import Weighting
+from course_lib.depth_mcl.uncertainty import SHARPEST, carried_covariance, error_covariance, normalized_error, temper
 from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
@@ -17,22 +16,29 @@ from course_lib.rendering.sensor import subsample_depth
 WORTH = 50.0  # pixels: what the calibration found, written down a second time
 
 
-def test_many_particles_are_weighed_as_if_the_image_were_worth_a_number_of_pixels(rng):
-    scores = 0.6 - 0.01 * rng.random(500)
-    expected = np.exp(WORTH * scores)
-    assert tempered_weights(scores, 5.0) == pytest.approx(expected / expected.sum())
+@pytest.mark.parametrize("sample_size", [1.5, 8.0, 40.0, 99.0])
+def test_as_many_particles_are_left_as_asked_for(rng, sample_size):
+    scores = rng.random(100)
+    tempered = temper(scores, sample_size)
+    assert tempered.ess == pytest.approx(sample_size, rel=1e-6)
+    assert tempered.weights.sum() == pytest.approx(1)
+    assert tempered.weights == pytest.approx(
+        np.exp(tempered.sharpness * scores) / np.exp(tempered.sharpness * scores).sum()
+    )
+    assert (np.diff(tempered.weights[np.argsort(scores)]) > 0).all()
 
 
-@pytest.mark.parametrize("spread", [2.0, 5.0, 500.0])
-def test_where_that_leaves_too_few_particles_so_many_are_left(spread, rng):
-    w = tempered_weights(spread * rng.random(200), 5.0)
-    assert w.sum() == pytest.approx(1)
-    assert effective_sample_size(w) == pytest.approx(5, rel=1e-6)
+def test_too_few_particles_weigh_the_same_and_equal_scores_too(rng):
+    assert temper(rng.random(5), 10).weights == pytest.approx(np.full(5, 0.2))
+    assert temper(rng.random(5), 10).sharpness == 0
+    equal = temper(np.full(20, 0.7), 4)
+    assert (equal.sharpness, equal.ess) == (SHARPEST, pytest.approx(20))
 
 
-@pytest.mark.parametrize("scores", [np.zeros(40), np.array([0.1, 0.9, 0.3])])
-def test_equal_scores_or_hardly_any_particles_all_count_the_same(scores):
-    assert tempered_weights(scores, 5.0) == pytest.approx(np.full(len(scores), 1 / len(scores)))
+@pytest.mark.parametrize("scores", [[], [0.1, np.nan], [[0.1, 0.2]]])
+def test_scores_that_are_none_are_named(scores):
+    with pytest.raises(ValueError, match="scores must be"):
+        temper(np.array(scores), 2)
 
 
 def test_a_quadratic_score_gives_the_gaussian_that_it_describes(rng):
@@ -50,12 +56,6 @@ def test_an_estimate_beside_the_best_particles_is_told(rng):
     deviations = rng.normal(0, 0.05, (300, 6))
     deviations[:, 1] += 0.3
     assert error_covariance(deviations, np.zeros(300))[1, 1] > 0.3**2
-
-
-def test_what_is_given_has_no_variance_though_a_mean_is_rounded(rng):
-    deviations = np.zeros((30, 6))
-    deviations[:, 0], deviations[:, 2] = rng.normal(0, 0.1, 30), 2e-16
-    assert error_covariance(deviations, np.zeros(30))[2, 2] == 0
 
 
 def test_what_is_given_has_no_variance_after_many_frames():
@@ -77,15 +77,6 @@ def test_what_a_frame_does_not_correct_is_carried_on(rng):
     carried = carried_covariance(left, deviations, earlier)
     expected = np.diag([0.2**2 + 0.5**2, 0.2**2 / 4 + (0.4 / 4) ** 2, 0.3**2, 0, 0, 0])  # nothing moved along z
     assert carried == pytest.approx(expected, rel=0.03, abs=2e-3)
-
-
-@pytest.mark.parametrize("n_particles", [1, 2, 5])
-def test_too_few_particles_correct_only_what_they_span(n_particles, rng):
-    deviations = rng.normal(0, 0.1, (n_particles, 6))
-    earlier = np.eye(6)
-    carried = carried_covariance(np.zeros((6, 6)), deviations, earlier)
-    assert np.isfinite(carried).all()
-    assert np.linalg.matrix_rank(carried, tol=1e-6) == 6 - (n_particles - 1)
 
 
 class Wall:

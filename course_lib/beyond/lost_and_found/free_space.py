@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.rendering.embree import EmbreeCaster
+from course_lib.rendering.ray import EmbreeCaster
 from course_lib.rendering.scene_map import SceneMap
 
 CLEARANCE = 0.15  # metres to the nearest surface (chosen: no camera is nearer, and sees nothing if it is)

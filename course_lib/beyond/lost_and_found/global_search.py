@@ -28,7 +28,7 @@ from course_lib.beyond.six_dof.pyramid import Level, pyramid
 from course_lib.beyond.six_dof.refinement import gauss_newton_step
 from course_lib.beyond.six_dof.twists import lengths, motion_between
 from course_lib.beyond.tracking import THROUGH_WEIGHT, agreement
-from course_lib.depth_mcl.weighting import paper_weighting
+from course_lib.depth_mcl.likelihood import paper_weighting
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 

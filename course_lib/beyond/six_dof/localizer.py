@@ -8,7 +8,7 @@
 A frame goes through the paper's steps several times, each time closer:
 
     predict    particles about where the camera may be, as wide as it has been moving (prediction.py)
-    anneal     weigh them on coarse images, as sharply as leaves enough of them (tempering.py); resample; less noise
+    anneal     weigh them on coarse images, as sharply as leaves enough of them (uncertainty.py); resample; less noise
     refine     the best that differ, by Gauss-Newton on finer and finer images (refinement.py), dropping the worst
     doubt      where the best agrees less with the map than frames did before: once more, with a wider cloud
     fuse       along what the image does not show, believe the prediction (covariance.py); say whether it is known
@@ -44,7 +44,7 @@ from course_lib.depth_mcl.likelihood import ALPHA, DepthImageError, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.particle_filter import resample
-from course_lib.depth_mcl.tempering import Tempered, temper
+from course_lib.depth_mcl.uncertainty import Tempered, temper
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course_lib.depth_mcl.likelihood import ALPHA
-from course_lib.depth_mcl.weighting import Weighting, paper_weighting
+from course_lib.depth_mcl.likelihood import ALPHA, Weighting, paper_weighting
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from course_lib.depth_mcl.tempering import Tempered
+from course_lib.depth_mcl.uncertainty import Tempered
 from course_lib.lessons.lesson_09.basin import Basin
 from course_lib.lessons.lesson_09.clouds import Density
 from course_lib.lessons.lesson_09.hand import Track

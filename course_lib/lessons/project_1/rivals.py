@@ -6,11 +6,11 @@ import numpy as np
 
 from course_lib.beyond.six_dof.refinement import gauss_newton_step
 from course_lib.depth_mcl import DepthCamera
-from course_lib.depth_mcl.compiled_likelihood import likelihood
+from course_lib.depth_mcl.likelihood import compiled_likelihood as likelihood
 from course_lib.depth_mcl.likelihood import normalize_likelihood, valid_pixels, weights
 from course_lib.depth_mcl.motion import propagate, propagate_body
 from course_lib.depth_mcl.particle_filter import initial_particles, resample, weighted_mean_state
-from course_lib.depth_mcl.tempering import temper
+from course_lib.depth_mcl.uncertainty import temper
 from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix, state_from_optical_pose
 
 # Chosen on seeds 10,001 to 10,008.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-import course_lib.rendering.off_screen  # noqa: F401 - before pyvista: no display is needed
+import course_lib.rendering.vtk_backend  # noqa: F401 - before pyvista: no display is needed
 from course_lib.simulation.corridor.mesh_building import WorldMesh
 
 _FACE = np.dtype([("count", "u1"), ("index", "<i4", 3)])

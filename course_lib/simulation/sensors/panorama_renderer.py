@@ -15,7 +15,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, v
 from vtkmodules.vtkRenderingOpenGL2 import vtkPanoramicProjectionPass, vtkRenderStepsPass
 
 from course_lib.geometry import pose_matrix
-from course_lib.rendering.off_screen import off_screen_window
+from course_lib.rendering.vtk_backend import off_screen_window
 from course_lib.simulation.room.scene import Room
 from course_lib.simulation.textured_mesh import TexturedMesh
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from course_lib.rendering.embree import EmbreeCaster
+from course_lib.rendering.ray import EmbreeCaster
 from course_lib.simulation.corridor.mesh_building import WorldMesh
 
 # Rays per call, so that the results of one call stay below about 100 MB.

@@ -1,0 +1,105 @@
+"""Depth images by ray casting: one ray through every pixel centre. The reference for the z-buffer.
+
+Intel's Embree (embreex) where it has a wheel for the processor, else trimesh's own ray casting, which is slower by far.
+Directions have a forward component of one, so that the ray parameter is depth along the optical axis, not ray length.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import trimesh
+
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.sensor import depth_image_from_points
+
+try:
+    from embreex.mesh_construction import TriangleMesh
+    from embreex.rtcore_scene import EmbreeScene
+except ImportError:  # no wheel for this processor
+    EmbreeScene = TriangleMesh = None
+
+
+class EmbreeCaster:
+    """Triangles ready to be hit by rays, in float32. corners: `(F, 3, 3)`.
+
+    Raises `ImportError` where embreex is missing.
+    """
+
+    def __init__(self, corners: np.ndarray) -> None:
+        if EmbreeScene is None:
+            raise ImportError(
+                "embreex is missing, which has wheels for x86-64 and for macOS: the simulated world needs it, so make "
+                "data there (the shipped data and the lessons do not need it)"
+            )
+        # robust: no ray slips through the edge that two triangles share.
+        self._scene = EmbreeScene(robust=True)
+        self._mesh = TriangleMesh(self._scene, np.ascontiguousarray(corners, dtype=np.float32))
+
+    def cast(self, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """First hits of rays: origins and directions `(N, 3)`.
+
+        Returns distances `(N,)` in units of the direction's length, `inf` where nothing is hit; the faces hit `(N,)`,
+        -1 where none; their normals `(N, 3)`, not of unit length.
+        """
+        origins, directions = (np.ascontiguousarray(array, dtype=np.float32) for array in (origins, directions))
+        hits = self._scene.run(origins, directions, output=True)
+        return np.where(hits["primID"] >= 0, hits["tfar"], np.inf), hits["primID"], hits["Ng"]
+
+
+class TrimeshCaster:
+    """What `EmbreeCaster` does, in Python and far slower."""
+
+    def __init__(self, corners: np.ndarray) -> None:
+        self._mesh = trimesh.Trimesh(**trimesh.triangles.to_kwargs(corners), process=False)
+
+    def cast(self, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """First hits of rays: as `EmbreeCaster.cast`."""
+        faces, rays, places = self._mesh.ray.intersects_id(
+            origins, directions, multiple_hits=False, return_locations=True
+        )
+        along = np.einsum("ij,ij->i", places - origins[rays], directions[rays])
+        distance, face = np.full(len(origins), np.inf), np.full(len(origins), -1)
+        distance[rays] = along / np.einsum("ij,ij->i", directions[rays], directions[rays])
+        face[rays] = faces
+        return distance, face, self._mesh.face_normals[face]
+
+
+class RayBackend:
+    """Casts rays into the map. Threads share it: anchor and caster are only ever exchanged together."""
+
+    def __init__(self, scene_map: SceneMap, camera: DepthCamera) -> None:
+        self.camera = camera
+        self._scene_map = scene_map
+        self._rays = camera.rays().reshape(-1, 3)
+        self._anchor_and_caster = self._about(scene_map.origin)
+
+    def render(self, poses: np.ndarray, out: np.ndarray) -> None:
+        """Fill `out` `(N, H, W)` with the depth seen from camera poses `(N, 4, 4)`."""
+        wanted, (anchor, caster) = self._scene_map.anchor(poses[:, :3, 3]), self._anchor_and_caster
+        if not np.array_equal(anchor, wanted):  # views seldom move on
+            anchor, caster = self._anchor_and_caster = self._about(wanted)
+        for pose, image in zip(poses, out, strict=True):
+            directions = self._rays @ pose[:3, :3].T
+            # Rays start on the near plane: what lies before it is not hit.
+            origins = pose[:3, 3] - anchor + self.camera.nearest * directions
+            depth = self.camera.nearest + caster.cast(origins, directions)[0].astype(np.float64)
+            depth[depth > self.camera.farthest] = np.inf
+            image[:] = depth.reshape(self.camera.shape)
+
+    def _about(self, anchor: np.ndarray) -> tuple[np.ndarray, EmbreeCaster | TrimeshCaster]:
+        """`anchor` `(3,)` and a caster of the map relative to it."""
+        corners = (self._scene_map.vertices - anchor)[self._scene_map.faces]
+        return anchor, TrimeshCaster(corners) if EmbreeScene is None else EmbreeCaster(corners)
+
+    def render_points(self, points: np.ndarray) -> np.ndarray:
+        """The camera's points as a depth image, in NumPy."""
+        return depth_image_from_points(points, self.camera)
+
+    def describe(self) -> str:
+        """Name of the ray caster."""
+        caster = self._anchor_and_caster[1]
+        return f"ray casting with {'Embree (embreex)' if isinstance(caster, EmbreeCaster) else 'trimesh'}"
+
+    def close(self) -> None:
+        """Nothing is held that the renderer's own end does not free."""
