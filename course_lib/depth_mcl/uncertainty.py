@@ -14,7 +14,7 @@ That is one frame's share of the error. Particles lie within a frame's noise of 
 what that frame got wrong is still in them: `carried_covariance` takes it along, as a Kalman filter would.
 
 kappa is calibrated where nothing is reported from, on one frame's share: a wagon's run of the corridor of seed 10,001.
-What neither can say: a filter that is lost has all its particles in the wrong place (tracking.py).
+What neither can say: a filter that is lost has all its particles in the wrong place (beyond/being_lost.py).
 """
 
 from __future__ import annotations

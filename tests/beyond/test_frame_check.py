@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.frame_check import PATIENCE, FrameCheck, looks_of
+from course_lib.beyond.guarded_frames import PATIENCE, FrameCheck, looks_of
 from course_lib.depth_mcl.sequence import read_sequence
 from tests.rendering.shapes import SMALL, room_depth
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.frame_order import CLOCK_WAS_SET, MOST_MISSED, FrameOrder
+from course_lib.beyond.guarded_frames import CLOCK_WAS_SET, MOST_MISSED, FrameOrder
 
 
 def orders(order, frames):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.guarded_depth import OUTCOMES, WatchedLocalizer
+from course_lib.beyond.guarded_depth import OUTCOMES, GuardedLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
@@ -41,7 +41,7 @@ def filters(renderer):
 
 def run(renderer, kind, frames):
     """What a watched filter says of (image, time)s."""
-    watched = WatchedLocalizer(filters(renderer)[kind], PERIOD)
+    watched = GuardedLocalizer(filters(renderer)[kind], PERIOD)
     watched.initialize(START)
     return [watched.step(image, time) for image, time in frames]
 
@@ -136,7 +136,7 @@ def test_after_long_trouble_one_good_frame_is_no_proof(renderer, walk):
 
 
 def test_an_image_of_another_size_is_refused_and_not_remembered(renderer):
-    watched = WatchedLocalizer(filters(renderer)["paper"], PERIOD)
+    watched = GuardedLocalizer(filters(renderer)["paper"], PERIOD)
     watched.initialize(START)
     with pytest.raises(DepthImageError, match="the camera gives"):
         watched.step(np.zeros((3, 4)), 0.0)
@@ -144,7 +144,7 @@ def test_an_image_of_another_size_is_refused_and_not_remembered(renderer):
 
 def test_a_new_start_forgets_what_was(renderer, walk):
     images = walk[1]
-    watched = WatchedLocalizer(filters(renderer)["paper"], PERIOD)
+    watched = GuardedLocalizer(filters(renderer)["paper"], PERIOD)
     for _ in range(2):
         watched.initialize(START)
         assert watched.step(images[0], 7.0).outcome == "tracked"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.tracking import (
+from course_lib.beyond.being_lost import (
     LOST_SUPPORT,
     RECOVERED_SUPPORT,
     TRACKED_SUPPORT,

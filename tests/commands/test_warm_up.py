@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.beyond import AnnealedLocalizer
-from course_lib.beyond.six_dof import compiled_refinement
+from course_lib.beyond.six_dof import refinement
 from course_lib.commands.warm_up import compile_loops, simplify_corridor
 from course_lib.depth_mcl import (
     DepthCamera,
@@ -18,7 +18,7 @@ from course_lib.rendering import rasterizer, simplification
 
 def compiled_forms():
     """How many forms, one for each set of types, of each compiled loop there are."""
-    modules = (rasterizer, compiled_likelihood, compiled_refinement)
+    modules = (rasterizer, compiled_likelihood, refinement)
     loops = {(m.__name__, name): loop for m in modules for name, loop in vars(m).items() if hasattr(loop, "signatures")}
     return {name: len(loop.signatures) for name, loop in loops.items()}
 
@@ -26,7 +26,7 @@ def compiled_forms():
 def test_the_filter_compiles_nothing_that_the_set_up_did_not():
     compile_loops()
     before = compiled_forms()
-    for module, loop in ((rasterizer, "draw_views"), (compiled_likelihood, "_sums"), (compiled_refinement, "_sums")):
+    for module, loop in ((rasterizer, "draw_views"), (compiled_likelihood, "_sums"), (refinement, "_sums")):
         assert before[module.__name__, loop]
     vertices = np.array([[2.0, -5, -5], [-2, 5, -5], [2, 0, 5]])
     camera = DepthCamera.from_fov(16, 12, 60.0, 45.0)

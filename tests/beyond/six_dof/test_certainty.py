@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-
 from course_lib.beyond.six_dof.certainty import CONFIRMED, FALLEN, KNOWN, Certainty
-from course_lib.beyond.tracking import Agreement
+
+from course_lib.beyond.being_lost import Agreement
 
 SURE = np.diag([1e-4] * 6)
 

@@ -11,8 +11,8 @@ from course_lib.beyond.six_dof.covariance import (
     sigmas,
     with_rivals,
 )
+from course_lib.beyond.six_dof.poses import local, retract
 from course_lib.beyond.six_dof.prediction import Rival
-from course_lib.beyond.six_dof.twists import motion_between, moved
 from course_lib.geometry import optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, furnished_room, rough_wall, wall
@@ -65,7 +65,7 @@ def test_an_error_is_carried_along_as_poses_carry_it(rng):
     motion = np.array([0.4, -0.2, 0.6, 0.3, -0.5, 0.2])
     small = random_covariance(rng, 1e-4)
     errors = rng.multivariate_normal(np.zeros(6), small, 20_000)
-    carried = motion_between(moved(pose, motion), moved(moved(pose, errors), motion))
+    carried = local(retract(pose, motion), retract(retract(pose, errors), motion))
     expected = np.cov(carried, rowvar=False)
     got = predicted_covariance(small, motion, np.full(6, 1e-9))
     scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
@@ -120,7 +120,7 @@ def test_the_same_image_again_makes_it_no_surer(rng):
 def test_a_rival_widens_it_towards_itself_by_how_likely_it_is():
     pose, small = optical_pose(np.zeros(6)), np.eye(6) * 1e-6
     there = np.array([0.4, 0, 0, 0, 0, 0])
-    equal = with_rivals(small, pose, [Rival(moved(pose, there), 0.0)])
+    equal = with_rivals(small, pose, [Rival(retract(pose, there), 0.0)])
     assert sigmas(equal) == pytest.approx([0.4 / np.sqrt(2), 1e-3], rel=1e-3)
-    hardly = with_rivals(small, pose, [Rival(moved(pose, there), -0.2)])
+    hardly = with_rivals(small, pose, [Rival(retract(pose, there), -0.2)])
     assert sigmas(hardly) == pytest.approx([2.1e-3, 1e-3], rel=0.05)

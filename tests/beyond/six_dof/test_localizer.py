@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
+from course_lib.beyond.six_dof.poses import local, retract
 from course_lib.beyond.six_dof.prediction import START_SPREAD
 from course_lib.beyond.six_dof.schedule import Layer
-from course_lib.beyond.six_dof.twists import motion_between, moved
 from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.experiments.six_degrees import image_alone
@@ -44,7 +44,7 @@ def run(localizer, depth, start=START):
 def off(estimates, true):
     """Distances in metres and angles in radians, `(T, 2)`."""
     found = optical_pose(np.array([e.state for e in estimates]))
-    motion = motion_between(optical_pose(true), found)
+    motion = local(optical_pose(true), found)
     return np.stack([np.linalg.norm(motion[:, :3], axis=1), np.linalg.norm(motion[:, 3:], axis=1)], axis=1)
 
 
@@ -80,14 +80,14 @@ def test_refinement_is_what_makes_it_exact(renderer):
 
 
 def test_a_start_by_hand_may_be_off(renderer):
-    start = state_from_optical_pose(moved(optical_pose(START), np.repeat(0.8 * START_SPREAD, 3)))
+    start = state_from_optical_pose(retract(optical_pose(START), np.repeat(0.8 * START_SPREAD, 3)))
     true = np.tile(START, (3, 1))
     assert (off(run(AnnealedLocalizer(renderer, seed=2), images(renderer, true), start), true)[-1] < [0.01, 0.01]).all()
 
 
 def test_a_jump_is_found_by_the_second_look(renderer):
     """At rest, then 0.35 m and 20 degrees at once: beyond the first look's cloud."""
-    jumped = state_from_optical_pose(moved(optical_pose(START), np.array([0.2, 0.1, 0.27, 0.0, 0.35, 0.0])))
+    jumped = state_from_optical_pose(retract(optical_pose(START), np.array([0.2, 0.1, 0.27, 0.0, 0.35, 0.0])))
     true = np.concatenate([np.tile(START, (5, 1)), np.tile(jumped, (4, 1))])
     depth = images(renderer, true)
     with_it, without = (
@@ -136,13 +136,13 @@ def test_a_blind_frame_is_predicted_and_said(renderer):
 
 def test_an_odometer_carries_it_where_motion_is_sudden(renderer):
     """Steps of half a metre to and fro: going on as before is the wrong prediction every time."""
-    there = state_from_optical_pose(moved(optical_pose(START), np.array([0.3, 0.0, 0.4, 0.0, 0.5, 0.0])))
+    there = state_from_optical_pose(retract(optical_pose(START), np.array([0.3, 0.0, 0.4, 0.0, 0.5, 0.0])))
     true = np.array([START, there] * 5)
     depth, poses = images(renderer, true), optical_pose(true)
     localizer = AnnealedLocalizer(renderer, seed=1, second_look=())
     localizer.initialize(START)
     localizer.step(depth[0])
-    estimates = [localizer.step(d, motion_between(a, b)) for d, a, b in zip(depth[1:], poses, poses[1:], strict=False)]
+    estimates = [localizer.step(d, local(a, b)) for d, a, b in zip(depth[1:], poses, poses[1:], strict=False)]
     assert (off(estimates, true[1:]) < [0.02, 0.01]).all()
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.six_dof import compiled_refinement, refinement
+from course_lib.beyond.six_dof.poses import lengths, local, retract
 from course_lib.beyond.six_dof.refinement import (
     DAMPING,
     LONGEST_STEP,
@@ -14,7 +15,6 @@ from course_lib.beyond.six_dof.refinement import (
     refine,
     solve,
 )
-from course_lib.beyond.six_dof.twists import lengths, motion_between, moved
 from course_lib.geometry import optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
@@ -31,7 +31,7 @@ def renderer():
 
 
 def near_poses(rng, n, position, rotation):
-    return moved(TRUE, np.array([position] * 3 + [rotation] * 3) * rng.standard_normal((n, 6)))
+    return retract(TRUE, np.array([position] * 3 + [rotation] * 3) * rng.standard_normal((n, 6)))
 
 
 @pytest.mark.parametrize("camera", [SMALL, OFF_CENTRE])
@@ -56,7 +56,7 @@ def test_the_jacobian_is_the_residuals_derivative(renderer):
     p = SMALL.points(measured)
 
     def residual(motion):
-        return np.nansum((n[0] * (moved(np.eye(4), motion)[:3, :3] @ p[..., None])[..., 0]).sum(-1)
+        return np.nansum((n[0] * (retract(np.eye(4), motion)[:3, :3] @ p[..., None])[..., 0]).sum(-1)
                          + (n[0] * (motion[:3] - q[0])).sum(-1))  # fmt: skip
 
     system = normal_equations(measured, image[None], SMALL, 1e6)  # so wide that all weigh 1
@@ -70,7 +70,7 @@ def test_the_jacobian_is_the_residuals_derivative(renderer):
 def test_poses_near_the_right_one_come_to_it(renderer, rng):
     measured = renderer.render_poses(TRUE[None])[0]
     refined = refine(renderer, measured, near_poses(rng, 30, 0.05, 0.04), SCALES)
-    off = lengths(motion_between(TRUE, refined))
+    off = lengths(local(TRUE, refined))
     assert np.median(off[:, 0]) < 0.002
     assert np.median(off[:, 1]) < 0.001
     assert (off[:, 0] < 0.02).mean() > 0.75
@@ -80,16 +80,16 @@ def test_a_person_in_the_way_pulls_little(renderer, rng):
     measured = renderer.render_poses(TRUE[None])[0].copy()
     measured[10:40, 20:32] = 0.8
     refined = refine(renderer, measured, near_poses(rng, 20, 0.04, 0.03), SCALES)
-    assert np.median(lengths(motion_between(TRUE, refined))[:, 0]) < 0.01
+    assert np.median(lengths(local(TRUE, refined))[:, 0]) < 0.01
 
 
 def test_along_a_bare_wall_the_pose_stays_where_it_is():
     with DepthRenderer(wall(2.0), SMALL, "ray") as renderer:
         facing = optical_pose(np.zeros(6))
         measured = renderer.render_poses(facing[None])[0]
-        start = moved(facing, np.array([0.1, 0.07, 0.05, 0.0, 0.0, 0.0]))  # right, down, forward
+        start = retract(facing, np.array([0.1, 0.07, 0.05, 0.0, 0.0, 0.0]))  # right, down, forward
         refined = refine(renderer, measured, start[None], SCALES)[0]
-    along = motion_between(facing, refined)
+    along = local(facing, refined)
     assert along[2] == pytest.approx(0.0, abs=1e-3), "the distance from the wall is seen"
     assert along[:2] == pytest.approx([0.1, 0.07], abs=1e-3), "along it nothing is"
 
@@ -105,7 +105,7 @@ def test_nothing_to_compare_moves_nothing(renderer):
 
 def test_no_step_is_longer_than_first_order_reaches(renderer):
     measured = renderer.render_poses(TRUE[None])[0]
-    far = moved(TRUE, np.array([0.3, 0.2, -0.8, 0.3, 0.4, 0.2]))
+    far = retract(TRUE, np.array([0.3, 0.2, -0.8, 0.3, 0.4, 0.2]))
     images = renderer.render_poses(far[None])
     motion = lengths(solve(normal_equations(measured, images, SMALL, 10.0)))[0]
     assert (motion <= np.array(LONGEST_STEP) * (1 + 1e-9)).all()

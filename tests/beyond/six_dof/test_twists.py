@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.six_dof.twists import lengths, motion_between, moved
+from course_lib.beyond.six_dof.poses import lengths, local, retract
 from course_lib.geometry import optical_pose
 from tests.rendering.shapes import random_states
 
@@ -11,18 +11,18 @@ from tests.rendering.shapes import random_states
 def test_a_motion_and_back(rng):
     poses = optical_pose(random_states(50, rng))
     motions = 0.5 * rng.standard_normal((50, 6))
-    assert motion_between(poses, moved(poses, motions)) == pytest.approx(motions, abs=1e-9)
+    assert local(poses, retract(poses, motions)) == pytest.approx(motions, abs=1e-9)
 
 
 def test_a_camera_moves_along_its_own_axes():
     facing_left = optical_pose(np.array([1.0, 2.0, 3.0, 0.0, 0.0, np.pi / 2]))
-    ahead = moved(facing_left, np.array([0.0, 0.0, 0.5, 0.0, 0.0, 0.0]))  # forward is the optical z
+    ahead = retract(facing_left, np.array([0.0, 0.0, 0.5, 0.0, 0.0, 0.0]))  # forward is the optical z
     assert ahead[:3, 3] == pytest.approx([1.0, 2.5, 3.0])
-    turned = moved(facing_left, np.array([0.0, 0.0, 0.0, 0.0, 0.1, 0.0]))  # about the optical y, which points down
+    turned = retract(facing_left, np.array([0.0, 0.0, 0.0, 0.0, 0.1, 0.0]))  # about the optical y, which points down
     assert turned[:3, :3] == pytest.approx(optical_pose(np.array([0, 0, 0, 0, 0, np.pi / 2 - 0.1]))[:3, :3])
 
 
 def test_one_motion_for_many_poses_and_many_for_one(rng):
     poses, motions = optical_pose(random_states(4, rng)), rng.standard_normal((4, 6))
-    assert moved(poses, motions[0]).shape == moved(poses[0], motions).shape == (4, 4, 4)
+    assert retract(poses, motions[0]).shape == retract(poses[0], motions).shape == (4, 4, 4)
     assert lengths(np.array([[3.0, 4.0, 0.0, 0.0, 0.6, 0.8]])) == pytest.approx(np.array([[5.0, 1.0]]))
