@@ -1,9 +1,9 @@
-"""Motions in a camera's own frame."""
+"""Motions in a camera's own frame, and which of many poses are distinct."""
 
 import numpy as np
 import pytest
 
-from course_lib.beyond.six_dof.poses import lengths, local, retract
+from course_lib.beyond.six_dof.poses import distinct, lengths, local, retract
 from course_lib.geometry import optical_pose
 from tests.rendering.shapes import random_states
 
@@ -26,3 +26,12 @@ def test_one_motion_for_many_poses_and_many_for_one(rng):
     poses, motions = optical_pose(random_states(4, rng)), rng.standard_normal((4, 6))
     assert retract(poses, motions[0]).shape == retract(poses[0], motions).shape == (4, 4, 4)
     assert lengths(np.array([[3.0, 4.0, 0.0, 0.0, 0.6, 0.8]])) == pytest.approx(np.array([[5.0, 1.0]]))
+
+
+def test_of_poses_alike_the_best_stands_for_all():
+    motions = np.zeros((5, 6))
+    motions[:, 0] = [0.0, 0.01, 0.5, 0.505, 0.0]
+    motions[4, 5] = 0.5
+    poses, scores = retract(np.eye(4), motions), np.array([0.5, 0.9, 0.8, 0.7, 0.6])
+    assert distinct(poses, scores, 9, np.array([0.02, 0.02])).tolist() == [1, 2, 4]
+    assert distinct(poses, scores, 2, np.array([0.02, 0.02])).tolist() == [1, 2]
