@@ -1,9 +1,9 @@
 """Is the filter lost? This module alone decides whether a pose is "tracked", "doubtful" or "lost".
 
-The weights of a particle filter cannot say it, because they are normalized among the particles. Three things can. The
-image of a frame agrees with the map as seen from the estimate, or it does not (`agreement`). The covariance says
-whether everything so far tells where the camera is: not along a bare wall, and not if another pose fits as well
-(`is_known`). And after lost frames one good image is no proof, because walls look alike (`Debt`).
+The weights of a particle filter cannot say it, because they are normalized among the particles. Three things can: how
+a frame's image agrees with the map as seen from the estimate (`agreement`); the covariance, which is wide along a bare
+wall, or if another pose fits as well (`is_known`); and the frames before, because walls look alike and one good image
+after lost frames is no proof (`Debt`).
 
 Nothing here knows the truth, and nothing looks ahead. `judge_track` is for the paper's filter, whose estimate may lag
 by centimetres. `judge_refined` and `TrackJudge` are for refined poses, which fit as well as they can. None of them sees

@@ -7,10 +7,8 @@
 
 A frame at fault (guarded_frames.py) is not weighed. The filter moves its particles as if nothing had been measured, so
 the cloud grows while the camera goes on unseen. For frames that never came the filter is moved once each, and for a
-frame out of order not at all. If no frame is at fault, the filter does exactly what it does without a guard.
-
-After faults a pose is "tracked" only after as many good frames as there were faults, but at most `CONFIRMED`
-(being_lost.py).
+frame out of order not at all. After faults, as many good frames are owed before a pose is "tracked" (`Debt`). If no
+frame is at fault, the filter does exactly what it does without a guard.
 """
 
 from __future__ import annotations
@@ -101,19 +99,17 @@ class GuardedLocalizer:
         return self._last
 
     def _judged(self, depth: np.ndarray) -> Outcome:
-        """The outcome of a frame that was used."""
+        """The outcome of a frame that was used: the annealed filter judges itself, the paper's filter is judged."""
         status = self._last.status
         if not isinstance(self.localizer, AnnealedLocalizer):
-            status = self._judged_by_track(depth)
+            renderer = self.localizer.renderer
+            measured = renderer.render_points(self._camera.points(depth))
+            self._agreements.append(agreement(measured, renderer.render(self._last.state)[0]))
+            status = judge_track(self._agreements)[-1]
+            if status == "tracked" and not is_known(self._last.error_covariance):
+                return "doubtful"
         if status == "no measurement":  # all of it lies outside the camera's planes once it is projected
             return "no return"
         if status == "tracked" and not self._debt.is_paid(good=True):
             return "doubtful"
         return status
-
-    def _judged_by_track(self, depth: np.ndarray) -> TrackStatus:
-        renderer = self.localizer.renderer
-        measured = renderer.render_points(self._camera.points(depth))
-        self._agreements.append(agreement(measured, renderer.render(self._last.state)[0]))
-        status = judge_track(self._agreements)[-1]
-        return "doubtful" if status == "tracked" and not is_known(self._last.error_covariance) else status

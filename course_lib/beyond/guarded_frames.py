@@ -1,15 +1,11 @@
 """A look at a sensor's frame before it is used: is it a new one, and is it an image of the world at all?
 
 A particle filter believes every pixel. A repeated image pulls it back to where the camera was; an image of a single
-distance, or of noise, pulls it anywhere. So we ask each frame four questions that need no map:
-
-    time and image    is it later than the last frame, and another image? (`FrameOrder`, for both methods)
-    returns           did enough pixels measure something?
-    values            is it more than one value, and not noise? Neighbouring pixels mostly see one surface.
-    change            are the share of returns, also of each half, and the roughness those of the last good frames?
-
-A change may be the world's: somebody steps before the camera, or it turns to a far wall. So a change that lasts longer
-than `PATIENCE` frames is taken as the world.
+distance, or of noise, pulls it anywhere. So we ask each frame four questions that need no map. `FrameOrder` (for both
+methods) asks whether it is later than the last frame and another image. `FrameCheck` asks whether enough pixels
+measured something; whether they have more than one value and no noise; and whether the share of returns, also of each
+half, and the roughness are those of the last good frames. Such a change may be the world's, because somebody steps
+before the camera or it turns to a far wall. So what lasts longer than `PATIENCE` frames is taken as the world.
 """
 
 from __future__ import annotations
@@ -18,6 +14,8 @@ from collections import deque
 from typing import Literal, NamedTuple
 
 import numpy as np
+
+from course_lib.beyond.being_lost import MIN_PIXELS
 
 Fault = Literal[
     "out of order", "repeated", "no return", "saturated", "noise", "half covered", "few returns", "exposure jump"
@@ -28,7 +26,6 @@ MAX_MISSED = 50  # frames that a gap counts as, at most: after a longer one no m
 
 # Limits, each with its reason; in brackets the worst of 1,983 undisturbed development frames: data/corridor, corridor
 # seeds 10,001 to 10,003 (wagon, less kind, and by hand; half the pixels each way), and a real Kinect's kitchen.
-MIN_PIXELS = 30  # with fewer a frame says nothing (being_lost.py has the same)
 MAX_OF_ONE_VALUE = 0.5  # share of the returns: a sensor at its stop gives one value (0.05)
 MAX_ROUGHNESS = 0.1  # of the distance: independent values differ by about half of it, surfaces by less (0.024)
 COVERED_HALF = 0.1  # of a half's usual returns (0.67); the other half must keep half of its own
@@ -44,17 +41,16 @@ class FrameStatus(NamedTuple):
     """What is known of a frame before it is used."""
 
     fault: Fault | None
-    """None if it is good; of `FrameOrder` only "out of order" and "repeated"."""
+    """None if it is good."""
     missed: int
-    """How many frames should have come since the last one that came in order, and did not."""
+    """How many frames should have come since the last one in order, and did not."""
 
 
 class FrameOrder:
-    """Whether a frame is later than the last one, and another image. Remembers the last frame's time and images.
+    """Remembers the last frame's time and images. Drivers stumble: they hand out old images, or skip some.
 
-    A driver that stumbles hands out the old image under a new time, or an image that was overtaken; after a stall
-    frames are missing. period: seconds from one frame to the next. Without it (None), or without times, gaps are not
-    counted. Raises `ValueError` for a period that is not positive and finite.
+    period: seconds from one frame to the next. Without it (None), or without times, missed frames are not counted.
+    Raises `ValueError` for a period that is not positive and finite.
     """
 
     def __init__(self, period: float | None = None) -> None:
@@ -68,9 +64,9 @@ class FrameOrder:
     def look(self, images: tuple[np.ndarray, ...], time: float | None = None) -> FrameStatus:
         """Return a frame's status; called once for each frame that arrives.
 
-        images: of all cameras of the sensor. A frame is repeated if *all* of them are those of the last frame, value
-        for value (NaN equals NaN), because a real sensor's noise never comes twice. time: seconds, on any clock; None
-        if unknown. Raises `ValueError` for a time that is not finite.
+        images: of all cameras of the sensor. A frame is "repeated" if *all* of them are those of the last frame, value
+        for value, because a real sensor's noise never comes twice. time: seconds, on any clock; None if unknown.
+        Raises `ValueError` for a time that is not finite.
         """
         if time is not None and not np.isfinite(time):
             raise ValueError(f"a frame's time must be a finite number of seconds, or None; got {time!r}")
@@ -78,7 +74,8 @@ class FrameOrder:
         if time is not None:
             if self._latest is not None and time <= self._latest and not self._clock_was_set(time):
                 return FrameStatus("out of order", 0)
-            missed = self._missed(time)
+            if self.period is not None and self._latest is not None:
+                missed = int(np.clip(round((time - self._latest) / self.period) - 1, 0, MAX_MISSED))
             self._latest, self._behind = time, []
         images = tuple(np.array(image) for image in images)  # a copy, because a driver may fill the same memory again
         repeated = len(images) == len(self._images) and all(
@@ -95,11 +92,6 @@ class FrameOrder:
             return False
         self._latest = self._behind[-2]
         return True
-
-    def _missed(self, time: float) -> int:
-        if self.period is None or self._latest is None:
-            return 0
-        return int(min(max(round((time - self._latest) / self.period) - 1, 0), MAX_MISSED))
 
 
 class Looks(NamedTuple):
@@ -170,16 +162,14 @@ class FrameCheck:
         """What sets a frame apart from the last good ones."""
         if not self._usual:
             return None
-        share = np.median([one.share for one in self._usual])
-        halves = np.median([one.halves for one in self._usual], axis=0)
-        roughness = np.median([one.roughness for one in self._usual])  # NaN if one has none; then it tells nothing
-        left = looks.halves / np.maximum(halves, 1e-9)
-        covered = (left < COVERED_HALF) & (halves >= _MIN_HALF) & (left[[1, 0, 3, 2]] >= 0.5)
+        usual = Looks(*(np.median(values, axis=0) for values in zip(*self._usual, strict=True)))
+        left = looks.halves / np.maximum(usual.halves, 1e-9)
+        covered = (left < COVERED_HALF) & (usual.halves >= _MIN_HALF) & (left[[1, 0, 3, 2]] >= 0.5)
         if covered.any():
             return "half covered"
-        if looks.roughness > ROUGHER * max(roughness, MIN_USUAL_ROUGHNESS):
+        if looks.roughness > ROUGHER * max(usual.roughness, MIN_USUAL_ROUGHNESS):
             return "exposure jump"
-        return "few returns" if looks.share < FEW_RETURNS * share else None
+        return "few returns" if looks.share < FEW_RETURNS * usual.share else None
 
 
 def _fault_alone(looks: Looks, pixels: int) -> Fault | None:

@@ -121,14 +121,6 @@ def test_a_fault_is_named_and_a_good_frame_after_it_is_good(check, rng, fault):
         assert check.look(image(rng), 0.7 + 0.2 * k) == (None, 0)
 
 
-def test_the_same_image_is_repeated_and_an_old_time_out_of_order(check, rng):
-    depth = image(rng)
-    assert check.look(depth, 0.6).fault is None
-    assert check.look(depth, 0.7).fault == "repeated"
-    assert check.look(image(rng), 0.65).fault == "out of order"
-    assert check.look(image(rng), 1.0).missed == 2
-
-
 def test_what_lasts_is_the_world_but_never_darkness(check, rng):
     told = [check.look(BAD["half covered"][2](rng), 0.6 + 0.1 * k).fault for k in range(PATIENCE + 5)]
     assert told == ["half covered"] * PATIENCE + [None] * 5

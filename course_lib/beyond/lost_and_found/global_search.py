@@ -24,7 +24,6 @@ from course_lib.beyond.lost_and_found.adaptive_count import kld_count, occupied_
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.six_dof.poses import distinct, lengths, local
 from course_lib.beyond.six_dof.prediction import MotionPrediction
-from course_lib.beyond.six_dof.refinement import gauss_newton_step
 from course_lib.beyond.six_dof.schedule import Level, pyramid
 from course_lib.depth_mcl.weighting import paper_weighting
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
@@ -75,17 +74,15 @@ class PoseCandidates(NamedTuple):
     """How many images were drawn in this frame."""
 
 
-class _Followed:
+class _Followed(MotionPrediction):
     """A candidate with the memory of its motion."""
 
     def __init__(self, pose: np.ndarray, value: float) -> None:
-        self.prediction = MotionPrediction(pose)
-        self.pose = pose
+        super().__init__(pose)
         self.evidence, self.frames = value, 0
 
     def saw(self, pose: np.ndarray, value: float) -> None:
-        self.prediction.found(pose)
-        self.pose = pose
+        self.found(pose)
         self.evidence = (1 - MEMORY) * self.evidence + MEMORY * value
         self.frames += 1
 
@@ -99,16 +96,15 @@ class GlobalSearch:
 
     def __init__(self, renderer: DepthRenderer, *, seed: int = 0, least: int = 1_000, most: int = 10_000) -> None:
         self.renderer = renderer
-        self.levels = pyramid(renderer)
         camera = renderer.camera.resized(*COARSEST)
         coarsest = DepthRenderer(renderer.scene_map, camera, renderer.backend, exact=renderer.exact)
         self._coarsest = Level(coarsest, renderer.camera, paper_weighting(WIDE_ALPHA))
+        self._coarse, self._middle, _ = pyramid(renderer)
         self.free_space = FreeSpace(renderer.scene_map)
         self.rng = np.random.default_rng(seed)
         self.least, self.most = least, most
         self._followed: list[_Followed] = []
         self._count = most
-        self._renders = 0
 
     def forget(self) -> None:
         """Start anew, without candidates."""
@@ -130,14 +126,15 @@ class GlobalSearch:
         gravity = np.asarray(gravity, dtype=np.float64)
         if gravity.shape != (3,) or not np.isfinite(gravity).all() or not gravity.any():
             raise ValueError(f"gravity must be three finite numbers, not all zero; got {gravity}")
-        for level in (self._coarsest, *self.levels):
+        levels = (self._coarsest, self._coarse, self._middle)
+        for level in levels:
             level.measure(depth)
-        self._renders = 0
         self._follow()
-        drawn = self._draw(gravity, tilt_sigma)
-        self._add_new(drawn, suggested)
+        poses, scores = self._draw(gravity, tilt_sigma)
+        self._add_new(poses, scores, suggested)
         self._drop()
-        return self._answer(len(drawn[0]))
+        status, candidates = self._answer()
+        return PoseCandidates(status, candidates, len(poses), sum(level.renders for level in levels))
 
     def _draw(self, gravity: np.ndarray, tilt_sigma: float) -> tuple[np.ndarray, np.ndarray]:
         """Poses from free space and their scores on the coarsest image."""
@@ -145,24 +142,22 @@ class GlobalSearch:
         for begin in range(0, self._count, BATCH):
             positions = self.free_space.draw(min(BATCH, self._count - begin), self.rng)
             poses.append(upright_poses(positions, gravity, tilt_sigma, self.rng))
-            scores.append(self._coarsest.score(self._render(self._coarsest, poses[-1])))
+            scores.append(self._coarsest.score(self._coarsest.draw(poses[-1])))
         return np.concatenate(poses), np.concatenate(scores)
 
     def _follow(self) -> None:
         """Every candidate moves on: the best of a small cloud, refined."""
         if not self._followed:
             return
-        clouds = [one.prediction.draw(FOLLOWERS, one.prediction.spread(), self.rng) for one in self._followed]
+        clouds = [one.draw(FOLLOWERS, one.spread(), self.rng) for one in self._followed]
         poses = np.concatenate(clouds)
         owner = np.repeat(np.arange(len(self._followed)), FOLLOWERS)
-        coarse = self.levels[0]
         for scale, keep in zip(FOLLOW_SCALES, FOLLOWERS_KEPT, strict=True):
-            images = self._render(coarse, poses)
-            scores = coarse.score(images)
+            images = self._coarse.draw(poses)
+            scores = self._coarse.score(images)
             of_each = [np.flatnonzero(owner == i) for i in range(len(self._followed))]
             kept = np.concatenate([mine[np.argsort(-scores[mine], kind="stable")[:keep]] for mine in of_each])
-            poses, owner = poses[kept], owner[kept]
-            poses = gauss_newton_step(coarse.measured, images[kept], coarse.renderer.camera, poses, scale)
+            poses, owner = self._coarse.step(poses[kept], images[kept], scale), owner[kept]
         poses = self._finish(poses)
         values = self._values(poses)
         for i, one in enumerate(self._followed):
@@ -170,14 +165,13 @@ class GlobalSearch:
             best = mine[np.argmax(values[mine])]
             one.saw(poses[best], values[best])
 
-    def _add_new(self, drawn: tuple[np.ndarray, np.ndarray], suggested: np.ndarray | None) -> None:
+    def _add_new(self, poses: np.ndarray, scores: np.ndarray, suggested: np.ndarray | None) -> None:
         """The best of the new poses, refined, become candidates unless they are known ones."""
-        coarse = self.levels[0]
-        poses = drawn[0][distinct(*drawn, STARTS[0], APART)]
+        poses = poses[distinct(poses, scores, STARTS[0], APART)]
         for scale, keep in zip(START_SCALES, STARTS, strict=True):
-            images = self._render(coarse, poses)
-            kept = distinct(poses, coarse.score(images), keep, DISTINCT)
-            poses = gauss_newton_step(coarse.measured, images[kept], coarse.renderer.camera, poses[kept], scale)
+            images = self._coarse.draw(poses)
+            kept = distinct(poses, self._coarse.score(images), keep, DISTINCT)
+            poses = self._coarse.step(poses[kept], images[kept], scale)
         poses = self._finish(poses)
         if suggested is not None:
             poses = np.concatenate([poses, optical_pose(suggested)[None]])
@@ -188,17 +182,13 @@ class GlobalSearch:
                 self._followed.append(_Followed(poses[index], float(values[index])))
 
     def _finish(self, poses: np.ndarray) -> np.ndarray:
-        middle = self.levels[1]
         for scale in FINISH_SCALES:
-            poses = gauss_newton_step(
-                middle.measured, self._render(middle, poses), middle.renderer.camera, poses, scale
-            )
+            poses = self._middle.step(poses, self._middle.draw(poses), scale)
         return poses
 
     def _values(self, poses: np.ndarray) -> np.ndarray:
         """agreeing - 3 through of every pose, on the middle image."""
-        middle = self.levels[1]
-        found = [agreement(middle.measured, image) for image in self._render(middle, poses)]
+        found = [agreement(self._middle.measured, image) for image in self._middle.draw(poses)]
         return np.nan_to_num([one.refined_support for one in found], nan=-1.0)
 
     def _drop(self) -> None:
@@ -211,7 +201,8 @@ class GlobalSearch:
         bins = occupied_bins(np.array([one.pose for one in self._followed]), 0.5, 0.5)
         self._count = self.most if bins == 0 else kld_count(bins, self.least, self.most)
 
-    def _answer(self, particles: int) -> PoseCandidates:
+    def _answer(self) -> tuple[str, list[PoseCandidate]]:
+        """What the candidates amount to, and the candidates, best first."""
         poses = [
             PoseCandidate(state_from_optical_pose(one.pose), one.evidence, one.frames)
             for one in sorted(self._followed, key=lambda one: -one.evidence)
@@ -221,11 +212,7 @@ class GlobalSearch:
         if old:
             rivals = [one for one in poses if one is not old[0] and one.evidence > old[0].evidence - CLEAR_GAP]
             status = "several" if rivals else "found"
-        return PoseCandidates(status, poses, particles, self._renders)
-
-    def _render(self, level: Level, poses: np.ndarray) -> np.ndarray:
-        self._renders += len(poses)
-        return level.renderer.render_poses(poses)
+        return status, poses
 
 
 def upright_poses(

@@ -1,14 +1,12 @@
 """How far off a refined pose may be: the image answers for some directions, the prediction for the others.
 
-The normal equations at the pose say how much the residuals would grow along every direction. If the pixels were
-independent, the inverse would be the covariance: tenths of a millimetre. But errors of the map and the camera, and
-things that moved, shift thousands of pixels at once. So the whole image counts as a small number of independent pixels,
-which is calibrated on development recordings. Directions that the image does not show (along a smooth wall) keep the
-prediction's variance, and it grows from frame to frame.
+The inverse of the normal equations' matrix would be the covariance if the pixels were independent: tenths of a
+millimetre. But errors of the map and the camera, and things that moved, shift thousands of pixels at once. So the whole
+image counts as a small number of independent pixels, calibrated on development recordings.
 
-We decide direction by direction what an image shows (`fused`). Otherwise a bare wall is a trap: the map's roughness
-seems to show something along it, the pose slides, the prediction takes the slide for a motion, and the covariance stays
-small.
+We decide direction by direction what an image shows (`fused`). What it does not show (along a smooth wall) keeps the
+prediction's variance, which grows from frame to frame. Otherwise a bare wall is a trap: the map's roughness seems to
+show something along it, the pose slides, and the prediction takes the slide for a motion.
 """
 
 from __future__ import annotations
@@ -73,8 +71,7 @@ def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, spread: np.
 
     P is the given covariance, carried along: T Exp(x) M = T M Exp(A x), with A x = (R' (v + w x t), R' w). So a
     direction that was not seen stays where it is in the world while the camera turns. A wrong velocity is wrong in the
-    same way frame after frame, so we add deviations and not variances; no dependence between the two errors exceeds the
-    sum above.
+    same way frame after frame, so the sum above covers any dependence between the two errors.
     """
     turned_back = rotation_exp(motion[3:]).T
     carry = np.zeros((6, 6))
@@ -92,9 +89,8 @@ def fused(prior: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, np.nd
     The gain says how much of the way to go from the predicted pose to the image's pose. prior: P, covariance of the
     prediction. information: I, inverse covariance of the image's pose; it may be singular.
     The eigenvectors of L' I L (with P = L L') are directions in which the two are independent. Along each of them we
-    believe the surer one. Where the image is less sure than the prediction, it changes nothing; where it is surer, the
-    result is as sure as the image alone. Kalman's gain would average, and it would become surer with every frame. But
-    an image's errors are mostly the map's errors, and they are the same in the next frame.
+    believe the surer one alone. Kalman's gain would average, and it would become surer with every frame; but an image's
+    errors are mostly the map's errors, and they are the same in the next frame.
     """
     lower = np.linalg.cholesky(prior)
     share, directions = np.linalg.eigh(lower.T @ information @ lower)

@@ -42,9 +42,8 @@ from course_lib.beyond.six_dof.covariance import (
     with_rivals,
 )
 from course_lib.beyond.six_dof.poses import distinct, local, retract
-from course_lib.beyond.six_dof.prediction import MAX_SPREAD, MotionPrediction, Rival, widened
-from course_lib.beyond.six_dof.refinement import gauss_newton_step
-from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, Layer, Level, Step, pyramid
+from course_lib.beyond.six_dof.prediction import MAX_SPREAD, START_SPREAD, WIDER, MotionPrediction, Rival
+from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, Layer, Step, pyramid
 from course_lib.depth_mcl.likelihood import DepthImageError, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
@@ -69,10 +68,9 @@ class AnnealedEstimate(NamedTuple):
     """`(6,)` the best refined pose."""
     covariance: np.ndarray
     """`(6, 6)` of the last layer's weighted particles about the state, metres along the world's axes and radians about
-    the body's: how wide the search was. `error_covariance` says how far off the state may be."""
+    the body's: how wide the search was."""
     score: float
-    """Raw score of the refined pose, eq. (8) as a mean over pixels of the finest image; NaN without a measurement. It
-    does not notice what the image does not show and is left to the prediction."""
+    """Raw score of the refined pose, eq. (8) as a mean over pixels of the finest image; NaN without a measurement."""
     ess: float
     """Effective sample size of the last layer's weights."""
     particles: np.ndarray
@@ -80,8 +78,7 @@ class AnnealedEstimate(NamedTuple):
     weights: np.ndarray
     """`(N,)` of these particles."""
     status: TrackStatus | Literal["no measurement"]
-    """"lost" if the state cannot be right, or is not known to 0.2 m and 20 degrees; "doubtful" if it agrees with the
-    map clearly less than frames did before, after a second look too (being_lost.py)."""
+    """What being_lost.py says of the state, after a second look if the first was doubtful."""
     error_covariance: np.ndarray
     """`(6, 6)`, the same units and axes: of the error to expect while the status is "tracked"."""
     agreement: Agreement
@@ -143,7 +140,6 @@ class AnnealedLocalizer:
         self._prediction: MotionPrediction | None = None
         self._judge = TrackJudge()
         self._covariance: np.ndarray | None = None
-        self._renders = 0
 
     def initialize(self, state0: np.ndarray) -> None:
         """Say where the camera is before the first frame, to within some decimetres and degrees (`START_SPREAD`).
@@ -168,7 +164,6 @@ class AnnealedLocalizer:
         depth = checked_image(depth, self.renderer.camera)
         for level in self.levels:
             level.measure(depth)
-        self._renders = 0
         spread = prediction.spread(increment)
         if not valid_pixels(self.levels[-1].measured).any():
             return self._not_measured(spread, increment)
@@ -185,9 +180,10 @@ class AnnealedLocalizer:
         cloud = np.minimum(np.hypot(spread, not_known), np.repeat(MAX_SPREAD, 3))
         found = self._look(self.layers, cloud, increment)
         if self.second_look and self._judge.doubts(found.agreement):
-            again = self._look(self.second_look, widened(cloud), increment)
+            wider = np.maximum(WIDER * cloud, np.repeat(START_SPREAD, 3))
+            again = self._look(self.second_look, wider, increment)
             if again.score > found.score:
-                return again, widened(cloud)
+                return again, wider
         return found, spread
 
     def _fuse(self, found: _Found, image_says: TrackStatus, spread: np.ndarray, increment: np.ndarray | None) -> _Found:
@@ -195,7 +191,7 @@ class AnnealedLocalizer:
         prediction, coarse = self._prediction, self.levels[0]
         before, predicted = prediction.origin(found.pose, spread, increment)
         covariance = self._predicted_covariance(local(before, predicted), spread)
-        information = pose_information(coarse.measured, self._draw(coarse, found.pose[None])[0], coarse.renderer.camera)
+        information = pose_information(coarse.measured, coarse.draw(found.pose[None])[0], coarse.renderer.camera)
         narrowed, gain = self.fuse(covariance, information)
         if image_says == "tracked":
             pose = retract(predicted, gain @ local(predicted, found.pose))
@@ -226,11 +222,11 @@ class AnnealedLocalizer:
         poses = all_poses[distinct(all_poses, merit(all_scores, all_poses), first, APART * spread[[0, 3]])]
         for k, step in enumerate(self.steps):
             level = self.levels[step.level]
-            images = self._draw(level, poses)
+            images = level.draw(poses)
             kept = distinct(poses, merit(level.score(images), poses), step.hypotheses, DISTINCT) if k else slice(None)
-            poses = gauss_newton_step(level.measured, images[kept], level.renderer.camera, poses[kept], step.scale)
+            poses = level.step(poses[kept], images[kept], step.scale)
         fine = self.levels[-1]
-        images = self._draw(fine, poses)
+        images = fine.draw(poses)
         scores = fine.score(images)
         merits = merit(scores, poses)
         best, *others = distinct(poses, merits, 1 + self.rivals, RIVAL_APART)
@@ -258,13 +254,9 @@ class AnnealedLocalizer:
                 parents = drawn[-1][resample(tempered[-1].weights, self.rng, n=n)]
                 poses = retract(parents, layer.spread * spread * self.rng.standard_normal((n, 6)))
             drawn.append(poses)
-            scores.append(coarse.score(self._draw(coarse, poses)))
+            scores.append(coarse.score(coarse.draw(poses)))
             tempered.append(temper(scores[-1], layer.survivors * n))
         return drawn, scores, tuple(tempered)
-
-    def _draw(self, level: Level, poses: np.ndarray) -> np.ndarray:
-        self._renders += len(poses)
-        return level.renderer.render_poses(poses)
 
     def _not_measured(self, spread: np.ndarray, increment: np.ndarray | None) -> AnnealedEstimate:
         """The prediction alone, because nothing was seen."""
@@ -296,7 +288,7 @@ class AnnealedLocalizer:
             in_world_and_body(self._covariance, found.pose),
             found.agreement,
             found.layers,
-            self._renders,
+            sum(level.renders for level in self.levels),
         )
 
 

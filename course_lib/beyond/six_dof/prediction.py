@@ -1,13 +1,10 @@
 """Where the camera may be when the next image comes: as it has moved before, or as an odometer says.
 
-The paper's system noise is one number, set by hand. It is too small for a camera that is swung round, and it wastes
-particles on a camera that hardly moves. Here the noise follows the camera. Without an odometer we predict that the last
-motion goes on, from not at all to a little more than before, and the cloud about this prediction is as wide as recent
-motions were long. With the increments of an odometer or an IMU, the centre is theirs and the cloud is as wide as a
-share of them.
-
-If another pose explained the last frame nearly as well, the camera may have been there. Such a rival is a second start
-of the cloud.
+The paper's system noise is set by hand: too small for a camera that is swung round, too large for one that hardly
+moves. Here it follows the camera. Without an odometer we predict that the last motion goes on, from not at all to a
+little more than before, in a cloud as wide as recent motions were long. With the increments of an odometer or an IMU,
+the centre is theirs and the cloud is as wide as a share of them. If another pose explained the last frame nearly as
+well, the cloud also starts from this rival.
 """
 
 from __future__ import annotations
@@ -100,8 +97,7 @@ class MotionPrediction:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the pose that the camera came from if it is now at `pose` `(4, 4)`, and the pose predicted from there.
 
-        Of the last pose and its rivals we take the one that the prediction prefers, and its nearest motion between rest
-        and going on.
+        It is the last pose or the rival that the prediction prefers, with its nearest motion between rest and going on.
         """
         ways = self._ways(pose[None], spread, increment)
         likeliest = max(range(len(ways)), key=lambda k: ways[k][0][0])
@@ -128,10 +124,9 @@ class MotionPrediction:
         return ways
 
     def found(self, pose: np.ndarray, seen: bool = True, rivals: Sequence[Rival] = ()) -> None:
-        """Tell that the camera is at `pose`, or at one of the rivals.
+        """Tell that the camera is at `pose`, or at one of the rivals. In the first frame no motion is learned.
 
-        seen: False if the image leaves a direction open; then the length of the motion is not learned. In the first
-        frame nothing is learned, because the start was off and the camera did not move.
+        seen: False if the image leaves a direction open; then the length of the motion is not learned.
         """
         if self._started:
             before = min(self._last_poses(), key=lambda last: float(np.linalg.norm(local(last.pose, pose))))
@@ -144,13 +139,8 @@ class MotionPrediction:
     def not_found(self, pose: np.ndarray, spread: np.ndarray, rivals: Sequence[Rival] = ()) -> None:
         """Tell that the camera may be at `pose`, at a rival, or at its last pose.
 
-        spread: `(6,)` of this frame's cloud; the next one will be wider.
+        spread: `(6,)` of this frame's cloud; the next one is wider.
         """
         self._started = self._not_found = True
         self.motion, self.rivals = np.zeros(6), [Rival(np.array(pose, dtype=np.float64), 0.0), *rivals]
         self._lengths = [spread[[0, 3]] * GROWTH / SPREAD_OF_MOTION]
-
-
-def widened(spread: np.ndarray) -> np.ndarray:
-    """Return the spread `(6,)` of a second look at a frame: wider than the first, and at least a start's."""
-    return np.maximum(WIDER * spread, np.repeat(START_SPREAD, 3))

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from course_lib.beyond.six_dof.refinement import gauss_newton_step
 from course_lib.depth_mcl.weighting import Weighting, paper_weighting
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
@@ -19,22 +20,32 @@ COARSE, MIDDLE, FINE = 1_200, 4_800, 25_600
 
 
 class Level:
-    """One size of image: its renderer, and the measured image after `measure`."""
+    """One size of image: its renderer, the measured image, and how many images were drawn since it was measured."""
 
     def __init__(self, renderer: DepthRenderer, camera: DepthCamera, weighting: Weighting) -> None:
         self.renderer = renderer
         self._weighting = weighting
         self._full_camera = camera
+        self.renders = 0
         self.measured = np.full(renderer.camera.shape, np.nan, dtype=np.float32)
 
     def measure(self, depth: np.ndarray) -> None:
         """Take the camera's image `(H, W)`; eq. (7) on this level's pixels."""
-        camera = self.renderer.camera
+        camera, self.renders = self.renderer.camera, 0
         self.measured = self.renderer.render_points(camera.points(subsample_depth(depth, self._full_camera, camera)))
+
+    def draw(self, poses: np.ndarray) -> np.ndarray:
+        """Return images `(N, H, W)` of the map from camera-to-world poses `(N, 4, 4)`."""
+        self.renders += len(poses)
+        return self.renderer.render_poses(poses)
 
     def score(self, images: np.ndarray) -> np.ndarray:
         """Return raw scores `(N,)` of images `(N, H, W)` of the map: eq. (8) as a mean over pixels."""
         return self._weighting.score(self.measured, images)
+
+    def step(self, poses: np.ndarray, images: np.ndarray, scale: float) -> np.ndarray:
+        """Return poses `(N, 4, 4)`, from which `images` were drawn, after a Gauss-Newton step; scale in metres."""
+        return gauss_newton_step(self.measured, images, self.renderer.camera, poses, scale)
 
 
 def pyramid(renderer: DepthRenderer) -> list[Level]:

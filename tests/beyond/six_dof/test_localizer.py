@@ -71,12 +71,6 @@ def test_every_layer_tells_how_sharp_it_was(renderer):
     assert [t.ess for t in estimate.layers] == pytest.approx([20, 6, 2], rel=1e-3)
 
 
-def test_refinement_is_what_makes_it_exact(renderer):
-    true = walk(12)
-    alone, refined = (off(run(renderer, renderer.render(true), **how), true) for how in ({"steps": ()}, {}))
-    assert np.median(alone[:, 0]) > 5 * np.median(refined[:, 0])
-
-
 def test_a_start_by_hand_may_be_off(renderer):
     true = np.tile(START, (3, 1))
     estimates = run(renderer, renderer.render(true), moved(START, np.repeat(0.8 * START_SPREAD, 3)), seed=2)
@@ -202,13 +196,10 @@ def test_the_same_seed_gives_the_same_bytes(renderer):
     assert not np.array_equal(first, other)
 
 
-@pytest.mark.parametrize("bad", [{"seed": -1}, {"n_particles": 0}, {"rivals": -1}, {"layers": ()}])
-def test_a_bad_argument_is_named(renderer, bad):
-    with pytest.raises(ValueError, match=next(iter(bad)).rstrip("s")):
-        AnnealedLocalizer(renderer, **bad)
-
-
 def test_bad_use_is_named(renderer):
+    for bad in ({"seed": -1}, {"n_particles": 0}, {"rivals": -1}, {"layers": ()}):
+        with pytest.raises(ValueError, match=next(iter(bad)).rstrip("s")):
+            AnnealedLocalizer(renderer, **bad)
     localizer = AnnealedLocalizer(renderer)
     with pytest.raises(RuntimeError, match="initialize"):
         localizer.step(np.ones(SMALL.shape))

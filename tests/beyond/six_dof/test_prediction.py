@@ -13,10 +13,8 @@ from course_lib.beyond.six_dof.prediction import (
     SPREAD_OF_INCREMENT,
     SPREAD_OF_MOTION,
     START_SPREAD,
-    WIDER,
     MotionPrediction,
     Rival,
-    widened,
 )
 from course_lib.geometry import optical_pose
 
@@ -116,8 +114,3 @@ def test_between_equals_the_prediction_decides(rng):
     assert prediction.preference(pose[None], spread, STEP)[0] < -0.5 * PRIOR_SHARE, "an odometer says how far it went"
     prediction.not_found(beyond, spread)
     assert prediction.preference(np.array([pose, beyond]), spread) == pytest.approx([0.0, 0.0], abs=1e-9)
-
-
-def test_a_second_look_is_wider_and_never_narrower_than_for_a_start():
-    assert widened(np.full(6, 0.01))[[0, 3]] == pytest.approx(START_SPREAD)
-    assert widened(np.full(6, 0.4)) == pytest.approx(WIDER * 0.4)
