@@ -35,9 +35,8 @@ def searched(search, renderer, states, gravity=down):
     return [search.step(renderer.render(state)[0], gravity(state)) for state in states]
 
 
-@pytest.mark.parametrize("start", [PLACE, ELSEWHERE])
-def test_the_camera_is_found_from_nowhere(renderer, start):
-    states = walk(start, 6)
+def test_the_camera_is_found_from_nowhere(renderer):
+    states = walk(ELSEWHERE, 6)
     answers = searched(GlobalSearch(renderer, seed=1, least=200, most=1_500), renderer, states)
     assert answers[0].status == "searching", "one frame is not enough to believe"
     assert answers[-1].status == "found"
