@@ -1,17 +1,14 @@
 """A filter that looks at each frame before it uses it, and says of every frame what became of it.
 
-    localizer = WatchedLocalizer(MonteCarloLocalizer(renderer), period=0.1)
+    localizer = GuardedLocalizer(MonteCarloLocalizer(renderer), period=0.1)
     localizer.initialize(state0)
     for depth, time in recording:
-        watched = localizer.step(depth, time)       # watched.outcome, watched.estimate
+        frame = localizer.step(depth, time)       # frame.outcome, frame.estimate
 
-A frame that the check finds at fault (frame_check.py) is not weighed: the filter moves its particles as if nothing had
-been measured, so that the cloud grows while the camera goes on unseen; a frame that came out of order does not even
-move them. For frames that never came it is moved once each. Where no frame is at fault, the filter does exactly what it
-does without being watched.
-
-After faults a pose is "tracked" only once it has been confirmed: as many good frames as there were faults, at most
-`CONFIRMED` of them, and a covariance as narrow as that of a pose that is known (annealed/certainty.py).
+A frame at fault (guarded_frames.py) is not weighed. The filter moves its particles as if nothing had been measured, so
+the cloud grows while the camera goes on unseen. For frames that never came the filter is moved once each, and for a
+frame out of order not at all. After faults, as many good frames are owed before a pose is "tracked" (`Debt`). If no
+frame is at fault, the filter does exactly what it does without a guard.
 """
 
 from __future__ import annotations
@@ -21,12 +18,17 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.frame_check import Fault, FrameCheck
-from course_lib.beyond.six_dof.certainty import CONFIRMED, KNOWN
-from course_lib.beyond.six_dof.covariance import sigmas
-from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
-from course_lib.beyond.tracking import Agreement, TrackStatus, agreement, judge_track
-from course_lib.depth_mcl.likelihood import DepthImageError
+from course_lib.beyond.being_lost import (
+    NOTHING_MEASURED,
+    Agreement,
+    Debt,
+    TrackStatus,
+    agreement,
+    is_known,
+    judge_track,
+)
+from course_lib.beyond.guarded_frames import Fault, FrameCheck
+from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer, checked_image
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
 
 Outcome = TrackStatus | Fault | Literal["no image"]
@@ -35,85 +37,79 @@ OUTCOMES: tuple[Outcome, ...] = (
     "no image", "out of order", "repeated", "no return", "saturated", "noise",
     "half covered", "few returns", "exposure jump",
 )  # fmt: skip
-"""What becomes of a frame: used, and the pose is one of the first three; never came; came and was not used."""
+"""What becomes of a frame: it is used, and its pose is one of the first three; or it never came; or it is not used."""
 
 
-class Watched(NamedTuple):
+class GuardedFrame(NamedTuple):
     """What became of a frame that arrived."""
 
     outcome: Outcome
-    """Only a "tracked" pose is one to go by."""
+    """Only a "tracked" pose can be relied on."""
     estimate: Estimate | AnnealedEstimate | None
-    """Of the filter; after a frame out of order the one before (None where there is none)."""
+    """The filter's latest estimate. For a frame out of order, the previous one; None if there is no previous one."""
     missed: tuple[Estimate | AnnealedEstimate, ...]
-    """One for every frame that should have come before this one: where the camera may have been, "no image"."""
+    """One for every frame that should have come before this one ("no image"): where the camera may have been."""
 
 
-class WatchedLocalizer:
-    """`MonteCarloLocalizer` or `AnnealedLocalizer`, watched. period: seconds from frame to frame; None: unknown."""
+class GuardedLocalizer:
+    """A `MonteCarloLocalizer` or `AnnealedLocalizer` whose frames are looked at before they are used.
+
+    period: seconds from frame to frame; None if unknown, then missing frames are not noticed.
+    """
 
     def __init__(self, localizer: MonteCarloLocalizer | AnnealedLocalizer, period: float | None = None) -> None:
         self.localizer = localizer
+        self._camera = localizer.renderer.camera
         self._period = period
-        self._judges_itself = isinstance(localizer, AnnealedLocalizer)
         self._begin()
 
     def initialize(self, state0: np.ndarray) -> None:
-        """Says where the camera is before the first frame, as the filter's own `initialize` does."""
+        """Say where the camera is before the first frame, as the filter's own `initialize` does."""
         self.localizer.initialize(state0)
         self._begin()
 
-    def step(self, depth: np.ndarray, time: float | None = None) -> Watched:
-        """What a depth image `(H, W)` in metres (NaN = no measurement), taken at `time` (seconds), says of the pose.
+    def _begin(self) -> None:
+        self._check = FrameCheck(self._camera.near, self._camera.far, self._period)
+        self._agreements: list[Agreement] = []
+        self._last: Estimate | AnnealedEstimate | None = None
+        self._debt = Debt()
+
+    def step(self, depth: np.ndarray, time: float | None = None) -> GuardedFrame:
+        """Return what becomes of a depth image `(H, W)` in metres (NaN = no measurement), taken at `time` (seconds).
 
         Raises `DepthImageError` for an image of another size, `ValueError` for a time that is not finite.
         """
-        depth = np.asarray(depth)
-        if depth.shape != self.localizer.renderer.camera.shape:
-            raise DepthImageError(
-                f"the depth image has shape {depth.shape}; the camera gives {self.localizer.renderer.camera.shape} "
-                "(height, width)"
-            )
-        seen = self._check.look(depth, time)
-        missed = tuple(self._move() for _ in range(seen.missed))
-        if seen.fault == "out of order":
-            return Watched(seen.fault, self._last, missed)
-        if seen.fault is not None:
-            return Watched(seen.fault, self._move(), missed)
+        depth = checked_image(depth, self._camera)
+        fault, n_missed = self._check.look(depth, time)
+        missed = tuple(self._move() for _ in range(n_missed))
+        if fault == "out of order":
+            return GuardedFrame(fault, self._last, missed)
+        if fault is not None:
+            return GuardedFrame(fault, self._move(), missed)
         self._last = self.localizer.step(depth)
-        return Watched(self._judged(depth), self._last, missed)
-
-    def _begin(self) -> None:
-        camera = self.localizer.renderer.camera
-        self._check = FrameCheck(camera.near, camera.far, self._period)
-        self._agreements: list[Agreement] = []
-        self._last: Estimate | AnnealedEstimate | None = None
-        self._owed = 0
+        return GuardedFrame(self._judged(depth), self._last, missed)
 
     def _move(self) -> Estimate | AnnealedEstimate:
-        """The filter after a frame of which nothing is used."""
-        self._owed = min(self._owed + 1, CONFIRMED)
-        self._agreements.append(Agreement(0, np.nan, np.nan, np.nan))
+        """The filter's estimate after a frame of which nothing is used."""
+        self._debt.add()
+        self._agreements.append(NOTHING_MEASURED)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", NoMeasurementWarning)  # it is told by name
-            self._last = self.localizer.step(np.full(self.localizer.renderer.camera.shape, np.nan))
+            warnings.simplefilter("ignore", NoMeasurementWarning)  # the outcome says it
+            self._last = self.localizer.step(np.full(self._camera.shape, np.nan))
         return self._last
 
     def _judged(self, depth: np.ndarray) -> Outcome:
-        """What the pose of a frame that was used is."""
-        status = self._last.status if self._judges_itself else self._judged_by_track(depth)
+        """The outcome of a frame that was used: the annealed filter judges itself, the paper's filter is judged."""
+        status = self._last.status
+        if not isinstance(self.localizer, AnnealedLocalizer):
+            renderer = self.localizer.renderer
+            measured = renderer.render_points(self._camera.points(depth))
+            self._agreements.append(agreement(measured, renderer.render(self._last.state)[0]))
+            status = judge_track(self._agreements)[-1]
+            if status == "tracked" and not is_known(self._last.error_covariance):
+                return "doubtful"
         if status == "no measurement":  # all of it lies outside the camera's planes once it is projected
             return "no return"
-        if status == "tracked" and self._owed:
-            self._owed -= 1
-            if self._owed:
-                return "doubtful"
+        if status == "tracked" and not self._debt.is_paid(good=True):
+            return "doubtful"
         return status
-
-    def _judged_by_track(self, depth: np.ndarray) -> TrackStatus:
-        renderer = self.localizer.renderer
-        measured = renderer.render_points(renderer.camera.points(depth))
-        self._agreements.append(agreement(measured, renderer.render(self._last.state)[0]))
-        status = judge_track(self._agreements)[-1]
-        unknown = (sigmas(self._last.error_covariance) > KNOWN).any()
-        return "doubtful" if status == "tracked" and unknown else status

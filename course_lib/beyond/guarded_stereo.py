@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.frame_order import FrameOrder
+from course_lib.beyond.guarded_frames import FrameOrder
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError
 from course_lib.spherical_stereo.pose.localization import OK, SWAPPED, Localization
@@ -27,7 +27,7 @@ class WatchedPair(NamedTuple):
     """What became of a pair."""
 
     outcome: str
-    """ "ok"; "out of order" or "repeated" (frame_order.py); or one of the reasons of `pose.localization` and of the
+    """ "ok"; "out of order" or "repeated" (guarded_frames.py); or one of the reasons of `pose.localization` and of the
     fit why there is no pose."""
     localization: Localization | None
     """None where the pair was not looked into."""
@@ -48,11 +48,11 @@ class WatchedRig:
         Exchanged images, an error of the caller's to `SemanticLocalizer`, are an outcome in a stream: a cable does it.
         Raises `PanoramaError` for what is no pair of panoramas, `ValueError` for a time that is not finite.
         """
-        place = self._order.look((np.asarray(upper_image), np.asarray(lower_image)), time)
-        if place.order != "in order":
-            return WatchedPair(place.order, None, place.missed)
+        frame = self._order.look((np.asarray(upper_image), np.asarray(lower_image)), time)
+        if frame.fault is not None:
+            return WatchedPair(frame.fault, None, frame.missed)
         try:
             found = self.localizer.localize(upper_image, lower_image)
         except SwappedImagesError:
-            return WatchedPair(SWAPPED, None, place.missed)
-        return WatchedPair(OK if found.status == OK else str(found.reason), found, place.missed)
+            return WatchedPair(SWAPPED, None, frame.missed)
+        return WatchedPair(OK if found.status == OK else str(found.reason), found, frame.missed)

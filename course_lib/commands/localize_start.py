@@ -49,12 +49,12 @@ def found_start(
         raise ValueError("--start unknown needs --up AXIS: only with gravity known can the whole map be searched")
     bar = progress_bar("searching")
     options = {"seed": arguments.seed, "up": up, "near": arguments.near, "far": arguments.far, "progress": bar}
-    index, places, start = find_start(scene_map, sequence, **options)
-    if places.status != "found":
+    index, candidates, start = find_start(scene_map, sequence, **options)
+    if candidates.status != "found":
         where = "; ".join(
-            f"({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.rad2deg(yaw):.0f} degrees (evidence {place.evidence:.2f})"
-            for place in places.places
-            for x, y, z, yaw in [(*place.state[:3], place.state[5])]
+            f"({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.rad2deg(yaw):.0f} degrees (evidence {one.evidence:.2f})"
+            for one in candidates.poses
+            for x, y, z, yaw in [(*one.state[:3], one.state[5])]
         )
         raise ValueError(
             f"the start was not found in {index + 1} frames: "

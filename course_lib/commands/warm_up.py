@@ -11,7 +11,7 @@ def compile_loops() -> None:
     """Renders one depth image, weighs it and refines by it, as every frame of the filters does."""
     import numpy as np
 
-    from course_lib.beyond.six_dof.compiled_refinement import normal_equations
+    from course_lib.beyond.six_dof.refinement import compiled_normal_equations
     from course_lib.commands.depth_image_probe import measure
     from course_lib.depth_mcl.likelihood import compiled_likelihood
     from course_lib.rendering.camera import DepthCamera
@@ -19,7 +19,9 @@ def compile_loops() -> None:
     measure("raster")
     compiled_likelihood(np.ones((2, 2), dtype=np.float32), np.ones((1, 2, 2), dtype=np.float32))
     small = DepthCamera.from_fov(4, 3, 60.0, 45.0)
-    normal_equations(np.ones(small.shape, dtype=np.float32), np.ones((1, *small.shape), dtype=np.float32), small, 0.1)
+    compiled_normal_equations(
+        np.ones(small.shape, dtype=np.float32), np.ones((1, *small.shape), dtype=np.float32), small, 0.1
+    )
 
 
 def simplify_corridor() -> None:

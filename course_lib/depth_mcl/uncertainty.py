@@ -15,7 +15,7 @@ error of that frame is still in them. `carried_covariance` takes it along, as a 
 
 kappa was calibrated on one frame's share, with a run that no result is reported from: a wagon in the corridor of seed
 10,001. No such covariance can say that the filter is lost, because then all its particles are in the wrong place
-(course_lib.beyond.tracking).
+(course_lib.beyond.being_lost).
 """
 
 from __future__ import annotations

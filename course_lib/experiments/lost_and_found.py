@@ -115,15 +115,15 @@ def start_anywhere(map_file: str, sequence: str, seed: int) -> dict:
         search, begun = GlobalSearch(renderer, seed=seed), time.perf_counter()
         particles, renders, frames = 0, 0, 0
         for _, depth, pose in _played(recording, range(first, first + START_FRAMES)):
-            places = search.step(depth, gravity_in_camera(pose, rng))
-            particles, renders, frames = particles + places.particles, renders + places.renders, frames + 1
-            if places.status == "found":
+            candidates = search.step(depth, gravity_in_camera(pose, rng))
+            particles, renders, frames = particles + candidates.particles, renders + candidates.renders, frames + 1
+            if candidates.status == "found":
                 break
-    right = bool(places.places) and _right(places.places[0].state, pose)
-    several = [_right(place.state, pose) for place in places.places]
+    right = bool(candidates.poses) and _right(candidates.poses[0].state, pose)
+    several = [_right(one.state, pose) for one in candidates.poses]
     return {
         "frame": first,
-        "status": places.status,
+        "status": candidates.status,
         "right": right,
         "right_among_places": any(several),
         "frames": frames,

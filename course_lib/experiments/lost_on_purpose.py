@@ -1,4 +1,4 @@
-"""Runs that are made to get lost, and how often `depth_mcl.tracking`, which knows no truth, notices.
+"""Runs that are made to get lost, and how often `beyond/being_lost.py`, which knows no truth, notices.
 
 Its limits were chosen on these runs, so their recordings are development data: the simulated corridor and the real
 kitchen, with seeds from 10,000 up. Images are thinned and few particles used, for time.

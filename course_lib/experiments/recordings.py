@@ -14,11 +14,11 @@ from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 
-from course_lib.beyond.frame_check import Fault, FrameCheck
-from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, GlobalSearch, Places
+from course_lib.beyond.being_lost import Agreement, TrackStatus, agreement, judge_track
+from course_lib.beyond.guarded_frames import Fault, FrameCheck
+from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, GlobalSearch, PoseCandidates
 from course_lib.beyond.lost_and_found.recovery import UNKNOWN_TILT_SIGMA, RecoveringLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
-from course_lib.beyond.tracking import Agreement, TrackStatus, agreement, judge_track
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
 from course_lib.depth_mcl.likelihood import Weighting
@@ -66,7 +66,7 @@ class Run(NamedTuple):
     """Milliseconds, the mean over steps; reading the images is not counted."""
     frames_without_measurement: int
     faults: tuple[Fault | None, ...] = ()
-    """Why frames were not used (frame_check.py), None where they were; empty where nobody looked."""
+    """Why frames were not used (guarded_frames.py), None where they were; empty where nobody looked."""
 
 
 def system_noise(dof: Literal["6", "xyyaw"], position: float, rotation_deg: float) -> dict:
@@ -99,7 +99,7 @@ class _Recovering:
 
     def step(self, depth: np.ndarray) -> AnnealedEstimate:
         found = self._localizer.step(depth, gravity=next(self._gravity, None))
-        searched = 0 if found.places is None else found.places.renders
+        searched = 0 if found.candidates is None else found.candidates.renders
         return found.estimate._replace(renders=found.estimate.renders + searched)
 
 
@@ -113,7 +113,7 @@ def find_start(
     far: float = FAR,
     frames: int = 20,
     progress: Callable = iter,
-) -> tuple[int, Places, np.ndarray]:
+) -> tuple[int, PoseCandidates, np.ndarray]:
     """Where a recording begins whose start nobody knows: the frame in which it was clear, what was found there, and the
     first place's camera-to-world matrix `(4, 4)` in the recording's own world (all NaN where none was found).
 
@@ -127,12 +127,12 @@ def find_start(
         search = GlobalSearch(renderer, seed=seed)
         for index in progress(range(min(frames, len(sequence)))):
             gravity = upright if sequence.gravity is None else sequence.gravity[index]
-            places = search.step(sequence.depth(index), gravity, tilt_sigma)
-            if places.status == "found":
+            candidates = search.step(sequence.depth(index), gravity, tilt_sigma)
+            if candidates.status == "found":
                 break
-    if not places.places:
-        return index, places, np.full((4, 4), np.nan)
-    return index, places, np.linalg.inv(to_z_up) @ optical_pose(places.places[0].state)
+    if not candidates.poses:
+        return index, candidates, np.full((4, 4), np.nan)
+    return index, candidates, np.linalg.inv(to_z_up) @ optical_pose(candidates.poses[0].state)
 
 
 class Localizer(Protocol):

@@ -12,11 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
+from course_lib.beyond.being_lost import agreement, judge_refined
 from course_lib.beyond.six_dof.prediction import MotionPrediction, Rival
-from course_lib.beyond.six_dof.pyramid import pyramid
 from course_lib.beyond.six_dof.refinement import refine
-from course_lib.beyond.six_dof.schedule import LAYERS, STEPS
-from course_lib.beyond.tracking import agreement, judge_refined
+from course_lib.beyond.six_dof.schedule import LAYERS, STEPS, pyramid
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.experiments.recordings import SIGMA, Run, run_annealed, run_sequence, system_noise

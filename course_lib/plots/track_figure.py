@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from course_lib.beyond.tracking import TrackStatus
+from course_lib.beyond.being_lost import TrackStatus
 from course_lib.plots.figures import BLUE, ORANGE, VERMILION, new_figure
 from course_lib.rendering.scene_map import SceneMap
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from course_lib.beyond import AnnealedLocalizer
-from course_lib.beyond.six_dof import compiled_refinement
+from course_lib.beyond.six_dof import refinement
 from course_lib.commands.warm_up import compile_loops, simplify_corridor
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer, SceneMap
 from course_lib.rendering import raster, simplification
 
 LIKELIHOOD = importlib.import_module("course_lib.depth_mcl.likelihood")  # the package's name for it is the function
-LOOPS = ((raster, "draw_views"), (LIKELIHOOD, "_sums"), (compiled_refinement, "_sums"))
+LOOPS = ((raster, "draw_views"), (LIKELIHOOD, "_sums"), (refinement, "_sums"))
 
 
 def compiled_forms():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from course_lib.beyond.six_dof.poses import retract
 from course_lib.beyond.six_dof.prediction import START_SPREAD
-from course_lib.beyond.six_dof.twists import moved
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.six_degrees import ABLATIONS, METHODS, StandingStill, pooled, run_frames, thinned_points
 from course_lib.rendering.scene_map import SceneMap
@@ -55,7 +55,7 @@ def test_what_is_switched_off_is_off(corridor):
     pose = np.eye(4)
     still = StandingStill(pose)
     for step in range(1, 4):
-        pose = moved(pose, np.full(6, 0.1 * step))
+        pose = retract(pose, np.full(6, 0.1 * step))
         still.found(pose)
     assert not still.motion.any()
     assert still.spread()[0] == START_SPREAD[0]

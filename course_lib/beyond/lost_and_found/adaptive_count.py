@@ -1,7 +1,8 @@
 """How many particles does a distribution need? KLD-sampling (Fox, Adapting the sample size in particle filters, 2003).
 
-Spread over many places it needs many, gathered in one it needs few. With n samples of a distribution over k bins, the
-Kullback-Leibler divergence of what they say from the truth is below epsilon with the probability of quantile z if
+A distribution that is spread over many places needs many particles, one that is gathered in one place needs few. With
+n samples of a distribution over k bins, the Kullback-Leibler divergence between the samples and the distribution is
+below epsilon with the probability of quantile z if
 
     n = (k - 1) / (2 epsilon) (1 - 2 / (9 (k - 1)) + sqrt(2 / (9 (k - 1))) z)^3
 """
@@ -16,9 +17,9 @@ PROBABILITY = 0.99
 
 
 def kld_count(bins: int, least: int, most: int, error: float = ERROR, probability: float = PROBABILITY) -> int:
-    """Number of particles for a distribution that occupies so many bins, between `least` and `most`.
+    """Return the number of particles, from `least` to `most`, for a distribution that occupies so many bins.
 
-    Raises `ValueError` for bounds in the wrong order, or an error or probability that is none.
+    error: epsilon, nats. Raises `ValueError` if the bounds are in the wrong order, or error or probability is invalid.
     """
     if not 1 <= least <= most:
         raise ValueError(f"least and most must be in order, at least 1; got {least} and {most}")
@@ -32,8 +33,10 @@ def kld_count(bins: int, least: int, most: int, error: float = ERROR, probabilit
 
 
 def occupied_bins(poses: np.ndarray, size: float, angle: float) -> int:
-    """How many bins camera-to-world poses `(N, 4, 4)` fall into: cubes of `size` metres, and where the camera looks,
-    its forward axis in cubes of `angle` (radians, as a chord)."""
+    """Return how many bins camera-to-world poses `(N, 4, 4)` fall into.
+
+    Bins are cubes of `size` metres for the position, and cubes of `angle` (radians, as a chord) for the forward axis.
+    """
     if len(poses) == 0:
         return 0
     cells = np.floor(np.concatenate([poses[:, :3, 3] / size, poses[:, :3, 2] / angle], axis=1)).astype(int)

@@ -7,55 +7,56 @@ import numpy as np
 from course_lib.rendering.ray import EmbreeCaster
 from course_lib.rendering.scene_map import SceneMap
 
-CLEARANCE = 0.15  # metres to the nearest surface (chosen: no camera is nearer, and sees nothing if it is)
-ENCLOSED = (
-    0.65  # share of directions that must meet the map, in a map of a building (chosen: just outside a wall it is half)
-)
-# A map smaller than this, cubic metres of its box, is searched whole: it may show one side of one room, and a camera
-# stands where the scanner stood, on the open side (chosen: a large room).
+CLEARANCE = 0.15  # metres to the nearest surface (chosen: no camera is nearer, and it would see nothing)
+# Share of directions that must meet the map, in a map of a building (chosen: just outside a wall it is half).
+ENCLOSED = 0.65
+# A map whose box is smaller than this, in cubic metres, is searched whole. It may show one side of one room, and the
+# camera stands where the scanner stood, on the open side (chosen: a large room).
 SMALL_MAP = 100.0
 _DIRECTIONS = 32
-_TRIES = 20_000  # places drawn at once
-_MOST_ROUNDS = 30
+_TRIES = 20_000  # positions drawn at once
+_MAX_ROUNDS = 30
 
 
 class FreeSpaceError(ValueError):
-    """A map in which no free place was found."""
+    """A map without free space for a camera."""
 
 
 class FreeSpace:
-    """Places in a map where a camera can be. Needs embreex (rays), where it has a wheel."""
+    """Positions in a map where a camera can be."""
 
     def __init__(self, scene_map: SceneMap) -> None:
         self._map = scene_map
         self._caster = EmbreeCaster(scene_map.vertices[scene_map.faces] - scene_map.origin)
-        directions = np.random.default_rng(0).standard_normal((_DIRECTIONS, 3))  # the same for every place and seed
+        directions = np.random.default_rng(0).standard_normal((_DIRECTIONS, 3))  # the same for every position and seed
         self._directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
         self.small = bool(np.prod(np.ptp(scene_map.bounds, axis=0)) < SMALL_MAP)
 
     def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Which of positions `(N, 3)` are free: clear of surfaces, and enclosed by them unless the map is small."""
+        """Return whether positions `(N, 3)` are clear of surfaces and, unless the map is small, enclosed by them."""
         distances = self.distances(positions)
         free = distances.min(axis=1) > CLEARANCE
         return free if self.small else free & (np.isfinite(distances).mean(axis=1) >= ENCLOSED)
 
     def distances(self, positions: np.ndarray) -> np.ndarray:
-        """How far it is from positions `(N, 3)` to the map in each of 32 directions: `(N, 32)` metres, `inf` where
-        nothing is hit."""
+        """Return the distances `(N, 32)` in metres from positions `(N, 3)` to the map in 32 directions.
+
+        `inf` where nothing is hit.
+        """
         origins = np.repeat(positions - self._map.origin, _DIRECTIONS, axis=0)
         distances = self._caster.cast(origins, np.tile(self._directions, (len(positions), 1)))[0]
         return distances.reshape(len(positions), _DIRECTIONS)
 
     def draw(self, n: int, rng: np.random.Generator) -> np.ndarray:
-        """Positions `(n, 3)` drawn evenly from the free space. Raises `FreeSpaceError` where there is hardly any."""
+        """Draw positions `(n, 3)` evenly from the free space. Raises `FreeSpaceError` if there is hardly any."""
         found: list[np.ndarray] = []
         low, high = self._map.bounds
-        for _ in range(_MOST_ROUNDS):
-            if sum(len(places) for places in found) >= n:
+        for _ in range(_MAX_ROUNDS):
+            if sum(len(positions) for positions in found) >= n:
                 return np.concatenate(found)[:n]
             tried = rng.uniform(low, high, (_TRIES, 3))
             found.append(tried[self.contains(tried)])
         raise FreeSpaceError(
-            f"hardly a free place in the map {self._map!r}: {sum(map(len, found))} of {_TRIES * _MOST_ROUNDS} places "
-            f"were {CLEARANCE} m from every surface and enclosed; is the map closed, and in metres?"
+            f"hardly a free place in the map {self._map!r}: {sum(map(len, found))} of {_TRIES * _MAX_ROUNDS} positions "
+            f"were {CLEARANCE} m from every surface and enclosed. Is the map closed, and in metres?"
         )

@@ -2,57 +2,55 @@
 
     search = GlobalSearch(renderer, seed=0)
     for depth, gravity in recording:
-        places = search.step(depth, gravity)
-        if places.status == "found": ...
+        candidates = search.step(depth, gravity)
+        if candidates.status == "found": ...
 
-Every frame draws new particles from anywhere and refines the best of them, and follows the places that earlier frames
-found, each by a small cloud of its own. A place lives as long as its images agree with the map. The answer is one place
-only if no other explains the frames as well: where a building repeats itself, the answer is several.
+Every frame draws new particles from anywhere and refines the best of them. It also follows the candidates of earlier
+frames, each with a small cloud of its own. A candidate lives as long as its images agree with the map. The answer is
+one pose only if no other pose explains the frames as well; where a building repeats itself, the answer is several.
 
-What is known is gravity, as every phone and depth camera with an accelerometer measures it: it leaves four of six
-degrees of freedom to be searched.
+Gravity is known, because every phone and depth camera with an accelerometer measures it. So only four of the six
+degrees of freedom have to be searched.
 """
 
 from __future__ import annotations
 
-import time
 from typing import Literal, NamedTuple
 
 import numpy as np
 
+from course_lib.beyond.being_lost import REFINED_LOST, agreement
 from course_lib.beyond.lost_and_found.adaptive_count import kld_count, occupied_bins
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
-from course_lib.beyond.six_dof.hypotheses import distinct
+from course_lib.beyond.six_dof.poses import distinct, lengths, local
 from course_lib.beyond.six_dof.prediction import MotionPrediction
-from course_lib.beyond.six_dof.pyramid import Level, pyramid
-from course_lib.beyond.six_dof.refinement import gauss_newton_step
-from course_lib.beyond.six_dof.twists import lengths, motion_between
-from course_lib.beyond.tracking import THROUGH_WEIGHT, agreement
+from course_lib.beyond.six_dof.schedule import Level, pyramid
 from course_lib.depth_mcl.likelihood import paper_weighting
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 
 # All chosen on development recordings (the kitchen, the shipped corridor, corridor seeds from 10,001 on).
-COARSEST = (20, 15)  # pixels: of these, thousands are drawn
+COARSEST = (20, 15)  # pixels of the images of which thousands are drawn
 WIDE_ALPHA = 0.3  # metres, of eq. (8) for them: the nearest of thousands is still decimetres off
 TILT_SIGMA = np.deg2rad(1.0)  # of the measured gravity
 APART = np.array([0.25, np.deg2rad(12.0)])  # metres, radians: nearer particles are one start
 DISTINCT = np.array([0.05, np.deg2rad(3.0)])  # nearer refined poses are one
-ELSEWHERE = np.array([0.3, np.deg2rad(15.0)])  # farther apart are two places
-STARTS = (300, 150, 80, 50, 30, 20)  # taken along by each step on the coarse image
+ELSEWHERE = np.array([0.3, np.deg2rad(15.0)])  # poses farther apart are two places
+BATCH = 500  # poses that are drawn and scored at once
+STARTS = (300, 150, 80, 50, 30, 20)  # how many starts each step on the coarse image takes along
 START_SCALES = (0.4, 0.3, 0.25, 0.2, 0.15, 0.1)
 FINISH_SCALES = (0.1, 0.05, 0.05)  # on the middle image
-FOLLOWERS = 16  # particles of each place that is followed
+FOLLOWERS = 16  # particles of each candidate that is followed
 FOLLOW_SCALES = (0.25, 0.15, 0.1)
-MOST_PLACES = 12
-LEAST_VALUE = 0.4  # of agreeing - 3 through: what agrees less is dropped (as `judge_refined` has it)
-MEMORY = 0.4  # share of a new frame in a place's evidence
-FRAMES_TO_BELIEVE = 3  # that a place must have explained
-CLEAR_GAP = 0.08  # of evidence, between the best place and the next elsewhere
+FOLLOWERS_KEPT = (6, 4, 2)
+MAX_CANDIDATES = 12
+MEMORY = 0.4  # share of a new frame in a candidate's evidence
+FRAMES_TO_BELIEVE = 3  # that a candidate must have explained
+CLEAR_GAP = 0.08  # of evidence, between the best candidate and the next elsewhere
 
 
-class Place(NamedTuple):
-    """A place where the camera may be."""
+class PoseCandidate(NamedTuple):
+    """A pose that the camera may have."""
 
     state: np.ndarray
     """`(6,)`."""
@@ -62,30 +60,29 @@ class Place(NamedTuple):
     """How many frames it has explained."""
 
 
-class Places(NamedTuple):
-    """What the frames so far say."""
+class PoseCandidates(NamedTuple):
+    """The answer of a search after the frames so far."""
 
     status: Literal["found", "several", "searching"]
-    """"found": one place explains them, and no other nearly as well. "several": more than one does. "searching": none
-    for long enough."""
-    places: list[Place]
-    """Best first; no two are the same place."""
+    """"found": one pose explains the frames, and no other nearly as well. "several": more than one does. "searching":
+    none for long enough."""
+    poses: list[PoseCandidate]
+    """Best first; no two are at the same place."""
     particles: int
     """How many poses were drawn from free space in this frame."""
     renders: int
+    """How many images were drawn in this frame."""
 
 
-class _Followed:
-    """A place with the memory of its motion."""
+class _Followed(MotionPrediction):
+    """A candidate with the memory of its motion."""
 
     def __init__(self, pose: np.ndarray, value: float) -> None:
-        self.prediction = MotionPrediction(pose)
-        self.pose = pose
+        super().__init__(pose)
         self.evidence, self.frames = value, 0
 
     def saw(self, pose: np.ndarray, value: float) -> None:
-        self.prediction.found(pose)
-        self.pose = pose
+        self.found(pose)
         self.evidence = (1 - MEMORY) * self.evidence + MEMORY * value
         self.frames += 1
 
@@ -94,33 +91,23 @@ class GlobalSearch:
     """Looks for the camera in all free space of a map.
 
     renderer: draws the map for the camera. seed: of all draws. least, most: bounds on the number of poses that are
-    drawn from free space in a frame; KLD-sampling chooses between them. seconds: time budget of a frame's draws (None:
-    none, and the same seed gives the same bytes).
+    drawn from free space in a frame; KLD-sampling chooses between them.
     """
 
-    def __init__(
-        self,
-        renderer: DepthRenderer,
-        *,
-        seed: int = 0,
-        least: int = 1_000,
-        most: int = 10_000,
-        seconds: float | None = None,
-    ) -> None:
+    def __init__(self, renderer: DepthRenderer, *, seed: int = 0, least: int = 1_000, most: int = 10_000) -> None:
         self.renderer = renderer
-        self.levels = pyramid(renderer)
         camera = renderer.camera.resized(*COARSEST)
         coarsest = DepthRenderer(renderer.scene_map, camera, renderer.backend, exact=renderer.exact)
         self._coarsest = Level(coarsest, renderer.camera, paper_weighting(WIDE_ALPHA))
+        self._coarse, self._middle, _ = pyramid(renderer)
         self.free_space = FreeSpace(renderer.scene_map)
         self.rng = np.random.default_rng(seed)
-        self.least, self.most, self.seconds = least, most, seconds
+        self.least, self.most = least, most
         self._followed: list[_Followed] = []
         self._count = most
-        self._renders = 0
 
     def forget(self) -> None:
-        """Starts anew: no place is known."""
+        """Start anew, without candidates."""
         self._followed, self._count = [], self.most
 
     def step(
@@ -129,52 +116,48 @@ class GlobalSearch:
         gravity: np.ndarray,
         tilt_sigma: float = TILT_SIGMA,
         suggested: np.ndarray | None = None,
-    ) -> Places:
-        """What a depth image `(H, W)` in metres adds. gravity: `(3,)` down, in the camera's optical frame, any length,
-        known to within `tilt_sigma` radians. suggested: the state `(6,)` where somebody thinks the camera is; it is
-        judged like every other place.
+    ) -> PoseCandidates:
+        """Return the candidates after a depth image `(H, W)` in metres.
 
+        gravity: `(3,)` down, in the camera's optical frame, any length, known to within `tilt_sigma` radians.
+        suggested: a state `(6,)` where the camera may be; it is judged like every other candidate.
         Raises `ValueError` for gravity that is not three finite numbers, or zero.
         """
         gravity = np.asarray(gravity, dtype=np.float64)
         if gravity.shape != (3,) or not np.isfinite(gravity).all() or not gravity.any():
             raise ValueError(f"gravity must be three finite numbers, not all zero; got {gravity}")
-        for level in (self._coarsest, *self.levels):
+        levels = (self._coarsest, self._coarse, self._middle)
+        for level in levels:
             level.measure(depth)
-        self._renders = 0
         self._follow()
-        drawn = self._draw(gravity, tilt_sigma)
-        self._add_new(drawn, suggested)
+        poses, scores = self._draw(gravity, tilt_sigma)
+        self._add_new(poses, scores, suggested)
         self._drop()
-        return self._answer(len(drawn[0]))
+        status, candidates = self._answer()
+        return PoseCandidates(status, candidates, len(poses), sum(level.renders for level in levels))
 
     def _draw(self, gravity: np.ndarray, tilt_sigma: float) -> tuple[np.ndarray, np.ndarray]:
-        """Poses from free space and their scores on the coarsest image, as many as the count or the time allows."""
-        begun = time.perf_counter()
-        poses, scores, piece = [], [], 500
-        while sum(len(p) for p in poses) < self._count:
-            n = min(piece, self._count - sum(len(p) for p in poses))
-            poses.append(upright_poses(self.free_space.draw(n, self.rng), gravity, tilt_sigma, self.rng))
-            scores.append(self._coarsest.score(self._render(self._coarsest, poses[-1])))
-            if self.seconds is not None and time.perf_counter() - begun > self.seconds:
-                break
+        """Poses from free space and their scores on the coarsest image."""
+        poses, scores = [], []
+        for begin in range(0, self._count, BATCH):
+            positions = self.free_space.draw(min(BATCH, self._count - begin), self.rng)
+            poses.append(upright_poses(positions, gravity, tilt_sigma, self.rng))
+            scores.append(self._coarsest.score(self._coarsest.draw(poses[-1])))
         return np.concatenate(poses), np.concatenate(scores)
 
     def _follow(self) -> None:
-        """Every place that is known moves on: the best of a small cloud, refined."""
+        """Every candidate moves on: the best of a small cloud, refined."""
         if not self._followed:
             return
-        clouds = [one.prediction.draw(FOLLOWERS, one.prediction.spread(), self.rng) for one in self._followed]
+        clouds = [one.draw(FOLLOWERS, one.spread(), self.rng) for one in self._followed]
         poses = np.concatenate(clouds)
         owner = np.repeat(np.arange(len(self._followed)), FOLLOWERS)
-        coarse = self.levels[0]
-        for scale, keep in zip(FOLLOW_SCALES, (6, 4, 2), strict=True):
-            images = self._render(coarse, poses)
-            scores = coarse.score(images)
+        for scale, keep in zip(FOLLOW_SCALES, FOLLOWERS_KEPT, strict=True):
+            images = self._coarse.draw(poses)
+            scores = self._coarse.score(images)
             of_each = [np.flatnonzero(owner == i) for i in range(len(self._followed))]
             kept = np.concatenate([mine[np.argsort(-scores[mine], kind="stable")[:keep]] for mine in of_each])
-            poses, owner = poses[kept], owner[kept]
-            poses = gauss_newton_step(coarse.measured, images[kept], coarse.renderer.camera, poses, scale)
+            poses, owner = self._coarse.step(poses[kept], images[kept], scale), owner[kept]
         poses = self._finish(poses)
         values = self._values(poses)
         for i, one in enumerate(self._followed):
@@ -182,69 +165,63 @@ class GlobalSearch:
             best = mine[np.argmax(values[mine])]
             one.saw(poses[best], values[best])
 
-    def _add_new(self, drawn: tuple[np.ndarray, np.ndarray], suggested: np.ndarray | None) -> None:
-        """The best of the new poses, refined, become places unless they are known ones."""
-        coarse = self.levels[0]
-        poses = drawn[0][distinct(*drawn, STARTS[0], APART)]
+    def _add_new(self, poses: np.ndarray, scores: np.ndarray, suggested: np.ndarray | None) -> None:
+        """The best of the new poses, refined, become candidates unless they are known ones."""
+        poses = poses[distinct(poses, scores, STARTS[0], APART)]
         for scale, keep in zip(START_SCALES, STARTS, strict=True):
-            images = self._render(coarse, poses)
-            kept = distinct(poses, coarse.score(images), keep, DISTINCT)
-            poses = gauss_newton_step(coarse.measured, images[kept], coarse.renderer.camera, poses[kept], scale)
+            images = self._coarse.draw(poses)
+            kept = distinct(poses, self._coarse.score(images), keep, DISTINCT)
+            poses = self._coarse.step(poses[kept], images[kept], scale)
         poses = self._finish(poses)
         if suggested is not None:
             poses = np.concatenate([poses, optical_pose(suggested)[None]])
         values = self._values(poses)
-        for index in distinct(poses, values, MOST_PLACES, ELSEWHERE):
+        for index in distinct(poses, values, MAX_CANDIDATES, ELSEWHERE):
             known = any(same_place(one.pose, poses[index]) for one in self._followed)
-            if values[index] >= LEAST_VALUE and not known:
+            if values[index] >= REFINED_LOST and not known:
                 self._followed.append(_Followed(poses[index], float(values[index])))
 
     def _finish(self, poses: np.ndarray) -> np.ndarray:
-        middle = self.levels[1]
         for scale in FINISH_SCALES:
-            poses = gauss_newton_step(
-                middle.measured, self._render(middle, poses), middle.renderer.camera, poses, scale
-            )
+            poses = self._middle.step(poses, self._middle.draw(poses), scale)
         return poses
 
     def _values(self, poses: np.ndarray) -> np.ndarray:
         """agreeing - 3 through of every pose, on the middle image."""
-        middle = self.levels[1]
-        found = [agreement(middle.measured, image) for image in self._render(middle, poses)]
-        return np.nan_to_num([a.agreeing - THROUGH_WEIGHT * a.through for a in found], nan=-1.0)
+        found = [agreement(self._middle.measured, image) for image in self._middle.draw(poses)]
+        return np.nan_to_num([one.refined_support for one in found], nan=-1.0)
 
     def _drop(self) -> None:
-        """Places that no longer agree go, of two that became one the better stays, and the worst beyond a number."""
+        """Drop candidates that no longer agree, the worse of two that became one, and the worst beyond a number."""
         kept: list[_Followed] = []
         for one in sorted(self._followed, key=lambda o: (-min(o.frames, FRAMES_TO_BELIEVE), -o.evidence)):
-            if one.evidence >= LEAST_VALUE and not any(same_place(one.pose, other.pose) for other in kept):
+            if one.evidence >= REFINED_LOST and not any(same_place(one.pose, other.pose) for other in kept):
                 kept.append(one)
-        self._followed = kept[:MOST_PLACES]
+        self._followed = kept[:MAX_CANDIDATES]
         bins = occupied_bins(np.array([one.pose for one in self._followed]), 0.5, 0.5)
         self._count = self.most if bins == 0 else kld_count(bins, self.least, self.most)
 
-    def _answer(self, particles: int) -> Places:
-        places = [
-            Place(state_from_optical_pose(one.pose), one.evidence, one.frames)
+    def _answer(self) -> tuple[str, list[PoseCandidate]]:
+        """What the candidates amount to, and the candidates, best first."""
+        poses = [
+            PoseCandidate(state_from_optical_pose(one.pose), one.evidence, one.frames)
             for one in sorted(self._followed, key=lambda one: -one.evidence)
         ]
-        old = [place for place in places if place.frames >= FRAMES_TO_BELIEVE]
+        old = [one for one in poses if one.frames >= FRAMES_TO_BELIEVE]
         status = "searching"
         if old:
-            rivals = [place for place in places if place is not old[0] and place.evidence > old[0].evidence - CLEAR_GAP]
+            rivals = [one for one in poses if one is not old[0] and one.evidence > old[0].evidence - CLEAR_GAP]
             status = "several" if rivals else "found"
-        return Places(status, places, particles, self._renders)
-
-    def _render(self, level: Level, poses: np.ndarray) -> np.ndarray:
-        self._renders += len(poses)
-        return level.renderer.render_poses(poses)
+        return status, poses
 
 
 def upright_poses(
     positions: np.ndarray, gravity: np.ndarray, tilt_sigma: float, rng: np.random.Generator
 ) -> np.ndarray:
-    """Camera-to-world poses `(N, 4, 4)` at positions `(N, 3)`, any heading, whose down is that of gravity `(3,)` in the
-    camera's optical frame, within `tilt_sigma`. The world's z is up."""
+    """Draw camera-to-world poses `(N, 4, 4)` at positions `(N, 3)`, of any heading, upright as gravity says.
+
+    gravity: `(3,)` down in the camera's optical frame, known to within `tilt_sigma` radians. The world's z is up.
+    """
     n, down = len(positions), gravity / np.linalg.norm(gravity)
     tilt = np.concatenate([tilt_sigma * rng.standard_normal((n, 2)), np.zeros((n, 1))], axis=1)
     heading = np.concatenate([np.zeros((n, 2)), rng.uniform(-np.pi, np.pi, (n, 1))], axis=1)
@@ -267,5 +244,5 @@ def _turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def same_place(a: np.ndarray, b: np.ndarray) -> bool:
-    """Whether two camera poses `(4, 4)` are nearer to each other than `ELSEWHERE`."""
-    return bool((lengths(motion_between(a, b)) < ELSEWHERE).all())
+    """Return whether two camera poses `(4, 4)` are nearer to each other than `ELSEWHERE`."""
+    return bool((lengths(local(a, b)) < ELSEWHERE).all())

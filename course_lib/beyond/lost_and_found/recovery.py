@@ -1,10 +1,11 @@
 """Carried away while it could not see: the filter notices by its raw score, and searches.
 
-The weights of a particle filter cannot say that all particles are in the wrong place; the raw score can, for it is not
-normalized. Two running means of it are kept, one short and one long (augmented MCL: Thrun, Burgard, Fox, Probabilistic
-Robotics, 8.3.5). Where the short one falls well below the long one and the pose cannot be right, or after the camera
-was covered, a global search begins beside the filter, which goes on and suggests its own pose: a place among others,
-for a filter that slid into a place that looks alike is as sure as one that is right. The search decides.
+The weights of a particle filter cannot say that all particles are in the wrong place. The raw score can, because it is
+not normalized. Two running means of it are kept, one short and one long (augmented MCL: Thrun, Burgard, Fox,
+Probabilistic Robotics, 8.3.5). A global search begins if the short mean falls well below the long one and the pose
+cannot be right, or if the camera was covered. The filter goes on beside the search and suggests its own pose, as one
+candidate among others, because a filter that slid into a place that looks alike is as sure as one that is right. The
+search decides.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, GlobalSearch, Places, same_place
+from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, GlobalSearch, PoseCandidates, same_place
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.geometry import optical_pose
 from course_lib.rendering.renderer import DepthRenderer
@@ -31,18 +32,18 @@ class RecoveryEstimate(NamedTuple):
     """What one frame gave."""
 
     estimate: AnnealedEstimate
-    """Of the filter: what it is worth, its status says."""
+    """Of the filter; its status says what it is worth."""
     mode: Literal["following", "searching", "found again"]
     """"found again" in the frame in which the search set the filter to a new place."""
-    places: Places | None
-    """Of the search, while there is one."""
+    candidates: PoseCandidates | None
+    """The answer of the search, while there is one."""
     short: float
     long: float
     """The two means of the raw score."""
 
 
 class RecoveringLocalizer:
-    """`AnnealedLocalizer` that searches when it is lost. search: arguments of `GlobalSearch`."""
+    """`AnnealedLocalizer` that searches when it is lost. search: arguments of `GlobalSearch`; others as there."""
 
     def __init__(self, renderer: DepthRenderer, n_particles: int = 200, *, seed: int = 0, **search: object) -> None:
         self.localizer = AnnealedLocalizer(renderer, n_particles, seed=seed)
@@ -54,7 +55,7 @@ class RecoveringLocalizer:
         self._down = np.array([0.0, 1.0, 0.0])  # in the camera, of the last frame that was tracked: upright
 
     def initialize(self, state0: np.ndarray) -> None:
-        """Says where the camera is, as `AnnealedLocalizer.initialize` does."""
+        """Say where the camera is, as `AnnealedLocalizer.initialize` does."""
         self.localizer.initialize(state0)
         self._down = _down_in_camera(np.asarray(state0, dtype=np.float64))
         self._short = self._long = None
@@ -63,8 +64,11 @@ class RecoveringLocalizer:
     def step(
         self, depth: np.ndarray, increment: np.ndarray | None = None, gravity: np.ndarray | None = None
     ) -> RecoveryEstimate:
-        """Where the camera is, from a depth image. increment: of an odometer, as in `AnnealedLocalizer.step`. gravity:
-        `(3,)` down in the camera's optical frame, of an accelerometer; without it a search assumes the last tilt."""
+        """Return where the camera is, from a depth image; arguments and errors as in `AnnealedLocalizer.step`.
+
+        gravity: `(3,)` down in the camera's optical frame, from an accelerometer; without it a search assumes the last
+        tilt.
+        """
         estimate = self.localizer.step(depth, increment)
         if estimate.status == "no measurement":
             self._covered += 1
@@ -78,17 +82,19 @@ class RecoveringLocalizer:
             self._down = _down_in_camera(estimate.state)
             return RecoveryEstimate(estimate, "following", None, self._short, self._long)
         tilt = TILT_SIGMA if gravity is not None else UNKNOWN_TILT_SIGMA
-        places = self.search.step(depth, self._down if gravity is None else gravity, tilt, estimate.state)
+        candidates = self.search.step(depth, self._down if gravity is None else gravity, tilt, estimate.state)
         self._searched += 1
-        mode = self._decide(estimate, places)
+        mode = self._decide(estimate, candidates)
         if mode == "found again":
             estimate = self.localizer.step(depth)
-        return RecoveryEstimate(estimate, mode, places, self._short, self._long)
+        return RecoveryEstimate(estimate, mode, candidates, self._short, self._long)
 
-    def _decide(self, estimate: AnnealedEstimate, places: Places) -> Literal["following", "searching", "found again"]:
-        """Ends the search where it knows, and sets the filter to the place that it found, unless it is there."""
-        if places.status == "found":
-            best = places.places[0].state
+    def _decide(
+        self, estimate: AnnealedEstimate, candidates: PoseCandidates
+    ) -> Literal["following", "searching", "found again"]:
+        """End the search if it knows, and set the filter to the pose that it found, unless it is there already."""
+        if candidates.status == "found":
+            best = candidates.poses[0].state
             self.searching, self._short = False, self._long
             if same_place(optical_pose(best), optical_pose(estimate.state)):
                 return "following"
@@ -102,7 +108,7 @@ class RecoveringLocalizer:
 
     def _remember(self, estimate: AnnealedEstimate) -> None:
         self._short = _mean(self._short, estimate.score, SHORT)
-        if not self.searching:  # what a lost filter scores is not what it usually does
+        if not self.searching:  # a lost filter does not score as usual
             self._long = _mean(self._long, estimate.score, LONG)
 
     def _alarmed(self, estimate: AnnealedEstimate) -> bool:

@@ -7,25 +7,33 @@
 
 A frame goes through the paper's steps several times, each time closer:
 
-    predict    particles about where the camera may be, as wide as it has been moving (prediction.py)
-    anneal     weigh them on coarse images, as sharply as leaves enough of them (uncertainty.py); resample; less noise
-    refine     the best that differ, by Gauss-Newton on finer and finer images (refinement.py), dropping the worst
-    doubt      where the best agrees less with the map than frames did before: once more, with a wider cloud
-    fuse       along what the image does not show, believe the prediction (covariance.py); say whether it is known
+    predict    draw particles about where the camera may be, as wide as it has been moving (prediction.py)
+    anneal     weigh them on coarse images, gently, so that enough survive (uncertainty.py); resample; with less noise
+    refine     take the best that differ, by Gauss-Newton on finer and finer images (refinement.py), and drop the worst
+    doubt      if the best agrees less with the map than frames did before, look once more with a wider cloud
+    fuse       believe the prediction along what the image does not show (covariance.py)
+    judge      say whether the pose is known (being_lost.py)
 
-Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention: noise, means and deviations are taken in
-their tangent space, which knows no gimbal lock. Estimates are states, as `MonteCarloLocalizer` gives them.
+Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention. Noise, means and deviations are taken in
+their tangent space, which has no gimbal lock. Estimates are states, as `MonteCarloLocalizer` gives them.
 """
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.six_dof.certainty import Certainty, Status
+from course_lib.beyond.being_lost import (
+    NOTHING_MEASURED,
+    Agreement,
+    TrackJudge,
+    TrackStatus,
+    agreement,
+    judge_refined,
+)
 from course_lib.beyond.six_dof.covariance import (
     fused,
     in_world_and_body,
@@ -33,48 +41,50 @@ from course_lib.beyond.six_dof.covariance import (
     predicted_covariance,
     with_rivals,
 )
-from course_lib.beyond.six_dof.hypotheses import APART, DISTINCT, RIVAL_APART, RIVAL_WITHIN, distinct
-from course_lib.beyond.six_dof.prediction import GREATEST_SPREAD, MotionPrediction, Rival, widened
-from course_lib.beyond.six_dof.pyramid import Level, pyramid
-from course_lib.beyond.six_dof.refinement import gauss_newton_step
-from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, Layer, Step
-from course_lib.beyond.six_dof.twists import motion_between, moved
-from course_lib.beyond.tracking import Agreement, TrackStatus, agreement, judge_refined
-from course_lib.depth_mcl.likelihood import ALPHA, DepthImageError, valid_pixels
+from course_lib.beyond.six_dof.poses import distinct, local, retract
+from course_lib.beyond.six_dof.prediction import MAX_SPREAD, START_SPREAD, WIDER, MotionPrediction, Rival
+from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, Layer, Step, pyramid
+from course_lib.depth_mcl.likelihood import DepthImageError, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.particle_filter import resample
 from course_lib.depth_mcl.uncertainty import Tempered, temper
 from course_lib.geometry import optical_pose, state_from_optical_pose
+from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
+
+# All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th; what
+# concerns rivals on walks through rooms, seeds 10,041 to 10,066.
+APART = 0.2  # of the prediction's spread: two particles nearer than this are one hypothesis
+DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same for two refined poses
+RIVAL_WITHIN = 0.06  # of raw score: a pose that fits less is no rival of the best
+RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
 
 
 class AnnealedEstimate(NamedTuple):
-    """What one frame gave: as `Estimate`, and how it was reached."""
+    """What one frame gave: the same as `Estimate`, and how it was reached."""
 
     state: np.ndarray
-    """`(6,)` the best refined hypothesis."""
+    """`(6,)` the best refined pose."""
     covariance: np.ndarray
     """`(6, 6)` of the last layer's weighted particles about the state, metres along the world's axes and radians about
-    the body's: how wide the search was. `error_covariance` says how far off the state may be."""
+    the body's: how wide the search was."""
     score: float
-    """Raw score of the refined pose, eq. (8) as a mean over pixels of the finest image; NaN without a measurement. What
-    the image does not show is then left to the prediction, which the score would not notice."""
+    """Raw score of the refined pose, eq. (8) as a mean over pixels of the finest image; NaN without a measurement."""
     ess: float
     """Effective sample size of the last layer's weights."""
     particles: np.ndarray
     """`(N, 6)` of the last layer."""
     weights: np.ndarray
     """`(N,)` of these particles."""
-    status: Status
-    """"lost" where the state cannot be right, or is not known to 0.2 m and 20 degrees; "doubtful" where it agrees with
-    the map clearly less than frames did before, after a second look too (certainty.py)."""
+    status: TrackStatus | Literal["no measurement"]
+    """What being_lost.py says of the state, after a second look if the first was doubtful."""
     error_covariance: np.ndarray
-    """`(6, 6)`, the same units and axes: of the error to expect where it is tracked."""
+    """`(6, 6)`, the same units and axes: of the error to expect while the status is "tracked"."""
     agreement: Agreement
-    """How the measured image agrees with the map as seen from the state (tracking.py)."""
+    """How the measured image agrees with the map as seen from the state."""
     layers: tuple[Tempered, ...]
-    """Of every layer, in order: weights, sharpness, effective sample size."""
+    """Weights, sharpness and effective sample size of every layer, in order."""
     renders: int
     """How many images were drawn."""
 
@@ -94,11 +104,11 @@ class AnnealedLocalizer:
     """Annealed particle filter with Gauss-Newton refinement, for a depth camera that moves freely.
 
     renderer: draws the map for the camera. n_particles: of a layer whose share is 1. seed: of the one generator that
-    all draws come from. layers: of the first look at a frame; second_look: of the look after a doubted one (empty:
-    none); steps: of the refinement (empty: the best particle is the estimate). rivals: how many other places are kept
-    beside the best. fuse: joins the prediction and what an image says of a pose. prediction: where the camera may be
-    next, made from its first pose. alpha: of eq. (8), metres.
-    Raises `ValueError` for a number of particles or rivals, a seed or an alpha that is none, or no layer.
+    all draws come from. layers: of the first look at a frame. second_look: layers of the look after a doubtful one
+    (empty: none). steps: of the refinement (empty: the best particle is the estimate). rivals: how many other poses are
+    kept beside the best. fuse: joins the prediction and the image. prediction: made from the first pose, says where the
+    camera may be next.
+    Raises `ValueError` for a bad number of particles or rivals, a bad seed, or no layer.
     """
 
     def __init__(
@@ -113,83 +123,78 @@ class AnnealedLocalizer:
         rivals: int = 1,
         fuse: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] = fused,
         prediction: Callable[[np.ndarray], MotionPrediction] = MotionPrediction,
-        alpha: float = ALPHA,
     ) -> None:
-        if int(n_particles) != n_particles or n_particles < 1:
-            raise ValueError(f"n_particles must be a whole number, at least 1; got {n_particles!r}")
-        if int(seed) != seed or seed < 0:
-            raise ValueError(f"seed must be a whole number, 0 or more; got {seed!r}")
-        if int(rivals) != rivals or rivals < 0:
-            raise ValueError(f"rivals must be a whole number, 0 or more; got {rivals!r}")
+        for name, value, least in (("n_particles", n_particles, 1), ("seed", seed, 0), ("rivals", rivals, 0)):
+            if int(value) != value or value < least:
+                raise ValueError(f"{name} must be a whole number, {least} or more; got {value!r}")
         if not layers:
             raise ValueError("at least one layer is needed: it draws the particles")
         self.renderer = renderer
         self.n_particles = int(n_particles)
-        self.levels = pyramid(renderer, alpha)
+        self.levels = pyramid(renderer)
         self.layers, self.second_look, self.steps = tuple(layers), tuple(second_look), tuple(steps)
         self.rivals, self.fuse = rivals, fuse
         self.rng = np.random.default_rng(int(seed))
         self.motion = TANGENT_SPACE
         self._new_prediction = prediction
         self._prediction: MotionPrediction | None = None
-        self._certainty = Certainty()
+        self._judge = TrackJudge()
         self._covariance: np.ndarray | None = None
-        self._renders = 0
 
     def initialize(self, state0: np.ndarray) -> None:
-        """Says where the camera is before the first frame, to within some decimetres and degrees (`START_SPREAD`).
+        """Say where the camera is before the first frame, to within some decimetres and degrees (`START_SPREAD`).
 
-        Raises `ValueError` for a state that is not finite or lies outside the map (by more than a metre).
+        state0: `(6,)`. Raises `ValueError` for a state that is not finite or lies more than a metre outside the map.
         """
         self._prediction = self._new_prediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
-        self._certainty = Certainty()
+        self._judge = TrackJudge()
         self._covariance = None
 
     def step(self, depth: np.ndarray, increment: np.ndarray | None = None) -> AnnealedEstimate:
-        """Where the camera is, from a depth image `(H, W)` in metres, NaN = no measurement.
+        """Return where the camera is, from a depth image `(H, W)` in metres, NaN = no measurement.
 
-        increment: what an odometer or an IMU says of the motion since the last frame, `(6,)`: metres along and radians
-        about the camera's own axes (optical: right, down, forward); None where there is neither.
-        A frame without any measurement warns (`NoMeasurementWarning`); the state is then the prediction. Raises
+        increment: motion `(6,)` since the last frame as an odometer or an IMU has it, metres along and radians about
+        the camera's own axes (optical: right, down, forward); None without one.
+        A frame without any measurement warns (`NoMeasurementWarning`), and the state is then the prediction. Raises
         `DepthImageError` for an image of another size, `RuntimeError` before `initialize`.
         """
         prediction = self._prediction
         if prediction is None:
             raise RuntimeError("call initialize(state0) before the first step: the filter is given its start")
-        self._take(depth)
-        self._renders = 0
+        depth = checked_image(depth, self.renderer.camera)
+        for level in self.levels:
+            level.measure(depth)
         spread = prediction.spread(increment)
-        fine = self.levels[-1]
-        if not valid_pixels(fine.measured).any():
+        if not valid_pixels(self.levels[-1].measured).any():
             return self._not_measured(spread, increment)
         found, spread = self._look_twice(spread, increment)
-        image_says = self._certainty.judge_image(found.agreement)
+        image_says = self._judge.judge_image(found.agreement)
         found = self._fuse(found, image_says, spread, increment)
-        status = self._certainty.judge(image_says, found.agreement, self._covariance, bool(found.rivals))
+        status = self._judge.judge(image_says, found.agreement, self._covariance, bool(found.rivals))
         return self._estimate(found, status)
 
     def _look_twice(self, spread: np.ndarray, increment: np.ndarray | None) -> tuple[_Found, np.ndarray]:
-        """What is found in a cloud as wide as the motion may have been long, and the last pose wrong; where that agrees
-        less than is usual, in a wider cloud. With the spread of the motion that was believed."""
+        """The best pose in a cloud as wide as the motion may be long and the last pose wrong; if it agrees less than
+        usual, the best pose in a wider cloud. Also the spread of the motion that was believed."""
         not_known = 0.0 if self._covariance is None else np.sqrt(np.diag(self._covariance))
-        cloud = np.minimum(np.hypot(spread, not_known), np.repeat(GREATEST_SPREAD, 3))
+        cloud = np.minimum(np.hypot(spread, not_known), np.repeat(MAX_SPREAD, 3))
         found = self._look(self.layers, cloud, increment)
-        if self.second_look and self._certainty.doubts(found.agreement):
-            again = self._look(self.second_look, widened(cloud), increment)
+        if self.second_look and self._judge.doubts(found.agreement):
+            wider = np.maximum(WIDER * cloud, np.repeat(START_SPREAD, 3))
+            again = self._look(self.second_look, wider, increment)
             if again.score > found.score:
-                return again, widened(cloud)
+                return again, wider
         return found, spread
 
     def _fuse(self, found: _Found, image_says: TrackStatus, spread: np.ndarray, increment: np.ndarray | None) -> _Found:
-        """The pose moved back to the prediction along what the image does not show; the covariance; what is learned of
-        the motion."""
+        """Move the pose back to the prediction along what the image does not show; update covariance and motion."""
         prediction, coarse = self._prediction, self.levels[0]
         before, predicted = prediction.origin(found.pose, spread, increment)
-        covariance = self._predicted_covariance(motion_between(before, predicted), spread)
-        information = pose_information(coarse.measured, self._draw(coarse, found.pose[None])[0], coarse.renderer.camera)
+        covariance = self._predicted_covariance(local(before, predicted), spread)
+        information = pose_information(coarse.measured, coarse.draw(found.pose[None])[0], coarse.renderer.camera)
         narrowed, gain = self.fuse(covariance, information)
         if image_says == "tracked":
-            pose = moved(predicted, gain @ motion_between(predicted, found.pose))
+            pose = retract(predicted, gain @ local(predicted, found.pose))
             sees_all = np.linalg.matrix_rank(information, hermitian=True) == 6
             prediction.found(pose, bool(sees_all), found.rivals)
             self._covariance = with_rivals(narrowed, pose, found.rivals)
@@ -199,18 +204,8 @@ class AnnealedLocalizer:
         self._covariance = narrowed if believed else covariance
         return found
 
-    def _take(self, depth: np.ndarray) -> None:
-        depth = np.asarray(depth)
-        if depth.shape != self.renderer.camera.shape:
-            raise DepthImageError(
-                f"the depth image has shape {depth.shape}; the camera gives {self.renderer.camera.shape} "
-                "(height, width)"
-            )
-        for level in self.levels:
-            level.measure(depth)
-
     def _predicted_covariance(self, motion: np.ndarray, spread: np.ndarray) -> np.ndarray:
-        """Of the pose after a motion `(6,)`; of the first image it is the start's, as wide as the cloud."""
+        """The covariance of the pose after a motion `(6,)`; at the first image the start's, as wide as the cloud."""
         if self._covariance is None:
             return np.diag(spread**2)
         return predicted_covariance(self._covariance, motion, spread)
@@ -227,11 +222,11 @@ class AnnealedLocalizer:
         poses = all_poses[distinct(all_poses, merit(all_scores, all_poses), first, APART * spread[[0, 3]])]
         for k, step in enumerate(self.steps):
             level = self.levels[step.level]
-            images = self._draw(level, poses)
+            images = level.draw(poses)
             kept = distinct(poses, merit(level.score(images), poses), step.hypotheses, DISTINCT) if k else slice(None)
-            poses = gauss_newton_step(level.measured, images[kept], level.renderer.camera, poses[kept], step.scale)
+            poses = level.step(poses[kept], images[kept], step.scale)
         fine = self.levels[-1]
-        images = self._draw(fine, poses)
+        images = fine.draw(poses)
         scores = fine.score(images)
         merits = merit(scores, poses)
         best, *others = distinct(poses, merits, 1 + self.rivals, RIVAL_APART)
@@ -257,22 +252,14 @@ class AnnealedLocalizer:
                 poses = self._prediction.draw(n, layer.spread * spread, self.rng, increment)
             else:
                 parents = drawn[-1][resample(tempered[-1].weights, self.rng, n=n)]
-                poses = moved(parents, layer.spread * spread * self.rng.standard_normal((n, 6)))
+                poses = retract(parents, layer.spread * spread * self.rng.standard_normal((n, 6)))
             drawn.append(poses)
-            scores.append(np.concatenate([coarse.score(images) for images in self._batches(coarse, poses)]))
+            scores.append(coarse.score(coarse.draw(poses)))
             tempered.append(temper(scores[-1], layer.survivors * n))
         return drawn, scores, tuple(tempered)
 
-    def _batches(self, level: Level, poses: np.ndarray) -> Iterator[np.ndarray]:
-        size = level.renderer.batch_size
-        return (self._draw(level, poses[start : start + size]) for start in range(0, len(poses), size))
-
-    def _draw(self, level: Level, poses: np.ndarray) -> np.ndarray:
-        self._renders += len(poses)
-        return level.renderer.render_poses(poses)
-
     def _not_measured(self, spread: np.ndarray, increment: np.ndarray | None) -> AnnealedEstimate:
-        """The prediction alone, when nothing was seen."""
+        """The prediction alone, because nothing was seen."""
         warnings.warn(
             "this frame holds no measurement between the camera's near and far planes; the pose is predicted only",
             NoMeasurementWarning,
@@ -280,14 +267,13 @@ class AnnealedLocalizer:
         )
         poses = self._prediction.draw(self.n_particles, spread, self.rng, increment)
         before = self._prediction.pose
-        pose = moved(before, np.zeros(6) if increment is None else increment)
+        pose = retract(before, np.zeros(6) if increment is None else increment)
         self._prediction.not_found(pose, spread)
-        nothing = Agreement(0, np.nan, np.nan, np.nan)
-        self._covariance = self._predicted_covariance(motion_between(before, pose), spread)
-        found = _Found(pose, np.nan, nothing, poses, (temper(np.zeros(len(poses)), len(poses)),))
+        self._covariance = self._predicted_covariance(local(before, pose), spread)
+        found = _Found(pose, np.nan, NOTHING_MEASURED, poses, (temper(np.zeros(len(poses)), len(poses)),))
         return self._estimate(found, "no measurement")
 
-    def _estimate(self, found: _Found, status: Status) -> AnnealedEstimate:
+    def _estimate(self, found: _Found, status: str) -> AnnealedEstimate:
         state, particles = state_from_optical_pose(found.pose), state_from_optical_pose(found.particles)
         w = found.layers[-1].weights
         deviations = self.motion.deviations(particles, state)
@@ -302,5 +288,15 @@ class AnnealedLocalizer:
             in_world_and_body(self._covariance, found.pose),
             found.agreement,
             found.layers,
-            self._renders,
+            sum(level.renders for level in self.levels),
         )
+
+
+def checked_image(depth: np.ndarray, camera: DepthCamera) -> np.ndarray:
+    """Return a depth image `(H, W)` as an array. Raises `DepthImageError` if it has another size than the camera's."""
+    depth = np.asarray(depth)
+    if depth.shape != camera.shape:
+        raise DepthImageError(
+            f"the depth image has shape {depth.shape}; the camera gives {camera.shape} (height, width)"
+        )
+    return depth

@@ -1,19 +1,20 @@
 """From a pose near the right one to the right one: Gauss-Newton on the rendered depth.
 
-A particle filter finds the valley, and needs ever more particles to find its lowest point. A valley's lowest point has
-a formula. The map as seen from a pose is a depth image, so every pixel holds a point q of the map and, from its
-neighbours, the surface's normal n there; the same pixel of the camera holds a measured point p. If the pose were right,
-p would lie on that surface:
+A particle filter finds the valley, and it needs ever more particles to find the lowest point. But a formula gives the
+lowest point. The map rendered from a pose is a depth image, so every pixel holds a point q of the map and, from its
+neighbours, the surface's normal n. The same pixel of the camera holds a measured point p. If the pose is right, p lies
+on that surface:
 
-    r_j = n_j . (p_j - q_j)
+    r_j = n_j . (p_j - q_j) = 0
 
-A small motion (v, w) of the camera moves p to p + v + w x p, and to first order r_j by n . v + (p x n) . w. The motion
-that makes sum_j rho(r_j) least, rho robust because doors stand open and people walk by, solves
+A small motion (v, w) of the camera moves p to p + v + w x p, and it changes r_j to first order by n . v + (p x n) . w.
+We look for the motion with the smallest sum_j rho(r_j). The function rho is robust, because doors stand open and people
+walk by. The motion solves
 
     (sum_j w_j J_j J_j') (v, w) = - sum_j w_j J_j r_j,    J_j = (n_j, p_j x n_j)
 
-Then it is rendered again from there. It is ICP with the z-buffer in place of a search for nearest points; every step of
-every pose costs one render.
+Then the map is rendered again from the new pose. This is ICP with the z-buffer in place of a search for nearest points.
+Every step costs one render per pose.
 """
 
 from __future__ import annotations
@@ -23,15 +24,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.six_dof.twists import lengths, moved
+from course_lib.beyond.six_dof.poses import lengths, retract
 from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.compiled import compiled
 from course_lib.rendering.renderer import DepthRenderer
 
-# Neighbours on one surface: their depths differ by at most this much of the depth for every thousandth of a radian
-# between their rays (chosen: a surface seen at less than about 7 degrees of grazing gives no normal).
+# Neighbours on one surface differ in depth by at most this share of the depth for every radian between their rays
+# (chosen: a surface seen under less than about 7 degrees of grazing gives no normal).
 EDGE_PER_RADIAN = 8.0
 DAMPING = 1e-4  # added to the mean of J J': along what the image does not show, the pose stays where it is (chosen)
-LONGEST_STEP = (0.2, 0.3)  # metres, radians: beyond them the first order says nothing (chosen)
+LONGEST_STEP = (0.2, 0.3)  # metres, radians: the first order is not valid beyond them (chosen)
 
 
 class NormalEquations(NamedTuple):
@@ -41,14 +43,12 @@ class NormalEquations(NamedTuple):
     """`(N, 6, 6)` sum w J J'."""
     vectors: np.ndarray
     """`(N, 6)` sum w J r."""
-    squares: np.ndarray
-    """`(N,)` sum w r^2, square metres."""
     weights: np.ndarray
     """`(N,)` sum w: how many pixels took part."""
 
 
 def surface_normals(images: np.ndarray, camera: DepthCamera) -> tuple[np.ndarray, np.ndarray]:
-    """Points `(N, H, W, 3)` of depth images `(N, H, W)` in the optical frame and the surface's unit normals there.
+    """Return points `(N, H, W, 3)` of depth images `(N, H, W)` in the optical frame, and the unit normals there.
 
     n ~ (q_right - q_left) x (q_below - q_above); NaN on the image's border, at a miss, and beside an edge, where the
     neighbours belong to another surface.
@@ -59,7 +59,7 @@ def surface_normals(images: np.ndarray, camera: DepthCamera) -> tuple[np.ndarray
     below, above = points[:, 2:, 1:-1], points[:, :-2, 1:-1]
     cross = np.cross(right - left, below - above)
     middle = points[:, 1:-1, 1:-1, 2]
-    limit = edge_share(camera) * middle
+    limit = _edge_share(camera) * middle
     same = np.ones(middle.shape, dtype=bool)
     with np.errstate(invalid="ignore", divide="ignore"):
         for neighbour in (right, left, below, above):
@@ -69,17 +69,17 @@ def surface_normals(images: np.ndarray, camera: DepthCamera) -> tuple[np.ndarray
     return points, normals
 
 
-def edge_share(camera: DepthCamera) -> float:
-    """The greatest difference in depth of neighbours on one surface, as a share of the depth."""
+def _edge_share(camera: DepthCamera) -> float:
+    """The largest difference in depth of neighbours on one surface, as a share of the depth."""
     return EDGE_PER_RADIAN / max(camera.fx, camera.fy)
 
 
 def normal_equations(measured: np.ndarray, images: np.ndarray, camera: DepthCamera, scale: float) -> NormalEquations:
-    """One Gauss-Newton step for the poses that `images` were rendered from.
+    """Return the system of one Gauss-Newton step for the poses that `images` were rendered from.
 
     measured: `(H, W)` depth, NaN = no measurement. images: `(N, H, W)` depth of the map, `inf` = nothing hit.
-    scale: metres; a residual as large counts a quarter, w = 1 / (1 + (r / scale)^2)^2 (Geman and McClure).
-    The equation as one reads it; `compiled_refinement.normal_equations` gives the same numbers faster.
+    scale: metres; a residual of this size counts a quarter, w = 1 / (1 + (r / scale)^2)^2 (Geman and McClure).
+    This is the readable form; `compiled_normal_equations` gives the same numbers faster.
     """
     p = camera.points(measured)
     q, n = surface_normals(np.asarray(images, dtype=np.float64), camera)
@@ -91,15 +91,71 @@ def normal_equations(measured: np.ndarray, images: np.ndarray, camera: DepthCame
     return NormalEquations(
         np.einsum("nhw,nhwi,nhwj->nij", w, jacobian, jacobian),
         np.einsum("nhw,nhwi,nhw->ni", w, jacobian, r),
-        np.einsum("nhw,nhw,nhw->n", w, r, r),
         w.sum(axis=(1, 2)),
     )
 
 
-def solve(system: NormalEquations, damping: float = DAMPING) -> np.ndarray:
-    """The motions `(N, 6)` that the normal equations ask for, none longer than `LONGEST_STEP`.
+def compiled_normal_equations(
+    measured: np.ndarray, images: np.ndarray, camera: DepthCamera, scale: float
+) -> NormalEquations:
+    """Return the numbers of `normal_equations` from a compiled loop; a test holds the two together."""
+    images = np.ascontiguousarray(images, dtype=np.float32)
+    points = camera.points(np.asarray(measured, dtype=np.float64))
+    return NormalEquations(*_sums(points, images, camera.rays(), float(scale), _edge_share(camera)))
 
-    Damped in the manner of Levenberg: a direction in which no pixel changes stays as it is.
+
+@compiled(fastmath=False)  # NaN and infinity keep their meaning
+def _sums(points, images, rays, scale, edge):
+    count, height, width = images.shape
+    matrices, vectors = np.zeros((count, 6, 6)), np.zeros((count, 6))
+    weights = np.zeros(count)
+    jacobian = np.empty(6)
+    for i in range(count):
+        image = images[i]
+        for y in range(1, height - 1):
+            for x in range(1, width - 1):
+                px, py, pz = points[y, x]
+                depth = np.float64(image[y, x])
+                left, right = np.float64(image[y, x - 1]), np.float64(image[y, x + 1])
+                above, below = np.float64(image[y - 1, x]), np.float64(image[y + 1, x])
+                limit = edge * depth
+                # Comparisons with NaN and with inf - inf are false: what is no number takes no part.
+                if not (pz > 0 and depth < np.inf):
+                    continue
+                if not (abs(left - depth) <= limit and abs(right - depth) <= limit):
+                    continue
+                if not (abs(above - depth) <= limit and abs(below - depth) <= limit):
+                    continue
+                ax = rays[y, x + 1, 0] * right - rays[y, x - 1, 0] * left
+                ay = rays[y, x + 1, 1] * right - rays[y, x - 1, 1] * left
+                az = right - left
+                bx = rays[y + 1, x, 0] * below - rays[y - 1, x, 0] * above
+                by = rays[y + 1, x, 1] * below - rays[y - 1, x, 1] * above
+                bz = below - above
+                nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+                length = np.sqrt(nx * nx + ny * ny + nz * nz)
+                if not length > 0:
+                    continue
+                nx, ny, nz = nx / length, ny / length, nz / length
+                r = nx * (px - rays[y, x, 0] * depth) + ny * (py - rays[y, x, 1] * depth) + nz * (pz - depth)
+                w = 1.0 / (1.0 + (r / scale) ** 2) ** 2
+                jacobian[0], jacobian[1], jacobian[2] = nx, ny, nz
+                jacobian[3], jacobian[4], jacobian[5] = py * nz - pz * ny, pz * nx - px * nz, px * ny - py * nx
+                for k in range(6):
+                    vectors[i, k] += w * jacobian[k] * r
+                    for m in range(k, 6):
+                        matrices[i, k, m] += w * jacobian[k] * jacobian[m]
+                weights[i] += w
+        for k in range(6):
+            for m in range(k):
+                matrices[i, k, m] = matrices[i, m, k]
+    return matrices, vectors, weights
+
+
+def solve(system: NormalEquations, damping: float = DAMPING) -> np.ndarray:
+    """Return the motions `(N, 6)` that solve the normal equations, none longer than `LONGEST_STEP`.
+
+    The system is damped as Levenberg does it, so a direction in which no pixel changes stays as it is.
     """
     pixels = np.maximum(system.weights, 1.0)
     mean = system.matrices / pixels[:, None, None] + damping * np.eye(6)
@@ -111,19 +167,17 @@ def solve(system: NormalEquations, damping: float = DAMPING) -> np.ndarray:
 def gauss_newton_step(
     measured: np.ndarray, images: np.ndarray, camera: DepthCamera, poses: np.ndarray, scale: float
 ) -> np.ndarray:
-    """Camera-to-world poses `(N, 4, 4)` moved to where the images `(N, H, W)` rendered from them ask for.
+    """Return camera-to-world poses `(N, 4, 4)` after one step; `images` `(N, H, W)` were rendered from `poses`.
 
-    Arguments as in `normal_equations`, whose compiled form this uses.
+    Other arguments as in `normal_equations`.
     """
-    from course_lib.beyond.six_dof.compiled_refinement import normal_equations as compiled_equations
-
-    return moved(poses, solve(compiled_equations(measured, images, camera, scale)))
+    return retract(poses, solve(compiled_normal_equations(measured, images, camera, scale)))
 
 
 def refine(renderer: DepthRenderer, measured: np.ndarray, poses: np.ndarray, scales: Sequence[float]) -> np.ndarray:
-    """Poses `(N, 4, 4)` (camera to world, optical) after one Gauss-Newton step for each of `scales`, in metres.
+    """Return poses `(N, 4, 4)` (camera to world, optical) after one Gauss-Newton step for each of `scales`, in metres.
 
-    measured: `(H, W)` depth of the renderer's camera. N renders a step.
+    measured: `(H, W)` depth of the renderer's camera. Every step costs N renders.
     """
     for scale in scales:
         poses = gauss_newton_step(measured, renderer.render_poses(poses), renderer.camera, poses, scale)

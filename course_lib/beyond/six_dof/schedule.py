@@ -1,30 +1,90 @@
-"""How a frame is searched: in which layers particles are drawn and weighed, by which steps the best are refined."""
+"""How a frame is searched: on images of which size, in which layers of particles, by which steps of refinement.
+
+Most particles are compared on few pixels, the last few poses on many.
+"""
 
 from __future__ import annotations
 
 from typing import Literal, NamedTuple
+
+import numpy as np
+
+from course_lib.beyond.six_dof.refinement import gauss_newton_step
+from course_lib.depth_mcl.weighting import Weighting, paper_weighting
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.sensor import subsample_depth
+
+# Pixels of the coarse, the middle and the fine image, if the camera has as many (chosen).
+COARSE, MIDDLE, FINE = 1_200, 4_800, 25_600
+
+
+class Level:
+    """One size of image: its renderer, the measured image, and how many images were drawn since it was measured."""
+
+    def __init__(self, renderer: DepthRenderer, camera: DepthCamera, weighting: Weighting) -> None:
+        self.renderer = renderer
+        self._weighting = weighting
+        self._full_camera = camera
+        self.renders = 0
+        self.measured = np.full(renderer.camera.shape, np.nan, dtype=np.float32)
+
+    def measure(self, depth: np.ndarray) -> None:
+        """Take the camera's image `(H, W)`; eq. (7) on this level's pixels."""
+        camera, self.renders = self.renderer.camera, 0
+        self.measured = self.renderer.render_points(camera.points(subsample_depth(depth, self._full_camera, camera)))
+
+    def draw(self, poses: np.ndarray) -> np.ndarray:
+        """Return images `(N, H, W)` of the map from camera-to-world poses `(N, 4, 4)`."""
+        self.renders += len(poses)
+        return self.renderer.render_poses(poses)
+
+    def score(self, images: np.ndarray) -> np.ndarray:
+        """Return raw scores `(N,)` of images `(N, H, W)` of the map: eq. (8) as a mean over pixels."""
+        return self._weighting.score(self.measured, images)
+
+    def step(self, poses: np.ndarray, images: np.ndarray, scale: float) -> np.ndarray:
+        """Return poses `(N, 4, 4)`, from which `images` were drawn, after a Gauss-Newton step; scale in metres."""
+        return gauss_newton_step(self.measured, images, self.renderer.camera, poses, scale)
+
+
+def pyramid(renderer: DepthRenderer) -> list[Level]:
+    """Return the three levels for the renderer's map and camera, coarse first, none larger than the camera's image.
+
+    Where a level has the camera's own size, the renderer itself serves.
+    """
+    camera, weighting = renderer.camera, paper_weighting()
+    levels = []
+    for pixels in (COARSE, MIDDLE, FINE):
+        factor = min(1.0, np.sqrt(pixels / (camera.width * camera.height)))
+        size = max(1, round(camera.width * factor)), max(1, round(camera.height * factor))
+        own = renderer
+        if size != (camera.width, camera.height):
+            own = DepthRenderer(renderer.scene_map, camera.resized(*size), renderer.backend, exact=renderer.exact)
+        levels.append(Level(own, camera, weighting))
+    return levels
 
 
 class Layer(NamedTuple):
     """One round of drawing, weighing and resampling within a frame, on coarse images."""
 
     particles: float
-    """How many, as a share of the filter's `n_particles`."""
+    """Number of particles, as a share of the filter's `n_particles`."""
     spread: float
-    """Of the noise, as a share of the prediction's spread."""
+    """Standard deviation of the noise, as a share of the prediction's spread."""
     survivors: float
-    """Effective sample size that the weights leave, as a share of the particles."""
+    """Effective sample size that the weights leave, as a share of the layer's particles."""
 
 
 class Step(NamedTuple):
-    """One Gauss-Newton step for the hypotheses that are left."""
+    """One Gauss-Newton step for the poses that are left."""
 
     level: Literal[0, 1, 2]
-    """Of the pyramid: coarse, middle, fine."""
+    """Index into the pyramid: coarse, middle, fine."""
     scale: float
-    """Metres: a residual as large counts a quarter."""
+    """Metres: a residual of this size counts a quarter."""
     hypotheses: int
-    """How many are taken along, the best that differ."""
+    """How many poses are kept, the best that differ."""
 
 
 # All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th.

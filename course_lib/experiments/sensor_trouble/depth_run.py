@@ -1,6 +1,6 @@
 """Paper 1's filter on a wagon, and the annealed one carried by hand, on recordings of the corridor with troubles.
 
-Both are watched (`depth_mcl/watched.py`): what is not a frame is not used. The paper's filter has its 200 particles and
+Both are guarded (beyond/guarded_depth.py): a frame at fault is not used. The paper's filter has its 200 particles and
 no odometer; images are of half the SR4000's size each way, and recordings are shortened, so that all troubles at all
 shares take minutes and not hours.
 """
@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from course_lib.beyond.guarded_depth import WatchedLocalizer
+from course_lib.beyond.guarded_depth import GuardedLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
@@ -43,7 +43,7 @@ def watched_frames(
     true_poses: `(T, 4, 4)` camera-to-world, optical, z up; the filter starts at the first. A frame that never came, or
     came out of order, has the pose that the filter was moved to when the next one told of the gap.
     """
-    localizer = WatchedLocalizer(FILTERS[dof](renderer, seed=seed), period)
+    localizer = GuardedLocalizer(FILTERS[dof](renderer, seed=seed), period)
     localizer.initialize(state_from_optical_pose(true_poses[0]))
     outcomes, states = [], []
     for arrival in arrivals:
@@ -51,11 +51,11 @@ def watched_frames(
             outcomes.append("no image")
             states.append(states[-1])
             continue
-        watched = localizer.step(arrival.image, arrival.time)
-        for back, estimate in enumerate(reversed(watched.missed), start=1):
+        frame = localizer.step(arrival.image, arrival.time)
+        for back, estimate in enumerate(reversed(frame.missed), start=1):
             states[-back] = estimate.state
-        outcomes.append(watched.outcome)
-        states.append(watched.estimate.state)
+        outcomes.append(frame.outcome)
+        states.append(frame.estimate.state)
     position, rotation = pose_errors(optical_pose(np.array(states)), true_poses)
     return [
         {"outcome": outcome, "confident": outcome == "tracked", "position_m": float(p), "rotation_deg": float(r)}

@@ -7,10 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.six_dof.pyramid import Level, pyramid
+from course_lib.beyond.six_dof.poses import retract
 from course_lib.beyond.six_dof.refinement import refine
-from course_lib.beyond.six_dof.schedule import STEPS
-from course_lib.beyond.six_dof.twists import moved
+from course_lib.beyond.six_dof.schedule import STEPS, Level, pyramid
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.lessons.kit.progress_bar import progress
@@ -56,7 +55,7 @@ def measure_basin(rng: np.random.Generator, starts: int = 12) -> list[Basin]:
         for offset in OFFSETS:
             motions = directions(starts, rng) * np.repeat([offset, np.deg2rad(offset * DEGREES_PER_METRE)], 3)
             ends[offset].append(
-                pose_errors(refine(coarse.renderer, coarse.measured, moved(poses, motions), SCALES), poses)
+                pose_errors(refine(coarse.renderer, coarse.measured, retract(poses, motions), SCALES), poses)
             )
     return [
         Basin(offset, np.array([p for p, _ in found]), np.rad2deg([r for _, r in found]))

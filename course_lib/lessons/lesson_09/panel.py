@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib import colormaps
 
+from course_lib.beyond.six_dof.poses import retract
 from course_lib.beyond.six_dof.refinement import gauss_newton_step, surface_normals
-from course_lib.beyond.six_dof.twists import moved
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider
@@ -42,7 +42,7 @@ def descend(forward: float, left: float, turned_deg: float, scale: float) -> Des
     level, true = levels()[1], hand_run().camera_to_world[FRAME]
     level.measure(hand_run().depth(FRAME))
     camera = level.renderer.camera
-    pose = moved(true, np.array([-left, 0.0, forward, 0.0, -np.deg2rad(turned_deg), 0.0]))[None]
+    pose = retract(true, np.array([-left, 0.0, forward, 0.0, -np.deg2rad(turned_deg), 0.0]))[None]
     poses, images = [pose[0]], [level.renderer.render_poses(pose)[0]]
     for _ in range(STEPS):
         pose = gauss_newton_step(level.measured, images[-1][None], camera, pose, scale)

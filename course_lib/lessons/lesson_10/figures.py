@@ -12,7 +12,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from course_lib.beyond.lost_and_found.adaptive_count import kld_count
-from course_lib.beyond.lost_and_found.global_search import Places
+from course_lib.beyond.lost_and_found.global_search import PoseCandidates
 from course_lib.lessons.lesson_10.hotel import ALIKE, Recording, boxes_on_the_plan
 from course_lib.lessons.lesson_10.narrowing import Round, shares
 from course_lib.lessons.lesson_10.trials import GOALS, Trace, alarm_counts, evidence_near
@@ -135,7 +135,7 @@ def chance_figure(runs: Sequence[list[Round]]) -> Figure:
     return figure
 
 
-def evidence_figure(run: Sequence[Places]) -> Figure:
+def evidence_figure(run: Sequence[PoseCandidates]) -> Figure:
     """Evidence of the true place and of its double over the frames, and what the search says."""
     figure, (top, axes) = figures.new_figure(2, 1, size=(8.4, 4.2))
     top.get_gridspec().set_height_ratios([0.5, 1.0])

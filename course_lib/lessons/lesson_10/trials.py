@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.lost_and_found.global_search import CLEAR_GAP, GlobalSearch, Places
+from course_lib.beyond.lost_and_found.global_search import CLEAR_GAP, GlobalSearch, PoseCandidates
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer, RecoveryEstimate
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
@@ -94,25 +94,25 @@ def kidnap(name: str, seed: int = 10_001) -> Kidnapping:
     recording, recovered, particles = record(states, seed), None, 0
     uncovered = BEFORE + COVERED
     for number, found in enumerate(follow(recording, seed, range(BEFORE, uncovered))):
-        particles += found.places.particles if found.places else 0
+        particles += found.candidates.particles if found.candidates else 0
         right = np.linalg.norm(found.estimate.state[:3] - states[number, :3]) <= NEAR
         sure = found.mode != "searching" and found.estimate.status == "tracked"
         if number >= uncovered and recovered is None and right and sure:
             recovered = number - uncovered + 1
             break
-    return Kidnapping(name, recovered, particles, equals(found.places) if found.mode == "searching" else 1)
+    return Kidnapping(name, recovered, particles, equals(found.candidates) if found.mode == "searching" else 1)
 
 
-def equals(places: Places) -> int:
+def equals(candidates: PoseCandidates) -> int:
     """How many places are named as good as the best: those that keep it from being found."""
-    return sum(place.evidence > places.places[0].evidence - CLEAR_GAP for place in places.places)
+    return sum(one.evidence > candidates.poses[0].evidence - CLEAR_GAP for one in candidates.poses)
 
 
 # The search where rooms look alike
 
 
 @functools.cache
-def search_run(seed: int = 10_002) -> list[Places]:
+def search_run(seed: int = 10_002) -> list[PoseCandidates]:
     """`GlobalSearch` over the walk out of 101: what it says in every frame."""
     recording = leaving_101()
     with DepthRenderer(hotel_map(), CAMERA) as renderer:
@@ -121,11 +121,11 @@ def search_run(seed: int = 10_002) -> list[Places]:
         return [search.step(recording.depths[k], recording.gravity[k]) for k in frames]
 
 
-def evidence_near(run: list[Places], offset: np.ndarray) -> np.ndarray:
+def evidence_near(run: list[PoseCandidates], offset: np.ndarray) -> np.ndarray:
     """Of every frame: evidence of the best place within half a metre of the truth + offset; NaN where there is none."""
     found = []
-    for places, state in zip(run, leaving_101().states, strict=False):
-        near = [p.evidence for p in places.places if np.linalg.norm(p.state[:3] - state[:3] - offset) < 0.5]
+    for candidates, state in zip(run, leaving_101().states, strict=False):
+        near = [p.evidence for p in candidates.poses if np.linalg.norm(p.state[:3] - state[:3] - offset) < 0.5]
         found.append(max(near, default=np.nan))
     return np.array(found)
 

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
+from course_lib.beyond.being_lost import sigmas
 from course_lib.beyond.six_dof.covariance import (
     PREDICTED,
     fused,
     pose_information,
     predicted_covariance,
-    sigmas,
     with_rivals,
 )
+from course_lib.beyond.six_dof.poses import local, retract
 from course_lib.beyond.six_dof.prediction import Rival
-from course_lib.beyond.six_dof.twists import motion_between, moved
 from course_lib.geometry import optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, furnished_room, rough_wall, wall
@@ -48,15 +48,11 @@ def test_a_rough_map_of_a_bare_wall_shows_no_more(rng):
     assert np.mean(known) < 0.15
 
 
-def test_in_a_furnished_room_an_image_shows_all_six():
+def test_in_a_furnished_room_an_image_shows_all_six_and_without_a_view_none():
     pose = optical_pose(np.array([-1.0, 0.3, -0.3, 0.05, 0.1, -0.4]))
     image = image_of(furnished_room(), pose)
     assert np.linalg.matrix_rank(pose_information(image, image, SMALL), hermitian=True) == 6
-
-
-def test_nothing_in_view_is_no_information():
-    nothing = np.full(SMALL.shape, np.nan)
-    assert not pose_information(nothing, np.full(SMALL.shape, np.inf), SMALL).any()
+    assert not pose_information(np.full(SMALL.shape, np.nan), np.full(SMALL.shape, np.inf), SMALL).any()
 
 
 def test_an_error_is_carried_along_as_poses_carry_it(rng):
@@ -65,7 +61,7 @@ def test_an_error_is_carried_along_as_poses_carry_it(rng):
     motion = np.array([0.4, -0.2, 0.6, 0.3, -0.5, 0.2])
     small = random_covariance(rng, 1e-4)
     errors = rng.multivariate_normal(np.zeros(6), small, 20_000)
-    carried = motion_between(moved(pose, motion), moved(moved(pose, errors), motion))
+    carried = local(retract(pose, motion), retract(retract(pose, errors), motion))
     expected = np.cov(carried, rowvar=False)
     got = predicted_covariance(small, motion, np.full(6, 1e-9))
     scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
@@ -120,7 +116,7 @@ def test_the_same_image_again_makes_it_no_surer(rng):
 def test_a_rival_widens_it_towards_itself_by_how_likely_it_is():
     pose, small = optical_pose(np.zeros(6)), np.eye(6) * 1e-6
     there = np.array([0.4, 0, 0, 0, 0, 0])
-    equal = with_rivals(small, pose, [Rival(moved(pose, there), 0.0)])
+    equal = with_rivals(small, pose, [Rival(retract(pose, there), 0.0)])
     assert sigmas(equal) == pytest.approx([0.4 / np.sqrt(2), 1e-3], rel=1e-3)
-    hardly = with_rivals(small, pose, [Rival(moved(pose, there), -0.2)])
+    hardly = with_rivals(small, pose, [Rival(retract(pose, there), -0.2)])
     assert sigmas(hardly) == pytest.approx([2.1e-3, 1e-3], rel=0.05)

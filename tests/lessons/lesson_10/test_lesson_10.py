@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.lost_and_found.adaptive_count import kld_count
-from course_lib.beyond.lost_and_found.global_search import Place, Places
+from course_lib.beyond.lost_and_found.global_search import PoseCandidate, PoseCandidates
 from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.lesson_10.hotel import (
     ALIKE,
@@ -152,8 +152,8 @@ def test_covered_frames_give_no_measurement():
 
 def test_evidence_is_that_of_a_place_within_half_a_metre():
     state = leaving_101().states[0]
-    places = [Place(state + 0.1, 0.7, 3), Place(state + np.r_[ALIKE, 0, 0, 0], 0.6, 3)]
-    run = [Places("several", places, 0, 0), Places("searching", [], 0, 0)]
+    places = [PoseCandidate(state + 0.1, 0.7, 3), PoseCandidate(state + np.r_[ALIKE, 0, 0, 0], 0.6, 3)]
+    run = [PoseCandidates("several", places, 0, 0), PoseCandidates("searching", [], 0, 0)]
     assert evidence_near(run, 0 * ALIKE)[0] == 0.7
     assert evidence_near(run, ALIKE)[0] == 0.6
     assert np.isnan(evidence_near(run, ALIKE)[1])

@@ -1,0 +1,186 @@
+"""Is the filter lost? This module alone decides whether a pose is "tracked", "doubtful" or "lost".
+
+The weights of a particle filter cannot say it, because they are normalized among the particles. Three things can: how
+a frame's image agrees with the map as seen from the estimate (`agreement`); the covariance, which is wide along a bare
+wall, or if another pose fits as well (`is_known`); and the frames before, because walls look alike and one good image
+after lost frames is no proof (`Debt`).
+
+Nothing here knows the truth, and nothing looks ahead. `judge_track` is for the paper's filter, whose estimate may lag
+by centimetres. `judge_refined` and `TrackJudge` are for refined poses, which fit as well as they can. None of them sees
+a pose that is wrong where the map looks alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from course_lib.depth_mcl.likelihood import ALPHA, likelihood, paired_pixels
+
+TrackStatus = Literal["tracked", "doubtful", "lost"]
+
+MIN_PIXELS = 30  # with fewer a frame says nothing: a few stray returns are no view (chosen)
+
+# Of `judge_track`; chosen on development recordings (experiments/lost_on_purpose.py) so that a lost filter is hardly
+# ever called tracked.
+TRACKED_SUPPORT = 0.55  # smallest support, -1 to 1, of a frame that is tracked
+LOST_SUPPORT = 0.45  # support below which it is lost
+RECOVERED_SUPPORT = 0.7  # smallest support after it was lost, because walls that look alike agree by chance
+_FRAMES_TO_RECOVER = 3  # in a row with this support
+_FRAMES_MEANED = 3  # a person who walks through one image must not decide alone
+
+# Of `judge_refined`; chosen on runs of the annealed filter that were made to get lost (kitchen, shipped corridor,
+# corridor seeds 10,011 to 10,014; 243 frames wrong by more than 0.2 m or 20 degrees: 96 % below the limit; 2,066 right
+# ones: 0.1 %).
+REFINED_LOST = 0.4
+THROUGH_WEIGHT = 3.0  # a pixel measured behind the map counts against a pose as much as so many agreeing ones for it
+
+# Of `TrackJudge`; chosen on the kitchen, the shipped corridor, and walks through rooms (seeds from 10,041 on).
+FALLEN = 0.85  # of the usual support: a frame that agrees less is doubtful
+MEMORY = 0.1  # share of a new frame in the usual support
+# Metres, radians: largest standard deviations of a pose that is known. A start by hand has exactly these, to rounding.
+KNOWN = np.array([0.2, np.deg2rad(20.0)]) + 1e-9
+CONFIRMED = 3  # good frames that make up for any number of bad ones
+
+
+class Agreement(NamedTuple):
+    """How a measured image agrees with the map as seen from one pose; shares of the measured pixels."""
+
+    pixels: int
+    """How many pixels were measured; with none, the shares are NaN."""
+    score: float
+    """Eq. (8) divided by the number of pixels: 1 for perfect agreement."""
+    agreeing: float
+    """Within `ALPHA`, 0.1 m, of the map."""
+    through: float
+    """More than `ALPHA` behind the map. A wrong pose does this, but a person or a moved chair cannot."""
+
+    @property
+    def support(self) -> float:
+        """What speaks for the pose less what speaks against it, agreeing - through: -1 to 1, NaN without a pixel.
+
+        Pixels in front of the map count for neither, because the map may lack what stands there; nor do holes in it.
+        """
+        return self.agreeing - self.through
+
+    @property
+    def refined_support(self) -> float:
+        """The same for a refined pose, agreeing - 3 through: 1 at best, NaN without a pixel."""
+        return self.agreeing - THROUGH_WEIGHT * self.through
+
+
+NOTHING_MEASURED = Agreement(0, np.nan, np.nan, np.nan)
+
+
+def agreement(measured: np.ndarray, simulated: np.ndarray) -> Agreement:
+    """Compare a measured image `(H, W)` with the image `(H, W)` of the map from one pose; metres.
+
+    measured: NaN = no measurement; simulated: `inf` = nothing hit. Raises `DepthImageError` as `likelihood` does.
+    """
+    valid, images = paired_pixels(measured, np.asarray(simulated)[None])
+    pixels = int(valid.sum())
+    if pixels == 0:
+        return NOTHING_MEASURED
+    behind = np.asarray(measured, dtype=np.float64)[valid] - images[0][valid]  # -inf where the map is empty
+    return Agreement(
+        pixels,
+        float(likelihood(measured, images, ALPHA)[0]) / pixels,
+        float(np.mean(np.abs(behind) <= ALPHA)),
+        float(np.mean(behind > ALPHA)),
+    )
+
+
+def sigmas(covariance: np.ndarray) -> np.ndarray:
+    """Return the standard deviations `(2,)` of position and rotation along the least known direction, metres, radians.
+
+    covariance: `(6, 6)` of a pose.
+    """
+    return np.sqrt([np.linalg.eigvalsh(part)[-1] for part in (covariance[:3, :3], covariance[3:, 3:])])
+
+
+def is_known(covariance: np.ndarray) -> bool:
+    """Return whether a pose with this covariance `(6, 6)` is known to `KNOWN`: 0.2 m and 20 degrees."""
+    return not (sigmas(covariance) > KNOWN).any()
+
+
+class Debt:
+    """Good frames that are owed after bad ones, as many as there were bad ones, at most `CONFIRMED`."""
+
+    def __init__(self) -> None:
+        self._frames = 0
+
+    def add(self) -> None:
+        """Take a bad frame into account."""
+        self._frames = min(self._frames + 1, CONFIRMED)
+
+    def is_paid(self, good: bool) -> bool:
+        """Take a frame that is not bad into account; return whether no good frame is owed any more."""
+        self._frames = max(self._frames - bool(good), 0)
+        return self._frames == 0
+
+
+def judge_track(agreements: Sequence[Agreement]) -> list[TrackStatus]:
+    """Return the status of each frame of the paper's filter, from the frames so far.
+
+    A frame is lost if the mean support of the last three frames is below `LOST_SUPPORT`. It is tracked if this mean
+    reaches `TRACKED_SUPPORT`; but once lost, three frames in a row must reach `RECOVERED_SUPPORT` first. All other
+    frames are doubtful, and so is a frame with hardly any measurement.
+    """
+    statuses, lost, good_frames = [], False, 0
+    for index, frame in enumerate(agreements):
+        last = agreements[max(0, index + 1 - _FRAMES_MEANED) : index + 1]
+        recent = [a.support for a in last if a.pixels >= MIN_PIXELS]
+        support = np.mean(recent) if frame.pixels >= MIN_PIXELS else np.nan
+        good_frames = good_frames + 1 if support >= RECOVERED_SUPPORT else 0
+        lost = support < LOST_SUPPORT or (lost and good_frames < _FRAMES_TO_RECOVER)
+        if support < LOST_SUPPORT:
+            statuses.append("lost")
+        else:
+            statuses.append("tracked" if support >= TRACKED_SUPPORT and not lost else "doubtful")
+    return statuses
+
+
+def judge_refined(frame: Agreement) -> TrackStatus:
+    """Return the status of a *refined* pose from its own image: lost if agreeing - 3 through is below `REFINED_LOST`.
+
+    If measurements still lie behind the map after refinement, where no light comes from, the pose is wrong, however
+    much else agrees. With hardly any pixel it is doubtful.
+    """
+    if frame.pixels < MIN_PIXELS:
+        return "doubtful"
+    return "lost" if frame.refined_support < REFINED_LOST else "tracked"
+
+
+class TrackJudge:
+    """The status of each frame of the annealed filter; it remembers the usual support and the debt of good frames."""
+
+    def __init__(self) -> None:
+        self._usual_support: float | None = None
+        self._debt = Debt()
+
+    def doubts(self, agreement: Agreement) -> bool:
+        """Return whether a frame agrees clearly less than usual."""
+        return self._usual_support is not None and agreement.support < FALLEN * self._usual_support
+
+    def judge_image(self, agreement: Agreement) -> TrackStatus:
+        """Return what a frame's own image says of its refined pose."""
+        status = judge_refined(agreement)
+        return "doubtful" if status == "tracked" and self.doubts(agreement) else status
+
+    def judge(self, image: TrackStatus, agreement: Agreement, covariance: np.ndarray, has_rivals: bool) -> TrackStatus:
+        """Return a frame's status; called once per frame. image: `judge_image` of it. covariance: `(6, 6)`.
+
+        A frame is lost if its image says so, or if the image is good but the pose is not known. After lost frames it
+        stays lost until the debt of good frames without a rival is paid.
+        """
+        status = "lost" if image == "tracked" and not is_known(covariance) else image
+        if status == "lost":
+            self._debt.add()
+        elif not self._debt.is_paid(status == "tracked" and not has_rivals):
+            status = "lost"
+        if status == "tracked" or self._usual_support is None:
+            usual, support = self._usual_support, agreement.support
+            self._usual_support = support if usual is None else (1 - MEMORY) * usual + MEMORY * support
+        return status

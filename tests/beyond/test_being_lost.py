@@ -1,0 +1,131 @@
+"""Whether a pose is known, from its image, its covariance and the frames before: causally, and never too sure."""
+
+import numpy as np
+import pytest
+
+from course_lib.beyond.being_lost import (
+    CONFIRMED,
+    FALLEN,
+    KNOWN,
+    LOST_SUPPORT,
+    NOTHING_MEASURED,
+    RECOVERED_SUPPORT,
+    TRACKED_SUPPORT,
+    Agreement,
+    TrackJudge,
+    agreement,
+    judge_refined,
+    judge_track,
+)
+from course_lib.depth_mcl.likelihood import likelihood
+
+
+def agreeing(share, through=0.0, pixels=1000):
+    return Agreement(pixels, share, share, through)
+
+
+MIDDLE = (TRACKED_SUPPORT + LOST_SUPPORT) / 2
+VERY_GOOD, GOOD, MIDDLING, BAD = map(
+    agreeing, (RECOVERED_SUPPORT + 0.1, TRACKED_SUPPORT + 0.1, MIDDLE, LOST_SUPPORT - 0.15)
+)
+BLIND = NOTHING_MEASURED
+
+
+def test_every_pixel_counts_for_what_it_is():
+    """Ten measured pixels: five agree, two see through the map, one is in front of it, two meet a hole in it."""
+    measured = np.array([[1, 1, 1, 1.05, 0.95, 2, 9, 0.5, 3, 3, np.nan, 0]], float)
+    simulated = np.array([[1, 1, 1, 1, 1, 1, 1, 1, np.inf, np.inf, 1, 1]], float)
+    found = agreement(measured, simulated)
+    assert found.pixels == 10
+    assert (found.agreeing, found.through) == pytest.approx((0.5, 0.2))
+    assert found.support == pytest.approx(0.3)
+    assert found.score == pytest.approx(likelihood(measured, simulated[None])[0] / 10)
+
+
+def test_a_person_in_front_weighs_less_than_a_wall_that_is_not_there():
+    wall = np.full((4, 5), 3.0)
+    nearer, farther = wall.copy(), wall.copy()
+    nearer[:2], farther[:2] = 1.0, 5.0
+    assert agreement(nearer, wall).support == pytest.approx(0.5)
+    assert agreement(farther, wall).support == pytest.approx(0.0)
+
+
+def test_an_image_without_measurement_says_nothing():
+    assert agreement(np.full((2, 3), np.nan), np.ones((2, 3))).pixels == 0
+    assert np.isnan([NOTHING_MEASURED.score, NOTHING_MEASURED.support]).all()
+
+
+@pytest.mark.parametrize(
+    ("frames", "expected"),
+    [
+        ([GOOD] * 4, "TTTT"),
+        ([MIDDLING] * 3, "DDD"),
+        ([BAD] * 3, "LLL"),
+        ([BLIND, GOOD, BLIND, GOOD], "DTDT"),
+        ([GOOD, GOOD, GOOD, BAD, GOOD], "TTTDD"),  # one image alone does not decide: a person walked through
+        ([BAD] * 3 + [GOOD] * 8, "LLLL" + "D" * 7),  # what was lost is not tracked for agreeing as well as usual
+        ([BAD] * 3 + [VERY_GOOD] * 6 + [GOOD], "LLLDDDDTTT"),  # two frames until the mean is good, three good in a row
+        ([BAD] * 3 + [BLIND] * 9 + [GOOD] * 3, "LLL" + "D" * 12),  # blind frames do not heal
+        ([agreeing(1.0, pixels=3)] * 4 + [BAD], "DDDDL"),  # a few stray returns are no view
+    ],
+)
+def test_the_papers_filter_is_judged_frame_by_frame_without_looking_ahead(frames, expected):
+    for count in range(len(frames) + 1):
+        assert "".join(status[0].upper() for status in judge_track(frames[:count])) == expected[:count]
+
+
+@pytest.mark.parametrize(
+    ("frame", "expected"),
+    [
+        (agreeing(0.9, 0.02), "tracked"),
+        (agreeing(0.72, 0.14), "lost"),  # it still sees through walls
+        (agreeing(0.6, 0.01), "tracked"),
+        (agreeing(0.35), "lost"),
+        (agreeing(0.0, 1.0, pixels=5), "doubtful"),  # hardly a pixel
+        (BLIND, "doubtful"),
+    ],
+)
+def test_a_refined_pose_is_judged_by_its_own_image(frame, expected):
+    assert judge_refined(frame) == expected
+
+
+# The annealed filter
+
+SURE = np.diag([1e-4] * 6)
+FITS, BEHIND_THE_MAP, POOR = agreeing(0.95), agreeing(0.7, through=0.3), agreeing(0.75)
+
+
+def told(*frames, covariance=SURE, rivals=()):
+    """Statuses of frames; rivals: the numbers of those with a rival."""
+    judge, statuses = TrackJudge(), []
+    for number, frame in enumerate(frames):
+        statuses.append(judge.judge(judge.judge_image(frame), frame, covariance, number in rivals))
+    return statuses
+
+
+def test_a_frame_that_agrees_less_than_usual_is_doubtful():
+    assert told(FITS, agreeing(0.99 * FALLEN * 0.95)) == ["tracked", "doubtful"]
+    assert told(FITS, agreeing(1.01 * FALLEN * 0.95)) == ["tracked", "tracked"]
+    assert told(FITS, *[POOR] * 40) == ["tracked"] + ["doubtful"] * 40, "what is usual is learned from good frames only"
+
+
+@pytest.mark.parametrize("axis", range(6))
+def test_a_good_image_of_a_pose_that_is_not_known_is_lost(axis):
+    for share, status in ((1.01, "lost"), (0.99, "tracked")):
+        covariance = SURE.copy()
+        covariance[axis, axis] = (share * KNOWN[axis // 3]) ** 2
+        assert told(FITS, covariance=covariance) == [status]
+
+
+def test_after_lost_frames_as_many_good_ones_are_wanted_but_no_more_than_three():
+    assert told(FITS, BEHIND_THE_MAP, FITS) == ["tracked", "lost", "tracked"]
+    assert told(FITS, *[BEHIND_THE_MAP] * 2, FITS, FITS)[-2:] == ["lost", "tracked"]
+    long = told(FITS, *[BEHIND_THE_MAP] * 9, *[FITS] * CONFIRMED)
+    assert long[-CONFIRMED:] == ["lost"] * (CONFIRMED - 1) + ["tracked"]
+    assert told(FITS, BEHIND_THE_MAP, POOR) == ["tracked", "lost", "lost"], "a doubtful frame is no good one"
+
+
+def test_a_good_frame_with_a_rival_confirms_nothing():
+    after = told(FITS, BEHIND_THE_MAP, FITS, FITS, FITS, rivals=(2, 3))
+    assert after == ["tracked", "lost", "lost", "lost", "tracked"]
+    assert told(FITS, FITS, rivals=(1,)) == ["tracked", "tracked"], "one that was never lost need not be confirmed"

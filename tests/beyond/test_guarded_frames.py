@@ -1,0 +1,150 @@
+"""A frame that is late, repeated, or no image of the world is named; one that is new and good is let through."""
+
+import numpy as np
+import pytest
+
+from course_lib.beyond.guarded_frames import CLOCK_WAS_SET, MAX_MISSED, PATIENCE, FrameCheck, FrameOrder, looks_of
+from course_lib.depth_mcl.sequence import read_sequence
+from tests.rendering.shapes import SMALL, room_depth
+
+NEAR, FAR = 0.1, 11.0
+
+
+# Time and image
+
+
+@pytest.fixture
+def images(rng):
+    made = rng.random((10, 4, 6)).astype(np.float32)
+    made[:, 0, 0] = np.nan
+    return made
+
+
+def faults(period, *frames):
+    """Faults of (image, time)s."""
+    order = FrameOrder(period)
+    return [order.look((image,), time).fault for image, time in frames]
+
+
+@pytest.mark.parametrize("time", [0.1, 0.05, -1.0])
+def test_a_time_that_is_not_later_is_out_of_order_and_changes_nothing(images, time):
+    frames = [(images[0], 0.0), (images[1], 0.1), (images[2], time), (images[3], 0.2)]
+    assert faults(0.1, *frames) == [None, None, "out of order", None]
+
+
+def test_the_same_values_are_a_repetition_with_or_without_a_new_time(images):
+    other = images[0].copy()
+    other[2, 2] += 1e-3
+    assert faults(None, (images[0], 0.0), (images[0].copy(), 0.1), (other, 0.2)) == [None, "repeated", None]
+    assert faults(None, (images[0], None), (images[0].copy(), None)) == [None, "repeated"]
+
+
+def test_an_image_that_is_written_over_in_place_is_remembered_as_it_was(images):
+    memory, order = images[0].copy(), FrameOrder()
+    order.look((memory,), 0.0)
+    memory[:] = images[1]
+    assert order.look((memory,), 0.1).fault is None
+
+
+def test_of_two_cameras_both_must_stand_still(images):
+    order = FrameOrder()
+    order.look((images[0], images[1]), 0.0)
+    assert order.look((images[0], images[2]), 1.0).fault is None
+    assert order.look((images[0], images[2]), 2.0).fault == "repeated"
+
+
+@pytest.mark.parametrize(("gap", "missed"), [(0.1, 0), (0.14, 0), (0.2, 1), (0.29, 2), (1.1, 10), (1e6, MAX_MISSED)])
+def test_a_gap_is_counted_in_frames(images, gap, missed):
+    for period, expected in ((0.1, missed), (None, 0)):
+        order = FrameOrder(period)
+        order.look((images[0],), 5.0)
+        assert order.look((images[1],), 5.0 + gap).missed == expected
+
+
+def test_a_clock_that_was_set_back_is_believed_after_some_frames(images):
+    later = [(image, 0.1 * k) for k, image in enumerate(images[1:], start=1)]
+    expected = [None] + ["out of order"] * (CLOCK_WAS_SET - 1) + [None] * (10 - CLOCK_WAS_SET)
+    assert faults(0.1, (images[0], 100.0), *later) == expected
+
+
+def test_a_bad_time_or_period_is_named(images):
+    with pytest.raises(ValueError, match="must be a finite number of seconds"):
+        FrameOrder().look((images[0],), float("nan"))
+    for period in (0.0, -0.1, float("nan")):
+        with pytest.raises(ValueError, match="period must be a positive number"):
+            FrameOrder(period)
+
+
+# Depth images
+
+
+def image(rng, noise=0.01):
+    """A corner of a room, a tenth of its pixels without a return."""
+    depth = room_depth(SMALL, np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.3]))[0] + noise * rng.standard_normal(SMALL.shape)
+    depth[rng.random(SMALL.shape) < 0.1] = np.nan
+    return depth.astype(np.float32)
+
+
+@pytest.fixture
+def check(rng):
+    """A check that has seen six good frames."""
+    made = FrameCheck(NEAR, FAR, period=0.1)
+    assert [made.look(image(rng), 0.1 * k).fault for k in range(6)] == [None] * 6
+    return made
+
+
+def without(part):
+    """An image whose pixels `part` are gone."""
+
+    def make(rng):
+        depth = image(rng)
+        depth[part(rng) if callable(part) else part] = np.nan
+        return depth
+
+    return make
+
+
+BAD = {
+    "no return": [lambda _, empty=empty: np.full(SMALL.shape, empty) for empty in (np.nan, 0.0, np.inf, 50.0)],
+    "saturated": [lambda _: np.full(SMALL.shape, 9.99)],
+    "noise": [lambda rng: rng.uniform(0.2, 10, SMALL.shape)],
+    "half covered": [without(part) for part in (np.s_[:24], np.s_[24:], np.s_[:, :32], np.s_[:, 32:])],
+    "few returns": [without(lambda rng: rng.random(SMALL.shape) < 0.75)],
+    "exposure jump": [lambda rng: image(rng, noise=0.15)],
+}
+
+
+@pytest.mark.parametrize("fault", BAD)
+def test_a_fault_is_named_and_a_good_frame_after_it_is_good(check, rng, fault):
+    for k, bad in enumerate(BAD[fault]):
+        assert check.look(bad(rng), 0.6 + 0.2 * k).fault == fault
+        assert check.look(image(rng), 0.7 + 0.2 * k) == (None, 0)
+
+
+def test_what_lasts_is_the_world_but_never_darkness(check, rng):
+    told = [check.look(BAD["half covered"][2](rng), 0.6 + 0.1 * k).fault for k in range(PATIENCE + 5)]
+    assert told == ["half covered"] * PATIENCE + [None] * 5
+    told = [check.look(np.full(SMALL.shape, np.nan), 9.0 + 0.1 * k).fault for k in range(5 * PATIENCE)]
+    assert set(told) == {"no return"}
+
+
+def test_depths_rounded_as_by_a_kinect_are_no_jump(rng):
+    """Neighbours are often equal, so that the usual roughness is 0 and anything is many times as much."""
+    check = FrameCheck(NEAR, FAR)
+    coarse = [np.round(image(rng, noise=0.001) / 0.05) * 0.05 for _ in range(5)]
+    finer = [np.round(image(rng) / 0.02) * 0.02 for _ in range(5)]
+    assert looks_of(coarse[0], NEAR, FAR).roughness == 0 < looks_of(finer[0], NEAR, FAR).roughness
+    assert [check.look(depth).fault for depth in coarse + finer] == [None] * 10
+
+
+@pytest.mark.parametrize("carried", ["wagon", "hand"])
+def test_no_frame_of_the_shipped_recordings_is_refused(corridor_folder, carried):
+    recording = read_sequence(corridor_folder / carried)
+    check = FrameCheck(NEAR, FAR, float(np.median(np.diff(recording.times))))
+    assert {check.look(recording.depth(k), recording.times[k]) for k in range(60)} == {(None, 0)}
+
+
+def test_no_frame_of_a_real_camera_is_refused(kitchen_folder):
+    recording = read_sequence(kitchen_folder)
+    check = FrameCheck(NEAR, FAR)
+    assert {check.look(recording.depth(k)).fault for k in range(len(recording))} == {None}
