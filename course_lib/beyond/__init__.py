@@ -1,20 +1,20 @@
 """What the papers leave open, built on both methods. Neither method imports anything from here.
 
-    six_dof/         paper 1, section 5: all six degrees of freedom, by an annealed and refined filter
-    lost_and_found/  a start that is not known, and finding the camera again after it was carried away
-    tracking         being lost: whether the filter still holds the track
-    look_alikes/     rooms whose objects look alike: poses of two matches, what speaks for each, how sure
-    several_views    several views over time
-    frame_order, frame_check, guarded_depth, guarded_stereo
-                     sensor trouble: whether a frame can be used, and the outcome of each
+six_dof/         paper 1, section 5: all six degrees of freedom, by an annealed and refined filter
+lost_and_found/  a start that is not known, and finding the camera again after it was carried away
+tracking         being lost: whether the filter still holds the track
+look_alikes/     rooms whose objects look alike: poses of two matches, what speaks for each, how sure
+several_views    several views over time
+frame_order, frame_check, guarded_depth, guarded_stereo
+                 sensor trouble: whether a frame can be used, and the outcome of each
 """
 
 from course_lib.beyond.guarded_depth import Watched, WatchedLocalizer
-from course_lib.beyond.guarded_stereo import WatchedPair, WatchedRig
-from course_lib.beyond.look_alikes.assignment import associate_hungarian
+from course_lib.beyond.guarded_stereo import GuardedPair, GuardedRig
 from course_lib.beyond.look_alikes.consistent import associate_consistent, rank_poses
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
+from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.beyond.lost_and_found.global_search import GlobalSearch, Places
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.beyond.several_views import Motion, SemanticTracker, Track
@@ -25,6 +25,8 @@ __all__ = [
     "AnnealedLocalizer",
     "Evidence",
     "GlobalSearch",
+    "GuardedPair",
+    "GuardedRig",
     "Motion",
     "Places",
     "PoseHypothesis",
@@ -33,8 +35,6 @@ __all__ = [
     "Track",
     "Watched",
     "WatchedLocalizer",
-    "WatchedPair",
-    "WatchedRig",
     "associate_consistent",
     "associate_hungarian",
     "rank_poses",

@@ -13,8 +13,8 @@ import numpy as np
 from filterpy.kalman import KalmanFilter
 
 from course_lib.beyond.look_alikes.confidence import (
-    FEWEST_INLIERS,
-    LEAST_CONFIDENCE,
+    MIN_CONFIDENCE,
+    MIN_INLIERS,
     TEMPER,
     area,
     plausibility,
@@ -131,7 +131,7 @@ def fused(carried: CarriedPose, view: PoseHypothesis, prior_log_density: float) 
 class SemanticTracker:
     """Poses of a moving rig on a semantic map, from one view after another.
 
-    semantic_map: where things are. evidence: what counts (`consistent`). least_confidence: below it the answer is
+    semantic_map: where things are. evidence: what counts (`consistent`). min_confidence: below it the answer is
     "unable" with the alternatives. The state is `belief`, which `step` replaces.
     """
 
@@ -139,9 +139,9 @@ class SemanticTracker:
         self,
         semantic_map: SemanticMap,
         evidence: Evidence = Evidence(),  # noqa: B008 (it cannot change)
-        least_confidence: float = LEAST_CONFIDENCE,
+        min_confidence: float = MIN_CONFIDENCE,
     ):
-        self.semantic_map, self.evidence, self.least_confidence = semantic_map, evidence, least_confidence
+        self.semantic_map, self.evidence, self.min_confidence = semantic_map, evidence, min_confidence
         self.belief = Belief()
 
     def step(self, observations: Sequence[Observation], motion: Motion | None = None) -> Track:
@@ -152,7 +152,7 @@ class SemanticTracker:
         self.belief = updated(
             self.belief, observations, self.semantic_map, UNKNOWN_MOTION if motion is None else motion, self.evidence
         )
-        return answer(self.belief, self.evidence, self.least_confidence)
+        return answer(self.belief, self.evidence, self.min_confidence)
 
 
 def updated(
@@ -206,7 +206,7 @@ def shares(belief: Belief) -> np.ndarray:
     return (weights / weights.sum())[:-1]
 
 
-def answer(belief: Belief, evidence: Evidence = Evidence(), least_confidence: float = LEAST_CONFIDENCE) -> Track:  # noqa: B008
+def answer(belief: Belief, evidence: Evidence = Evidence(), min_confidence: float = MIN_CONFIDENCE) -> Track:  # noqa: B008
     """What a belief says: the best pose where it is sure enough, else "unable", with all alternatives."""
     share = shares(belief)
     alternatives = tuple(
@@ -216,8 +216,8 @@ def answer(belief: Belief, evidence: Evidence = Evidence(), least_confidence: fl
     if alternatives:
         best, n_matches, confidence = belief.hypotheses[0], belief.hypotheses[0].n_matches, float(share[0])
         if evidence.absolute:
-            confidence *= plausibility(best.view) if n_matches >= FEWEST_INLIERS else 0.0
-    reason = why_unable(len(alternatives), n_matches, confidence, least_confidence)
+            confidence *= plausibility(best.view) if n_matches >= MIN_INLIERS else 0.0
+    reason = why_unable(len(alternatives), n_matches, confidence, min_confidence)
     if reason is not None:
         return Track(None, UNABLE, reason, confidence, None, alternatives)
     return Track(alternatives[0][0], OK, None, confidence, best.covariance, alternatives)

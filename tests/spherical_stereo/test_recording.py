@@ -75,6 +75,6 @@ def test_what_is_of_another_kind_is_named_with_the_file(tmp_path, content, place
 def test_a_panorama_of_another_size_than_the_list_says_is_named(tmp_path, content):
     upper, lower = read(tmp_path, content).pairs[0].images()
     assert upper.shape == lower.shape == (64, 128, 3)
-    content["width"] = 130
-    with pytest.raises(PanoramaError, match=r"upper\.png has 128 x 64 pixels; .*poses\.json says 130 x 64"):
+    content |= {"width": 256, "height": 128}
+    with pytest.raises(PanoramaError, match=r"upper\.png has 128 x 64 pixels; .*poses\.json says 256 x 128"):
         read(tmp_path, content).pairs[0].images()

@@ -12,18 +12,18 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.detection.detected_object import canonical_label
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 DISTANCE_GATE = 3.5
-"""Standard deviations by which two distances may differ and still be one (chosen: of right pairs 1 in 2,000 are lost,
-were the covariances exact)."""
-LEAST_DISTANCE = 0.5
-"""Metres between two landmarks, and between two observations, below which they tell no heading worth having."""
+"""Standard deviations by which two distances may differ and still be one (chosen: 1 in 2,000 right pairs is lost, if
+the covariances are exact)."""
+MIN_DISTANCE = 0.5
+"""Metres between two landmarks, and between two observations. Nearer ones tell no useful heading."""
 UNKNOWN_SIGMA = 0.3
-"""Metres, standard deviation of a place whose covariance nobody gave (chosen)."""
+"""Metres, standard deviation of a position without a covariance (chosen)."""
 MAP_SIGMA = 0.02
 """Metres, standard deviation of a landmark's coordinates: a tape measure, and what counts as an object's middle."""
 GAUSS_NEWTON_STEPS = 4
@@ -68,11 +68,11 @@ class PoseHypothesis(NamedTuple):
     pairs: tuple[tuple[int, int], ...]
     """(observation, landmark) that it matches."""
     score: float
-    """Nats; the higher the better. 0: as good as calling every observation clutter."""
+    """Log-likelihood ratio in nats. 0 means that the pose explains the observations no better than clutter does."""
     chi_square: float
     """Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers."""
     missed: tuple[int, ...]
-    """Landmarks that would have been seen from there more likely than not, and were not."""
+    """Landmarks that were probably visible from there, and were not seen."""
     share: float = 0.0
     """Of the belief, among all distinct poses and "none of them": 0 to 1."""
 
@@ -95,7 +95,7 @@ def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> 
 def pairs_of_matches(scene: Scene, gate: float = DISTANCE_GATE) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of matches that can both be right: indices `(h, 2)` of observations and of landmarks.
 
-    Like classes, landmarks `LEAST_DISTANCE` apart (so distinct ones), and | |z_i - z_k| - |m_j - m_l| | <= gate sigma,
+    Like classes, landmarks `MIN_DISTANCE` apart (so distinct ones), and | |z_i - z_k| - |m_j - m_l| | <= gate sigma,
     with sigma^2 = u^T (C_i + C_k) u along the line u between the observations. A distance does not change with the
     pose: what a pair is kept or thrown away for is known before there is one.
     """
@@ -109,9 +109,7 @@ def pairs_of_matches(scene: Scene, gate: float = DISTANCE_GATE) -> tuple[np.ndar
     along = seen / np.maximum(seen_length, 1e-9)[:, None]
     noise = scene.covariances[observations].sum(axis=1) + 2 * MAP_SIGMA**2 * np.eye(2)
     sigma = np.sqrt(np.einsum("hi,hij,hj->h", along, noise, along))
-    kept = (np.abs(seen_length - true_length) <= gate * sigma) & (
-        np.minimum(seen_length, true_length) >= LEAST_DISTANCE
-    )
+    kept = (np.abs(seen_length - true_length) <= gate * sigma) & (np.minimum(seen_length, true_length) >= MIN_DISTANCE)
     return observations[kept], landmarks[kept]
 
 
