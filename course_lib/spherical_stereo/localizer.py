@@ -249,7 +249,7 @@ def _walk(found: Localization, steps: Sequence[Callable[[Localization], Localiza
         found = step(found)
     if found.upper is None:
         return found
-    upper, lower = (replace(view, image=None, features=None) for view in (found.upper, found.lower))
+    upper, lower = (view.replace(image=None, features=None) for view in (found.upper, found.lower))
     return replace(found, upper=upper, lower=lower)
 
 

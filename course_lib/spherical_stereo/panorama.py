@@ -11,6 +11,7 @@ A direction is the unit vector (cos e cos a, cos e sin a, sin e) in the body fra
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -193,6 +194,10 @@ class View:
     def size(self) -> tuple[int, int]:
         """(width, height), pixels."""
         return self.width, self.height
+
+    def replace(self, **found: Any) -> View:
+        """Return the same panorama with what a step found: `detections` or `features`."""
+        return dataclasses.replace(self, **found)
 
 
 def open_view(image: np.ndarray | View, name: str = "image") -> View:

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.guarded_stereo import WatchedRig
+from course_lib.beyond.guarded_stereo import GuardedRig
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.matching.alignment import LEAST_AGREEING, camera_alignment
+from course_lib.spherical_stereo.matching.alignment import MIN_AGREEING_SHARE, camera_alignment
 from course_lib.spherical_stereo.matching.features import find_features
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, open_view
 from course_lib.spherical_stereo.pose import localization as outcomes
@@ -24,7 +24,7 @@ def localizer():
 
 @pytest.fixture
 def rig(localizer):
-    return WatchedRig(localizer, period=1.0)
+    return GuardedRig(localizer, period=1.0)
 
 
 def test_a_good_pair_is_what_the_localizer_says(rig, localizer):
@@ -82,8 +82,8 @@ def test_matches_of_one_moment_agree_and_of_two_do_not():
 
     same = camera_alignment(features(HERE[0]), features(HERE[1]))
     other = camera_alignment(features(HERE[0]), features(THERE[1]))
-    assert same.agreeing > LEAST_AGREEING + 0.1
-    assert other.agreeing < LEAST_AGREEING - 0.1
+    assert same.agreeing > MIN_AGREEING_SHARE + 0.1
+    assert other.agreeing < MIN_AGREEING_SHARE - 0.1
     assert same.of_one_moment
     assert not other.of_one_moment
 

@@ -9,10 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.detection.boxes import DetectionError
-from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
-from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError
+from course_lib.spherical_stereo.matching.features import SwappedImagesError
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,

@@ -163,7 +163,7 @@ def test_a_panorama_walks_on_as_a_record_and_is_not_looked_at_again():
     view = open_view(image)
     assert (view.image is image, view.size, view.detections, view.features) == (True, (16, 8), (), None)
     assert open_view(view) is view
-    found = view.having(detections=["one"])
+    found = view.replace(detections=["one"])
     assert (found.detections, found.image is image, view.detections) == (("one",), True, ())
 
 

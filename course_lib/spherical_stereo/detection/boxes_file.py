@@ -8,7 +8,7 @@ Boxes are in edge coordinates of images of that size. u_max passes the width if 
 left out. The same name in "upper" and "lower" says that the two boxes show one object, for checking a matcher.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -64,7 +64,7 @@ class StereoBoxes:
 
         def seen(view: View, items: list[LabelledBox]) -> View:
             found = [Detection(one.label, 1.0, one.box, *mean_hue_saturation(view.image, one.box)) for one in items]
-            return replace(view, detections=found)
+            return view.replace(detections=found)
 
         return seen(upper, self.upper), seen(lower, self.lower)
 

@@ -7,7 +7,7 @@ and measure its colour (`colour`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
@@ -40,7 +40,7 @@ def find_objects(view: View, detector) -> View:
     detector: anything with `detect(image_bgr)` that gives detections. Source: paper 2, section 2.2.
     """
     # Our own detector takes the view, which was checked already; any other takes the image.
-    return replace(view, detections=detector.detect(view if isinstance(detector, YoloDetector) else view.image))
+    return view.replace(detections=detector.detect(view if isinstance(detector, YoloDetector) else view.image))
 
 
 class YoloDetector:

@@ -10,7 +10,7 @@ their images, and leaving rotation out tells more features apart (a fifth more m
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -90,12 +90,12 @@ def find_features(view: View, threshold: float = AKAZE_THRESHOLD, octaves: int =
     )
     keypoints, descriptors = akaze.detectAndCompute(extended, None)
     if not keypoints:
-        return replace(view, features=PanoramaFeatures(np.zeros((0, 2)), np.zeros((0, 61), np.uint8), width, height))
+        return view.replace(features=PanoramaFeatures(np.zeros((0, 2)), np.zeros((0, 61), np.uint8), width, height))
     # OpenCV's keypoints have pixel centres at integers; edge coordinates have them half a pixel on.
     places = np.array([keypoint.pt for keypoint in keypoints], dtype=np.float64) + 0.5 - [margin, 0]
     proper = (places[:, 0] >= 0) & (places[:, 0] < width)
     places[:, 1] = np.clip(places[:, 1], 0, height)
-    return replace(view, features=PanoramaFeatures(places[proper], descriptors[proper], width, height))
+    return view.replace(features=PanoramaFeatures(places[proper], descriptors[proper], width, height))
 
 
 def inside_box(points: np.ndarray, box: np.ndarray, width: int) -> np.ndarray:

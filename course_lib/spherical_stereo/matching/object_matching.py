@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -90,7 +90,7 @@ def match_objects(
     Raises `PanoramaError` as `open_pair` does, and what `match_views` raises. Source: paper 2, section 2.3.
     """
     upper, lower = open_pair(upper_image, lower_image)
-    upper, lower = replace(upper, detections=upper_detections), replace(lower, detections=lower_detections)
+    upper, lower = upper.replace(detections=upper_detections), lower.replace(detections=lower_detections)
     return match_views(upper, lower, rig, tolerance).matches
 
 

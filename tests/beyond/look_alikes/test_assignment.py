@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from course_lib.beyond.look_alikes.assignment import associate_hungarian
+from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 

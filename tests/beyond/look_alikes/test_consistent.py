@@ -6,7 +6,7 @@ import pytest
 from course_lib.beyond.look_alikes import consistent
 from course_lib.beyond.look_alikes.confidence import (
     AMBIGUOUS,
-    LEAST_CONFIDENCE,
+    MIN_CONFIDENCE,
     NOTHING_AGREES,
     TOO_FEW_INLIERS,
     confidence_of,
@@ -56,7 +56,7 @@ def test_one_plant_tells_the_two_apart():
     assert found.status == "ok"
     assert near(found.pose, POSE)
     assert found.used_pairs == tuple((k, k) for k in range(6))
-    assert found.confidence > LEAST_CONFIDENCE
+    assert found.confidence > MIN_CONFIDENCE
     assert found.covariance.shape == (3, 3)
     assert found.rms_residual < 0.01
 
@@ -92,7 +92,7 @@ def test_the_room_in_a_mirror_is_refused_however_far_ahead_its_best_pose_is():
     flip = np.array([[1.0, -1.0], [-1.0, 1.0]])
     mirrored = [one._replace(y=-one.y, covariance=flip * one.covariance) for one in seen]
     assert localizer(room).localize_observations(seen).status == "ok"
-    assert associate_consistent(mirrored, room, evidence=Evidence(absolute=False)).confidence > LEAST_CONFIDENCE
+    assert associate_consistent(mirrored, room, evidence=Evidence(absolute=False)).confidence > MIN_CONFIDENCE
     found = localizer(room).localize_observations(mirrored)
     assert (found.status, found.reason) == ("unable", AMBIGUOUS)
 
@@ -101,7 +101,7 @@ def test_another_room_is_refused_however_far_ahead_its_best_pose_is():
     rng = np.random.default_rng(27)
     room, other = scattered(rng), scattered(rng)
     seen = observed(room, MIDDLE)
-    assert associate_consistent(seen, other, evidence=Evidence(absolute=False)).confidence > LEAST_CONFIDENCE
+    assert associate_consistent(seen, other, evidence=Evidence(absolute=False)).confidence > MIN_CONFIDENCE
     assert associate_consistent(seen, other).confidence < 0.5
 
 

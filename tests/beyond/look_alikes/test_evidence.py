@@ -5,7 +5,7 @@ import pytest
 
 from course_lib.beyond.look_alikes.evidence import (
     DETECTION_HIDDEN,
-    MOST_COLOUR_COST,
+    MAX_COLOUR_COST,
     NOISE_FACTOR,
     OUTSIDE_COST,
     colour_costs,
@@ -63,7 +63,7 @@ def test_grey_has_no_hue_and_weighs_nothing():
 
 
 def test_no_colour_speaks_too_strongly():
-    assert colour_cost((0.0, 100.0), (180.0, 100.0)) == MOST_COLOUR_COST
+    assert colour_cost((0.0, 100.0), (180.0, 100.0)) == MAX_COLOUR_COST
 
 
 def test_a_landmark_behind_another_is_not_expected_and_one_in_front_is():

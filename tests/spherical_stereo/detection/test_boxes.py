@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course_lib.spherical_stereo.detection.boxes import DetectionError, box_centre, box_iou, wrapped_box
+from course_lib.spherical_stereo.detection.detected_object import DetectionError, box_centre, box_iou, wrapped_box
 
 WIDTH = 1280.0
 

@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.boxes import DetectionError
 from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
+from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.panorama import PanoramaError
 
 GOOD = {

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.boxes import DetectionError
 from course_lib.spherical_stereo.detection.colour import central_half, mean_hue_saturation
+from course_lib.spherical_stereo.detection.detected_object import DetectionError
 
 
 def bgr(hue, saturation_percent, value=0.8):

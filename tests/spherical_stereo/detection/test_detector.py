@@ -7,9 +7,8 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.boxes import DetectionError
 from course_lib.spherical_stereo.detection.darknet import expected_weight_floats, read_cfg
-from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
 from course_lib.spherical_stereo.detection.detector import DetectorError, YoloDetector, find_objects
 from course_lib.spherical_stereo.panorama import PanoramaError, open_view
 from tests.spherical_stereo.detection.blob_networks import (

@@ -2,7 +2,7 @@
 
 import pytest
 
-from course_lib.spherical_stereo.detection.labels import ALIASES, CANONICAL_LABELS, canonical_label
+from course_lib.spherical_stereo.detection.detected_object import ALIASES, CANONICAL_LABELS, canonical_label
 
 
 @pytest.mark.parametrize(

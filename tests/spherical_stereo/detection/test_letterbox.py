@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.letterbox import (
+from course_lib.spherical_stereo.detection.detector import (
     PADDING_GREY,
     boxes_to_image,
     boxes_to_input,

@@ -5,7 +5,7 @@ import pytest
 
 from course_lib.child import ChildStopped, run_apart
 from course_lib.spherical_stereo.detection import onnx_network
-from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
+from course_lib.spherical_stereo.detection.darknet import DetectorError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.onnx_network import LAYOUTS, decode_onnx
 from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, panorama, write_darknet

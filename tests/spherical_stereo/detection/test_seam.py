@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.boxes import box_iou
+from course_lib.spherical_stereo.detection.detected_object import box_iou
 from course_lib.spherical_stereo.detection.seam import (
     MARGIN,
     appended_columns,

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
+from course_lib.spherical_stereo.detection.darknet import DetectorError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from tests.rendering.test_threads_and_processes import in_a_fork, needs_fork
 from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, panorama, write_darknet

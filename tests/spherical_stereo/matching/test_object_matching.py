@@ -6,10 +6,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from course_lib.spherical_stereo.detection.boxes import DetectionError
+from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
-from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError, check_not_swapped, match_features
-from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, find_features, inside_box
+from course_lib.spherical_stereo.matching.features import (
+    PanoramaFeatures,
+    SwappedImagesError,
+    check_not_swapped,
+    detect_features,
+    find_features,
+    inside_box,
+    match_features,
+)
 from course_lib.spherical_stereo.matching.object_matching import (
     CLASS_NOT_IN_OTHER,
     NO_MATCHES,
@@ -32,7 +39,7 @@ IN_THE_AIR = Seen("chair", (200.0, 10.0, 230.0, 30.0))  # where the scene has no
 
 def views_of(upper, upper_detections, lower, lower_detections):
     upper, lower = open_pair(upper, lower)
-    return upper.having(detections=upper_detections), lower.having(detections=lower_detections)
+    return upper.replace(detections=upper_detections), lower.replace(detections=lower_detections)
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +52,7 @@ def features():
 def match_scene(features, upper=None, lower=None, **options):
     """The scene's matching, with its own detections unless others are given."""
     given = [
-        view if found is None else view.having(detections=found)
+        view if found is None else view.replace(detections=found)
         for view, found in zip(features, (upper, lower), strict=True)
     ]
     return match_views(*given, RIG, **options)
@@ -263,7 +270,7 @@ def lone_feature(elevations, bits):
     descriptors = np.array([np.packbits(np.arange(488) < n) for n in bits])
     box = (WIDTH / 2 - 20, 60.0, WIDTH / 2 + 20, 200.0)
     view = View(WIDTH, HEIGHT, detections=[Seen("chair", box)])
-    return view.having(features=PanoramaFeatures(keypoints, descriptors, WIDTH, HEIGHT))
+    return view.replace(features=PanoramaFeatures(keypoints, descriptors, WIDTH, HEIGHT))
 
 
 @pytest.mark.parametrize(("second", "matched"), [(26, 1), (24, 0), (21, 0)])

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from course_lib.spherical_stereo.pose.plausibility import Residuals, residual_statistics
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, fit_rigid_2d
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, Residuals, fit_rigid_2d, residual_statistics
 
 POSE = Pose2D(1.0, -2.0, 0.6)
 SOURCE = np.array([[1.0, 0.5], [3.0, -1.0], [-2.0, 1.5], [0.5, 4.0], [-1.0, -3.0]])

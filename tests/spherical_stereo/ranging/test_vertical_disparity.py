@@ -13,7 +13,7 @@ from course_lib.spherical_stereo.panorama import (
     direction_to_pixel,
     open_pair,
 )
-from course_lib.spherical_stereo.ranging.object_places import measure_objects
+from course_lib.spherical_stereo.ranging.object_positions import measure_objects
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance, horizontal_ranges
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import BASELINE, Seen
@@ -111,7 +111,7 @@ def test_both_distances_of_rendered_boards_are_right():
     boards, upper, lower, upper_detections, lower_detections = scene()
     rig = StereoRig(BASELINE)
     upper, lower = open_pair(upper, lower)
-    upper, lower = upper.having(detections=upper_detections), lower.having(detections=lower_detections)
+    upper, lower = upper.replace(detections=upper_detections), lower.replace(detections=lower_detections)
     measured = measure_objects(match_views(find_features(upper), find_features(lower), rig).matches, upper, lower, rig)
     assert [m.upper for m in measured] == list(range(8))
     ranges = np.array([board.range for board in boards])

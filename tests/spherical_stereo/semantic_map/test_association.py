@@ -15,7 +15,7 @@ from course_lib.spherical_stereo.semantic_map.association import (
     PenaltyWeights,
     associate_greedy,
     hue_difference,
-    least_object_weight,
+    min_object_weight,
     penalty,
     penalty_table,
 )
@@ -223,7 +223,7 @@ def random_scene(seed):
 @pytest.mark.parametrize("seed", range(20))
 def test_above_the_least_object_weight_every_like_pair_is_cheaper_than_every_unlike_one(seed, distance_term):
     observations, semantic_map = random_scene(seed)
-    bound = least_object_weight(observations, semantic_map, distance_term=distance_term)
+    bound = min_object_weight(observations, semantic_map, distance_term=distance_term)
     for p_obj, holds in ((bound * 1.001, True), (bound * 0.999, False)):
         table = penalty_table(observations, semantic_map, PenaltyWeights(p_obj=p_obj), distance_term)
         like = table.object == 0
@@ -232,7 +232,7 @@ def test_above_the_least_object_weight_every_like_pair_is_cheaper_than_every_unl
 
 @pytest.mark.parametrize("seed", range(20))
 def test_the_default_object_weight_is_enough_for_a_room_of_six_metres(seed):
-    assert least_object_weight(*random_scene(seed)) < PenaltyWeights().p_obj
+    assert min_object_weight(*random_scene(seed)) < PenaltyWeights().p_obj
     found = associate_greedy(*random_scene(seed))
     first_unlike = found.same_class.index(False) if False in found.same_class else len(found.pairs)
     assert all(found.same_class[:first_unlike])
@@ -240,7 +240,7 @@ def test_the_default_object_weight_is_enough_for_a_room_of_six_metres(seed):
 
 
 def test_a_room_without_unlike_classes_needs_no_object_weight():
-    assert least_object_weight([seen()], SemanticMap([mapped()])) == 0.0
+    assert min_object_weight([seen()], SemanticMap([mapped()])) == 0.0
 
 
 def test_no_observations_give_no_pairs():
