@@ -108,10 +108,9 @@ class SemanticLocalizer:
         return _walk(Localization(upper=upper, lower=lower), steps)
 
     def localize_views(self, upper: View, lower: View) -> Localization:
-        """Return the pose from two panoramas whose objects are known, by a detector or by hand: section 2.3 and on.
+        """Return the pose from two panoramas with their detections: section 2.3 and on.
 
         Raises `SwappedImagesError`, `DetectionError` for boxes that cannot be, `PanoramaError` for views of two sizes.
-        Source: paper 2, figure 2.
         """
         return _walk(Localization(upper=upper, lower=lower), (self._match, self._range, self._associate, self._fit))
 

@@ -72,7 +72,7 @@ def plausibility(found: PoseHypothesis) -> float:
 
 
 def confidence_of(best: PoseHypothesis, evidence: Evidence = Evidence()) -> float:  # noqa: B008
-    """Return how sure the best pose is, 0 to 1: its share of the belief times its `plausibility`; 0 below `MIN_INLIERS`."""
+    """Return how sure the best pose is, 0 to 1: its share times its `plausibility`, or 0 below `MIN_INLIERS`."""
     if not evidence.absolute:
         return best.share
     return best.share * plausibility(best) if len(best.pairs) >= MIN_INLIERS else 0.0

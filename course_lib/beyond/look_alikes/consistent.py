@@ -109,7 +109,7 @@ def associate_consistent(
 def match_costs(
     scene: Scene, poses: np.ndarray, covariances: np.ndarray | None, evidence: Evidence
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return costs `(h, n, m)` of every match against leaving both sides unmatched, base `(h,)`, and chances to be seen."""
+    """Return costs `(h, n, m)` of every match against no match, base `(h,)`, and chances to be seen."""
     squared, log_size = place_distances(scene, poses, covariances)
     cost = squared / 2 + log_size[..., None] / 2 + np.log(2 * np.pi) + np.log(CLUTTER_DENSITY)
     if evidence.colour:

@@ -111,7 +111,5 @@ def _labelled_box(item: object, width: int, where: str) -> LabelledBox:
         if box[1] < 0 or box[3] > width / 2:
             raise ValueError("box leaves the image at the top or bottom")
     except (TypeError, ValueError, KeyError, AttributeError) as error:
-        raise DetectionError(
-            f"{where}: {error}; an object with label and box is expected, got {str(item)[:80]}"
-        ) from None
+        raise DetectionError(f"{where} must be an object with label and box: {error}; got {str(item)[:80]}") from None
     return LabelledBox(label, tuple(wrapped_box(box, width).tolist()), name)

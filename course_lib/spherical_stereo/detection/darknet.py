@@ -40,30 +40,24 @@ class DetectorError(ValueError):
 
 @dataclass(frozen=True)
 class Section:
-    """One `[kind]` block of a cfg. line: of its bracket, from 1, for messages."""
+    """One `[kind]` block of a cfg: its options as text, and the line of its bracket, from 1, for messages."""
 
     kind: str
     options: dict[str, str]
-    """`key=value` lines, as text. A key that comes twice keeps its last value, as in OpenCV."""
     line: int
 
     def integer(self, key: str, default: int | None = None) -> int:
         """Return the option as a whole number. Raises `DetectorError` if it is none, or missing with no default."""
         if key not in self.options and default is not None:
             return default
-        try:
-            return int(self.options[key])
-        except KeyError:
-            raise self.error(f"has no {key}: add {key}=...") from None
-        except ValueError:
-            raise self.error(f"{key}={self.options[key]} is not a whole number") from None
+        return self.integers(key)[0]
 
     def integers(self, key: str) -> list[int]:
-        """Return the option as a list of whole numbers, separated by commas. Raises `DetectorError`."""
+        """Return the option as whole numbers, separated by commas. Raises `DetectorError`."""
         try:
-            return [int(part) for part in self.options[key].split(",") if part.strip()]
+            return [int(part) for part in self.options[key].split(",")]
         except (KeyError, ValueError):
-            raise self.error(f"{key}={self.options.get(key, '')} is not a list of whole numbers") from None
+            raise self.error(f"{key} must be whole numbers; got {self.options.get(key, 'none')}") from None
 
     def error(self, problem: str) -> DetectorError:
         """Return an error that names this section and its line."""
@@ -76,7 +70,7 @@ def read_cfg(path: str | Path) -> list[Section]:
 
 
 def parse_cfg(text: str, name: str = "cfg") -> list[Section]:
-    """Return the sections of a cfg given as text. `name` is used in messages, which have the line. Raises as above."""
+    """Return the sections of a cfg given as text. Raises `DetectorError` with `name` and the line."""
     sections: list[Section] = []
     for number, raw in enumerate(text.splitlines(), start=1):
         line = raw.split("#", 1)[0].split(";", 1)[0].strip()
@@ -96,12 +90,26 @@ def parse_cfg(text: str, name: str = "cfg") -> list[Section]:
     return sections
 
 
+def render_cfg(sections: list[Section]) -> str:
+    """Return the text of a cfg with these sections, without comments."""
+    blocks = ["\n".join([f"[{s.kind}]", *(f"{key}={value}" for key, value in s.options.items())]) for s in sections]
+    return "\n\n".join(blocks) + "\n"
+
+
 def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
     """Return (channels in, channels out) of every layer, that is of every section after `[net]`.
 
     Raises `DetectorError` for a layer that points to one that does not come before it, and groups that do not divide.
     """
     channels: list[tuple[int, int]] = []
+
+    def source(section: Section, number: int) -> int:
+        """Channels out of a layer that is counted from the start, or backwards from this one if negative."""
+        index = number if number >= 0 else len(channels) + number
+        if not 0 <= index < len(channels):
+            raise section.error(f"layer {len(channels)} points to layer {number}, expected one before it")
+        return channels[index][1]
+
     previous = sections[0].integer("channels", 3)
     for section in sections[1:]:
         incoming, outgoing = previous, previous
@@ -110,26 +118,14 @@ def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
         elif section.kind == "reorg":
             outgoing = previous * section.integer("stride", 1) ** 2
         elif section.kind == "route":
-            incoming = sum(_source(section, source, channels) for source in section.integers("layers"))
+            incoming = sum(source(section, number) for number in section.integers("layers"))
             outgoing = _share(section, incoming)
-            if not 0 <= section.integer("group_id", 0) < section.integer("groups", 1):
-                raise section.error("group_id is not one of its groups, from 0")
         elif section.kind in ("shortcut", "sam", "scale_channels"):
-            source = _source(section, section.integers("from")[0], channels)
-            outgoing = source if section.kind == "scale_channels" else previous
-        if outgoing < 1:
-            raise section.error(f"{outgoing} output channels, expected 1 or more")
+            other = source(section, section.integer("from"))
+            outgoing = other if section.kind == "scale_channels" else previous
         channels.append((incoming, outgoing))
         previous = outgoing
     return channels
-
-
-def _source(section: Section, source: int, channels: list[tuple[int, int]]) -> int:
-    """Channels out of a layer that is counted from the start, or backwards from this one if negative."""
-    index = source if source >= 0 else len(channels) + source
-    if not 0 <= index < len(channels):
-        raise section.error(f"layer {len(channels)} points to layer {source}, expected one before it")
-    return channels[index][1]
 
 
 def _share(section: Section, channels: int) -> int:
@@ -151,7 +147,6 @@ def expected_weight_floats(sections: list[Section]) -> int:
         if section.kind == "convolutional":
             vectors = 4 if section.integer("batch_normalize", 0) else 1
             floats += filters * (vectors + _share(section, incoming) * section.integer("size", 1) ** 2)
-            _share(section, filters)
     return floats
 
 
@@ -165,11 +160,10 @@ def check_weights(cfg: str | Path | list[Section], weights: str | Path) -> None:
     data = Path(weights).read_bytes()
     header = header_bytes(data[:12]) if len(data) >= 12 else 20
     if len(data) != header + 4 * expected:
-        problem = "too short: was the download or copy cut off?" if len(data) < header + 4 * expected else "too long"
+        problem = "too short: was the download or copy cut off?" if len(data) < header + 4 * expected else "too long."
         raise DetectorError(
-            f"weights file {weights} is {problem} It holds {max(len(data) - header, 0) / 4:.10g} floats, "
-            f"{'the cfg' if isinstance(cfg, list) else f'cfg {cfg}'} needs {expected}; "
-            "give the cfg and the weights of the same network"
+            f"weights file {weights} is {problem} It holds {max(len(data) - header, 0) / 4:.10g} floats, the cfg needs "
+            f"{expected}; give the cfg and the weights of the same network"
         )
     bad = int((~np.isfinite(np.frombuffer(data, "<f4", offset=header))).sum())
     if bad:
@@ -183,22 +177,8 @@ def header_bytes(start: bytes) -> int:
 
 
 def class_count(sections: list[Section]) -> int:
-    """Return the number of classes of the detection layers (`[yolo]` or `[region]`).
-
-    Raises `DetectorError` if there is no such layer, if they disagree, or if a layer's input does not have
-    anchors * (5 + classes) channels.
-    """
-    counts = set()
-    for section, (incoming, _) in zip(sections[1:], layer_channels(sections), strict=True):
-        if section.kind in DETECTION_KINDS:
-            classes = section.integer("classes")
-            anchors = len(section.integers("mask")) if "mask" in section.options else section.integer("num")
-            if incoming != anchors * (5 + classes):
-                raise section.error(
-                    f"gets {incoming} channels, expected {anchors} anchors * (5 + {classes} classes) = "
-                    f"{anchors * (5 + classes)}"
-                )
-            counts.add(classes)
+    """Return the number of classes of the detection layers. Raises `DetectorError` if there are none or several."""
+    counts = {section.integer("classes") for section in sections if section.kind in DETECTION_KINDS}
     if len(counts) != 1:
         raise DetectorError(f"the cfg's [yolo] or [region] sections must agree on classes; they have {sorted(counts)}")
     return counts.pop()
@@ -219,9 +199,7 @@ def read_names(path: str | Path) -> list[str]:
 def check_names(n_classes: int, names: list[str]) -> None:
     """Raise `DetectorError` if the class names are not as many as the cfg's classes."""
     if len(names) != n_classes:
-        raise DetectorError(
-            f"the cfg has {n_classes} classes, the names file {len(names)}: give the names of that network"
-        )
+        raise DetectorError(f"the cfg has {n_classes} classes, the names file {len(names)}: give that network's names")
 
 
 class Network:
@@ -231,10 +209,11 @@ class Network:
     take turns here. A network that is pickled takes its arguments along, and opens its files again where it arrives.
     """
 
-    def __init__(self, net: cv2.dnn.Net, told: str, *arguments: object) -> None:
-        """told: the files, for messages. arguments: those of the subclass."""
-        self._net, self._told, self._arguments = net, told, arguments
+    def __init__(self, net: cv2.dnn.Net, told: str, input_size: tuple[int, int], *arguments: object) -> None:
+        """Run the network once, so that what does not fit is found now. told: the files, for messages."""
+        self._net, self._told, self.input_size, self._arguments = net, told, input_size, arguments
         self._turn = threading.Lock()
+        self.infer(np.zeros((1, 3, input_size[1], input_size[0]), dtype=np.float32))
 
     def __reduce__(self) -> tuple:
         return type(self), self._arguments
@@ -251,23 +230,15 @@ class Network:
                 # Copied, because the next run writes over what OpenCV gives.
                 outputs = [np.array(out) for out in self._net.forward(self._net.getUnconnectedOutLayersNames())]
         except cv2.error as error:
-            width, height = blob.shape[3], blob.shape[2]
             raise DetectorError(
-                f"OpenCV cannot run {self._told} at an input of {width} x {height}: {error.err}. Give the input size "
-                "that the network was made for; YOLOv4 takes multiples of 32"
+                f"OpenCV cannot run {self._told} at an input of {blob.shape[3]} x {blob.shape[2]}: {error.err}. Give "
+                "the input size that the network was made for; YOLOv4 takes multiples of 32"
             ) from error
         boxes, scores = self._decode(outputs)
         # A box may be infinitely wide, as an untrained network's are: it is cut at the image's edges.
         if np.isnan(boxes).any() or not np.isfinite(scores).all():
             raise DetectorError(f"the network {self._told} gives boxes or scores that are NaN: is its file damaged?")
         return boxes, scores
-
-    def _decode(self, outputs: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        raise NotImplementedError
-
-    def _run_once(self) -> None:
-        """Find now what does not fit. After this the first image is as fast as the second."""
-        self.infer(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
 
 
 class DarknetNetwork(Network):
@@ -279,34 +250,26 @@ class DarknetNetwork(Network):
         size: (width, height) of the input in pixels instead of the cfg's; YOLOv4 takes any multiples of 32.
         Raises `DetectorError` for files that do not fit, and a size that the network does not take.
         """
+        cfg, weights = Path(cfg).absolute(), Path(weights).absolute()
         sections = read_cfg(cfg)
         try:
             self.n_classes = class_count(sections)
             given = sections[0].integer("width"), sections[0].integer("height")
-            self.input_size: tuple[int, int] = given if size is None else (int(size[0]), int(size[1]))
-            width, height = self.input_size
-            if width < 1 or height < 1 or width * height > MAX_INPUT_PIXELS:
-                raise DetectorError(
-                    f"the input must have at least 1 and at most {MAX_INPUT_PIXELS:,} pixels; got {width} x {height}"
-                )
+            width, height = given if size is None else (int(size[0]), int(size[1]))
+            if min(width, height) < 1 or width * height > MAX_INPUT_PIXELS:
+                raise DetectorError(f"an input of 1 to {MAX_INPUT_PIXELS:,} pixels is expected; got {width} x {height}")
             check_weights(sections, weights)
-        except DetectorError as error:
-            raise DetectorError(f"cfg file {cfg}: {error}") from None
-        # OpenCV reads options that Darknet does not have: `thresh` (0.2 if absent) sets smaller scores to zero, and
-        # `nms_threshold` (0.4) suppresses boxes inside one scale. Both would decide before this library's own do.
-        sections[0].options.update(width=str(width), height=str(height))
-        for section in sections:
-            if section.kind in DETECTION_KINDS:
-                section.options.update(thresh="0", nms_threshold="0")
-        told = f"{cfg} with {weights}"
-        try:
-            net = cv2.dnn.readNetFromDarknet(
-                np.frombuffer(render_cfg(sections).encode(), dtype=np.uint8), np.fromfile(weights, dtype=np.uint8)
-            )
-        except cv2.error as error:
-            raise DetectorError(f"OpenCV cannot read {told}: {error.err}") from error
-        super().__init__(net, told, Path(cfg).absolute(), Path(weights).absolute(), size)
-        self._run_once()
+            # OpenCV reads options that Darknet does not have: `thresh` (0.2 if absent) sets smaller scores to zero, and
+            # `nms_threshold` (0.4) suppresses boxes inside one scale. Both would decide before this library's own do.
+            sections[0].options.update(width=str(width), height=str(height))
+            for section in sections:
+                if section.kind in DETECTION_KINDS:
+                    section.options.update(thresh="0", nms_threshold="0")
+            text = np.frombuffer(render_cfg(sections).encode(), dtype=np.uint8)
+            net = cv2.dnn.readNetFromDarknet(text, np.fromfile(weights, dtype=np.uint8))
+        except (DetectorError, cv2.error) as error:
+            raise DetectorError(f"cfg file {cfg}: {getattr(error, 'err', error)}") from None
+        super().__init__(net, f"{cfg} with {weights}", (width, height), cfg, weights, size)
 
     def _decode(self, outputs: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Rows are cx, cy, w, h as shares of the input, objectness, and class scores times objectness."""
@@ -319,9 +282,3 @@ class DarknetNetwork(Network):
         rows = np.concatenate(outputs)
         centre, half = rows[:, 0:2], rows[:, 2:4] / 2
         return np.concatenate([centre - half, centre + half], axis=1) * np.tile(self.input_size, 2), rows[:, 5:]
-
-
-def render_cfg(sections: list[Section]) -> str:
-    """Return the text of a cfg with these sections, without comments."""
-    blocks = ["\n".join([f"[{s.kind}]", *(f"{key}={value}" for key, value in s.options.items())]) for s in sections]
-    return "\n\n".join(blocks) + "\n"

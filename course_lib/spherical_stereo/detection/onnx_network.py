@@ -74,18 +74,17 @@ class OnnxNetwork(Network):
         """
         path = Path(path).absolute()
         require_file(path, "ONNX file", DetectorError)
-        self.input_size: tuple[int, int] = (int(input_size[0]), int(input_size[1]))
+        size = (int(input_size[0]), int(input_size[1]))
         self.n_classes, self._layout = n_classes, layout
         # OpenCV's reader trusts the file. Of 496 files with one changed byte, four ended the process.
-        words = [sys.executable, "-I", "-c", _PROBE, str(path), *map(str, self.input_size)]
+        words = [sys.executable, "-I", "-c", _PROBE, str(path), *map(str, size)]
         if subprocess.run(words, capture_output=True, check=False).returncode not in (0, 1):
             raise DetectorError(f"reading and running the ONNX file {path} ends the process. Is it damaged?")
         try:
             net = cv2.dnn.readNetFromONNX(str(path))
         except cv2.error as error:
             raise DetectorError(f"OpenCV cannot read {path} as an ONNX network: {error.err}") from error
-        super().__init__(net, str(path), path, layout, n_classes, input_size)
-        self._run_once()
+        super().__init__(net, str(path), size, path, layout, n_classes, size)
 
     def _decode(self, outputs: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         return decode_onnx(outputs, self._layout, self.n_classes, self.input_size)

@@ -37,7 +37,7 @@ _BIT_COUNT = np.array([bin(byte).count("1") for byte in range(256)], dtype=np.ui
 
 @dataclass(frozen=True, eq=False)
 class EpipolarPairs:
-    """Pairs of features that the epipolar constraint allows, one of each image: arrays `(n,)`, one element a pair.
+    """Pairs of features that the epipolar constraint allows: arrays `(n,)`, one element a pair.
 
     upper, lower: indices into the features. distance: Hamming distance of the descriptors, bits. disparity: e_l - e_u,
     radians, of either sign. slope: tan e_l - tan e_u, which is baseline / horizontal range for a true pair.

@@ -1,6 +1,7 @@
 """Where matched objects are (paper 2, section 2.4): X = d x_hat.
 
-d comes from the box centres, which is the paper's way, or from the features inside the boxes. Each match gets an outcome, a position and a covariance.
+d comes from the box centres, which is the paper's way, or from the features inside the boxes. Each match gets an
+outcome, a position and a covariance.
 """
 
 from __future__ import annotations

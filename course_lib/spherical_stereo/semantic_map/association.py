@@ -29,29 +29,26 @@ class AssociationError(ValueError):
 
 
 class Observation(NamedTuple):
-    """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame."""
+    """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame.
+
+    label: class; "couch" and "sofa" are one. x (forward), y (left): centroid, metres. hue: degrees [0, 360), NaN for grey. saturation:
+    percent [0, 100]. covariance: `(2, 2)` of x and y, square metres; None if nothing is known.
+    """
 
     label: str
-    """Class; "couch" and "sofa" are one."""
     x: float
-    """Centroid, body frame (x forward), metres."""
     y: float
-    """Centroid, body frame (y left), metres."""
     hue: float
-    """Degrees [0, 360); NaN: grey."""
     saturation: float
-    """Percent [0, 100]."""
     covariance: np.ndarray | None = None
-    """`(2, 2)` of x and y, square metres; None when nothing is known."""
 
 
 class PenaltyWeights(NamedTuple):
     """The four weights of eq. (1), "set by hand" in the paper, which gives no numbers.
 
-    The defaults are as plain as can be: one for each of the three comparisons, so that opposite hues cost half, fully
-    different saturations one, and a distance wrong by itself one; and an object weight above all that the other terms
-    can add up to (`min_object_weight`): with a guard of 0.1 m, 100 is enough for objects up to 9.8 m from the
-    observed centroid.
+    The defaults are plain: one for each of the three comparisons, so that opposite hues cost half, fully different
+    saturations one, and a distance wrong by itself one. The object weight is above all that the other terms can add up
+    to (`min_object_weight`): with a guard of 0.1 m, 100 is enough for objects up to 9.8 m from the observed centroid.
     """
 
     p_obj: float = 100.0
@@ -65,28 +62,22 @@ class PenaltyWeights(NamedTuple):
 
 
 class Penalty(NamedTuple):
-    """Eq. (1) term by term; numbers for one pair, arrays `(n_observations, n_landmarks)` in a table."""
+    """Eq. (1) term by term and their sum: numbers for one pair, arrays `(n_observations, n_landmarks)` in a table."""
 
     object: float
-    """p_obj where the classes differ, else 0."""
     hue: float
-    """p_h dh / 360; 0 where either side is grey."""
     saturation: float
-    """p_s ds / 100."""
     distance: float
-    """p_d (|dx_c| - |dx_m|) / |dx_m|, with or without absolute value."""
     total: float
-    """Their sum."""
 
 
 class AssociationStep(NamedTuple):
-    """One round of the greedy search."""
+    """One round of the greedy search: the pair, its penalty, and what had no partner before this round."""
 
     observation: int
     landmark: int
     penalty: Penalty
     open_observations: tuple[int, ...]
-    """Those without a partner before this round."""
     open_landmarks: tuple[int, ...]
 
 
@@ -98,8 +89,8 @@ class Association(NamedTuple):
     penalties: tuple[Penalty, ...]
     """Of the pairs."""
     same_class: tuple[bool, ...]
-    """Whether a pair's classes agree. One-to-one matching goes on until one side is used up, so at the end it may join
-    a chair to a plant; such a pair is never used for the fit."""
+    """True if a pair's classes agree. One-to-one matching goes on until one side is used up, so at the end it may join
+    a chair to a plant. Such a pair is never used for the fit."""
     unassigned: tuple[int, ...]
     """Observations without a partner."""
     table: Penalty
@@ -140,22 +131,19 @@ def penalty(
 
     penalty = p_obj + p_h dh / 360 + p_s ds / 100 + p_d (|dx_c| - |dx_m|) / |dx_m|
 
-    p_obj counts only where the classes differ ("couch" and "sofa" do not). dh: degrees on the circle, at most 180, so
-    its term is at most half of p_h; grey on either side has no hue, and the term is 0. ds: percent.
-    dx_c = x_c - x_G.camera in the body frame, dx_m = x_m - x_G.map in the world, horizontal, metres; the divisor is at
-    least `MIN_DISTANCE`.
-    distance_term: "absolute" takes the absolute value of the distance term. "as_printed" does not: the term then falls
-    below zero for an object that looks too near the centroid, and the nearer it looks the better it fits.
-    observed_centroid, map_centroid: `(2,)`. The fields of observed and landmark may be arrays that broadcast
-    (`penalty_table` uses that); then so are the terms. Raises `AssociationError` for weights that are negative or not
-    finite, centroids of a wrong shape, another distance_term, no label, or positions, hues and saturations that no
-    observation may have.
-    Source: paper 2, eq. (1).
+    p_obj counts only if the classes differ. dh: degrees on the circle, at most 180, so its term is at most half of p_h;
+    if either side is grey, it is 0. ds: percent. dx_c = x_c - x_G.camera in the body frame, dx_m = x_m - x_G.map in the
+    world, horizontal, metres; the divisor is at least `MIN_DISTANCE`.
+    distance_term: "absolute" takes the absolute value of the distance term. "as_printed" does not, so that the term
+    falls below zero for an object that looks too near the centroid, and the nearer it looks the better it fits.
+    observed_centroid, map_centroid: `(2,)`. The fields of observed and landmark may be arrays that broadcast, and then
+    so do the terms. Raises `AssociationError` for weights, centroids, options, labels, positions and colours that
+    cannot be. Source: paper 2, eq. (1).
     """
     _check_options(weights, distance_term)
     observed_centroid, map_centroid = _centroid(observed_centroid, "observed"), _centroid(map_centroid, "map")
-    for name, side in (("observation", observed), ("landmark", landmark)):
-        _check_values(name, side)
+    _check_values("observation", observed)
+    _check_values("landmark", landmark)
     unlike = _labels(observed) != _labels(landmark)
     d_hue = hue_difference(observed.hue, landmark.hue)
     d_saturation = np.abs(np.asarray(observed.saturation) - np.asarray(landmark.saturation))
@@ -180,18 +168,22 @@ def penalty_table(
     """Return every term for every observation with every landmark: arrays `(n_observations, n_landmarks)`.
 
     x_G.camera is the mean of the observations given, x_G.map that of the whole map. Raises `AssociationError` as
-    `penalty` does, and for observations that are not finite. Source: paper 2, section 2.5 ("all combinations").
+    `penalty` does. Source: paper 2, section 2.5 ("all combinations").
     """
     if len(observations) == 0:
         _check_options(weights, distance_term)
         return Penalty(*(np.empty((0, len(semantic_map))) for _ in Penalty._fields))
-    labels, x, y, hue, saturation = zip(*(tuple(one)[:5] for one in observations), strict=True)
-    x, y, hue, saturation = (np.array(values, dtype=np.float64)[:, None] for values in (x, y, hue, saturation))
     for number, one in enumerate(observations):
         _check_values(f"observation {number}", one)
+    labels, *numbers = zip(*(tuple(one)[:5] for one in observations), strict=True)
+    x, y, hue, saturation = np.array(numbers, dtype=np.float64)[..., None]
     rows = Observation(np.array(labels, dtype=object)[:, None], x, y, hue, saturation)
+    map_x, map_y = semantic_map.positions.T[:, None]
+    columns = Observation(
+        np.array(semantic_map.labels)[None], map_x, map_y, semantic_map.hues[None], semantic_map.saturations[None]
+    )
     centroid = np.array([x.mean(), y.mean()])
-    return penalty(rows, _columns(semantic_map), centroid, semantic_map.centroid, weights, distance_term)
+    return penalty(rows, columns, centroid, semantic_map.centroid, weights, distance_term)
 
 
 def min_object_weight(
@@ -258,14 +250,6 @@ def association_of(
         tuple(canonical_label(observations[i].label) == semantic_map.labels[j] for i, j in pairs),
         tuple(sorted(set(range(len(observations))) - {i for i, _ in pairs})),
         table,
-    )
-
-
-def _columns(semantic_map: SemanticMap) -> Observation:
-    """The landmarks as one record of `(1, n_landmarks)` arrays; `Landmark` itself holds single numbers only."""
-    x, y = semantic_map.positions.T[:, None]
-    return Observation(
-        np.array(semantic_map.labels)[None], x, y, semantic_map.hues[None], semantic_map.saturations[None]
     )
 
 

@@ -203,10 +203,10 @@ def _from_csv(text: str) -> SemanticMap:
         raise SemanticMapError(f"the second line must name the columns {','.join(_FIELDS)}; got {reader.fieldnames}")
     landmarks = []
     for number, row in enumerate(reader):
-        if None in row:  # where the reader puts values without a column
+        if None in row or None in row.values():  # the reader's mark for too many values, and for too few
             raise SemanticMapError(
-                f"line {reader.line_num + 1} has {len(row[None])} values too many for {len(reader.fieldnames)} columns;"
-                " write numbers with a decimal point, and a label with a comma in quotes"
+                f"line {reader.line_num + 1} must have {len(reader.fieldnames)} values, one a column; write numbers "
+                "with a decimal point, and a label with a comma in quotes"
             )
         landmarks.append(_landmark({name: _csv_value(name, row[name]) for name in _FIELDS}, number))
     if found[2] is not None and (len(landmarks) != int(found[2]) or not text.endswith("\n")):
@@ -217,28 +217,24 @@ def _from_csv(text: str) -> SemanticMap:
     return SemanticMap(landmarks)
 
 
-def _csv_value(name: str, text: str | None) -> object:
+def _csv_value(name: str, text: str) -> object:
     """Return the number that a text is, None for an empty hue, and otherwise the text, which `Landmark` names."""
-    if name == "hue" and text is not None and not text.strip():
+    if name == "hue" and not text.strip():
         return None
     try:
-        return float(text) if name != "label" and text is not None else text
+        return text if name == "label" else float(text)
     except ValueError:
-        return text
+        return text.strip()
 
 
 def _landmark(row: object, number: int) -> Landmark:
     """Return a landmark from its row. Here the hue of grey is None, and NaN is no hue."""
-    missing = [name for name in _FIELDS if not isinstance(row, dict) or row.get(name, "") == ""]
-    if missing:
-        raise SemanticMapError(
-            f"landmark {number} lacks {', '.join(missing)} (the hue of grey is null, or empty in CSV)"
-        )
-    values = {name: row[name] for name in _FIELDS}
-    if values["hue"] != values["hue"]:
-        raise SemanticMapError(f"landmark {number}: hue is NaN; the hue of grey is null, or empty in CSV")
     try:
-        return Landmark(**values | {"hue": math.nan if values["hue"] is None else values["hue"]})
+        missing = [name for name in _FIELDS if not isinstance(row, dict) or row.get(name, "") == ""]
+        if missing or row["hue"] != row["hue"]:
+            raise SemanticMapError(f"lacks {', '.join(missing) or 'a hue'} (grey has the hue null, or empty in CSV)")
+        hue = math.nan if row["hue"] is None else row["hue"]
+        return Landmark(row["label"], row["x"], row["y"], hue, row["saturation"])
     except SemanticMapError as error:
         raise SemanticMapError(f"landmark {number}: {error}") from None
 

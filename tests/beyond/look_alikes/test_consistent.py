@@ -33,7 +33,7 @@ from tests.beyond.look_alikes.look_alike_scene import (
 
 
 def localizer(semantic_map, **options):
-    return SemanticLocalizer(StereoRig(0.3), semantic_map, association="consistent", **options)
+    return SemanticLocalizer(StereoRig(0.3), semantic_map, association=partial(associate_consistent, **options))
 
 
 def near(pose, other, metres=0.05, radians=0.02):
@@ -200,9 +200,9 @@ def test_the_matchers_are_called_alike_and_found_by_name():
 
 def test_the_threshold_is_the_callers():
     seen = observed(SYMMETRIC, POSE)
-    assert localizer(SYMMETRIC, least_confidence=0.3).localize_observations(seen).status == "ok"
-    with pytest.raises(LocalizerError, match="between 0 and 1"):
-        localizer(SYMMETRIC, least_confidence=1.2)
+    assert localizer(SYMMETRIC, min_confidence=0.3).localize_observations(seen).status == "ok"
+    with pytest.raises(ValueError, match="between 0 and 1"):
+        localizer(SYMMETRIC, min_confidence=1.2)
 
 
 def test_no_observations_at_all():

@@ -74,10 +74,10 @@ def test_a_landmark_behind_another_is_not_expected_and_one_in_front_is():
     assert (from_north > 0.6).all()
 
 
-def test_the_chance_of_detection_falls_with_distance_and_ends_at_the_greatest_range():
+def test_the_chance_of_detection_falls_with_distance_and_ends_at_the_max_range():
     semantic_map = SemanticMap([Landmark("sofa", 0.0, 0.0, 0, 50)])
     poses = np.array([[1.0, 0.0, 0.0], [4.0, 0.0, 0.0], [9.0, 0.0, 0.0]])
-    near, far, further = detection_probabilities(semantic_map, poses, greatest_range=8.0)[:, 0]
+    near, far, further = detection_probabilities(semantic_map, poses, max_range=8.0)[:, 0]
     assert near > far > 0.5
     assert further == 0.0
 

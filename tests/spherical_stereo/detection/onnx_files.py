@@ -1,4 +1,10 @@
-"""The network of `blob_networks` as ONNX files."""
+"""The network of `blob_networks` as ONNX files, written by hand: the few fields of the format that it needs.
+
+The format is protocol buffers.
+A field is a key (number * 8 + wire type) and a value: type 0 a varint, type 2 a length and bytes, type 5 four bytes.
+"""
+
+from __future__ import annotations
 
 import numpy as np
 
@@ -11,7 +17,65 @@ from tests.spherical_stereo.detection.blob_networks import (
     kernel,
     window_kernels,
 )
-from tests.spherical_stereo.detection.onnx_model import model, node
+
+FLOAT, INT64 = 1, 7  # TensorProto.DataType
+INTS_ATTRIBUTE, INT_ATTRIBUTE = 7, 2  # AttributeProto.AttributeType
+
+
+def varint(value: int) -> bytes:
+    """A whole number, seven bits a byte."""
+    out = b""
+    while value > 127:
+        out, value = out + bytes([value & 127 | 128]), value >> 7
+    return out + bytes([value])
+
+
+def number(field: int, value: int) -> bytes:
+    """A field that is a whole number."""
+    return varint(field << 3) + varint(value)
+
+
+def block(field: int, value: bytes | str) -> bytes:
+    """A field that is a text, bytes, or a message of its own."""
+    data = value.encode() if isinstance(value, str) else value
+    return varint(field << 3 | 2) + varint(len(data)) + data
+
+
+def tensor(name: str, values: np.ndarray) -> bytes:
+    """A constant: int64 as it is, everything else as float32."""
+    kind = INT64 if values.dtype == np.int64 else FLOAT
+    values = values if kind == INT64 else values.astype("<f4")
+    dims = b"".join(number(1, size) for size in values.shape)
+    return dims + number(2, kind) + block(8, name) + block(9, values.tobytes())
+
+
+def attribute(name: str, value: int | list[int]) -> bytes:
+    """An option of an operation."""
+    if isinstance(value, int):
+        return block(1, name) + number(3, value) + number(20, INT_ATTRIBUTE)
+    return block(1, name) + b"".join(number(8, item) for item in value) + number(20, INTS_ATTRIBUTE)
+
+
+def node(operation: str, inputs: list[str], output: str, **attributes: int | list[int]) -> bytes:
+    """One operation of the graph."""
+    data = b"".join(block(1, name) for name in inputs) + block(2, output) + block(3, output) + block(4, operation)
+    return data + b"".join(block(5, attribute(name, value)) for name, value in attributes.items())
+
+
+def value_info(name: str, shape: tuple[int, ...]) -> bytes:
+    """Name and shape of an input or output."""
+    dims = b"".join(block(1, number(1, size)) for size in shape)
+    return block(1, name) + block(2, block(1, number(1, FLOAT) + block(2, dims)))
+
+
+def model(nodes: list[bytes], constants: dict[str, np.ndarray], inputs: dict, outputs: dict) -> bytes:
+    """A whole file. inputs, outputs: names and shapes."""
+    graph = b"".join(block(1, item) for item in nodes) + block(2, "blobs")
+    graph += b"".join(block(5, tensor(name, values)) for name, values in constants.items())
+    graph += b"".join(block(11, value_info(name, shape)) for name, shape in inputs.items())
+    graph += b"".join(block(12, value_info(name, shape)) for name, shape in outputs.items())
+    opset = block(1, "") + number(2, 11)
+    return number(1, 7) + block(8, opset) + block(7, graph)
 
 
 def blob_onnx(layout: str) -> bytes:

@@ -200,11 +200,11 @@ def test_disparities_of_either_sign_do_not_count_as_swapped(rng):
 def test_an_object_needs_as_many_features_as_are_asked_for(features):
     counts = {m.upper: m.n_matches for m in match_scene(features).matches}
     fewest = min(counts.values()) + 1
-    matching = match_scene(features, fewest_features=fewest)
+    matching = match_scene(features, min_features=fewest)
     assert {m.upper for m in matching.matches} == {i for i, n in counts.items() if n >= fewest}
     assert {item.reason for item in matching.unmatched} == {TOO_FEW}
-    with pytest.raises(PanoramaError, match="fewest_features"):
-        match_scene(features, fewest_features=0)
+    with pytest.raises(PanoramaError, match="min_features"):
+        match_scene(features, min_features=0)
 
 
 def test_images_of_unlike_size_and_boxes_that_are_none_are_refused():

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import (
-    LEAST_DISTANCE,
+    MIN_DISTANCE,
     AssociationError,
     Observation,
     PenaltyWeights,
@@ -95,7 +95,7 @@ def test_both_distance_terms_agree_on_objects_that_look_too_far():
 
 def test_an_object_at_the_centroid_of_the_map_costs_a_finite_amount():
     terms = cost(seen(x=0.3, y=0.4), mapped(x=0.0, y=0.0))
-    assert terms.distance == pytest.approx(4.0 * 0.5 / LEAST_DISTANCE)
+    assert terms.distance == pytest.approx(4.0 * 0.5 / MIN_DISTANCE)
     assert cost(seen(x=0.0, y=0.0), mapped(x=0.0, y=0.0)).distance == 0.0
 
 

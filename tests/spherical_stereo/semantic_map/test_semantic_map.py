@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
-from course_lib.writing import WriteError
 
 WALLS = [[0.0, 0.0], [6.0, 0.0], [6.0, 5.5], [0.0, 5.5]]
 
@@ -231,14 +230,14 @@ def test_a_failed_save_leaves_the_old_map_whole_and_nothing_beside_it(tmp_path, 
         raise OSError("no space left")
 
     monkeypatch.setattr(os, "replace", disk_full)
-    with pytest.raises(WriteError, match="no space left"):
+    with pytest.raises(OSError, match="no space left"):
         a_map(name="other").save(path)
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["map.json"]
 
 
 def test_saving_where_nothing_can_be_saved_is_named(tmp_path):
-    with pytest.raises(WriteError, match="cannot be written"):
+    with pytest.raises(OSError, match="missing"):
         a_map().save(tmp_path / "missing" / "map.json")
     with pytest.raises(SemanticMapError, match=r"\.json or \.csv"):
         a_map().save(tmp_path / "map.txt")
