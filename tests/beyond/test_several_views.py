@@ -39,12 +39,6 @@ def test_a_carried_pose_goes_where_the_rig_went():
     np.testing.assert_allclose(np.diag(moved.covariance), [0.2**2, 0.1**2, 0.3**2])  # forward is north
 
 
-def test_an_uncertain_heading_makes_the_way_uncertain():
-    start = CarriedPose(np.zeros(3), np.diag([0.0, 0.0, 0.1]) ** 2, 0.0, None)
-    moved = carried_on(start, Motion(2.0, 0.0, 0.0, np.zeros((3, 3))))
-    np.testing.assert_allclose(np.sqrt(np.diag(moved.covariance)), [0.0, 0.2, 0.1])
-
-
 def test_fusing_two_equally_sure_poses_meets_in_the_middle_also_across_the_cut_of_the_circle():
     spread = np.diag([0.1, 0.1, 0.1]) ** 2
     carried = CarriedPose(np.array([0.0, 0.0, 3.1]), spread, 0.0, None)

@@ -31,8 +31,8 @@ class AssociationError(ValueError):
 class Observation(NamedTuple):
     """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame.
 
-    label: class; "couch" and "sofa" are one. x (forward), y (left): centroid, metres. hue: degrees [0, 360), NaN for grey. saturation:
-    percent [0, 100]. covariance: `(2, 2)` of x and y, square metres; None if nothing is known.
+    label: class; "couch" and "sofa" are one. x (forward), y (left): centroid, metres. hue: degrees [0, 360), NaN for
+    grey. saturation: percent [0, 100]. covariance: `(2, 2)` of x and y, square metres; None if nothing is known.
     """
 
     label: str

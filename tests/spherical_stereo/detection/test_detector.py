@@ -160,7 +160,7 @@ def test_a_yolov4_with_the_80_classes_of_coco_runs_at_the_shape_of_a_panorama(tm
     assert (boxes >= 0).all()
     assert (boxes <= [256, 128, 256, 128]).all()
     assert "table" in detector.labels
-    with pytest.raises(DetectorError, match="at an input of 330 x 128.*multiples of 32"):
+    with pytest.raises(DetectorError, match=r"at an input of 330 x 128.*multiples of 32"):
         YoloDetector.load(tmp_path, input_size=(330, 128))
 
 

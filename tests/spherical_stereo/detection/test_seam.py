@@ -45,17 +45,6 @@ def test_the_valid_range_is_one_turn_and_leaves_an_eighth_at_both_ends():
     assert valid_range(WIDTH) == (WIDTH / 8, WIDTH / 8 + WIDTH)
 
 
-def test_every_object_up_to_a_quarter_wide_is_whole_in_its_valid_copy():
-    quarter = appended_columns(WIDTH)
-    for u_min in range(WIDTH):
-        for object_width in (10, 77, quarter):
-            copies = [[u_min + turn, 0, u_min + object_width + turn, 10] for turn in (-WIDTH, 0, WIDTH)]
-            valid = np.array(copies, dtype=float)[centres_in_range(np.array(copies, dtype=float), WIDTH)]
-            assert len(valid) == 1
-            assert valid[0, 0] >= 0
-            assert valid[0, 2] <= WIDTH + quarter
-
-
 @pytest.mark.parametrize("object_width", [20, 100, 160, 175, 200, 320, 480, 630])
 def test_an_object_of_any_width_at_any_column_is_counted_once_and_whole(object_width):
     for u_min in range(0, WIDTH, 7):
@@ -98,14 +87,6 @@ def test_objects_of_two_classes_at_one_place_both_stay_unless_their_boxes_coinci
     assert select_on_circle(boxes, scores, classes, WIDTH, IOU)[2].tolist() == [0]
 
 
-def test_the_box_of_a_whole_copy_and_the_score_of_a_surer_cut_one_stay():
-    start, _ = valid_range(WIDTH)
-    whole, cut = [start - 10 - 78 + WIDTH, 100, start - 10 + 78 + WIDTH, 180], [0, 100, start - 10 + 78, 180]
-    boxes, scores, _ = select_on_circle(np.array([cut, whole]), np.array([0.9, 0.6]), np.zeros(2, int), WIDTH, IOU)
-    assert boxes.tolist() == [whole]
-    assert scores.tolist() == [0.9]
-
-
 def test_a_surer_copy_that_the_seam_cuts_gives_way_to_the_whole_one_even_when_both_centres_count():
     """A wide object: 28 of its columns are missing at the left end, and its middle is in the range all the same."""
     cut, whole = [0, 100, 165, 180], [WIDTH - 28, 100, WIDTH + 149, 180]
@@ -128,12 +109,6 @@ def test_a_faint_copy_in_the_range_does_not_hide_a_clear_one_in_the_margin():
     found, found_scores, _ = select_on_circle(boxes, scores, np.zeros(2, int), WIDTH, IOU)
     assert found.tolist() == [[boxes[0, 0] - WIDTH, 100, boxes[0, 2] - WIDTH, 180]]
     assert found_scores.tolist() == [0.95]
-
-
-def test_the_class_comes_with_the_score():
-    boxes, scores = copies_at_the_border(0.06, 0.95)
-    _, found_scores, classes = select_on_circle(boxes, scores, np.array([2, 5]), WIDTH, IOU)
-    assert (found_scores.tolist(), classes.tolist()) == ([0.95], [5])
 
 
 def test_a_suppressed_box_gives_its_score_to_the_one_that_replaced_it_only():
@@ -166,9 +141,3 @@ def test_halves_of_two_objects_are_not_joined():
     for boxes, classes in (([high, low], [0, 0]), ([high, [*low[:1], 20, low[2], 60]], [0, 1])):
         joined, _, _ = join_cut_pairs(np.array(boxes), np.array([0.9, 0.8]), np.array(classes), WIDTH)
         assert len(joined) == 2
-
-
-def test_no_detections_stay_none():
-    nothing = np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int)
-    boxes, scores, classes = select_on_circle(*nothing, WIDTH, IOU)
-    assert (len(boxes), len(scores), len(classes)) == (0, 0, 0)

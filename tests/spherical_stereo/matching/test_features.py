@@ -55,10 +55,6 @@ def test_keypoints_are_in_edge_coordinates():
     np.testing.assert_allclose(keypoints.mean(axis=0), [110, 70], atol=0.3)
 
 
-def test_a_lower_threshold_finds_more(image, features):
-    assert len(detect_features(image, threshold=2e-3)) < len(features)
-
-
 def test_an_image_without_structure_has_no_features():
     features = detect_features(np.full((HEIGHT, WIDTH, 3), (80, 90, 100), np.uint8))
     assert len(features) == 0
@@ -102,13 +98,6 @@ def test_hamming_counts_the_bits_that_differ(rng):
     a, b = (rng.integers(0, 256, (6, 61), dtype=np.uint8) for _ in range(2))
     expected = (np.unpackbits(a, axis=1) != np.unpackbits(b[::-1], axis=1)).sum(axis=1)
     np.testing.assert_array_equal(hamming(a, b, np.arange(6), np.arange(6)[::-1]), expected)
-
-
-def test_the_tolerance_must_be_an_angle(rng):
-    features = random_features(rng, 5)
-    for tolerance in (0, -0.1, 2.0, np.nan):
-        with pytest.raises(PanoramaError, match="tolerance"):
-            epipolar_pairs(features, features, tolerance)
 
 
 def test_opposite_directions_do_not_obey_the_epipolar_constraint():
