@@ -124,39 +124,27 @@ def _closed_form(source: np.ndarray, target: np.ndarray, w: np.ndarray) -> Pose2
     source_mean, target_mean = w @ source, w @ target
     a, b = source - source_mean, target - target_mean
     spread_a, spread_b = w @ (a**2).sum(axis=1), w @ (b**2).sum(axis=1)
-    for name, spread in (("source", spread_a), ("target", spread_b)):
-        if np.sqrt(spread) < MIN_SPREAD:
-            raise RigidFitError(
-                f"the {len(w)} {name} points lie within {np.sqrt(spread):.2g} m of their centroid: no heading",
-                COINCIDENT,
-            )
+    if np.sqrt(min(spread_a, spread_b)) < MIN_SPREAD:
+        name = "source" if spread_a < spread_b else "target"
+        raise RigidFitError(f"the {len(w)} {name} points lie at one place and give no heading", COINCIDENT)
     u, d, vt = np.linalg.svd((w[:, None] * b).T @ a)
     sign = np.linalg.det(u) * np.linalg.det(vt)
     # What the singular values leave over: the mean squared residual with a rotation, and with a reflection.
     squared = np.maximum(0.0, spread_a + spread_b - 2 * np.array([d[0] + sign * d[1], d[0] - sign * d[1]]))
-    _refuse_mirrored(a, b, w, np.sqrt(squared))
+    rotated, reflected = np.sqrt(squared)
+    if len(w) > 2 and rotated >= MIN_SPREAD and rotated > MIRROR_ADVANTAGE * reflected:
+        sizes = [np.linalg.svd(np.sqrt(w)[:, None] * points, compute_uv=False) for points in (a, b)]
+        if all(width >= MIN_WIDTH * length for length, width in sizes):
+            raise RigidFitError(
+                f"the target points are a mirror image of the source points: with a reflection the residual is "
+                f"{reflected:.3f} m, with a rotation {rotated:.3f} m; the pairs, or an axis, must be wrong",
+                MIRRORED,
+            )
     if d[0] + sign * d[1] < 1e-9 * np.sqrt(spread_a * spread_b):
-        raise RigidFitError(
-            f"every heading fits these {len(w)} pairs equally badly: the pairs must be wrong", UNDETERMINED
-        )
+        raise RigidFitError(f"every heading fits these {len(w)} pairs equally badly: are they wrong?", UNDETERMINED)
     rotation = u @ np.diag([1.0, sign]) @ vt
     x, y = target_mean - rotation @ source_mean
     return Pose2D(float(x), float(y), wrap_angle(np.arctan2(rotation[1, 0], rotation[0, 0])))
-
-
-def _refuse_mirrored(a: np.ndarray, b: np.ndarray, w: np.ndarray, residuals: np.ndarray) -> None:
-    rotated, reflected = residuals
-    if len(w) < 3 or rotated <= MIRROR_ADVANTAGE * reflected or rotated < MIN_SPREAD:
-        return
-    for points in (a, b):
-        length, width = np.linalg.svd(np.sqrt(w)[:, None] * points, compute_uv=False)
-        if width < MIN_WIDTH * length:
-            return
-    raise RigidFitError(
-        f"the target points are a mirror image of the source points: with a reflection the residual is "
-        f"{reflected:.3f} m, with a rotation {rotated:.3f} m; the pairs, or an axis, must be wrong",
-        MIRRORED,
-    )
 
 
 def _gauss_newton(
@@ -214,8 +202,8 @@ def fit_covariance(
     if noise is None:
         return inverse * (w @ (residuals**2).sum(axis=1)) / (2 * len(source) - 3)
     rotation = rotation_2d(pose.theta)
-    kept = slice(None) if weights is None else np.asarray(weights, dtype=np.float64) > 0
-    in_world = rotation @ _checked_covariances(noise, kept, len(source)) @ rotation.T
+    kept = np.ones(len(noise), bool) if weights is None else np.asarray(weights) > 0
+    in_world = rotation @ _checked_covariances(noise, kept) @ rotation.T
     middle = np.einsum("nki,nkl,nlm,nmo,noj->ij", jacobians, information, in_world, information, jacobians)
     return inverse @ middle @ inverse
 
@@ -241,7 +229,7 @@ def residual_statistics(
     n = len(source)
     residuals, jacobians, information = _linearized(pose, source, target, w, covariances)
     rotation = rotation_2d(pose.theta)
-    in_world = rotation @ _checked_covariances(noise, slice(None), n) @ rotation.T
+    in_world = rotation @ _checked_covariances(noise, np.ones(n, bool)) @ rotation.T
     j, r = jacobians.reshape(2 * n, 3), residuals.reshape(2 * n)
     weighted = np.einsum("nki,nkl->nli", jacobians, information).reshape(2 * n, 3)
     left_over = np.eye(2 * n) - j @ np.linalg.solve(weighted.T @ j, weighted.T)
@@ -258,36 +246,32 @@ def _checked_pairs(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
     """Return the arguments of `fit_rigid_2d` as arrays, without pairs of weight 0. Raises as that does."""
     source, target = (np.asarray(points, dtype=np.float64) for points in (source, target))
-    if source.size == target.size == 0:
-        source, target = np.zeros((0, 2)), np.zeros((0, 2))
-    if source.ndim != 2 or source.shape[1] != 2 or source.shape != target.shape:
-        raise RigidFitError(f"source and target must both have shape (n, 2); got {source.shape} and {target.shape}")
-    w = np.ones(len(source)) if weights is None else np.asarray(weights, dtype=np.float64)
-    if w.shape != (len(source),):
-        raise RigidFitError(f"weights must have shape ({len(source)},), one a pair; got {w.shape}")
-    for name, array in (("source", source), ("target", target), ("weights", w)):
+    n = len(source) if source.ndim else 0
+    w = np.ones(n) if weights is None else np.asarray(weights, dtype=np.float64)
+    for name, array, shape in (("source", source, (n, 2)), ("target", target, (n, 2)), ("weights", w, (n,))):
+        if array.shape != shape and n > 0:
+            raise RigidFitError(f"{name} must have shape {shape}, one a pair; got {array.shape}")
         if not np.isfinite(array).all():
-            raise RigidFitError(
-                f"{name} must be finite; got NaN or infinity in entry {np.argwhere(~np.isfinite(array))[0][0]}"
-            )
+            entry = np.argwhere(~np.isfinite(array))[0][0]
+            raise RigidFitError(f"{name} must be finite; got NaN or infinity in entry {entry}")
     if (w < 0).any():
         raise RigidFitError(f"weights must not be negative; got {w.min():g}")
     kept = w > 0
     if kept.sum() < 2:
         raise RigidFitError(f"a pose needs at least two pairs of points; got {kept.sum()}", TOO_FEW_PAIRS)
     if covariances is not None:
-        covariances = _checked_covariances(covariances, kept, int(kept.sum()))
+        covariances = _checked_covariances(covariances, kept)
     return source[kept], target[kept], w[kept], covariances
 
 
-def _checked_covariances(covariances: np.ndarray, kept: np.ndarray | slice, n: int) -> np.ndarray:
+def _checked_covariances(covariances: np.ndarray, kept: np.ndarray) -> np.ndarray:
     """Return the `(n, 2, 2)` covariances of the kept pairs. Raises `RigidFitError` unless symmetric and positive."""
     array = np.asarray(covariances, dtype=np.float64)
-    array = array[kept] if array.ndim == 3 and (isinstance(kept, slice) or len(array) == len(kept)) else array
-    if array.shape != (n, 2, 2):
-        raise RigidFitError(f"covariances must be one (2, 2) matrix a pair; got shape {np.shape(covariances)}")
+    if array.shape != (len(kept), 2, 2):
+        raise RigidFitError(f"covariances must be one (2, 2) matrix a pair; got shape {array.shape}")
     if not np.isfinite(array).all():
         raise RigidFitError("covariances must be finite; got NaN or infinity")
+    array = array[kept]
     if not np.allclose(array, np.swapaxes(array, 1, 2)) or (np.linalg.eigvalsh(array) <= 0).any():
         raise RigidFitError("every covariance must be symmetric with positive eigenvalues (square metres)")
     return array
