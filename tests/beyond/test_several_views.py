@@ -107,17 +107,6 @@ def test_a_view_of_nothing_moves_the_belief_and_makes_it_no_surer():
     assert SemanticTracker(PLANTED).step([]).reason == NOTHING_AGREES
 
 
-def test_views_make_the_pose_better():
-    rng, errors = np.random.default_rng(12), {1: [], 3: []}
-    for _ in range(12):
-        tracker = SemanticTracker(PLANTED)
-        for k, pose in enumerate([WALK[0]] * 3):
-            track = tracker.step(observed(PLANTED, pose, rng=rng), Motion(0.0, 0.0, 0.0, SURE) if k else None)
-            if k + 1 in errors:
-                errors[k + 1].append(np.hypot(*(np.array(track.alternatives[0][0])[:2] - pose[:2])))
-    assert np.mean(errors[3]) < 0.8 * np.mean(errors[1])
-
-
 def test_the_area_is_that_of_the_walls_or_of_the_landmarks_and_a_margin():
     assert area(PLANTED) == pytest.approx(36.0)
     assert area(SemanticMap(PLANTED.landmarks)) == pytest.approx(6.0 * 6.0)  # 4 by 4 metres, and one all around

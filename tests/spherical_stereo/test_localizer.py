@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
-from course_lib.spherical_stereo.matching.features import SwappedImagesError
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,
@@ -135,15 +134,6 @@ def test_disparities_of_features_give_the_exact_pose_too():
     assert np.linalg.eigvalsh(found.covariance).min() > 0
 
 
-def test_an_object_with_too_few_features_has_no_place_and_says_so():
-    upper, lower, matches = with_features(*views(POSE)[:2], POSE)
-    matches[1] = ObjectMatch(1, 1, "sofa", matches[1].keypoints_upper[:2], matches[1].keypoints_lower[:2])
-    found = localize(upper, lower, matches, distance="disparity")
-    assert [one.outcome for one in found.objects] == ["ok", "too few matches", "ok", "ok", "ok"]
-    assert found.objects[1].observation is None
-    assert [found.upper_detection_of(i) for i in range(4)] == [0, 2, 3, 4]
-
-
 def test_everything_on_the_way_is_kept():
     upper, lower, matches = views(POSE)
     found = localize(upper, lower, matches)
@@ -169,17 +159,6 @@ def test_a_place_is_as_certain_as_a_pixel_and_a_half_of_1280_lets_it_be():
         across = math.hypot(0.0075 * rho, 0.1)
         assert place.position[2] == pytest.approx(height - RIG.upper_height)
         assert np.sqrt(np.linalg.eigvalsh(one.covariance)) == pytest.approx([across, along], rel=1e-6)
-
-
-def test_a_weighted_fit_trusts_near_objects_more():
-    upper, lower, matches = views(POSE)
-    ranges = np.linalg.norm(ROOM.positions - POSE[:2], axis=1)
-    far = int(np.argmax(ranges))
-    box = np.add(lower[far].box, [0, 3, 0, 3])  # three pixels of parallax: far less than all of it
-    lower[far] = Detection(lower[far].label, 0.9, tuple(box), lower[far].hue, lower[far].saturation)
-    plain, weighted = localize(upper, lower, matches), localize(upper, lower, matches, weighted_fit=True)
-    errors = [math.dist(found.pose[:2], POSE[:2]) for found in (plain, weighted)]
-    assert errors[1] < 0.5 * errors[0]
 
 
 def test_an_object_of_a_class_that_the_map_lacks_changes_nothing():
@@ -251,17 +230,6 @@ def test_objects_matched_across_a_gap_in_azimuth_are_left_out():
     found = localize(upper, lower, matches)
     assert [one.outcome for one in found.objects] == ["azimuth gap", "ok", "ok", "ok", "ok"]
     assert found.pose == pytest.approx(POSE, abs=0.3)  # the centroid moved, and four pairs are left
-
-
-def test_observations_can_be_given_directly():
-    body = (ROOM.positions - POSE[:2]) @ rotation_2d(POSE.theta)
-    seen = [
-        Observation(one.label, *place, one.hue, one.saturation) for one, place in zip(ROOM.landmarks, body, strict=True)
-    ]
-    found = SemanticLocalizer(RIG, ROOM).localize_observations(seen)
-    assert found.pose == pytest.approx(POSE, abs=1e-9)
-    assert found.covariance is None  # nobody said how certain they are
-    assert found.upper_detection_of(0) is None
 
 
 class NoObjects:
@@ -368,16 +336,3 @@ def test_rolled_images_give_the_same_place_and_the_turned_heading(photographed, 
     assert after.used_pairs == before.used_pairs
     assert math.dist(after.pose[:2], before.pose[:2]) < 1e-6
     assert heading_error_deg(after, before.pose.theta + 2 * math.pi * columns / vertical_pair.WIDTH) < 1e-6
-
-
-def test_the_disparities_of_two_images_give_the_pose(photographed):
-    localizer, images = photographed
-    by_features = SemanticLocalizer(localizer.rig, localizer.semantic_map, localizer.detector, distance="disparity")
-    found = by_features.localize(*images)
-    assert math.dist(found.pose[:2], TRUE_POSE[:2]) < 0.1
-
-
-def test_swapped_images_are_named(photographed):
-    localizer, images = photographed
-    with pytest.raises(SwappedImagesError):
-        localizer.localize(*images[::-1])

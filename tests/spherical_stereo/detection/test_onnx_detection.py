@@ -16,11 +16,10 @@ def names(tmp_path):
     return write_darknet(tmp_path / "names")[2]
 
 
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_every_layout_finds_the_objects_of_a_panorama_once(layout, names, tmp_path, rng):
+def test_an_onnx_network_finds_the_objects_of_a_panorama_once(names, tmp_path, rng):
     path = tmp_path / "blobs.onnx"
-    path.write_bytes(blob_onnx(layout))
-    detector = YoloDetector.from_onnx(path, names, layout=layout, input_size=INPUT_SIZE)
+    path.write_bytes(blob_onnx())
+    detector = YoloDetector.from_onnx(path, names, layout="yolov8", input_size=INPUT_SIZE)
     boxes = {d.label: d.box for d in detector.detect(panorama(rng, (100, 50, RED), (245, 20, GREEN)))}
     assert boxes["sofa"] == pytest.approx((100, 50, 132, 74), abs=1)
     assert boxes["television"] == pytest.approx((245, 20, 277, 44), abs=1)
@@ -64,7 +63,7 @@ def test_files_and_sizes_that_do_not_fit_are_named(names, tmp_path):
     refused(path, names, "is missing")
     path.write_bytes(b"this is no network")
     refused(path, names, "cannot read")
-    path.write_bytes(blob_onnx("yolov8"))
+    path.write_bytes(blob_onnx())
     refused(path, names, "at an input of 200 x 128", input_size=(200, 128))
     refused(path, names, "layout yolov5", layout="yolov5")
     refused(path, names, "known are yolov5, yolov8, yolov4", layout="yolov9")
@@ -73,12 +72,12 @@ def test_files_and_sizes_that_do_not_fit_are_named(names, tmp_path):
 def test_a_file_that_ends_opencvs_reader_is_an_error_with_a_name(names, tmp_path, monkeypatch):
     monkeypatch.setattr(onnx_network, "_PROBE", "import os; os.abort()")
     path = tmp_path / "blobs.onnx"
-    path.write_bytes(blob_onnx("yolov8"))
+    path.write_bytes(blob_onnx())
     refused(path, names, r"running the ONNX file .*blobs\.onnx ends the process")
 
 
 def test_results_that_are_no_numbers_are_refused(names, tmp_path):
     path = tmp_path / "blobs.onnx"
     cells = np.array([4, 12, 20, 28], "<f4").tobytes()  # where the first four cells are
-    path.write_bytes(blob_onnx("yolov8").replace(cells, np.full(4, np.nan, "<f4").tobytes(), 1))
+    path.write_bytes(blob_onnx().replace(cells, np.full(4, np.nan, "<f4").tobytes(), 1))
     refused(path, names, r"blobs\.onnx gives boxes or scores that are NaN")

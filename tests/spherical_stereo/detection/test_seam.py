@@ -5,7 +5,6 @@ import pytest
 
 from course_lib.spherical_stereo.detection.detected_object import box_iou
 from course_lib.spherical_stereo.detection.seam import (
-    MARGIN,
     appended_columns,
     centres_in_range,
     extend_seam,
@@ -61,15 +60,6 @@ def test_jitter_of_a_few_pixels_neither_doubles_nor_loses_an_object(object_width
         assert 0 <= boxes[0, 0] < WIDTH
         true = np.array([[u_min, 100, u_min + object_width, 180]], dtype=float)
         assert box_iou(boxes, true, WIDTH)[0, 0] > (0.6 if object_width < 40 else 0.75)
-
-
-def test_the_bare_range_without_margin_would_lose_an_object_that_jitters():
-    """Why there is a margin: centres at W/8 - 1 in one copy and at W/8 + W + 1 in the other are both outside."""
-    start, stop = valid_range(WIDTH)
-    boxes = np.array([[start - 21, 100, start + 19, 180], [stop - 19, 100, stop + 21, 180]])
-    assert not centres_in_range(boxes, WIDTH).any()
-    assert centres_in_range(boxes, WIDTH, MARGIN * WIDTH).all()
-    assert len(select_on_circle(boxes, np.array([0.6, 0.9]), np.zeros(2, int), WIDTH, IOU)[0]) == 1
 
 
 def test_two_objects_side_by_side_at_the_border_of_the_range_both_stay():

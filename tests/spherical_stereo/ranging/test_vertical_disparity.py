@@ -60,26 +60,12 @@ def test_sigma_is_the_deviation_of_the_range_over_repeated_noise(rng):
     assert np.std([f.horizontal_range for f in found]) == pytest.approx(np.mean([f.sigma for f in found]), rel=0.2)
 
 
-def test_the_position_keeps_the_range_and_the_direction_of_the_box_centre(rng):
-    found = disparity_distance(match_of(face(rng, 20, 2.5)), *SIZE, BASELINE)
-    direction = direction_from_angles(0.1, -0.3)
-    position = found.position(direction)
-    assert np.hypot(*position[:2]) == pytest.approx(found.horizontal_range)
-    np.testing.assert_allclose(position / np.linalg.norm(position), direction)
-
-
 def test_two_matches_are_too_few(rng):
     found = disparity_distance(match_of(face(rng, 2, 2.0)), *SIZE, BASELINE)
     assert found.outcome == "too few matches"
     assert found.n_matches == 2
     assert np.isnan([found.horizontal_range, found.spread, found.sigma]).all()
     assert disparity_distance(match_of(np.zeros((0, 3))), *SIZE, BASELINE).outcome == "too few matches"
-
-
-def test_features_without_disparity_are_parallel_and_not_at_infinity(rng):
-    match = match_of(face(rng, 10, 500.0))
-    assert disparity_distance(match, *SIZE, BASELINE).outcome == "parallel"
-    assert np.isinf(horizontal_ranges(match.keypoints_upper, match.keypoints_upper, *SIZE, BASELINE)).all()
 
 
 def test_both_distances_of_rendered_boards_are_right():
