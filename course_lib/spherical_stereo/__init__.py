@@ -14,8 +14,7 @@ An image pair walks through figure 2 in this order. Each folder imports only tho
     epipolar, features, object_matching
     alignment                       is the lower camera turned against the upper one?
   ranging/        2.4. `position_objects` says where the matched objects are.
-    triangulation                   X = d x_hat, how sure it is, and when there is none
-    vertical_disparity              a second distance, from the matched features
+    triangulation, vertical_disparity   a distance from two directions, and one from the matched features
     object_positions                the position of every matched object
   semantic_map/   2.5. The map and its files, eq. (1) and the greedy search: observations to landmarks
   pose/           2.6. The least-squares fit, whether its residuals contradict it, and the answer

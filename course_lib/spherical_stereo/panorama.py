@@ -172,22 +172,17 @@ class View:
     """True if the image shows nothing: a covered lens, or an exposure that failed."""
 
     def __post_init__(self) -> None:
-        try:
-            width, height = int(self.width), int(self.height)
-        except (TypeError, ValueError):
-            raise PanoramaError(f"size must be whole pixels; got {self.width!r} and {self.height!r}") from None
-        if height < 1 or width != 2 * height:
-            raise PanoramaError(f"a panorama is twice as wide as high; got size {width} x {height}")
-        for name, value in (("width", width), ("height", height), ("detections", tuple(self.detections))):
-            object.__setattr__(self, name, value)
+        if self.height < 1 or self.width != 2 * self.height:
+            raise PanoramaError(f"a panorama is twice as wide as high; got size {self.width} x {self.height}")
+        object.__setattr__(self, "detections", tuple(self.detections))
 
     @classmethod
     def of_detections(cls, detections: Sequence, size: tuple[int, int]) -> View:
         """Return a panorama of which only the detections are known. size: (width, height), pixels."""
         try:
-            width, height = size
+            width, height = map(int, size)
         except (TypeError, ValueError):
-            raise PanoramaError(f"size must be (width, height) in pixels; got {size!r}") from None
+            raise PanoramaError(f"size must be (width, height) in whole pixels; got {size!r}") from None
         return cls(width, height, detections=detections)
 
     @property
@@ -211,14 +206,12 @@ def open_view(image: np.ndarray | View, name: str = "image") -> View:
         return image
     if image is None or np.size(image) == 0:
         raise PanoramaError(f"{name} is empty; an equirectangular colour image was expected")
-    if not isinstance(image, np.ndarray) or image.ndim not in (2, 3):
-        shape = getattr(image, "shape", type(image).__name__)
-        raise PanoramaError(f"{name} must be an array (height, width, 3) of BGR values; got {shape}")
-    if image.ndim == 2 or image.shape[2] == 1:
+    image = np.asarray(image)
+    if image.ndim == 2 or image.shape[2:] == (1,):
         raise PanoramaError(f"{name} is a grey image of shape {image.shape}; colour (height, width, 3) is needed")
-    if image.shape[2] != 3 or image.dtype != np.uint8:
+    if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
         raise PanoramaError(
-            f"{name} must have 3 channels (BGR) of 8 bits; got {image.shape[2]} of {image.dtype}. Convert it first"
+            f"{name} must be an array (height, width, 3) of BGR values of 8 bits; got {image.shape} of {image.dtype}"
         )
     height, width = image.shape[:2]
     if width != 2 * height:

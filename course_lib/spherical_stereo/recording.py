@@ -34,7 +34,7 @@ class StereoPair:
     """One pair of panoramas and where it was taken.
 
     pose: `(3,)` [x, y, heading] of the upper camera, metres and radians, heading in [-pi, pi].
-    upper_objects, lower_objects: what can be seen on each image.
+    upper_objects, lower_objects: what can be seen on each image. size: (width, height) of both panoramas, pixels.
     """
 
     name: str
@@ -44,7 +44,6 @@ class StereoPair:
     upper_objects: tuple[TrueObject, ...]
     lower_objects: tuple[TrueObject, ...]
     size: tuple[int, int]
-    """(width, height) of both panoramas, pixels."""
 
     def images(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the upper and the lower panorama, `(H, W, 3)` uint8 BGR. Raises `PanoramaError` if one is unusable."""

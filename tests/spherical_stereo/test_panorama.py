@@ -87,10 +87,9 @@ def test_a_rig_that_cannot_be_is_named(baseline, height, says):
         (np.full((8, 16, 3), 90, np.uint8), "three channels are equal"),
         (np.repeat(np.arange(128, dtype=np.uint8).reshape(8, 16, 1), 3, axis=2), "three channels are equal"),
         (np.zeros((8, 15, 3), np.uint8), "15 x 8 pixels"),
-        (np.zeros((8, 16, 4), np.uint8), "3 channels"),
-        (np.zeros((8, 16, 3), np.float32), "8 bits; got 3 of float32"),
+        (np.zeros((8, 16, 4), np.uint8), "of BGR values"),
+        (np.zeros((8, 16, 3), np.float32), "8 bits; got .* of float32"),
         (np.zeros((2, 8, 16, 3), np.uint8), "must be an array"),
-        ([[1, 2]], "must be an array"),
     ],
 )
 def test_an_image_that_is_no_panorama_is_named(image, says):

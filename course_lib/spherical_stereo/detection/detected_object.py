@@ -52,18 +52,17 @@ def canonical_label(label: str) -> str:
 
 @dataclass(frozen=True)
 class Detection:
-    """One object found in a panorama. Raises `DetectionError` for values outside their range."""
+    """One object found in a panorama. Raises `DetectionError` for values outside their range.
+
+    label: class, kept as its canonical label. score: confidence, 0 to 1. box: (u_min, v_min, u_max, v_max), pixels,
+    edge coordinates. hue: degrees in [0, 360), NaN for grey, which has none. saturation: percent, 0 to 100.
+    """
 
     label: str
-    """Class, kept as its canonical label."""
     score: float
-    """Confidence, 0 to 1."""
     box: tuple[float, float, float, float]
-    """(u_min, v_min, u_max, v_max), pixels, edge coordinates."""
     hue: float
-    """Degrees in [0, 360). NaN if the object is grey, because grey has no hue."""
     saturation: float
-    """Percent, 0 to 100."""
 
     def __post_init__(self) -> None:
         try:
@@ -77,12 +76,11 @@ class Detection:
             raise DetectionError(f"box must be four finite numbers (u_min, v_min, u_max, v_max); got {self.box}")
         if not (0 <= self.box[0] < self.box[2] and 0 <= self.box[1] < self.box[3]):
             raise DetectionError(f"box must have 0 <= u_min < u_max and 0 <= v_min < v_max; got {self.box}")
-        if not 0 <= self.score <= 1:
-            raise DetectionError(f"score must be between 0 and 1; got {self.score}")
-        if not (math.isnan(self.hue) or 0 <= self.hue < 360):
-            raise DetectionError(f"hue must be in degrees, [0, 360), or NaN for grey; got {self.hue}")
-        if not 0 <= self.saturation <= 100:
-            raise DetectionError(f"saturation must be in percent, 0 to 100; got {self.saturation}")
+        if not (0 <= self.score <= 1 and 0 <= self.saturation <= 100 and (self.is_grey or 0 <= self.hue < 360)):
+            raise DetectionError(
+                "score must be 0 to 1, hue in degrees, [0, 360), or NaN for grey, saturation in percent, 0 to 100; got "
+                f"{self.score}, {self.hue} and {self.saturation}"
+            )
 
     @property
     def centre(self) -> tuple[float, float]:

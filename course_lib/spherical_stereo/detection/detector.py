@@ -180,16 +180,14 @@ class YoloDetector:
 class Letterbox:
     """Where an image lies inside a network's input. All in pixels; sizes are (width, height).
 
-    The image is scaled until it just fits and set in the middle of a grey input. Whole pixels are needed, so the two
-    scales can differ by a rounding. Both are kept, and boxes go back by the scale that was really used.
+    inner_size: of the scaled image. offset: columns of padding at the left, rows at the top. Whole pixels are needed,
+    so the scales across and down can differ by a rounding, and boxes go back by the scale that was really used.
     """
 
     image_size: tuple[int, int]
     input_size: tuple[int, int]
     inner_size: tuple[int, int]
-    """The scaled image inside the input."""
     offset: tuple[int, int]
-    """Columns of padding at the left, rows of padding at the top."""
 
     @property
     def scale(self) -> np.ndarray:

@@ -68,12 +68,11 @@ class Unmatched:
 
 @dataclass(frozen=True)
 class StereoMatching:
-    """Objects seen in both images, most matched features first, and the detections left over."""
+    """Objects seen in both images, most matched features first; the detections left over; how the cameras stand."""
 
     matches: list[ObjectMatch]
     unmatched: list[Unmatched]
-    alignment: Alignment = Alignment(None, None)  # noqa: RUF009 (it cannot change)
-    """How the cameras stand to each other, if that was asked."""
+    alignment: Alignment
 
 
 def match_objects(

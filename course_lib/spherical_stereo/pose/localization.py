@@ -33,19 +33,19 @@ UNMAPPED = "class not on the map"
 
 
 class PlacedObject(NamedTuple):
-    """One object seen in both images, and what became of it."""
+    """One object seen in both images.
+
+    upper, lower: indices of its detections. outcome: "ok", or why there is no position (`ObjectPosition`). position:
+    X = d x_hat `(3,)`, metres, body frame with the origin at the upper camera; NaN without a position. observation: its
+    index among the observations; None without a position, or if the map has no such class.
+    """
 
     upper: int
-    """Index of its detection in the upper image."""
     lower: int
-    """Index of its detection in the lower image."""
     label: str
     outcome: str
-    """ "ok", or why there is no position: see `ObjectPosition`."""
     position: np.ndarray
-    """X = d x_hat `(3,)`, metres, body frame with the origin at the upper camera; NaN without a position."""
     observation: int | None
-    """Index among the observations; None without a position, or if the map has no such class."""
 
 
 @dataclass(frozen=True, eq=False)

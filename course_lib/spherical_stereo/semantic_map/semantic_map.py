@@ -45,18 +45,17 @@ class SemanticMapError(ValueError):
 
 @dataclass(frozen=True)
 class Landmark:
-    """One object of the map. Raises `SemanticMapError` for values out of range. Source: paper 2, section 2.5."""
+    """One object of the map. Raises `SemanticMapError` for values out of range. Source: paper 2, section 2.5.
+
+    label: class, kept as its canonical label. x, y: centroid, world frame, metres. hue, saturation: means of the whole
+    object, degrees [0, 360), NaN for grey, and percent [0, 100].
+    """
 
     label: str
-    """Class, kept as its canonical label: a "couch" becomes a "sofa"."""
     x: float
-    """Centroid, world frame, metres."""
     y: float
-    """Centroid, world frame, metres."""
     hue: float
-    """Mean hue of the whole object, degrees [0, 360). NaN if the object is grey, because grey has no hue."""
     saturation: float
-    """Mean saturation of the whole object, percent [0, 100]."""
 
     def __post_init__(self):
         try:
