@@ -18,8 +18,7 @@ NOISE_FACTOR = 1.2
 """How much larger than their covariances say the errors of places are (measured on rooms 10,100 to 10,103: 1.1 along
 the ray, with heavier tails)."""
 CLUTTER_DENSITY = 1e-3
-"""False observations a square metre: one observation in 50 shows nothing of the map (measured there), and a room has
-some 30 square metres."""
+"""False observations a square metre: 1 in 50 observations shows nothing of the map (measured there), in 30 m^2."""
 HUE_SPREAD = 600.0
 """Degrees times percent: the standard deviation of a hue is this over the saturation; 20 degrees at 30 percent."""
 MIN_HUE_SIGMA = 12.0
