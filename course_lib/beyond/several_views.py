@@ -92,7 +92,7 @@ class Track(NamedTuple):
 
 
 def carried_on(hypothesis: CarriedPose, motion: Motion) -> CarriedPose:
-    """Return a hypothesis after a motion: x + R(theta) (forward, left), theta + turn, and covariance F P F^T + G Q G^T."""
+    """Return a hypothesis after a motion: x + R(theta) (forward, left), theta + turn, and F P F^T + G Q G^T."""
     x, y, theta = hypothesis.mean
     rotation = rotations(np.array(theta))
     step = rotation @ np.array([motion.forward, motion.left])

@@ -76,7 +76,7 @@ class PoseHypothesis(NamedTuple):
 
 
 def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> Scene:
-    """Return the arrays of observations and map. An observation without covariance gets `UNKNOWN_SIGMA` in each direction."""
+    """Return the arrays of observations and map. An unknown covariance becomes `UNKNOWN_SIGMA` in each direction."""
     n = len(observations)
     labels = np.array([canonical_label(one.label) for one in observations], dtype=object)
     unknown = UNKNOWN_SIGMA**2 * np.eye(2)
