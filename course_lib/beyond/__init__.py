@@ -10,11 +10,11 @@ guarded_frames, guarded_depth, guarded_stereo
 """
 
 from course_lib.beyond.guarded_depth import GuardedFrame, GuardedLocalizer
-from course_lib.beyond.guarded_stereo import WatchedPair, WatchedRig
-from course_lib.beyond.look_alikes.assignment import associate_hungarian
+from course_lib.beyond.guarded_stereo import GuardedPair, GuardedRig
 from course_lib.beyond.look_alikes.consistent import associate_consistent, rank_poses
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
+from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.beyond.lost_and_found.global_search import GlobalSearch, PoseCandidate, PoseCandidates
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.beyond.several_views import Motion, SemanticTracker, Track
@@ -27,6 +27,8 @@ __all__ = [
     "GlobalSearch",
     "GuardedFrame",
     "GuardedLocalizer",
+    "GuardedPair",
+    "GuardedRig",
     "Motion",
     "PoseCandidate",
     "PoseCandidates",
@@ -34,8 +36,6 @@ __all__ = [
     "RecoveringLocalizer",
     "SemanticTracker",
     "Track",
-    "WatchedPair",
-    "WatchedRig",
     "associate_consistent",
     "associate_hungarian",
     "rank_poses",

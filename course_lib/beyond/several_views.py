@@ -13,8 +13,8 @@ import numpy as np
 from filterpy.kalman import KalmanFilter
 
 from course_lib.beyond.look_alikes.confidence import (
-    FEWEST_INLIERS,
-    LEAST_CONFIDENCE,
+    MIN_CONFIDENCE,
+    MIN_INLIERS,
     TEMPER,
     area,
     plausibility,
@@ -39,64 +39,60 @@ REACH_M, REACH_RAD = 0.5, np.deg2rad(20.0)
 
 
 class Motion(NamedTuple):
-    """How the rig moved from the view before, in the body frame it had then, as odometry tells."""
+    """How the rig moved since the view before, in the body frame it had then: metres, metres, radians counterclockwise.
+
+    covariance: `(3, 3)` of the three.
+    """
 
     forward: float
-    """Metres."""
     left: float
-    """Metres."""
     turn: float
-    """Radians, counterclockwise."""
     covariance: np.ndarray
-    """`(3, 3)` of the three."""
 
 
 UNKNOWN_MOTION = Motion(0.0, 0.0, 0.0, np.diag([REACH_M, REACH_M, REACH_RAD]) ** 2)
-"""No odometry: it went some way, not far."""
+"""No odometry: it moved some way, but not far."""
 
 
 class CarriedPose(NamedTuple):
-    """One hypothesis of the belief."""
+    """One hypothesis of the belief.
+
+    mean: `(3,)` [x, y, theta], with its covariance `(3, 3)`. log_weight: nats. view: what it makes of the last view.
+    n_matches: in all the views that it has explained.
+    """
 
     mean: np.ndarray
-    """`(3,)` [x, y, theta]."""
     covariance: np.ndarray
-    """`(3, 3)`."""
     log_weight: float
-    """Nats; "none of them" has the belief's own (`Belief.log_nothing`)."""
     view: PoseHypothesis
-    """What it makes of the last view."""
     n_matches: int = 0
-    """In all the views that it has explained."""
 
 
 class Belief(NamedTuple):
-    """What is believed after some views."""
+    """What is believed after some views: hypotheses, best first, and log_nothing, nats, that none of them is right."""
 
     hypotheses: tuple[CarriedPose, ...] = ()
-    """Best first."""
     log_nothing: float = 0.0
-    """Nats: that no hypothesis is right."""
     n_views: int = 0
 
 
 class Track(NamedTuple):
-    """The answer after a view."""
+    """The answer after a view.
+
+    pose: of the last view, None if unable. confidence: 0 to 1. covariance: `(3, 3)`. alternatives: all poses that are
+    believed, with their shares, best first.
+    """
 
     pose: Pose2D | None
-    """Of the last view; None when unable."""
     status: Status
     reason: str | None
     confidence: float
-    """0 to 1."""
     covariance: np.ndarray | None
-    """`(3, 3)`."""
     alternatives: tuple[tuple[Pose2D, float], ...]
-    """All poses that are believed, with their shares, best first."""
 
 
 def carried_on(hypothesis: CarriedPose, motion: Motion) -> CarriedPose:
-    """A hypothesis after a motion: x + R(theta) (forward, left), theta + turn, and covariance F P F^T + G Q G^T."""
+    """Return a hypothesis after a motion: x + R(theta) (forward, left), theta + turn, and F P F^T + G Q G^T."""
     x, y, theta = hypothesis.mean
     rotation = rotations(np.array(theta))
     step = rotation @ np.array([motion.forward, motion.left])
@@ -109,10 +105,10 @@ def carried_on(hypothesis: CarriedPose, motion: Motion) -> CarriedPose:
 
 
 def fused(carried: CarriedPose, view: PoseHypothesis, prior_log_density: float) -> CarriedPose:
-    """A carried hypothesis and a pose of the new view as one: a Kalman update with the view's pose as measurement.
+    """Join a carried hypothesis and a pose of the new view by a Kalman update with the view's pose as measurement.
 
-    Its weight takes the view's score and how well the two agree: log N(view - carried; 0, P + P_view), against the
-    density of a pose of which nothing is known.
+    The weight grows by the view's score and by how well the two agree: log N(view - carried; 0, P + P_view), against
+    the density of an unknown pose.
     """
     kalman = KalmanFilter(dim_x=3, dim_z=3)
     kalman.x, kalman.P = carried.mean.reshape(3, 1).copy(), carried.covariance.copy()
@@ -131,7 +127,7 @@ def fused(carried: CarriedPose, view: PoseHypothesis, prior_log_density: float) 
 class SemanticTracker:
     """Poses of a moving rig on a semantic map, from one view after another.
 
-    semantic_map: where things are. evidence: what counts (`consistent`). least_confidence: below it the answer is
+    semantic_map: where things are. evidence: what counts (`consistent`). min_confidence: below it the answer is
     "unable" with the alternatives. The state is `belief`, which `step` replaces.
     """
 
@@ -139,20 +135,20 @@ class SemanticTracker:
         self,
         semantic_map: SemanticMap,
         evidence: Evidence = Evidence(),  # noqa: B008 (it cannot change)
-        least_confidence: float = LEAST_CONFIDENCE,
+        min_confidence: float = MIN_CONFIDENCE,
     ):
-        self.semantic_map, self.evidence, self.least_confidence = semantic_map, evidence, least_confidence
+        self.semantic_map, self.evidence, self.min_confidence = semantic_map, evidence, min_confidence
         self.belief = Belief()
 
     def step(self, observations: Sequence[Observation], motion: Motion | None = None) -> Track:
-        """The answer with one more view. motion: since the view before; None: there is no odometry.
+        """Return the answer with one more view. motion: since the view before; None without odometry.
 
-        Raises `ValueError` for a motion whose numbers are not finite: a robot that does not know says None.
+        Raises `ValueError` for a motion whose numbers are not finite.
         """
         self.belief = updated(
             self.belief, observations, self.semantic_map, UNKNOWN_MOTION if motion is None else motion, self.evidence
         )
-        return answer(self.belief, self.evidence, self.least_confidence)
+        return answer(self.belief, self.evidence, self.min_confidence)
 
 
 def updated(
@@ -162,7 +158,7 @@ def updated(
     motion: Motion,
     evidence: Evidence = Evidence(),  # noqa: B008
 ) -> Belief:
-    """The belief after one more view: predicted, joined with the view's own poses, and cut to the best few.
+    """Return the belief after one more view: predicted, joined with the view's own poses, and cut to the best few.
 
     Every carried hypothesis is joined with every pose of the view; those far apart weigh nothing. Beside them each pose
     of the view stands for itself, as one that the rig was carried to from elsewhere. Raises `ValueError` for a motion
@@ -200,14 +196,14 @@ def updated(
 
 
 def shares(belief: Belief) -> np.ndarray:
-    """Of the belief, `(k,)`, of every hypothesis; what is missing to 1 is "none of them"."""
+    """Return the share `(k,)` of every hypothesis in the belief. The rest to 1 is "none of them"."""
     logs = np.array([*(one.log_weight for one in belief.hypotheses), belief.log_nothing])
     weights = np.exp(logs - logs.max())
     return (weights / weights.sum())[:-1]
 
 
-def answer(belief: Belief, evidence: Evidence = Evidence(), least_confidence: float = LEAST_CONFIDENCE) -> Track:  # noqa: B008
-    """What a belief says: the best pose where it is sure enough, else "unable", with all alternatives."""
+def answer(belief: Belief, evidence: Evidence = Evidence(), min_confidence: float = MIN_CONFIDENCE) -> Track:  # noqa: B008
+    """Return the best pose of a belief if it is sure enough, else "unable", with all alternatives."""
     share = shares(belief)
     alternatives = tuple(
         (Pose2D(*map(float, one.mean)), float(s)) for one, s in zip(belief.hypotheses, share, strict=True)
@@ -216,8 +212,8 @@ def answer(belief: Belief, evidence: Evidence = Evidence(), least_confidence: fl
     if alternatives:
         best, n_matches, confidence = belief.hypotheses[0], belief.hypotheses[0].n_matches, float(share[0])
         if evidence.absolute:
-            confidence *= plausibility(best.view) if n_matches >= FEWEST_INLIERS else 0.0
-    reason = why_unable(len(alternatives), n_matches, confidence, least_confidence)
+            confidence *= plausibility(best.view) if n_matches >= MIN_INLIERS else 0.0
+    reason = why_unable(len(alternatives), n_matches, confidence, min_confidence)
     if reason is not None:
         return Track(None, UNABLE, reason, confidence, None, alternatives)
     return Track(alternatives[0][0], OK, None, confidence, best.covariance, alternatives)

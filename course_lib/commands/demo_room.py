@@ -73,7 +73,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs both experiments, from images and from exact boxes; returns the exit code."""
-    from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+    from course_lib.beyond.look_alikes.matchers import matcher
     from course_lib.commands.arguments import require_count, require_output_folder, require_seed
     from course_lib.paths import data_path
 
@@ -88,8 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
     require_count("--poses", arguments.poses)
     if 0 in arguments.roll:
         raise ValueError("--roll must not be 0: images that are not rolled are the experiment itself")
-    if arguments.association not in ASSOCIATIONS:
-        raise ValueError(f"--association must be one of {', '.join(ASSOCIATIONS)}; got {arguments.association!r}")
+    matcher(arguments.association)  # a wrong name costs no minutes
     if arguments.views > 1 and arguments.association != "consistent":
         raise ValueError(f"--views {arguments.views} needs --association consistent; got {arguments.association}")
     if seed == SEED:
@@ -108,6 +107,7 @@ def _photograph(folder: Path, seed: int) -> None:
 
 
 def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector | None = None) -> int:
+    from course_lib.beyond.look_alikes.matchers import matcher
     from course_lib.commands.arguments import warn_of_fewer
     from course_lib.commands.look_alike_tables import views_table
     from course_lib.commands.progress import progress_bar
@@ -131,7 +131,7 @@ def _run_on(folder: Path, arguments: argparse.Namespace, detector: YoloDetector 
             recording.rig,
             semantic_map,
             detector,
-            association=arguments.association,
+            association=matcher(arguments.association),
             image_size=(recording.width, recording.height),
             reject_implausible=False,  # the paper's method
         )

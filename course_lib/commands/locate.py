@@ -53,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Localizes and prints; 0 also where there is no pose, which is an answer."""
-    from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+    from course_lib.beyond.look_alikes.matchers import matcher
     from course_lib.commands.arguments import require_output_folder
     from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
     from course_lib.spherical_stereo.detection.detector import find_objects
@@ -64,14 +64,13 @@ def run(arguments: argparse.Namespace) -> int:
     by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]
     if arguments.boxes and any(one is not None for one in by_detector):
         raise ValueError("--boxes says what is in the images, and so does a detector: give one of the two")
-    if arguments.association not in ASSOCIATIONS:
-        raise ValueError(f"--association must be one of {', '.join(ASSOCIATIONS)}; got {arguments.association!r}")
+    association = matcher(arguments.association)
     if arguments.out:
         require_output_folder(arguments.out)
     localizer = SemanticLocalizer(
         StereoRig(arguments.baseline),
         SemanticMap.load(arguments.map),
-        association=arguments.association,
+        association=association,
         reject_implausible=not arguments.paper,
     )
     views = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))

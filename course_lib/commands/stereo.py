@@ -50,11 +50,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Matches, measures, prints; 0 when the two images could be matched."""
     from course_lib.commands.arguments import require_output_folder
     from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
-    from course_lib.spherical_stereo.matching.feature_matching import match_features
-    from course_lib.spherical_stereo.matching.features import find_features
+    from course_lib.spherical_stereo.matching.features import find_features, match_features
     from course_lib.spherical_stereo.matching.object_matching import match_views
     from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
-    from course_lib.spherical_stereo.ranging.object_places import measure_objects
+    from course_lib.spherical_stereo.ranging.object_positions import measure_objects
 
     if not (np.isfinite(arguments.baseline) and arguments.baseline > 0):
         raise ValueError(f"--baseline must be a positive number of metres; got {arguments.baseline}")

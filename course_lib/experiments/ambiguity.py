@@ -13,9 +13,9 @@ import numpy as np
 
 from course_lib.beyond.look_alikes.evidence import detection_probabilities, free_space_costs
 from course_lib.beyond.look_alikes.hypotheses import rotations
-from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS, Matcher
+from course_lib.beyond.look_alikes.matchers import matcher
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.ranging.object_places import BOX_CENTRE_SIGMA, CENTROID_SIGMA
+from course_lib.spherical_stereo.ranging.object_positions import BOX_CENTRE_SIGMA, CENTROID_SIGMA
 from course_lib.spherical_stereo.ranging.triangulation import triangulation_covariance
 from course_lib.spherical_stereo.semantic_map.association import Association, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
@@ -82,7 +82,7 @@ def ambiguity_map(
     step: float = 0.5,
     draws: int = 4,
     rig: StereoRig = RIG,
-    association: Matcher = "consistent",
+    association: str = "consistent",
     progress: Callable[[Iterable], Iterable] = iter,
 ) -> AmbiguityMap:
     """The belief at every free place of a grid over the map, averaged over `draws` of what would be seen.
@@ -105,7 +105,7 @@ def ambiguity_map(
             observations, shown = imagined_observations(semantic_map, pose, rng, rig)
             if not observations:
                 continue
-            found = ASSOCIATIONS[association](observations, semantic_map)
+            found = matcher(association)(observations, semantic_map)
             right, wrong = judged_belief(found, shown, place, step)
             confidence[k] += right / draws
             for i, j, share in wrong:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from course_lib.spherical_stereo.detection.boxes import box_iou
+from course_lib.spherical_stereo.detection.detected_object import box_iou
 
 IOU_THRESHOLD = 0.5
 

@@ -12,7 +12,7 @@ from course_lib.experiments.detection_scores import Boxes, DetectionScoreError, 
 from course_lib.experiments.room import counts_as_object
 from course_lib.spherical_stereo.detection import detector as detector_module
 from course_lib.spherical_stereo.detection import suppression
-from course_lib.spherical_stereo.detection.boxes import box_centre
+from course_lib.spherical_stereo.detection.detected_object import box_centre
 from course_lib.spherical_stereo.recording import StereoRecording, TrueObject
 
 VOTE_IOUS, VOTE_SCORES = (0.5, 0.6, 0.7, 0.8), (0.05, 0.1, 0.3)

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import MAP_MARGIN, NoMeasurementWarning
@@ -68,7 +69,9 @@ def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[
         # Two headings at each place of the paper's table; here every place is one of its own.
         recording = read_stereo_recording(photograph_room(temporary, room, seed, 2 * places, models)[camera - 1])
         size = (recording.width, recording.height)
-        localizer = SemanticLocalizer(recording.rig, semantic_map, network, image_size=size, association="consistent")
+        localizer = SemanticLocalizer(
+            recording.rig, semantic_map, network, image_size=size, association=associate_consistent
+        )
         with DepthRenderer(scene_map, DepthCamera.sr4000(far=FAR)) as renderer:
             for k, pair in enumerate(recording.pairs[::2]):
                 rng = np.random.default_rng([STREAM, seed, PLACE, k])

@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE
+from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
 from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import rotations
-from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS, matcher
 from course_lib.beyond.several_views import Motion, SemanticTracker
 from course_lib.experiments.room import PairResult
 from course_lib.experiments.room_evaluation import NO_OBJECT
@@ -119,7 +119,7 @@ def answers_of_rooms(
         semantic_map = stored_map(room)
         # The observations are made: of the rig nothing is asked any more.
         localizers = {
-            name: SemanticLocalizer(StereoRig(0.3), semantic_map, association=name, reject_implausible=False)
+            name: SemanticLocalizer(StereoRig(0.3), semantic_map, association=matcher(name), reject_implausible=False)
             for name in methods
         }
         for pose in room["poses"]:
@@ -161,7 +161,7 @@ def answers_of_evidence(
             for name, evidence in variants.items():
                 found = associate_consistent(observations, semantic_map, evidence=evidence)
                 best = found.hypotheses[0].pose if found.hypotheses else None
-                given = best if found.confidence >= LEAST_CONFIDENCE else None
+                given = best if found.confidence >= MIN_CONFIDENCE else None
                 right = not wrong_map and all(truth[i] == j for i, j in found.pairs)
                 where = (room["seed"], pose["experiment"], pose["name"])
                 answers.append(judged(where, name, given, best, found.confidence, true_pose, right))

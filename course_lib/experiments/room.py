@@ -21,9 +21,8 @@ from course_lib.experiments.room_evaluation import (
     true_landmarks_of,
     wrong_pairs,
 )
-from course_lib.spherical_stereo.detection.boxes import box_centre
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
-from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization

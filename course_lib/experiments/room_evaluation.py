@@ -13,8 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.detection.boxes import box_iou
-from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.detection.detected_object import box_iou, canonical_label
 from course_lib.spherical_stereo.pose.localization import OK, Localization
 
 CORRECT, INCORRECT, UNABLE = "correct", "incorrect", "unable"

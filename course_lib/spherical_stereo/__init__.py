@@ -1,39 +1,36 @@
 """Paper 2: Onozeki, Iriyama, Ogasa, Pathak, Umeda, "Localization in a 2D semantic map using object recognition from a
-spherical stereo camera". A module for each step.
+spherical stereo camera".
 
-The walk of an image, figure 2 in order; each folder imports only those above it:
+An image pair walks through figure 2 in this order. Each folder imports only those above it:
 
-  panorama             2.1, 2.4. The door. Two images come in and are looked at once: panoramas, in colour, of one size?
-                       From here on each is a `View`, a record of the image and of what is found in it.
-  detection/           2.2. `find_objects` gives the view its detections.
-    detector, detected_object, labels
-    darknet, darknet_cfg, darknet_network, onnx_network, letterbox, suppression: one network and its files
-    seam               figure 3: every object whole once, and counted once
-    colour             hue and saturation inside a box
-    boxes, boxes_file  boxes on the circle of columns; boxes drawn by hand, in place of a network
-  matching/            2.3. `find_features` gives the view its features, and `match_views` leaves two views with pairs.
-    features, epipolar, feature_matching, object_matching
-    alignment          was the lower camera turned against the upper one? Asked at the door of this folder
-  ranging/             2.4. `place_objects` takes pairs of boxes; from here on there are places, and no image.
-    triangulation      X = d x_hat, how sure it is, and when there is none
-    vertical_disparity a second distance, from the matched features
-    object_places      the place of every matched object
-  semantic_map/        2.5. The map, its files, eq. (1) and the greedy search: observations to landmarks
-    assignment         for comparison: the assignment of least cost on class and colour alone
-  pose/                2.6. The least-squares fit, whether its residuals contradict it, and what is answered
-  localizer            the walk itself
+  panorama        2.1, 2.4. The sphere behind an image, the rig, and `View`, the record of one image.
+  detection/      2.2. `find_objects` gives a view its detections.
+    detected_object                 class, box and colour of one object; boxes on the circle of columns
+    darknet, onnx_network           one network and its files
+    detector, suppression, seam     figure 3: every object whole once, and counted once
+    colour                          hue and saturation inside a box
+    boxes_file                      boxes drawn by hand, in place of a network
+  matching/       2.3. `match_views` says which object of one view is which of the other.
+    epipolar, features, object_matching
+    alignment                       is the lower camera turned against the upper one?
+  ranging/        2.4. `position_objects` says where the matched objects are.
+    triangulation, vertical_disparity   a distance from two directions, and one from the matched features
+    object_positions                the position of every matched object
+  semantic_map/   2.5. The map and its files, eq. (1) and the greedy search: observations to landmarks
+  pose/           2.6. The least-squares fit, whether its residuals contradict it, and the answer
+  localizer       the steps themselves
 
 Beside it: recording, a folder of stereo panoramas with the truth beside them.
 
 Images are BGR uint8 arrays, as OpenCV reads them. Boxes and points on them are in edge coordinates (`panorama`).
 """
 
-from course_lib.spherical_stereo.detection.boxes import DetectionError
-from course_lib.spherical_stereo.detection.detected_object import Detection
-from course_lib.spherical_stereo.detection.detector import DetectorError, YoloDetector
+from course_lib.spherical_stereo.detection.darknet import DetectorError
+from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
+from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.seam import extend_seam
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
-from course_lib.spherical_stereo.matching.feature_matching import SwappedImagesError
+from course_lib.spherical_stereo.matching.features import SwappedImagesError
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_objects
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,

@@ -1,4 +1,4 @@
-"""The door: the sphere behind an equirectangular image, the rig, and the record in which an image walks (paper 2, 2.4).
+"""The sphere behind an equirectangular image, the rig, and the record of one image (paper 2, section 2.4).
 
 A panorama is twice as wide as high. Its centre looks along body +x, columns run to the right as azimuth decreases, row
 0 is straight up, and the seam is behind. Coordinates are edge coordinates: pixel i spans [i, i + 1), so 0.5 is added to
@@ -11,9 +11,10 @@ A direction is the unit vector (cos e cos a, cos e sin a, sin e) in the body fra
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -26,22 +27,22 @@ class PanoramaError(ValueError):
     """A panorama, a pair of them, or a coordinate on one that cannot be used."""
 
 
-GREATEST_BASELINE = 10.0
-"""Metres: no rig that is carried is longer, and a baseline in millimetres or centimetres is."""
+MAX_BASELINE = 10.0
+"""Metres. A longer baseline was probably given in millimetres."""
 BLANK_LEVEL = 12
-"""Brightest value, of 255, of a frame that shows nothing: the noise of a covered lens stays below it."""
+"""Brightest value, of 255, of a frame that shows nothing. The noise of a covered lens stays below it."""
 HOT_SHARE = 1e-4
-"""Share of the pixels that may be brighter all the same: a sensor's hot pixels (chosen)."""
+"""Share of the pixels of such a frame that may be brighter, because a sensor has hot pixels (chosen)."""
 
 
 @dataclass(frozen=True)
 class StereoRig:
     """Two panoramic cameras on one vertical axis.
 
-    baseline: metres, the upper camera's height minus the lower's, positive. upper_height: metres above the floor, or
-    nan where nobody measured it (only heights need it).
-    Raises `PanoramaError` for a baseline that is not positive and finite or above `GREATEST_BASELINE`, or an upper
-    height that leaves the lower camera below the floor. Source: paper 2, section 3 (0.30 m; 1.32 m and 1.44 m).
+    baseline: metres, the upper camera's height minus the lower camera's, positive. upper_height: metres above the
+    floor, or nan if nobody measured it.
+    Raises `PanoramaError` for a baseline that is not positive or above `MAX_BASELINE`, and for an upper height that
+    leaves the lower camera below the floor. Source: paper 2, section 3 (0.30 m; 1.32 m and 1.44 m).
     """
 
     baseline: float
@@ -54,14 +55,10 @@ class StereoRig:
             raise PanoramaError(
                 f"baseline and upper_height must be metres; got {self.baseline!r} and {self.upper_height!r}"
             ) from None
-        if not (np.isfinite(baseline) and baseline > 0):
+        if not 0 < baseline <= MAX_BASELINE:
             raise PanoramaError(
-                f"baseline must be a positive number of metres (upper height minus lower height); got {baseline!r}."
-                " A negative one means that upper and lower were swapped"
-            )
-        if baseline > GREATEST_BASELINE:
-            raise PanoramaError(
-                f"baseline must be metres, at most {GREATEST_BASELINE:g}; got {baseline:g}. Is it in millimetres?"
+                f"baseline must be a positive number of metres, at most {MAX_BASELINE:g}; got {baseline:g}. Is it in "
+                "millimetres, or, if negative, are upper and lower swapped?"
             )
         if np.isinf(upper_height) or upper_height < baseline:
             raise PanoramaError(
@@ -77,17 +74,13 @@ class StereoRig:
 
 
 def azimuth_elevation_of_pixel(uv: np.ndarray, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
-    """Azimuth in [-pi, pi) and elevation in [-pi/2, pi/2] of edge coordinates `(..., 2)`, radians.
+    """Return azimuth in [-pi, pi) and elevation in [-pi/2, pi/2] of edge coordinates `(..., 2)`, radians.
 
     azimuth = (1/2 - u/W) 2 pi, elevation = (1/2 - v/H) pi. u may lie beyond the seam; v must lie in [0, H].
     Raises `PanoramaError` for a wrong shape, values that are not finite, or v outside the image.
     Source: paper 2, section 2.4.
     """
-    uv = np.asarray(uv, dtype=np.float64)
-    if uv.ndim == 0 or uv.shape[-1] != 2:
-        raise PanoramaError(f"uv must have shape (..., 2) [u, v]; got {uv.shape}")
-    if not np.isfinite(uv).all():
-        raise PanoramaError("uv must be finite; got NaN or infinity")
+    uv = _finite(uv, "uv", "uv")
     if ((uv[..., 1] < 0) | (uv[..., 1] > height)).any():
         raise PanoramaError(
             f"v must lie between 0 and the image height {height}; got {uv[..., 1].min():g} to {uv[..., 1].max():g}"
@@ -96,7 +89,7 @@ def azimuth_elevation_of_pixel(uv: np.ndarray, width: int, height: int) -> tuple
 
 
 def pixel_to_direction(uv: np.ndarray, width: int, height: int) -> np.ndarray:
-    """Directions `(..., 3)` (unit vectors, body frame) of edge coordinates `(..., 2)` on a panorama.
+    """Return the directions `(..., 3)` (unit vectors, body frame) of edge coordinates `(..., 2)` on a panorama.
 
     x_hat = (cos e cos a, cos e sin a, sin e) with a and e of `azimuth_elevation_of_pixel`.
     Raises `PanoramaError` as that does. Source: paper 2, section 2.4.
@@ -105,7 +98,7 @@ def pixel_to_direction(uv: np.ndarray, width: int, height: int) -> np.ndarray:
 
 
 def direction_to_pixel(direction: np.ndarray, width: int, height: int) -> np.ndarray:
-    """Edge coordinates `(..., 2)` of directions `(..., 3)`: the inverse of `pixel_to_direction`, with u in [0, W).
+    """Return edge coordinates `(..., 2)` of directions `(..., 3)`: the inverse of `pixel_to_direction`, u in [0, W).
 
     u = (1/2 - a / 2 pi) W, v = (1/2 - e / pi) H. Directions need not have unit length; straight up and down have no
     azimuth and get u = W/2. Raises `PanoramaError` for a wrong shape, a zero vector or values that are not finite.
@@ -125,12 +118,7 @@ def azimuth_elevation(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Raises `PanoramaError` for a wrong shape, a zero vector or values that are not finite.
     Source: paper 2, section 2.4.
     """
-    direction = np.asarray(direction, dtype=np.float64)
-    if direction.ndim == 0 or direction.shape[-1] != 3:
-        raise PanoramaError(f"direction must have shape (..., 3) [x, y, z]; got {direction.shape}")
-    if not np.isfinite(direction).all():
-        raise PanoramaError("direction must be finite; got NaN or infinity")
-    x, y, z = np.moveaxis(direction, -1, 0)
+    x, y, z = np.moveaxis(_finite(direction, "direction", "xyz"), -1, 0)
     horizontal = np.hypot(x, y)
     if ((horizontal == 0) & (z == 0)).any():
         raise PanoramaError("direction must not be the zero vector")
@@ -149,6 +137,16 @@ def direction_from_angles(azimuth: np.ndarray | float, elevation: np.ndarray | f
     )
 
 
+def _finite(values: np.ndarray, name: str, axes: str) -> np.ndarray:
+    """Return values as floats `(..., len(axes))`; raise `PanoramaError` for another shape, NaN and infinity."""
+    values = np.asarray(values, dtype=np.float64)
+    if values.ndim == 0 or values.shape[-1] != len(axes):
+        raise PanoramaError(f"{name} must have shape (..., {len(axes)}) [{', '.join(axes)}]; got {values.shape}")
+    if not np.isfinite(values).all():
+        raise PanoramaError(f"{name} must be finite; got NaN or infinity")
+    return values
+
+
 def azimuth_difference(first: np.ndarray | float, second: np.ndarray | float) -> np.ndarray | float:
     """first - second on the circle, radians in [-pi, pi)."""
     return wrap_angle(np.asarray(first, dtype=np.float64) - np.asarray(second, dtype=np.float64))
@@ -156,7 +154,7 @@ def azimuth_difference(first: np.ndarray | float, second: np.ndarray | float) ->
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """One panorama on its walk through the method: the image, checked once, and what each section finds in it.
+    """One panorama, checked once, and what the steps of the method found in it.
 
     Raises `PanoramaError` for a size that no panorama has.
     """
@@ -165,31 +163,26 @@ class View:
     """Pixels; twice the height."""
     height: int
     image: np.ndarray | None = None
-    """`(H, W, 3)` uint8 BGR; None where only its detections were handed in."""
+    """`(H, W, 3)` uint8 BGR; None if only its detections are known."""
     detections: Sequence = ()
     """Section 2.2: anything with `label` and `box`, and for the map `hue` and `saturation`."""
     features: Any = None
     """Section 2.3: `PanoramaFeatures`, once they were looked for."""
     is_blank: bool = False
-    """Whether the image shows nothing at all: a covered lens, or an exposure that failed."""
+    """True if the image shows nothing: a covered lens, or an exposure that failed."""
 
     def __post_init__(self) -> None:
-        try:
-            width, height = int(self.width), int(self.height)
-        except (TypeError, ValueError):
-            raise PanoramaError(f"size must be whole pixels; got {self.width!r} and {self.height!r}") from None
-        if height < 1 or width != 2 * height:
-            raise PanoramaError(f"a panorama is twice as wide as high; got size {width} x {height}")
-        for name, value in (("width", width), ("height", height), ("detections", tuple(self.detections))):
-            object.__setattr__(self, name, value)
+        if self.height < 1 or self.width != 2 * self.height:
+            raise PanoramaError(f"a panorama is twice as wide as high; got size {self.width} x {self.height}")
+        object.__setattr__(self, "detections", tuple(self.detections))
 
     @classmethod
     def of_detections(cls, detections: Sequence, size: tuple[int, int]) -> View:
-        """A panorama of which only the detections are known. size: (width, height), pixels."""
+        """Return a panorama of which only the detections are known. size: (width, height), pixels."""
         try:
-            width, height = size
+            width, height = map(int, size)
         except (TypeError, ValueError):
-            raise PanoramaError(f"size must be (width, height) in pixels; got {size!r}") from None
+            raise PanoramaError(f"size must be (width, height) in whole pixels; got {size!r}") from None
         return cls(width, height, detections=detections)
 
     @property
@@ -197,30 +190,28 @@ class View:
         """(width, height), pixels."""
         return self.width, self.height
 
-    def having(self, **found: Any) -> View:
-        """The same panorama with what a section found: `detections` or `features`."""
-        return replace(self, **found)
+    def replace(self, **found: Any) -> View:
+        """Return the same panorama with what a step found: `detections` or `features`."""
+        return dataclasses.replace(self, **found)
 
 
 def open_view(image: np.ndarray | View, name: str = "image") -> View:
-    """The door: an image that is a panorama, uint8 BGR `(H, W, 3)` with W = 2 H; a `View` has been here already.
+    """Check that an image is a panorama, uint8 BGR `(H, W, 3)` with W = 2 H, and return it as a `View`.
 
-    A black frame is let in: that is nothing the caller did wrong, and nothing will be found in it.
-    Raises `PanoramaError`, beginning with `name`: no image or no pixels, one channel or three equal ones (hue and
-    saturation are needed), another shape, not 2:1, not 8 bits.
+    A `View` was checked already. A black frame is let in, because it is no mistake of the caller's. Raises
+    `PanoramaError`, beginning with `name`, for no pixels, one channel or three equal ones (hue and saturation are
+    needed), another shape, another ratio of width to height, or values that are not 8 bits.
     """
     if isinstance(image, View):
         return image
     if image is None or np.size(image) == 0:
         raise PanoramaError(f"{name} is empty; an equirectangular colour image was expected")
-    if not isinstance(image, np.ndarray) or image.ndim not in (2, 3):
-        shape = getattr(image, "shape", type(image).__name__)
-        raise PanoramaError(f"{name} must be an array (height, width, 3) of BGR values; got {shape}")
-    if image.ndim == 2 or image.shape[2] == 1:
+    image = np.asarray(image)
+    if image.ndim == 2 or image.shape[2:] == (1,):
         raise PanoramaError(f"{name} is a grey image of shape {image.shape}; colour (height, width, 3) is needed")
-    if image.shape[2] != 3 or image.dtype != np.uint8:
+    if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
         raise PanoramaError(
-            f"{name} must have 3 channels (BGR) of 8 bits; got {image.shape[2]} of {image.dtype}. Convert it first"
+            f"{name} must be an array (height, width, 3) of BGR values of 8 bits; got {image.shape} of {image.dtype}"
         )
     height, width = image.shape[:2]
     if width != 2 * height:
@@ -229,18 +220,15 @@ def open_view(image: np.ndarray | View, name: str = "image") -> View:
             f" ({2 * height} x {height})"
         )
     is_blank = bool((image > BLANK_LEVEL).any(axis=-1).mean() <= HOT_SHARE)
-    # Nearly every colour image shows its colour in a few pixels; only what may be grey is looked at as a whole.
-    if _is_grey(image[::16, ::16]) and _is_grey(image) and not is_blank:
+    # Nearly every colour image shows its colour in a few pixels, so the whole is seldom looked at.
+    is_grey = all((part == part[..., :1]).all() for part in (image[::16, ::16], image))
+    if is_grey and not is_blank:
         raise PanoramaError(f"{name} is a grey image (its three channels are equal); a colour image is needed")
     return View(width, height, image, is_blank=is_blank)
 
 
-def _is_grey(image: np.ndarray) -> bool:
-    return bool((image == image[..., :1]).all())
-
-
 def open_pair(upper_image: np.ndarray | View, lower_image: np.ndarray | View) -> tuple[View, View]:
-    """The door for the two panoramas of a rig. Raises `PanoramaError` as `open_view`, and where the sizes differ."""
+    """Check the two panoramas of a rig. Raises `PanoramaError` as `open_view` does, and if their sizes differ."""
     upper, lower = open_view(upper_image, "upper image"), open_view(lower_image, "lower image")
     if upper.size != lower.size:
         raise PanoramaError(
@@ -251,9 +239,9 @@ def open_pair(upper_image: np.ndarray | View, lower_image: np.ndarray | View) ->
 
 
 def read_panorama(path: str | os.PathLike) -> np.ndarray:
-    """The panorama in an image file, uint8 BGR `(H, W, 3)`; an alpha channel is left out.
+    """Read the panorama in an image file, uint8 BGR `(H, W, 3)`. An alpha channel is left out.
 
-    Raises `PanoramaError`: no such file, not an image, or one that `open_view` refuses.
+    Raises `PanoramaError` for a missing file, a file that is no image, and an image that `open_view` refuses.
     """
     image = read_image(path, "image", PanoramaError)
     if image.ndim == 3 and image.shape[2] == 4:

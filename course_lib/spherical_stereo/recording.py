@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.files import read_json
-from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, read_panorama
+from course_lib.files import is_file, read_json
+from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, read_panorama
 
 VERSION = 1
 POSES_FILE = "poses.json"
@@ -34,7 +34,7 @@ class StereoPair:
     """One pair of panoramas and where it was taken.
 
     pose: `(3,)` [x, y, heading] of the upper camera, metres and radians, heading in [-pi, pi].
-    upper_objects, lower_objects: what can be seen on each image.
+    upper_objects, lower_objects: what can be seen on each image. size: (width, height) of both panoramas, pixels.
     """
 
     name: str
@@ -44,18 +44,18 @@ class StereoPair:
     upper_objects: tuple[TrueObject, ...]
     lower_objects: tuple[TrueObject, ...]
     size: tuple[int, int]
-    """(width, height) of both panoramas, pixels."""
 
     def images(self) -> tuple[np.ndarray, np.ndarray]:
-        """The upper and the lower panorama, `(H, W, 3)` uint8 BGR. Raises `PanoramaError` when one cannot be used."""
+        """Return the upper and the lower panorama, `(H, W, 3)` uint8 BGR. Raises `PanoramaError` if one is unusable."""
         return self._image(self.upper_file), self._image(self.lower_file)
 
     def _image(self, file: Path) -> np.ndarray:
         image = read_panorama(file)
         height, width = image.shape[:2]
         if (width, height) != self.size:
-            told = f"{self.size[0]} x {self.size[1]}"
-            raise PanoramaError(f"{file} has {width} x {height} pixels; {file.parent / POSES_FILE} says {told}")
+            raise PanoramaError(
+                f"{file} has {width} x {height} pixels; {file.parent / POSES_FILE} says {self.size[0]} x {self.size[1]}"
+            )
         return image
 
 
@@ -72,9 +72,9 @@ class StereoRecording:
 
 
 def read_stereo_recording(folder: str | Path) -> StereoRecording:
-    """The recording of a folder; images are read only when a pair is asked for them.
+    """Read the recording in a folder. Images are read only when a pair is asked for them.
 
-    Raises `PanoramaError` when poses.json or an image it names is missing, or a field is missing or of another
+    Raises `PanoramaError` if poses.json or an image that it names is missing, or if a field is missing or of another
     kind than expected.
     """
     folder = Path(folder)
@@ -84,78 +84,55 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
     if version != VERSION:
         raise PanoramaError(f"{path} has version {version!r}; this program reads version {VERSION}")
     try:
-        width, height = _pixels(content["width"]), _pixels(content["height"])
-        pairs = tuple(_pair(folder, entry, (width, height)) for entry in content["pairs"])
-        heights = {_number(entry["rig"]["upper_height"]) for entry in content["pairs"]}
-        rig = StereoRig(_number(content["baseline"]), float(min(heights, default=np.nan)))
+        size = _of_kind(content["width"], int), _of_kind(content["height"], int)
+        View.of_detections([], size)
+        pairs = tuple(_pair(folder, entry, size) for entry in content["pairs"])
+        heights = {_of_kind(entry["rig"]["upper_height"], float) for entry in content["pairs"]}
+        rig = StereoRig(_of_kind(content["baseline"], float), min(heights, default=np.nan))
     except PanoramaError as error:
         raise PanoramaError(f"{path}: {error}") from None
-    except (KeyError, TypeError, IndexError, ValueError, OverflowError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise PanoramaError(f"{path}: a field is missing or of the wrong kind ({error!r})") from None
     if len(heights) != 1:
         raise PanoramaError(f"{path}: pairs with upper cameras at {sorted(heights)} m; expected one height")
-    missing = [file.name for pair in pairs for file in (pair.upper_file, pair.lower_file) if not file.is_file()]
+    missing = [file.name for pair in pairs for file in (pair.upper_file, pair.lower_file) if not is_file(file)]
     if missing:
-        raise PanoramaError(f"{folder} lacks {len(missing)} images that {POSES_FILE} names, {missing[0]} first")
-    return StereoRecording(folder, rig, width, height, content.get("seed"), pairs)
+        raise PanoramaError(f"{folder} lacks {len(missing)} images that {POSES_FILE} names, {missing[0][:40]!r} first")
+    return StereoRecording(folder, rig, *size, content.get("seed"), pairs)
 
 
 def _pair(folder: Path, entry: dict, size: tuple[int, int]) -> StereoPair:
-    rig = entry["rig"]
+    upper, lower = entry["upper"], entry["lower"]
     return StereoPair(
-        _text(entry["name"]),
-        np.array([_number(rig[name]) for name in ("x", "y", "heading")]),
-        folder / _file_name(entry["upper"]["file"]),
-        folder / _file_name(entry["lower"]["file"]),
-        tuple(map(true_object, entry["upper"]["objects"])),
-        tuple(map(true_object, entry["lower"]["objects"])),
+        _of_kind(entry["name"], str),
+        np.array([_of_kind(entry["rig"][name], float) for name in ("x", "y", "heading")]),
+        folder / _of_kind(upper["file"], str),
+        folder / _of_kind(lower["file"], str),
+        tuple(map(true_object, upper["objects"])),
+        tuple(map(true_object, lower["objects"])),
         size,
     )
 
 
 def true_object(entry: dict) -> TrueObject:
-    """One object from its entry in poses.json or boxes.json. Raises `KeyError`, `TypeError` for another entry."""
+    """Return one object from its entry in poses.json or boxes.json. Raises `KeyError` or `TypeError` for others."""
     return TrueObject(
-        _whole(entry["object"]),
-        _text(entry["label"]),
+        _of_kind(entry["object"], int),
+        _of_kind(entry["label"], str),
         _box(entry["visible_box"]),
         _box(entry["unoccluded_box"]),
-        _number(entry["visible_fraction"]),
+        _of_kind(entry["visible_fraction"], float),
     )
-
-
-def _text(value: object) -> str:
-    if not isinstance(value, str):
-        raise TypeError(f"a text is expected, found {str(value)[:40]}")
-    return value
-
-
-def _file_name(value: object) -> str:
-    """A name that a system can look up: longer ones, and ones with a zero byte, are errors of its own."""
-    if not 0 < len(_text(value)) <= 255 or "\0" in value:
-        raise TypeError(f"the name of a file is expected, found {value[:40]!r}")
-    return value
-
-
-def _number(value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise TypeError(f"a number is expected, found {str(value)[:40]}")
-    return float(value)
-
-
-def _whole(value: object) -> int:
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise TypeError(f"a whole number is expected, found {str(value)[:40]}")
-    return value
-
-
-def _pixels(value: object) -> int:
-    if _whole(value) < 1:
-        raise TypeError(f"a number of pixels is expected, found {value}")
-    return value
 
 
 def _box(value: object) -> tuple[float, float, float, float]:
     if not isinstance(value, list) or len(value) != 4:
         raise TypeError(f"a box of four numbers is expected, found {str(value)[:40]}")
-    return tuple(map(_number, value))
+    return tuple(_of_kind(number, float) for number in value)
+
+
+def _of_kind(value: object, kind: type):
+    """Return a value of JSON as text, whole number or number. True and "3" are no numbers here."""
+    if isinstance(value, bool) or not isinstance(value, (int, float) if kind is float else kind):
+        raise TypeError(f"a value of kind {kind.__name__} is expected, found {str(value)[:40]}")
+    return kind(value)

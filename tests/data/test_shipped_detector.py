@@ -11,10 +11,9 @@ from course_lib.experiments.room import localize_pair
 from course_lib.experiments.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
 from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.room.training_images import labelled_images, make_room_images
-from course_lib.spherical_stereo.detection.boxes import box_iou
 from course_lib.spherical_stereo.detection.darknet import check_weights, read_cfg
+from course_lib.spherical_stereo.detection.detected_object import CANONICAL_LABELS, box_iou
 from course_lib.spherical_stereo.detection.detector import YoloDetector
-from course_lib.spherical_stereo.detection.labels import CANONICAL_LABELS
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap

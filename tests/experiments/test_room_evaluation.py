@@ -20,8 +20,8 @@ from course_lib.experiments.room_evaluation import (
     wrong_pairs,
 )
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES
-from course_lib.spherical_stereo.detection.boxes import DetectionError
-from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
+from course_lib.spherical_stereo.panorama import View
 from course_lib.spherical_stereo.pose.localization import Localization, PlacedObject
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
@@ -159,7 +159,7 @@ def with_objects():
     return Localization(
         None,
         "unable",
-        upper_detections=("a", "b", "c"),
+        upper=View.of_detections(("a", "b", "c"), (4, 2)),
         lower_detections=("d", "e", "f"),
         objects=objects,
         observations=(Observation("sofa", 0, 0, 0, 0),) * 2,

@@ -68,7 +68,7 @@ def mapped_scene() -> tuple[View, View, SemanticMap]:
             Detection(board.label, 0.9, box_of(board, camera), hue, 50.0)
             for board, hue in zip(boards, HUES, strict=True)
         ]
-        views.append(open_view(panorama(everything, camera)).having(detections=found))
+        views.append(open_view(panorama(everything, camera)).replace(detections=found))
     places = TRUE_POSE.apply([[b.range * math.cos(b.azimuth), b.range * math.sin(b.azimuth)] for b in boards])
     landmarks = [Landmark(b.label, *place, hue, 50.0) for b, place, hue in zip(boards, places, HUES, strict=True)]
     return *views, SemanticMap(landmarks)

@@ -27,7 +27,7 @@ def locate(upper=UPPER, lower=LOWER, semantic_map=MAP, rig=RIG, **options):
 
 def seen_by(image, detections=LOWER.detections):
     """A lower view of another image."""
-    return open_view(image).having(detections=detections)
+    return open_view(image).replace(detections=detections)
 
 
 def test_the_clean_twin_of_every_case_below_is_ok():
@@ -121,9 +121,9 @@ def test_one_matched_feature_makes_no_object():
     chair = next(m for m in locate().matches if m.upper == 2)
     kept = ~inside | (view.features.keypoints == chair.keypoints_upper[0]).all(axis=1)
     thin = PanoramaFeatures(view.features.keypoints[kept], view.features.descriptors[kept], *view.size)
-    found = locate(upper=view.having(features=thin))
+    found = locate(upper=view.replace(features=thin))
     assert ("upper", 2, "too few matches") in [(one.side, one.index, one.reason) for one in found.unmatched]
-    paper = locate(upper=view.having(features=thin), reject_implausible=False)
+    paper = locate(upper=view.replace(features=thin), reject_implausible=False)
     assert {m.upper: m.n_matches for m in paper.matches}[2] == 1
 
 

@@ -9,11 +9,9 @@ from hypothesis import strategies as st
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,
     StereoRig,
-    View,
     azimuth_difference,
     azimuth_elevation,
     azimuth_elevation_of_pixel,
-    direction_from_angles,
     direction_to_pixel,
     open_pair,
     open_view,
@@ -54,16 +52,6 @@ def test_a_pixel_comes_back_from_its_direction(u, v):
 
 
 @QUICK
-@given(azimuth=azimuths, elevation=elevations)
-def test_angles_come_back_from_their_direction(azimuth, elevation):
-    direction = direction_from_angles(azimuth, elevation)
-    assert np.linalg.norm(direction) == pytest.approx(1)
-    back_azimuth, back_elevation = azimuth_elevation(direction)
-    assert abs(azimuth_difference(back_azimuth, azimuth)) < 1e-9
-    assert back_elevation == pytest.approx(elevation, abs=1e-9)
-
-
-@QUICK
 @given(k=st.integers(-3 * WIDTH, 3 * WIDTH), u=st.floats(0, WIDTH), v=st.floats(1, HEIGHT - 1))
 def test_rolling_the_image_right_turns_what_it_shows_to_the_right(k, u, v):
     """np.roll(image, +k) moves a point k columns right: its azimuth falls by 2 pi k / W, the heading rises."""
@@ -72,56 +60,21 @@ def test_rolling_the_image_right_turns_what_it_shows_to_the_right(k, u, v):
     assert abs(azimuth_difference(before - after, 2 * np.pi * k / WIDTH)) < 1e-9
 
 
-def test_directions_broadcast_over_leading_axes(rng):
-    uv = rng.uniform(0, HEIGHT, (2, 3, 2))
-    directions = pixel_to_direction(uv, WIDTH, HEIGHT)
-    assert directions.shape == (2, 3, 3)
-    np.testing.assert_allclose(directions[1, 2], pixel_to_direction(uv[1, 2], WIDTH, HEIGHT))
-    assert direction_from_angles(np.zeros((4, 1)), np.zeros(5)).shape == (4, 5, 3)
-
-
-@QUICK
-@given(a=azimuths, b=azimuths)
-def test_an_azimuth_difference_is_the_short_way_round(a, b):
-    difference = azimuth_difference(a, b)
-    assert -np.pi <= difference < np.pi
-    assert np.cos(difference) == pytest.approx(np.cos(a - b), abs=1e-9)
-
-
 @pytest.mark.parametrize("uv", [[1.0], [1.0, 2.0, 3.0], [np.nan, 1.0], [5.0, -0.1], [5.0, HEIGHT + 0.1]])
 def test_a_place_that_is_not_on_the_image_is_refused(uv):
     with pytest.raises(PanoramaError):
         azimuth_elevation_of_pixel(np.array(uv), WIDTH, HEIGHT)
 
 
-@pytest.mark.parametrize("direction", [[0, 0, 0], [np.inf, 0, 0], [1, 0]])
-def test_a_direction_that_is_none_is_refused(direction):
-    with pytest.raises(PanoramaError):
-        direction_to_pixel(np.array(direction, float), WIDTH, HEIGHT)
-
-
-@pytest.mark.parametrize("baseline", [0, -0.3, np.nan, np.inf, None, "far"])
-def test_a_rig_needs_a_positive_baseline(baseline):
-    with pytest.raises(PanoramaError, match="baseline"):
-        StereoRig(baseline, 1.32)
-
-
-@pytest.mark.parametrize("baseline", [10.1, 120, 300])
-def test_a_baseline_in_another_unit_is_named(baseline):
-    with pytest.raises(PanoramaError, match="millimetres"):
-        StereoRig(baseline)
-    assert StereoRig(baseline / 1000).baseline == baseline / 1000
-
-
-@pytest.mark.parametrize("height", [0.2, -1, np.inf])
-def test_the_lower_camera_stands_above_the_floor(height):
-    with pytest.raises(PanoramaError, match="upper_height"):
-        StereoRig(0.3, height)
-
-
-def test_the_papers_rig_has_its_lower_camera_at_102_cm():
-    assert StereoRig(0.30, 1.32).lower_height == pytest.approx(1.02)
-    assert np.isnan(StereoRig(0.2).upper_height)
+@pytest.mark.parametrize(
+    ("baseline", "height", "says"),
+    [(0, 1.3, "baseline"), (-0.3, 1.3, "swapped"), (np.nan, 1.3, "baseline"), ("far", 1.3, "baseline"),
+     (300, 1.3, "in millimetres"), (0.3, 0.2, "upper_height"), (0.3, np.inf, "upper_height")],
+)  # fmt: skip
+def test_a_rig_that_cannot_be_is_named(baseline, height, says):
+    with pytest.raises(PanoramaError, match=says):
+        StereoRig(baseline, height)
+    assert StereoRig(0.30, 1.32).lower_height == pytest.approx(1.02)  # the paper's
 
 
 @pytest.mark.parametrize(
@@ -134,10 +87,9 @@ def test_the_papers_rig_has_its_lower_camera_at_102_cm():
         (np.full((8, 16, 3), 90, np.uint8), "three channels are equal"),
         (np.repeat(np.arange(128, dtype=np.uint8).reshape(8, 16, 1), 3, axis=2), "three channels are equal"),
         (np.zeros((8, 15, 3), np.uint8), "15 x 8 pixels"),
-        (np.zeros((8, 16, 4), np.uint8), "3 channels"),
-        (np.zeros((8, 16, 3), np.float32), "8 bits; got 3 of float32"),
+        (np.zeros((8, 16, 4), np.uint8), "of BGR values"),
+        (np.zeros((8, 16, 3), np.float32), "8 bits; got .* of float32"),
         (np.zeros((2, 8, 16, 3), np.uint8), "must be an array"),
-        ([[1, 2]], "must be an array"),
     ],
 )
 def test_an_image_that_is_no_panorama_is_named(image, says):
@@ -163,21 +115,8 @@ def test_a_panorama_walks_on_as_a_record_and_is_not_looked_at_again():
     view = open_view(image)
     assert (view.image is image, view.size, view.detections, view.features) == (True, (16, 8), (), None)
     assert open_view(view) is view
-    found = view.having(detections=["one"])
+    found = view.replace(detections=["one"])
     assert (found.detections, found.image is image, view.detections) == (("one",), True, ())
-
-
-@pytest.mark.parametrize("size", [(16, 16), (0, 0), 16, "big", (16.0, "8 px")])
-def test_a_size_that_no_panorama_has_is_named(size):
-    with pytest.raises(PanoramaError, match="size"):
-        View.of_detections([], size)
-
-
-@pytest.mark.parametrize("channel", range(3))
-def test_one_coloured_pixel_anywhere_makes_a_colour_image(channel):
-    image = np.full((64, 128, 3), 90, np.uint8)
-    image[37, 101, channel] = 91
-    assert open_view(image).image is image
 
 
 def test_two_panoramas_of_one_rig_have_one_size():

@@ -41,21 +41,13 @@ def test_what_is_written_is_read(tmp_path, content):
     [
         (("baseline",), "0.3"),
         (("baseline",), -0.3),
-        (("baseline",), None),
-        (("width",), 128.5),
         (("width",), True),
-        (("width",), 0),
         (("height",), -64),
         (("pairs",), "pairs"),
-        (("pairs", 0), []),
         (("pairs", 0, "name"), 5),
         (("pairs", 0, "upper", "file"), 2000 * "x"),
-        (("pairs", 0, "upper", "file"), "a\0b"),
         (("pairs", 0, "lower", "file"), ""),
-        (("pairs", 0, "rig", "x"), " "),
-        (("pairs", 0, "rig", "x"), "0.5"),
         (("pairs", 0, "rig", "heading"), [0.1]),
-        (("pairs", 0, "rig", "upper_height"), "1.32"),
         (("pairs", 0, "upper", "objects", 0, "label"), 5),
         (("pairs", 0, "upper", "objects", 0, "object"), 7.5),
         (("pairs", 0, "upper", "objects", 0, "visible_box"), BOX[:3]),
@@ -75,6 +67,6 @@ def test_what_is_of_another_kind_is_named_with_the_file(tmp_path, content, place
 def test_a_panorama_of_another_size_than_the_list_says_is_named(tmp_path, content):
     upper, lower = read(tmp_path, content).pairs[0].images()
     assert upper.shape == lower.shape == (64, 128, 3)
-    content["width"] = 130
-    with pytest.raises(PanoramaError, match=r"upper\.png has 128 x 64 pixels; .*poses\.json says 130 x 64"):
+    content |= {"width": 256, "height": 128}
+    with pytest.raises(PanoramaError, match=r"upper\.png has 128 x 64 pixels; .*poses\.json says 256 x 128"):
         read(tmp_path, content).pairs[0].images()

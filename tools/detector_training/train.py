@@ -12,7 +12,7 @@ import torch
 
 from course_lib.experiments.detection_scores import DetectionScoreError
 from course_lib.files import temporary_folder
-from course_lib.spherical_stereo.detection.darknet import check_names, read_cfg, read_names
+from course_lib.spherical_stereo.detection.darknet import check_names, class_count, read_cfg, read_names
 from tools.detector_training.augmentation import AugmentationRanges
 from tools.detector_training.batches import Batch, epoch_batches
 from tools.detector_training.checkpoints import Position, load_checkpoint, save_checkpoint
@@ -94,7 +94,7 @@ def train(
     draw a bar. Raises `DetectorError`, `TrainingDataError`, `CheckpointError`.
     """
     plan = plan or TrainingPlan()
-    check_names(read_cfg(cfg), read_names(names_file))
+    check_names(class_count(read_cfg(cfg)), read_names(names_file))
     check_plan(plan)
     output.mkdir(parents=True, exist_ok=True)
     given = (cfg, names_file, images, validation_images, output, plan, resume, initial_weights, ranges)

@@ -1,4 +1,4 @@
-"""How sure the best pose is: ahead of the others, ahead of none of them, and near what was seen. Beyond the paper."""
+"""How sure the best pose is: is it ahead of the others and of "none of them", and near what was seen?"""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 TEMPER = 0.5
-"""Share of the evidence that is believed when hypotheses are weighed against each other: errors of one room, such as a
-wrong baseline or a colour of light, are in all its observations at once, and do not count as often as they are seen."""
-FEWEST_INLIERS = 3
-"""Matched observations that a pose needs: two always fit."""
+"""Share of the evidence that is believed when hypotheses are weighed against each other. Errors of one room, such as a
+wrong baseline or a colour of light, are in all its observations at once, so they must not count once each."""
+MIN_INLIERS = 3
+"""Matched observations that a pose needs, because two always fit."""
 DOUBT = 0.001
-"""Share of the right poses whose residuals may be called too large, were the covariances exact."""
-LEAST_CONFIDENCE = 0.8
-"""Confidence below which no pose is given out."""
+"""Share of the right poses whose residuals may be called too large, if the covariances are exact."""
+MIN_CONFIDENCE = 0.8
+"""A pose with a smaller confidence is not given out."""
 MARGIN = 1.0
-"""Metres that a room reaches beyond its landmarks, where the map has no walls (chosen)."""
+"""Metres that a room reaches beyond its landmarks, if the map has no walls (chosen)."""
 
 # Reasons why no pose is given out.
 NOTHING_AGREES = "no two objects agree on a pose"
@@ -30,17 +30,16 @@ AMBIGUOUS = "ambiguous"  # another pose, or none at all, explains what is seen n
 
 
 def score_of_nothing(semantic_map: SemanticMap) -> float:
-    """What "none of these poses" wins for every observation, nats: 1 / area of the map against `CLUTTER_DENSITY`.
+    """Return the score of "none of these poses" for every observation, nats: 1 / area against `CLUTTER_DENSITY`.
 
-    In a place that is not on the map, or not where any pose says, an object is seen anywhere in the room, or in a hall
-    anywhere within `FAR_RANGE`; a pose that leaves it unmatched calls it clutter, which is rarer. So a pose must earn
-    what it leaves unexplained.
+    If no pose is right, an object is seen anywhere in the room, or in a hall anywhere within `FAR_RANGE`. A pose that
+    leaves the object unmatched calls it clutter, which is rarer, so the pose must be much better with the others.
     """
     return -float(np.log(CLUTTER_DENSITY * min(area(semantic_map), np.pi * FAR_RANGE**2)))
 
 
 def area(semantic_map: SemanticMap) -> float:
-    """Square metres that a pose may lie in: of the box around the walls, or of one `MARGIN` around the landmarks."""
+    """Return the square metres of the box around the walls, or of a box `MARGIN` around the landmarks."""
     if semantic_map.walls is not None:
         return float(np.prod(np.ptp(semantic_map.walls, axis=0)))
     return float(np.prod(np.ptp(semantic_map.positions, axis=0) + 2 * MARGIN))
@@ -51,10 +50,10 @@ def with_shares(
     score_of_none: float,
     evidence: Evidence = Evidence(),  # noqa: B008
 ) -> tuple[PoseHypothesis, ...]:
-    """The same poses with their shares of the belief: exp(`TEMPER` score) over the sum of all.
+    """Return the same poses with their shares of the belief: exp(`TEMPER` score) over the sum of all.
 
-    Among them is "none of these" (`score_of_nothing` for every observation): a pose that is ahead of all others must
-    be ahead of it too. Without `absolute` evidence it is left out, and the share is the gap to the others alone.
+    The sum contains "none of these" (`score_of_nothing` for every observation), because a pose must be ahead of it too.
+    Without `absolute` evidence it is left out, and the share is the gap to the others alone.
     """
     scores = [one.score for one in ranked]
     if evidence.absolute:
@@ -65,27 +64,24 @@ def with_shares(
 
 
 def plausibility(found: PoseHypothesis) -> float:
-    """min(1, p / `DOUBT`), p the probability of a chi^2 as large as this pose's: 1 unless the residuals are too large.
+    """Return min(1, p / `DOUBT`), p the probability of a chi^2 as large as this pose's.
 
-    A pose that is wrong may be far ahead of all others and still leave its observations far from their landmarks.
+    A wrong pose may be far ahead of all others and still leave its observations far from their landmarks.
     """
     return min(1.0, float(chi2.sf(found.chi_square, 2 * len(found.pairs) - 3)) / DOUBT)
 
 
 def confidence_of(best: PoseHypothesis, evidence: Evidence = Evidence()) -> float:  # noqa: B008
-    """How sure the best pose is, 0 to 1: its share of the belief times its `plausibility`; 0 below `FEWEST_INLIERS`.
-
-    The share knows the runner-up, and the negative evidence, which is in the scores.
-    """
+    """Return how sure the best pose is, 0 to 1: its share times its `plausibility`, or 0 below `MIN_INLIERS`."""
     if not evidence.absolute:
         return best.share
-    return best.share * plausibility(best) if len(best.pairs) >= FEWEST_INLIERS else 0.0
+    return best.share * plausibility(best) if len(best.pairs) >= MIN_INLIERS else 0.0
 
 
-def why_unable(n_poses: int, n_matches: int, confidence: float, least_confidence: float) -> str | None:
-    """The reason why the best of n poses, which has n matches, is not given out; None when it is."""
-    if confidence >= least_confidence and n_poses:
+def why_unable(n_poses: int, n_matches: int, confidence: float, min_confidence: float) -> str | None:
+    """Return the reason why the best of n poses, which has n matches, is not given out; None if it is."""
+    if confidence >= min_confidence and n_poses:
         return None
     if not n_poses:
         return NOTHING_AGREES
-    return TOO_FEW_INLIERS if n_matches < FEWEST_INLIERS else AMBIGUOUS
+    return TOO_FEW_INLIERS if n_matches < MIN_INLIERS else AMBIGUOUS

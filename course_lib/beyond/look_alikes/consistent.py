@@ -1,7 +1,7 @@
 """Rooms that look alike: the poses that everything seen agrees on, how sure the best is, and which others there are.
 
 hypotheses (every two matches give a pose) -> score (one-to-one assignment, unmatched allowed) -> refit -> the best few
-distinct poses -> confidence. Beyond the paper, whose own matcher (`association`) decides without asking for a pose.
+distinct poses -> confidence. Beyond the paper, whose own `associate_greedy` asks for no pose.
 """
 
 from __future__ import annotations
@@ -11,8 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from course_lib.beyond.look_alikes.assignment import association_of
-from course_lib.beyond.look_alikes.confidence import confidence_of, score_of_nothing, with_shares
+from course_lib.beyond.look_alikes.confidence import (
+    MIN_CONFIDENCE,
+    confidence_of,
+    score_of_nothing,
+    why_unable,
+    with_shares,
+)
 from course_lib.beyond.look_alikes.evidence import (
     CLUTTER_DENSITY,
     Evidence,
@@ -28,18 +33,19 @@ from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     Observation,
     PenaltyWeights,
+    association_of,
     penalty_table,
 )
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 SAME_POSE_M, SAME_POSE_RAD = 0.5, np.deg2rad(10.0)
-"""Metres and radians within which two poses are one answer."""
+"""Metres and radians. Two poses that are nearer are one answer."""
 SHORT_LIST = 30
 """Distinct poses that are assigned and refitted."""
 ALTERNATIVES = 3
 """Poses that an answer keeps beside the best."""
 ROUNDS = 2
-"""Assignments and refits in turn; the second changes few pairs, a third none that mattered."""
+"""Assignments and refits in turn. The second changes few pairs, a third changed none that mattered."""
 
 
 def rank_poses(
@@ -48,7 +54,7 @@ def rank_poses(
     evidence: Evidence = Evidence(),  # noqa: B008 (it cannot change)
     n: int = 1 + ALTERNATIVES,
 ) -> tuple[PoseHypothesis, ...]:
-    """The n best distinct poses, best first, each with its share of the belief; () where no two matches agree."""
+    """Return the n best distinct poses, best first, each with its share of the belief; () if no two matches agree."""
     scene = scene_of(observations, semantic_map)
     if not evidence.stereo_covariance:
         mean = np.trace(scene.covariances, axis1=1, axis2=2).mean() / 2 if len(observations) else 1.0
@@ -73,23 +79,37 @@ def associate_consistent(
     weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
     distance_term: str = "absolute",
     evidence: Evidence = Evidence(),  # noqa: B008
+    min_confidence: float = MIN_CONFIDENCE,
 ) -> Association:
-    """The pairs of the pose that explains everything best, that pose, its alternatives, and how sure it is.
+    """Return the pairs of the pose that explains everything best, that pose, its alternatives, and how sure it is.
 
-    The interface of `associate_greedy`, whose weights and distance_term serve for the table of penalties only: eq. (1)
-    decides nothing here. Pairs are given however unsure they are; whoever wants a pose asks `confidence` first, as
-    `SemanticLocalizer` does. Raises `AssociationError` as `penalty_table` does.
+    Called as `associate_greedy`, whose weights and distance_term serve for the table of penalties only: eq. (1) decides
+    nothing here. min_confidence: 0 to 1. If the best pose is less sure, `reason` and `explanation` say why it should
+    not be given out. Raises `ValueError` for another min_confidence, `AssociationError` as `penalty_table` does.
     """
+    if not 0 <= min_confidence <= 1:
+        raise ValueError(f"min_confidence must lie between 0 and 1; got {min_confidence!r}")
     table = penalty_table(observations, semantic_map, weights, distance_term)
     ranked = rank_poses(observations, semantic_map, evidence)
-    found = association_of(ranked[0].pairs if ranked else (), observations, table)
-    return found._replace(hypotheses=ranked, confidence=confidence_of(ranked[0], evidence) if ranked else 0.0)
+    pairs = ranked[0].pairs if ranked else ()
+    confidence = confidence_of(ranked[0], evidence) if ranked else 0.0
+    others = ", ".join(
+        f"({one.pose.x:.2f}, {one.pose.y:.2f}) m at {np.degrees(one.pose.theta):.0f} degrees ({one.share:.0%})"
+        for one in ranked
+    )
+    return association_of(pairs, observations, semantic_map, table)._replace(
+        hypotheses=ranked,
+        confidence=confidence,
+        reason=why_unable(len(ranked), len(pairs), confidence, min_confidence),
+        explanation=f"confidence {confidence:.2f}, {min_confidence:.2f} is asked for"
+        + (f"; poses: {others}" if others else ""),
+    )
 
 
 def match_costs(
     scene: Scene, poses: np.ndarray, covariances: np.ndarray | None, evidence: Evidence
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Costs `(h, n, m)` of every match, against leaving observation and landmark unmatched; base `(h,)`; chances."""
+    """Return costs `(h, n, m)` of every match against no match, base `(h,)`, and chances to be seen."""
     squared, log_size = place_distances(scene, poses, covariances)
     cost = squared / 2 + log_size[..., None] / 2 + np.log(2 * np.pi) + np.log(CLUTTER_DENSITY)
     if evidence.colour:
@@ -103,13 +123,13 @@ def match_costs(
 
 
 def quick_scores(scene: Scene, poses: np.ndarray, covariances: np.ndarray, evidence: Evidence) -> np.ndarray:
-    """Scores `(h,)` of many poses, every observation taking what it likes best: no less than the assignment's."""
+    """Return upper bounds `(h,)` of the scores of many poses: every observation takes the landmark it likes best."""
     cost, base, _ = match_costs(scene, poses, covariances, evidence)
     return -np.minimum(cost.min(axis=2), 0.0).sum(axis=1) - base
 
 
 def assign(cost: np.ndarray, one_to_one: bool = True) -> tuple[tuple[int, int], ...]:
-    """The one-to-one pairs of least total cost `(n, m)`; whatever costs more than 0 is left unmatched."""
+    """Return the one-to-one pairs of least total cost `(n, m)`. A pair that costs more than 0 is left unmatched."""
     if not one_to_one:
         best = cost.argmin(axis=1)
         return tuple((i, int(j)) for i, j in enumerate(best) if cost[i, j] < 0)
@@ -123,7 +143,7 @@ def explain(
     covariances: np.ndarray,
     evidence: Evidence = Evidence(),  # noqa: B008
 ) -> list[PoseHypothesis]:
-    """What each pose `(h, 3)`, uncertain by its covariance `(h, 3, 3)`, makes of the scene: assigned, refitted, scored.
+    """Return what each pose `(h, 3)` with its covariance `(h, 3, 3)` makes of the scene: assigned, refitted, scored.
 
     A pose that explains fewer than two observations is left out.
     """
@@ -159,7 +179,7 @@ def explain(
 
 
 def refit(scene: Scene, poses: np.ndarray, pairs: Sequence[tuple[tuple[int, int], ...]]) -> tuple:
-    """Each pose `(h, 3)` fitted to its own pairs, each weighed by its observation's covariance: poses, covariances."""
+    """Fit each pose `(h, 3)` to its own pairs, weighted by their observations' covariances: poses, covariances."""
     landmark = np.zeros((len(poses), len(scene.places)), dtype=int)
     used = np.zeros(landmark.shape, dtype=bool)
     for k, one in enumerate(pairs):
@@ -170,7 +190,7 @@ def refit(scene: Scene, poses: np.ndarray, pairs: Sequence[tuple[tuple[int, int]
 
 
 def distinct(poses: np.ndarray, scores: np.ndarray, n: int) -> list[int]:
-    """Indices of the n best poses `(h, 3)` of which no two are one answer, best first."""
+    """Return indices of the n best poses `(h, 3)` of which no two are one answer, best first."""
     chosen: list[int] = []
     left = np.isfinite(scores) & np.isfinite(poses).all(axis=1)
     while left.any() and len(chosen) < n:

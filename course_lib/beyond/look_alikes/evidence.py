@@ -18,16 +18,15 @@ NOISE_FACTOR = 1.2
 """How much larger than their covariances say the errors of places are (measured on rooms 10,100 to 10,103: 1.1 along
 the ray, with heavier tails)."""
 CLUTTER_DENSITY = 1e-3
-"""False observations a square metre: one observation in 50 shows nothing of the map (measured there), and a room has
-some 30 square metres."""
+"""False observations a square metre: 1 in 50 observations shows nothing of the map (measured there), in 30 m^2."""
 HUE_SPREAD = 600.0
 """Degrees times percent: the standard deviation of a hue is this over the saturation; 20 degrees at 30 percent."""
-LEAST_HUE_SIGMA = 12.0
+MIN_HUE_SIGMA = 12.0
 """Degrees, for the most colourful of things: light differs from survey to survey."""
 SATURATION_SIGMA = 15.0
 """Percent, standard deviation of a saturation between survey and photograph."""
-MOST_COLOUR_COST = 3.0
-"""Nats: no colour, however wrong, speaks more strongly against a match than this."""
+MAX_COLOUR_COST = 3.0
+"""Nats. A wrong colour never costs more."""
 DETECTION_NEAR, DETECTION_FAR = 0.95, 0.65
 """Probability that a landmark in plain sight is observed, nearby and at `FAR_RANGE`."""
 FAR_RANGE = 6.0
@@ -35,8 +34,7 @@ FAR_RANGE = 6.0
 DETECTION_HIDDEN = 0.5
 """Probability that a landmark behind another is observed all the same: over it, or past it."""
 OBJECT_RADIUS = 0.4
-"""Metres: half the width of a piece of furniture, of which the map knows nothing; what is nearer hides what is behind.
-"""
+"""Metres: half the width of a piece of furniture, which the map does not know. It hides what is behind it."""
 BODY_RADIUS = 0.2
 """Metres about a landmark's centroid where no rig can stand."""
 OUTSIDE_COST = 20.0
@@ -79,24 +77,24 @@ def place_distances(scene: Scene, poses: np.ndarray, pose_covariances: np.ndarra
 def colour_costs(scene: Scene) -> np.ndarray:
     """Cost `(n, m)` of the colours of every observation and landmark: 0 where they are the same.
 
-    dh^2 / (2 s_h^2) + ds^2 / (2 s_s^2), at most `MOST_COLOUR_COST`; dh on the circle, s_h = `HUE_SPREAD` / the lesser
+    dh^2 / (2 s_h^2) + ds^2 / (2 s_s^2), at most `MAX_COLOUR_COST`; dh on the circle, s_h = `HUE_SPREAD` / the lesser
     saturation: the paler, the less a hue means. Grey has no hue, and then the saturations speak alone.
     """
     landmarks = scene.semantic_map
     d_hue = hue_difference(scene.hues[:, None], landmarks.hues[None])
     lesser = np.minimum(scene.saturations[:, None], landmarks.saturations[None])
-    sigma = np.maximum(HUE_SPREAD / np.maximum(lesser, 1e-6), LEAST_HUE_SIGMA)
+    sigma = np.maximum(HUE_SPREAD / np.maximum(lesser, 1e-6), MIN_HUE_SIGMA)
     d_saturation = scene.saturations[:, None] - landmarks.saturations[None]
     cost = np.where(np.isnan(d_hue), 0.0, (d_hue / sigma) ** 2 / 2) + (d_saturation / SATURATION_SIGMA) ** 2 / 2
-    return np.minimum(cost, MOST_COLOUR_COST)
+    return np.minimum(cost, MAX_COLOUR_COST)
 
 
-def detection_probabilities(semantic_map: SemanticMap, poses: np.ndarray, greatest_range: float = np.inf) -> np.ndarray:
+def detection_probabilities(semantic_map: SemanticMap, poses: np.ndarray, max_range: float = np.inf) -> np.ndarray:
     """Probability `(h, m)` that each landmark is observed from each pose: what makes evidence of a miss.
 
     It falls from `DETECTION_NEAR` to `DETECTION_FAR` with the distance, is at most `DETECTION_HIDDEN` for a landmark
     that stands behind another one (as seen from the pose: within its half width, and further away), and 0 beyond
-    greatest_range, metres.
+    max_range, metres.
     """
     away = semantic_map.positions[None] - poses[:, None, :2]
     distance, azimuth = np.linalg.norm(away, axis=-1), np.arctan2(away[..., 1], away[..., 0])
@@ -106,7 +104,7 @@ def detection_probabilities(semantic_map: SemanticMap, poses: np.ndarray, greate
     nearer = distance[:, None] < distance[:, :, None] - OBJECT_RADIUS
     hidden = (nearer & (apart < width)).any(axis=-1)
     chance = np.where(hidden, np.minimum(chance, DETECTION_HIDDEN), chance)
-    return np.where(distance > greatest_range, 0.0, chance)
+    return np.where(distance > max_range, 0.0, chance)
 
 
 def free_space_costs(semantic_map: SemanticMap, poses: np.ndarray) -> np.ndarray:

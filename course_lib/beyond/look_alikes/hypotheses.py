@@ -1,7 +1,7 @@
-"""Poses that two matches are enough for: every pair of observations laid on every pair of landmarks that it may show.
+"""Poses of two matches: every pair of observations is laid on every pair of landmarks that it may show.
 
-Beyond the paper, which matches first and fits afterwards. Where objects look alike no match can be believed alone; but
-two matches already give a pose, and a pose can be judged by everything else that is seen (`evidence`).
+Beyond the paper, which matches first and fits afterwards. If objects look alike, no match can be believed alone. But
+two matches give a pose, and a pose can be judged by everything else that is seen (`evidence`).
 """
 
 from __future__ import annotations
@@ -12,51 +12,49 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.detection.detected_object import canonical_label
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 DISTANCE_GATE = 3.5
-"""Standard deviations by which two distances may differ and still be one (chosen: of right pairs 1 in 2,000 are lost,
-were the covariances exact)."""
-LEAST_DISTANCE = 0.5
-"""Metres between two landmarks, and between two observations, below which they tell no heading worth having."""
+"""Standard deviations by which two distances may differ and still be one (chosen: 1 in 2,000 right pairs is lost, if
+the covariances are exact)."""
+MIN_DISTANCE = 0.5
+"""Metres between two landmarks, and between two observations. Nearer ones tell no useful heading."""
 UNKNOWN_SIGMA = 0.3
-"""Metres, standard deviation of a place whose covariance nobody gave (chosen)."""
+"""Metres, standard deviation of a position without a covariance (chosen)."""
 MAP_SIGMA = 0.02
 """Metres, standard deviation of a landmark's coordinates: a tape measure, and what counts as an object's middle."""
 GAUSS_NEWTON_STEPS = 4
 
 
 class Scene(NamedTuple):
-    """Observations and map as arrays, once: what every part of the search reads."""
+    """n observations and a map of m landmarks as arrays, made once for all parts of the search.
+
+    places: `(n, 2)`, body frame, metres; covariances: `(n, 2, 2)` of them. hues: `(n,)` degrees, NaN for grey.
+    saturations: `(n,)` percent. like: `(n, m)` bool, True if the classes of an observation and a landmark agree.
+    """
 
     places: np.ndarray
-    """`(n, 2)` of the observations, body frame, metres."""
     covariances: np.ndarray
-    """`(n, 2, 2)` of the places, body frame, square metres."""
     hues: np.ndarray
-    """`(n,)` degrees, NaN: grey."""
     saturations: np.ndarray
-    """`(n,)` percent."""
     like: np.ndarray
-    """`(n, m)` bool: whether the classes of an observation and a landmark agree."""
     semantic_map: SemanticMap
-    """Its m landmarks."""
 
 
 class PairPoses(NamedTuple):
-    """Poses of pairs of matches, h of them."""
+    """h poses of pairs of matches.
+
+    poses: `(h, 3)` [x, y, theta], metres and radians; covariances: `(h, 3, 3)`, what two matches leave open.
+    observations, landmarks: `(h, 2)` indices of the two observations and the landmarks they were laid on.
+    """
 
     poses: np.ndarray
-    """`(h, 3)` [x, y, theta], metres and radians."""
     covariances: np.ndarray
-    """`(h, 3, 3)` of them: what two matches leave open."""
     observations: np.ndarray
-    """`(h, 2)` indices of the two observations."""
     landmarks: np.ndarray
-    """`(h, 2)` indices of the landmarks they were laid on."""
 
 
 class PoseHypothesis(NamedTuple):
@@ -68,17 +66,17 @@ class PoseHypothesis(NamedTuple):
     pairs: tuple[tuple[int, int], ...]
     """(observation, landmark) that it matches."""
     score: float
-    """Nats; the higher the better. 0: as good as calling every observation clutter."""
+    """Log-likelihood ratio in nats. 0 means that the pose explains the observations no better than clutter does."""
     chi_square: float
     """Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers."""
     missed: tuple[int, ...]
-    """Landmarks that would have been seen from there more likely than not, and were not."""
+    """Landmarks that were probably visible from there, and were not seen."""
     share: float = 0.0
     """Of the belief, among all distinct poses and "none of them": 0 to 1."""
 
 
 def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> Scene:
-    """The arrays of observations and map. An observation without covariance gets `UNKNOWN_SIGMA` in each direction."""
+    """Return the arrays of observations and map. An unknown covariance becomes `UNKNOWN_SIGMA` in each direction."""
     n = len(observations)
     labels = np.array([canonical_label(one.label) for one in observations], dtype=object)
     unknown = UNKNOWN_SIGMA**2 * np.eye(2)
@@ -93,11 +91,11 @@ def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> 
 
 
 def pairs_of_matches(scene: Scene, gate: float = DISTANCE_GATE) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of matches that can both be right: indices `(h, 2)` of observations and of landmarks.
+    """Return pairs of matches that can both be right: indices `(h, 2)` of observations and of landmarks.
 
-    Like classes, landmarks `LEAST_DISTANCE` apart (so distinct ones), and | |z_i - z_k| - |m_j - m_l| | <= gate sigma,
+    Like classes, landmarks `MIN_DISTANCE` apart (so distinct ones), and | |z_i - z_k| - |m_j - m_l| | <= gate sigma,
     with sigma^2 = u^T (C_i + C_k) u along the line u between the observations. A distance does not change with the
-    pose: what a pair is kept or thrown away for is known before there is one.
+    pose, so no pose is needed yet.
     """
     i, j = np.nonzero(scene.like)
     first, second = np.nonzero(i[:, None] < i[None])
@@ -109,9 +107,7 @@ def pairs_of_matches(scene: Scene, gate: float = DISTANCE_GATE) -> tuple[np.ndar
     along = seen / np.maximum(seen_length, 1e-9)[:, None]
     noise = scene.covariances[observations].sum(axis=1) + 2 * MAP_SIGMA**2 * np.eye(2)
     sigma = np.sqrt(np.einsum("hi,hij,hj->h", along, noise, along))
-    kept = (np.abs(seen_length - true_length) <= gate * sigma) & (
-        np.minimum(seen_length, true_length) >= LEAST_DISTANCE
-    )
+    kept = (np.abs(seen_length - true_length) <= gate * sigma) & (np.minimum(seen_length, true_length) >= MIN_DISTANCE)
     return observations[kept], landmarks[kept]
 
 
@@ -142,9 +138,8 @@ def fit_poses(
 
     Gauss-Newton steps from `start` `(h, 3)` on sum_k r_k^T (R C_k R^T + `MAP_SIGMA`^2 I)^-1 r_k. places, targets:
     `(h, k, 2)` in the body frame and on the map; covariances: `(h, k, 2, 2)` in the body frame; used: `(h, k)` bool,
-    the matches that count (None: all), two or more of each pose. A stereo camera knows where an object's bearing is to
-    centimetres and its distance to decimetres: counted alike, as in the paper's fit, the distances spoil what the
-    bearings know.
+    the matches that count (None: all), two or more of each pose. A stereo camera knows an object's bearing to
+    centimetres and its distance to decimetres. Counted alike, as in the paper's fit, the distances spoil the bearings.
     """
     poses = np.array(start, dtype=np.float64).reshape(-1, 3)
     normal = np.tile(np.eye(3), (len(poses), 1, 1))

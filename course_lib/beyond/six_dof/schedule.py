@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from course_lib.beyond.six_dof.refinement import gauss_newton_step
-from course_lib.depth_mcl.weighting import Weighting, paper_weighting
+from course_lib.depth_mcl.likelihood import Weighting, paper_weighting
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from course_lib.beyond.guarded_stereo import NO_IMAGE, WatchedRig
+from course_lib.beyond.guarded_stereo import NO_IMAGE, GuardedRig
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.experiments.look_alikes import LARGEST_ERROR_M, LARGEST_TURN_DEG, pose_errors
 from course_lib.experiments.sensor_trouble.panoramas import PERIOD, TROUBLES, Pair, troubled_walk
 from course_lib.experiments.sensor_trouble.placing import Arrival, generator
@@ -48,7 +49,7 @@ def watched_pairs(localizer, arrivals: Sequence[Arrival], true_poses: np.ndarray
 
     localizer: `SemanticLocalizer`, or one that remembers. true_poses: `(T, 3)` [x, y, heading].
     """
-    rig = WatchedRig(localizer, PERIOD)
+    rig = GuardedRig(localizer, PERIOD)
     frames = []
     for arrival, true in zip(arrivals, true_poses, strict=True):
         if arrival.image is None:
@@ -79,7 +80,10 @@ def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float])
         walk = next(photograph_walks(folder, room, seed, 1, frames, models, WalkModel()))
     upper, lower = CAMERA_HEIGHTS[experiment_of(0)]
     localizer = SemanticLocalizer(
-        StereoRig(round(upper - lower, 6), upper), semantic_map, YoloDetector.load(detector), association="consistent"
+        StereoRig(round(upper - lower, 6), upper),
+        semantic_map,
+        YoloDetector.load(detector),
+        association=associate_consistent,
     )
     pairs = [(view.upper_image, view.lower_image) for view in walk]
     return troubles_of(localizer, pairs, np.array([view.pose for view in walk]), seed, shares)

@@ -30,7 +30,7 @@ class Side(NamedTuple):
 
     def view(self, objects: Sequence[Detection] | None = None) -> View:
         """The panorama as the library hands it on; objects: others than its own."""
-        return open_view(self.image).having(
+        return open_view(self.image).replace(
             detections=self.objects if objects is None else objects, features=self.features
         )
 

@@ -10,7 +10,7 @@ from course_lib.lessons.lesson_11.views import Bearings
 from course_lib.plots import figures
 from course_lib.plots.figures import BLUE, VERMILION
 from course_lib.plots.panorama_drawing import draw_box, panorama
-from course_lib.spherical_stereo.detection.boxes import box_centre
+from course_lib.spherical_stereo.detection.detected_object import box_centre
 from course_lib.spherical_stereo.panorama import pixel_to_direction
 from course_lib.spherical_stereo.recording import TrueObject
 

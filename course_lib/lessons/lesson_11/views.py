@@ -10,7 +10,7 @@ import numpy as np
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.room_photographs import room_recording, the_pair
 from course_lib.lessons.kit.scene import Scene
-from course_lib.spherical_stereo.detection.boxes import box_centre
+from course_lib.spherical_stereo.detection.detected_object import box_centre
 from course_lib.spherical_stereo.panorama import azimuth_elevation, direction_to_pixel, pixel_to_direction
 from course_lib.spherical_stereo.recording import StereoPair, TrueObject
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap

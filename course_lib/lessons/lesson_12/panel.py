@@ -27,8 +27,8 @@ from course_lib.lessons.lesson_12.seam_cuts import CUTS, best_overlap, cut_sofa,
 from course_lib.plots import figures
 from course_lib.plots.figures import BLACK, BLUE, ORANGE
 from course_lib.plots.panorama_drawing import class_style
-from course_lib.spherical_stereo.detection.boxes import box_iou
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
+from course_lib.spherical_stereo.detection.detected_object import box_iou
 from course_lib.spherical_stereo.detection.seam import appended_columns, extend_seam, valid_range
 from course_lib.spherical_stereo.recording import TrueObject
 

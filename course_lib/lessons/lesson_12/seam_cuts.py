@@ -11,7 +11,7 @@ import numpy as np
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.kit.room_photographs import the_image, the_pair
 from course_lib.paths import data_path
-from course_lib.spherical_stereo.detection.boxes import box_area, shared_area, wrapped_box
+from course_lib.spherical_stereo.detection.detected_object import box_area, shared_area, wrapped_box
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.seam import extend_seam, select_on_circle
 from course_lib.spherical_stereo.recording import TrueObject

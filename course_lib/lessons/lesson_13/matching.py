@@ -9,16 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.lessons.kit.panorama_features import Scene
-from course_lib.spherical_stereo.detection.boxes import box_centre
-from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre
 from course_lib.spherical_stereo.matching.epipolar import (
     EPIPOLAR_TOLERANCE,
+    RATIO,
     EpipolarPairs,
     allowed_by_rig,
     best_pairs,
     epipolar_pairs,
 )
-from course_lib.spherical_stereo.matching.feature_matching import RATIO
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, inside_box
 from course_lib.spherical_stereo.matching.object_matching import pair_by_most_matches
 from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel

@@ -11,8 +11,7 @@ from course_lib.experiments.room import counts_as_object
 from course_lib.lessons.kit.intervals import median_text
 from course_lib.lessons.kit.panorama_features import scene
 from course_lib.lessons.kit.room_photographs import pair_of, room_map, room_recording
-from course_lib.spherical_stereo.detection.boxes import box_centre, wrapped_box
-from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre, wrapped_box
 from course_lib.spherical_stereo.matching.object_matching import match_views
 from course_lib.spherical_stereo.panorama import direction_from_angles, pixel_to_direction
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d

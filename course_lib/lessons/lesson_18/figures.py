@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE
+from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
 from course_lib.beyond.look_alikes.evidence import NOISE_FACTOR
 from course_lib.beyond.look_alikes.hypotheses import MAP_SIGMA, PoseHypothesis, Scene, seen_from
 from course_lib.experiments.ambiguity import AmbiguityMap
@@ -151,9 +151,9 @@ def risk_figure(curves: dict[str, dict[str, list[float]]], dots: dict[str, tuple
         dot = figures.line_style(index) | {"linestyle": "none", "markersize": 9}
         risk = curve["risk_percent"]
         over_coverage.step(curve["coverage_percent"], risk, where="post", label=name, **line)
-        over_coverage.plot(*dots[name], **dot, label=f"{name}, at {LEAST_CONFIDENCE:g}")
+        over_coverage.plot(*dots[name], **dot, label=f"{name}, at {MIN_CONFIDENCE:g}")
         over_threshold.step(curve["threshold"], risk, where="pre", label=name, **line)
-        over_threshold.plot(LEAST_CONFIDENCE, dots[name][1], **dot)
+        over_threshold.plot(MIN_CONFIDENCE, dots[name][1], **dot)
     for axes, title in ((over_coverage, "Risk over coverage"), (over_threshold, "Risk over the threshold")):
         axes.set(title=title, ylabel="wrong, of the answers [%]", ylim=(-2, 60))
     over_coverage.set(xlabel="poses answered [%]", xlim=(0, 101))

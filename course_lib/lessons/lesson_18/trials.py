@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE
+from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
 from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
@@ -39,8 +39,8 @@ def half_seen_scenes(draws: int, rng: np.random.Generator) -> list[tuple[str, Ma
 def answers_of_matchers(scenes: list[tuple[str, MatchingScene]]) -> list[Answer]:
     """What each matcher answers to each scene, judged: 0.5 m and 10 degrees."""
     localizers = {
-        name: SemanticLocalizer(StereoRig(0.3), room_map(), association=name, reject_implausible=False)
-        for name in ASSOCIATIONS
+        name: SemanticLocalizer(StereoRig(0.3), room_map(), association=matcher, reject_implausible=False)
+        for name, matcher in ASSOCIATIONS.items()
     }
     answers = []
     for name, scene in progress(scenes, "half-seen views"):
@@ -60,7 +60,7 @@ def answers_of_confidence(scenes: list[tuple[str, MatchingScene]], evidence: Evi
     for name, scene in scenes:
         found = associate_consistent(scene.observations, semantic_map, evidence=evidence)
         best = found.hypotheses[0].pose if found.hypotheses else None
-        given = best if found.confidence >= LEAST_CONFIDENCE else None
+        given = best if found.confidence >= MIN_CONFIDENCE else None
         truth = NOWHERE if wrong_map else scene.pose
         answers.append(judged((0, 1, name), "consistent", given, best, found.confidence, truth, None))
     return answers
@@ -105,7 +105,7 @@ def answers_of_two_views(draws: int, rng: np.random.Generator) -> list[Answer]:
     return answers
 
 
-def at_threshold(curve: dict[str, list[float]], threshold: float = LEAST_CONFIDENCE) -> tuple[float, float]:
+def at_threshold(curve: dict[str, list[float]], threshold: float = MIN_CONFIDENCE) -> tuple[float, float]:
     """Coverage and risk, percent, of a `risk_coverage` curve at a threshold; (0, 0) where nothing is that sure."""
     sure = [k for k, value in enumerate(curve["threshold"]) if value >= threshold]
     return (curve["coverage_percent"][sure[-1]], curve["risk_percent"][sure[-1]]) if sure else (0.0, 0.0)

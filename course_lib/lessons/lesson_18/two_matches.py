@@ -7,6 +7,7 @@ import numpy as np
 from course_lib.beyond.look_alikes.consistent import assign, match_costs
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import PairPoses, pair_poses, scene_of
+from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.lessons.kit.room_observations import MatchingScene
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -18,7 +19,7 @@ Pairs = tuple[tuple[int, int], ...]
 
 def matched_by_colour(scene: MatchingScene) -> tuple[Pose2D, Pairs]:
     """The pose after the assignment of least cost on class and colour, and its pairs (observation, landmark)."""
-    localizer = SemanticLocalizer(StereoRig(0.3), room_map(), association="hungarian", reject_implausible=False)
+    localizer = SemanticLocalizer(StereoRig(0.3), room_map(), association=associate_hungarian, reject_implausible=False)
     found = localizer.localize_observations(scene.observations)
     return found.pose, tuple(found.used_pairs)
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate
 from course_lib.depth_mcl.sequence import FAR
 from course_lib.experiments.finale import look_around, robot_states
@@ -51,7 +52,7 @@ class FinaleWorld:
         upper, lower = CAMERA_HEIGHTS[1]
         self.rig = StereoRig(round(upper - lower, 6), upper)
         network = YoloDetector.load(data_path("detector"))
-        self.localizer = SemanticLocalizer(self.rig, self.semantic_map, network, association="consistent")
+        self.localizer = SemanticLocalizer(self.rig, self.semantic_map, network, association=associate_consistent)
         self.renderer = DepthRenderer(self.scene_map, DepthCamera.sr4000(far=FAR))
         self.footprints = [footprint(item) for item in self.room.objects]
         self._sensor = TimeOfFlightCamera(

@@ -15,10 +15,10 @@ from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import draw_box, panorama
 from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
-from course_lib.spherical_stereo.matching.feature_matching import FeatureMatches
+from course_lib.spherical_stereo.matching.features import FeatureMatches
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair, read_panorama
 from course_lib.spherical_stereo.pose.localization import Localization
-from course_lib.spherical_stereo.ranging.object_places import MeasuredObject, measure_objects
+from course_lib.spherical_stereo.ranging.object_positions import MeasuredObject, measure_objects
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 STAND_IN_PAIR = 3  # of the room's experiment 1: most objects in view (chosen)
@@ -68,7 +68,7 @@ class PanoramaPair(NamedTuple):
     def views(self) -> tuple[View, View]:
         """Both as the library hands them on, with their detections."""
         upper, lower = open_pair(self.upper, self.lower)
-        return upper.having(detections=self.upper_detections), lower.having(detections=self.lower_detections)
+        return upper.replace(detections=self.upper_detections), lower.replace(detections=self.lower_detections)
 
 
 def panorama_pair(

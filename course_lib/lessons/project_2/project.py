@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.matchers import matcher
 from course_lib.experiments.project_rooms import ProjectRoom, RoomSet, project_rooms
 from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
 from course_lib.lessons.project_2.exercises import angles_of, pair_boxes, rotation
@@ -102,7 +103,7 @@ def by_the_library(association: str):
         localizer = SemanticLocalizer(
             StereoRig(rig.baseline),
             semantic_map,
-            association=association,
+            association=matcher(association),
             image_size=(rig.width, rig.height),
             reject_implausible=False,
         )

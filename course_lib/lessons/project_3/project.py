@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from course_lib.beyond.look_alikes.assignment import associate_hungarian
-from course_lib.beyond.look_alikes.confidence import LEAST_CONFIDENCE
+from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
 from course_lib.beyond.look_alikes.consistent import associate_consistent
+from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.experiments.look_alikes import LARGEST_ERROR_M, is_right, pose_errors
 from course_lib.experiments.project_rooms import ProjectView
 from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
@@ -115,7 +115,7 @@ PROJECT = Project(
     rivals=(
         Rival("paper", "the paper's greedy matching", by_the_library(associate_greedy)),
         Rival("other", "least total penalty (Hungarian)", by_the_library(associate_hungarian)),
-        Rival("ours", "ours, sure by 0.8 or withheld", by_the_library(associate_consistent, LEAST_CONFIDENCE)),
+        Rival("ours", "ours, sure by 0.8 or withheld", by_the_library(associate_consistent, MIN_CONFIDENCE)),
     ),
     seconds=20.0,
     many=True,

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from course_lib.geometry import circular_mean
-from course_lib.spherical_stereo.detection.boxes import DetectionError
+from course_lib.spherical_stereo.detection.detected_object import DetectionError
 
 GREY_SATURATION_PERCENT = 10.0
 """Mean saturation below which a thing counts as grey: a white balance that is off by as much gives white this tint."""

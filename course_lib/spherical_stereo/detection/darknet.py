@@ -1,209 +1,284 @@
-"""Darknet files, read before OpenCV does: the layers of a `.cfg`, the size that its `.weights` must have, the `.names`.
+"""A Darknet detector of the YOLOv4 family, run by OpenCV (paper 2, section 2.2), and its three files.
 
-OpenCV takes a truncated `.weights` file without a word and then detects nonsense. The number of floats follows from the
-cfg alone, so it is counted here first.
+A `.cfg` is text, sections of options in the order of the layers; everything after # or ; is a comment:
+
+    [convolutional]
+    filters=32
 
 A `.weights` file is a header (major, minor, revision as int32; images seen so far as int64, or int32 before version
 0.2) and then float32 only, layer by layer. A convolution has
 
     filters biases [+ filters scales, means, variances]  and  filters * channels / groups * size^2 kernel values
 
-with the bracket where `batch_normalize=1`. Nothing else in the YOLOv4 family has weights.
-Source: paper 2, section 2.2 (its detector is YOLOv4).
+with the bracket if `batch_normalize=1`. Nothing else in the YOLOv4 family has weights. OpenCV takes a truncated file
+without an error and then detects nonsense, so the floats are counted here first.
 """
 
+from __future__ import annotations
+
 import struct
+import threading
+from dataclasses import dataclass
 from pathlib import Path
 
-from course_lib.files import read_text, require_file
-from course_lib.spherical_stereo.detection.darknet_cfg import (
-    DETECTION_KINDS,
-    DetectorError,
-    Section,
-    parse_cfg,
-    read_cfg,
-    render_cfg,
-)
+import cv2
+import numpy as np
 
-__all__ = [
-    "DETECTION_KINDS",
-    "DetectorError",
-    "Section",
-    "check_names",
-    "check_weights",
-    "class_count",
-    "expected_weight_floats",
-    "header_bytes",
-    "input_size",
-    "layer_channels",
-    "parse_cfg",
-    "read_cfg",
-    "read_names",
-    "render_cfg",
-]
+from course_lib.files import read_text, require_file
+
+DETECTION_KINDS = ("yolo", "region")
+LAYER_KINDS = ("convolutional", "route", "reorg", "scale_channels", "maxpool", "avgpool", "upsample", "dropout",
+               "softmax", "shortcut", "sam", *DETECTION_KINDS)  # fmt: skip
+"""Layers whose channels are known. An unknown one would make the count of weights wrong."""
+MAX_INPUT_PIXELS = 1 << 24
+"""Pixels of a network's input, 4096 x 4096. YOLOv4 has 608 x 608, and needs a hundred times as many numbers inside."""
+
+
+class DetectorError(ValueError):
+    """A detector that cannot be set up: a file that is missing, malformed or does not fit the others, or an option."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """One `[kind]` block of a cfg: its options as text, and the line of its bracket, from 1, for messages."""
+
+    kind: str
+    options: dict[str, str]
+    line: int
+
+    def integer(self, key: str, default: int | None = None) -> int:
+        """Return the option as a whole number. Raises `DetectorError` if it is none, or missing with no default."""
+        if key not in self.options and default is not None:
+            return default
+        return self.integers(key)[0]
+
+    def integers(self, key: str) -> list[int]:
+        """Return the option as whole numbers, separated by commas. Raises `DetectorError`."""
+        try:
+            return [int(part) for part in self.options[key].split(",")]
+        except (KeyError, ValueError):
+            raise self.error(f"{key} must be whole numbers; got {self.options.get(key, 'none')}") from None
+
+    def error(self, problem: str) -> DetectorError:
+        """Return an error that names this section and its line."""
+        return DetectorError(f"[{self.kind}] at line {self.line}: {problem}")
+
+
+def read_cfg(path: str | Path) -> list[Section]:
+    """Read a Darknet cfg: the `[net]` section first, then one section for each layer. Raises `DetectorError`."""
+    return parse_cfg(read_text(path, "cfg file", DetectorError), str(path))
+
+
+def parse_cfg(text: str, name: str = "cfg") -> list[Section]:
+    """Return the sections of a cfg given as text. Raises `DetectorError` with `name` and the line."""
+    sections: list[Section] = []
+    for number, raw in enumerate(text.splitlines(), start=1):
+        line = raw.split("#", 1)[0].split(";", 1)[0].strip()
+        key, _, value = (part.strip() for part in line.partition("="))
+        if line.startswith("[") and line.endswith("]"):
+            kind = line[1:-1].strip().lower()
+            if kind not in (LAYER_KINDS if sections else ("net", "network")):
+                expected = ", ".join(LAYER_KINDS) if sections else "[net] at the start"
+                raise DetectorError(f"{name}, line {number}: unknown section [{kind}], expected {expected}")
+            sections.append(Section(kind, {}, number))
+        elif line and not (sections and key and value):
+            raise DetectorError(f"{name}, line {number}: '{line}' is neither [section] nor key=value in a section")
+        elif line:
+            sections[-1].options[key] = value
+    if len(sections) < 2:
+        raise DetectorError(f"{name} must have a [net] section and layers; it has {len(sections)} sections")
+    return sections
+
+
+def render_cfg(sections: list[Section]) -> str:
+    """Return the text of a cfg with these sections, without comments."""
+    blocks = ["\n".join([f"[{s.kind}]", *(f"{key}={value}" for key, value in s.options.items())]) for s in sections]
+    return "\n\n".join(blocks) + "\n"
 
 
 def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
-    """(channels in, channels out) of every layer, that is of every section after `[net]`.
+    """Return (channels in, channels out) of every layer, that is of every section after `[net]`.
 
-    Raises DetectorError: a route or shortcut to a layer that does not come before it, or groups that do not divide.
+    Raises `DetectorError` for a layer that points to one that does not come before it, and groups that do not divide.
     """
     channels: list[tuple[int, int]] = []
+
+    def source(section: Section, number: int) -> int:
+        """Channels out of a layer that is counted from the start, or backwards from this one if negative."""
+        index = number if number >= 0 else len(channels) + number
+        if not 0 <= index < len(channels):
+            raise section.error(f"layer {len(channels)} points to layer {number}, expected one before it")
+        return channels[index][1]
+
     previous = sections[0].integer("channels", 3)
-    for index, section in enumerate(sections[1:]):
+    for section in sections[1:]:
         incoming, outgoing = previous, previous
         if section.kind == "convolutional":
             outgoing = section.integer("filters")
         elif section.kind == "reorg":
             outgoing = previous * section.integer("stride", 1) ** 2
         elif section.kind == "route":
-            sources = [channels[_layer_index(section, source, index)][1] for source in section.integers("layers")]
-            incoming = sum(sources)
-            outgoing = _divide(section, incoming, section.integer("groups", 1))
-            if not 0 <= section.integer("group_id", 0) < section.integer("groups", 1):
-                raise DetectorError(f"[route] at line {section.line}: group_id is not one of its groups, from 0")
+            incoming = sum(source(section, number) for number in section.integers("layers"))
+            outgoing = _share(section, incoming)
         elif section.kind in ("shortcut", "sam", "scale_channels"):
-            sources = [channels[_layer_index(section, source, index)][1] for source in section.integers("from")]
-            outgoing = sources[0] if section.kind == "scale_channels" else previous
-        if outgoing < 1:
-            raise DetectorError(
-                f"[{section.kind}] at line {section.line} has {outgoing} output channels, expected 1 or more"
-            )
+            other = source(section, section.integer("from"))
+            outgoing = other if section.kind == "scale_channels" else previous
         channels.append((incoming, outgoing))
         previous = outgoing
     return channels
 
 
-def _layer_index(section: Section, source: int, index: int) -> int:
-    """A layer counted from the start, or backwards from this one when negative, as an index from 0."""
-    absolute = source if source >= 0 else index + source
-    if not 0 <= absolute < index:
-        raise DetectorError(
-            f"[{section.kind}] at line {section.line}, layer {index}: points to layer {source}, expected one before it"
-        )
-    return absolute
-
-
-def _divide(section: Section, channels: int, groups: int) -> int:
+def _share(section: Section, channels: int) -> int:
+    groups = section.integer("groups", 1)
     if groups < 1 or channels % groups:
-        raise DetectorError(
-            f"[{section.kind}] at line {section.line}: groups={groups} does not divide {channels} channels"
-        )
+        raise section.error(f"groups={groups} does not divide {channels} channels")
     return channels // groups
 
 
 def expected_weight_floats(sections: list[Section]) -> int:
-    """How many float32 values the `.weights` file of this cfg holds after its header.
+    """Return how many float32 values the `.weights` file of this cfg holds after its header.
 
         sum over convolutions of  filters * (4 if batch_normalize else 1) + filters * channels / groups * size^2
 
-    Raises DetectorError as `layer_channels` does. Source: paper 2, section 2.2 (YOLOv4).
+    Raises `DetectorError` as `layer_channels` does. Source: paper 2, section 2.2 (YOLOv4).
     """
     floats = 0
     for section, (incoming, filters) in zip(sections[1:], layer_channels(sections), strict=True):
         if section.kind == "convolutional":
-            per_filter = _divide(section, incoming, section.integer("groups", 1)) * section.integer("size", 1) ** 2
-            _divide(section, filters, section.integer("groups", 1))
             vectors = 4 if section.integer("batch_normalize", 0) else 1
-            floats += filters * (vectors + per_filter)
+            floats += filters * (vectors + _share(section, incoming) * section.integer("size", 1) ** 2)
     return floats
 
 
 def check_weights(cfg: str | Path | list[Section], weights: str | Path) -> None:
-    """Refuse a `.weights` file that does not hold exactly the floats its cfg implies.
+    """Check that a `.weights` file holds exactly the floats that its cfg implies, and only finite numbers.
 
-    `cfg` is a path or the sections of one. Raises DetectorError: a file is missing, the header is incomplete, or the
-    number of floats differs (the message has both counts). Source: paper 2, section 2.2 (YOLOv4).
+    cfg: a path, or its sections. Raises `DetectorError` with both counts. Source: paper 2, section 2.2 (YOLOv4).
     """
-    sections = cfg if isinstance(cfg, list) else read_cfg(cfg)
-    told = "the cfg" if isinstance(cfg, list) else f"cfg {cfg}"
-    weights = Path(weights)
-    require_file(weights, "weights file", DetectorError)
-    with weights.open("rb") as file:
-        start = file.read(12)
-    size = weights.stat().st_size
-    header = header_bytes(start) if len(start) == 12 else 20
-    if size < header:
-        raise DetectorError(f"weights file {weights} has {size} bytes, less than its header of {header}: it is cut off")
-    expected = expected_weight_floats(sections)
-    if size != header + 4 * expected:
-        problem = "is too short: was the download or copy cut off?" if size < header + 4 * expected else "is too long"
+    expected = expected_weight_floats(cfg if isinstance(cfg, list) else read_cfg(cfg))
+    require_file(Path(weights), "weights file", DetectorError)
+    data = Path(weights).read_bytes()
+    header = header_bytes(data[:12]) if len(data) >= 12 else 20
+    if len(data) != header + 4 * expected:
+        problem = "too short: was the download or copy cut off?" if len(data) < header + 4 * expected else "too long."
         raise DetectorError(
-            f"weights file {weights} {problem} It holds {(size - header) / 4:.10g} floats, {told} needs {expected}; "
-            "give the cfg and the weights of the same network"
+            f"weights file {weights} is {problem} It holds {max(len(data) - header, 0) / 4:.10g} floats, the cfg needs "
+            f"{expected}; give the cfg and the weights of the same network"
         )
+    bad = int((~np.isfinite(np.frombuffer(data, "<f4", offset=header))).sum())
+    if bad:
+        raise DetectorError(f"weights file {weights}: {bad} of its {expected} numbers are NaN or infinite")
 
 
 def header_bytes(start: bytes) -> int:
-    """Length of the header whose first 12 bytes these are: 20, or 16 before version 0.2 (`seen` was int32 then)."""
+    """Return the length of the header that begins with these 12 bytes: 20, or 16 before version 0.2."""
     major, minor, _ = struct.unpack("<3i", start)
     return 20 if major * 10 + minor >= 2 else 16
 
 
 def class_count(sections: list[Section]) -> int:
-    """The number of classes of the detection layers (`[yolo]` or `[region]`).
-
-    Raises DetectorError: no such layer, layers that disagree, or a layer whose input does not have
-    anchors * (5 + classes) channels.
-    """
-    layers = [
-        (section, incoming)
-        for section, (incoming, _) in zip(sections[1:], layer_channels(sections), strict=True)
-        if section.kind in DETECTION_KINDS
-    ]
-    if not layers:
-        raise DetectorError("the cfg has no [yolo] or [region] section: it is not a detector")
-    counts = {section.integer("classes") for section, _ in layers}
-    if len(counts) > 1:
-        raise DetectorError(f"the cfg's detection layers disagree about the number of classes: {sorted(counts)}")
-    (classes,) = counts
-    for section, incoming in layers:
-        anchors = len(section.integers("mask")) if "mask" in section.options else section.integer("num")
-        if incoming != anchors * (5 + classes):
-            raise DetectorError(
-                f"[{section.kind}] at line {section.line} gets {incoming} channels, "
-                f"expected {anchors} anchors * (5 + {classes} classes) = {anchors * (5 + classes)}"
-            )
-    return classes
-
-
-MOST_INPUT_PIXELS = 1 << 24
-"""Pixels of a network's input, 4096 x 4096: YOLOv4 has 608 x 608, and needs a hundred times as many numbers inside."""
-
-
-def input_size(sections: list[Section]) -> tuple[int, int]:
-    """(width, height) of the network's input in pixels. Raises DetectorError: missing, not positive or too large."""
-    width, height = sections[0].integer("width"), sections[0].integer("height")
-    if width < 1 or height < 1:
-        raise DetectorError(
-            f"[{sections[0].kind}] at line {sections[0].line}: input {width} x {height} is not positive"
-        )
-    if width * height > MOST_INPUT_PIXELS:
-        raise DetectorError(
-            f"[{sections[0].kind}] at line {sections[0].line}: input {width} x {height} is more than "
-            f"{MOST_INPUT_PIXELS:,} pixels"
-        )
-    return width, height
+    """Return the number of classes of the detection layers. Raises `DetectorError` if there are none or several."""
+    counts = {section.integer("classes") for section in sections if section.kind in DETECTION_KINDS}
+    if len(counts) != 1:
+        raise DetectorError(f"the cfg's [yolo] or [region] sections must agree on classes; they have {sorted(counts)}")
+    return counts.pop()
 
 
 def read_names(path: str | Path) -> list[str]:
-    """The class names of a `.names` file, one a line; empty lines at the end do not count.
+    """Return the class names of a `.names` file, one a line. Empty lines at the end do not count.
 
-    Raises DetectorError: the file is missing or not text, or an empty line stands between names.
+    Raises `DetectorError` for a file that is missing or not text, and for an empty line between names.
     """
     names = [line.strip() for line in read_text(path, "names file", DetectorError).rstrip().splitlines()]
-    for number, name in enumerate(names, start=1):
-        if not name:
-            raise DetectorError(f"names file {path}, line {number} is empty: every line names one class")
-    if not names:
-        raise DetectorError(f"names file {path} is empty: it has one class name a line")
+    if not names or not all(names):
+        where = f", line {names.index('') + 1}," if names else ""
+        raise DetectorError(f"names file {path}{where} is empty: every line names one class")
     return names
 
 
-def check_names(sections: list[Section], names: list[str]) -> None:
-    """Refuse class names whose number is not the cfg's. Raises DetectorError with both counts."""
-    classes = class_count(sections)
-    if len(names) != classes:
-        raise DetectorError(
-            f"the cfg has {classes} classes, the names file {len(names)}: give the names of that network"
-        )
+def check_names(n_classes: int, names: list[str]) -> None:
+    """Raise `DetectorError` if the class names are not as many as the cfg's classes."""
+    if len(names) != n_classes:
+        raise DetectorError(f"the cfg has {n_classes} classes, the names file {len(names)}: give that network's names")
+
+
+class Network:
+    """A network of OpenCV that runs one blob at a time. Its subclasses are Darknet's and ONNX's.
+
+    OpenCV keeps input and results inside the network, so of two threads at once one would get the other's boxes. They
+    take turns here. A network that is pickled takes its arguments along, and opens its files again where it arrives.
+    """
+
+    def __init__(self, net: cv2.dnn.Net, told: str, input_size: tuple[int, int], *arguments: object) -> None:
+        """Run the network once, so that what does not fit is found now. told: the files, for messages."""
+        self._net, self._told, self.input_size, self._arguments = net, told, input_size, arguments
+        self._turn = threading.Lock()
+        self.infer(np.zeros((1, 3, input_size[1], input_size[0]), dtype=np.float32))
+
+    def __reduce__(self) -> tuple:
+        return type(self), self._arguments
+
+    def infer(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return boxes `(n, 4)` in edge coordinates of the input and scores `(n, classes)`.
+
+        blob: `(1, 3, H, W)`, RGB, 0 to 1. Nothing is thresholded or suppressed. Raises `DetectorError` if OpenCV fails,
+        and for results of another shape or that are NaN. Source: paper 2, section 2.2.
+        """
+        try:
+            with self._turn:
+                self._net.setInput(blob)
+                # Copied, because the next run writes over what OpenCV gives.
+                outputs = [np.array(out) for out in self._net.forward(self._net.getUnconnectedOutLayersNames())]
+        except cv2.error as error:
+            raise DetectorError(
+                f"OpenCV cannot run {self._told} at an input of {blob.shape[3]} x {blob.shape[2]}: {error.err}. Give "
+                "the input size that the network was made for; YOLOv4 takes multiples of 32"
+            ) from error
+        boxes, scores = self._decode(outputs)
+        # A box may be infinitely wide, as an untrained network's are: it is cut at the image's edges.
+        if np.isnan(boxes).any() or not np.isfinite(scores).all():
+            raise DetectorError(f"the network {self._told} gives boxes or scores that are NaN: is its file damaged?")
+        return boxes, scores
+
+
+class DarknetNetwork(Network):
+    """A loaded network of a `.cfg` and its `.weights`."""
+
+    def __init__(self, cfg: str | Path, weights: str | Path, size: tuple[int, int] | None = None) -> None:
+        """Check and load a network.
+
+        size: (width, height) of the input in pixels instead of the cfg's; YOLOv4 takes any multiples of 32.
+        Raises `DetectorError` for files that do not fit, and a size that the network does not take.
+        """
+        cfg, weights = Path(cfg).absolute(), Path(weights).absolute()
+        sections = read_cfg(cfg)
+        try:
+            self.n_classes = class_count(sections)
+            given = sections[0].integer("width"), sections[0].integer("height")
+            width, height = given if size is None else (int(size[0]), int(size[1]))
+            if min(width, height) < 1 or width * height > MAX_INPUT_PIXELS:
+                raise DetectorError(f"an input of 1 to {MAX_INPUT_PIXELS:,} pixels is expected; got {width} x {height}")
+            check_weights(sections, weights)
+            # OpenCV reads options that Darknet does not have: `thresh` (0.2 if absent) sets smaller scores to zero, and
+            # `nms_threshold` (0.4) suppresses boxes inside one scale. Both would decide before this library's own do.
+            sections[0].options.update(width=str(width), height=str(height))
+            for section in sections:
+                if section.kind in DETECTION_KINDS:
+                    section.options.update(thresh="0", nms_threshold="0")
+            text = np.frombuffer(render_cfg(sections).encode(), dtype=np.uint8)
+            net = cv2.dnn.readNetFromDarknet(text, np.fromfile(weights, dtype=np.uint8))
+        except (DetectorError, cv2.error) as error:
+            raise DetectorError(f"cfg file {cfg}: {getattr(error, 'err', error)}") from None
+        super().__init__(net, f"{cfg} with {weights}", (width, height), cfg, weights, size)
+
+    def _decode(self, outputs: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Rows are cx, cy, w, h as shares of the input, objectness, and class scores times objectness."""
+        for output in outputs:
+            if output.shape[1:] != (5 + self.n_classes,):  # OpenCV makes an output of what no later layer takes
+                raise DetectorError(
+                    f"the network {self._told} has an output of shape {output.shape} that no [yolo] layer gives; "
+                    f"expected (n, {5 + self.n_classes}). Does a [route] pass over a layer?"
+                )
+        rows = np.concatenate(outputs)
+        centre, half = rows[:, 0:2], rows[:, 2:4] / 2
+        return np.concatenate([centre - half, centre + half], axis=1) * np.tile(self.input_size, 2), rows[:, 5:]

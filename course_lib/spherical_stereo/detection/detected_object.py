@@ -1,59 +1,90 @@
-"""What a detector says about one object of a panorama: class, confidence, box, hue and saturation (paper 2, 2.2)."""
+"""What a detector says about one object of a panorama (paper 2, section 2.2): its class, its box and its colour.
+
+An unrolled panorama is a cylinder. A box is (u_min, v_min, u_max, v_max) in edge coordinates, pixels. Its left edge
+lies in [0, width). Its right edge passes the width if the box crosses the seam.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 
-from course_lib.spherical_stereo.detection.boxes import DetectionError, wrapped_box
-from course_lib.spherical_stereo.detection.labels import canonical_label
+import numpy as np
+
+from course_lib.spherical_stereo.panorama import View
+
+CANONICAL_LABELS = ("sofa", "chair", "table", "television", "potted plant", "refrigerator", "cabinet")
+"""Labels of the maps, rooms and network of this project."""
+
+ALIASES = {
+    "couch": "sofa",
+    "settee": "sofa",
+    "diningtable": "table",
+    "dining table": "table",
+    "desk": "table",
+    "tv": "television",
+    "tvmonitor": "television",
+    "tv monitor": "television",
+    "pottedplant": "potted plant",
+    "houseplant": "potted plant",
+    "fridge": "refrigerator",
+    "cupboard": "cabinet",
+}
+"""Names that COCO, VOC and people use for these classes, in lower case with single spaces -> canonical label."""
+
+
+class DetectionError(ValueError):
+    """Boxes, colours, detections or matches of them that cannot be, or do not belong together."""
+
+
+def canonical_label(label: str) -> str:
+    """Return the label that the semantic map uses for a detector's class name: a "couch" is a "sofa".
+
+    Case does not matter, and underscores and hyphens count as spaces. A name without an alias is its own label. Raises
+    `DetectionError` for a label that is empty or no text. Source: paper 2, section 2.2 (the class c of an object).
+    """
+    plain = " ".join(re.split(r"[\s_-]+", label.lower())).strip() if isinstance(label, str) else ""
+    if not plain:
+        raise DetectionError(f"a label is a text that is not empty; got {label!r}")
+    return ALIASES.get(plain, plain)
 
 
 @dataclass(frozen=True)
 class Detection:
-    """One object found in a panorama. Raises DetectionError for values outside their range."""
+    """One object found in a panorama. Raises `DetectionError` for values outside their range.
+
+    label: class, kept as its canonical label. score: confidence, 0 to 1. box: (u_min, v_min, u_max, v_max), pixels,
+    edge coordinates. hue: degrees in [0, 360), NaN for grey, which has none. saturation: percent, 0 to 100.
+    """
 
     label: str
-    """Class, kept as its canonical label (`labels`): a "couch" becomes a "sofa"."""
     score: float
-    """Confidence, 0 to 1."""
     box: tuple[float, float, float, float]
-    """(u_min, v_min, u_max, v_max), pixels, edge coordinates; u_max passes the image's width across the seam."""
     hue: float
-    """Degrees in [0, 360); NaN: the object is grey and has none."""
     saturation: float
-    """Percent, 0 to 100."""
 
     def __post_init__(self) -> None:
         try:
-            label = canonical_label(self.label)
-        except ValueError as error:
-            raise DetectionError(str(error)) from None
-        try:
-            box = tuple(float(edge) for edge in self.box)
+            values = {name: float(getattr(self, name)) for name in ("score", "hue", "saturation")}
+            values["box"] = tuple(float(edge) for edge in self.box)
         except (TypeError, ValueError):
-            box = ()
-        if len(box) != 4 or not all(map(math.isfinite, box)):
-            raise DetectionError(f"box must be four finite numbers (u_min, v_min, u_max, v_max); got {self.box}")
-        if box[0] < 0 or box[1] < 0 or box[2] <= box[0] or box[3] <= box[1]:
-            raise DetectionError(f"box must have 0 <= u_min < u_max and 0 <= v_min < v_max; got {box}")
-        for name, value in (("label", label), ("box", box)):
+            raise DetectionError(f"box, score, hue and saturation must be numbers; got {self!r}") from None
+        for name, value in {"label": canonical_label(self.label), **values}.items():
             object.__setattr__(self, name, value)
-        for name in ("score", "hue", "saturation"):
-            try:
-                object.__setattr__(self, name, float(getattr(self, name)))
-            except (TypeError, ValueError):
-                raise DetectionError(f"{name} must be a number; got {getattr(self, name)!r}") from None
-        if not 0 <= self.score <= 1:
-            raise DetectionError(f"score must be between 0 and 1; got {self.score}")
-        if not (math.isnan(self.hue) or 0 <= self.hue < 360):
-            raise DetectionError(f"hue must be in degrees, [0, 360), or NaN for grey; got {self.hue}")
-        if not 0 <= self.saturation <= 100:
-            raise DetectionError(f"saturation must be in percent, 0 to 100; got {self.saturation}")
+        if len(self.box) != 4 or not all(map(math.isfinite, self.box)):
+            raise DetectionError(f"box must be four finite numbers (u_min, v_min, u_max, v_max); got {self.box}")
+        if not (0 <= self.box[0] < self.box[2] and 0 <= self.box[1] < self.box[3]):
+            raise DetectionError(f"box must have 0 <= u_min < u_max and 0 <= v_min < v_max; got {self.box}")
+        if not (0 <= self.score <= 1 and 0 <= self.saturation <= 100 and (self.is_grey or 0 <= self.hue < 360)):
+            raise DetectionError(
+                "score must be 0 to 1, hue in degrees, [0, 360), or NaN for grey, saturation in percent, 0 to 100; got "
+                f"{self.score}, {self.hue} and {self.saturation}"
+            )
 
     @property
     def centre(self) -> tuple[float, float]:
-        """(u, v) of the box's centre, pixels, edge coordinates; u may pass the image's width."""
+        """(u, v) of the box's centre, pixels, edge coordinates. u may pass the image's width."""
         return ((self.box[0] + self.box[2]) / 2, (self.box[1] + self.box[3]) / 2)
 
     @property
@@ -63,15 +94,102 @@ class Detection:
 
     @property
     def is_grey(self) -> bool:
-        """Whether the object has no hue."""
+        """True if the object has no hue."""
         return math.isnan(self.hue)
 
     def wrapped(self, width: int) -> Detection:
-        """The same detection with its box moved by whole turns to 0 <= u_min < width (the image's, in pixels)."""
-        return Detection(self.label, self.score, tuple(wrapped_box(self.box, width)), self.hue, self.saturation)
+        """Return the same detection with its box moved by whole turns to 0 <= u_min < width (the image's, pixels)."""
+        return replace(self, box=tuple(wrapped_box(self.box, width)))
 
     def describe(self) -> str:
-        """One line for people: label, score, colour (or that it is grey), and where."""
+        """Return one line for people: label, score, colour and place."""
         colour = "grey, no hue" if self.is_grey else f"hue {self.hue:.0f} deg"
         u, v = self.centre
         return f"{self.label} {self.score:.2f}, {colour}, saturation {self.saturation:.0f} %, centre ({u:.0f}, {v:.0f})"
+
+
+def checked_boxes(boxes: np.ndarray, width: float, name: str = "boxes") -> np.ndarray:
+    """Return boxes `(..., 4)` as float64. Raises `DetectionError` for another shape, NaN, wrong order, too wide."""
+    array = np.asarray(boxes, dtype=np.float64)
+    if array.size == 0:
+        return array.reshape(0, 4)
+    if array.ndim == 0 or array.shape[-1] != 4:
+        raise DetectionError(f"{name} must have shape (..., 4) [u_min, v_min, u_max, v_max]; got {array.shape}")
+    faults = {
+        "must be finite": ~np.isfinite(array).all(axis=-1),
+        "need u_min < u_max and v_min < v_max; a box across the seam has u_max above the width": (
+            (array[..., 2] <= array[..., 0]) | (array[..., 3] <= array[..., 1])
+        ),
+        f"cannot be wider than the panorama ({width:g} px)": array[..., 2] - array[..., 0] > width,
+    }
+    for rule, broken in faults.items():
+        if broken.any():
+            raise DetectionError(f"{name} {rule}; got {array[broken][0].tolist()}")
+    return array
+
+
+def boxes_on(view: View, name: str) -> np.ndarray:
+    """Return the boxes `(n, 4)` of a panorama's detections.
+
+    Raises `DetectionError`, with `name` in the message, for boxes that cannot be or that lie outside the panorama.
+    """
+    boxes = checked_boxes([one.box for one in view.detections], view.width, f"boxes of the {name} image")
+    # A millionth of a pixel, because boxes come from sums and remainders, which round.
+    low, right, bottom = -1e-6, view.width + 1e-6, view.height + 1e-6
+    outside = (boxes[:, 0] < low) | (boxes[:, 0] >= right) | (boxes[:, 1] < low) | (boxes[:, 3] > bottom)
+    if outside.any():
+        raise DetectionError(
+            f"{name} box {boxes[outside][0].tolist()} is not on a panorama of {view.width} x {view.height} pixels: "
+            "give size=(width, height) of the image it comes from"
+        )
+    return boxes
+
+
+def wrapped_box(box: np.ndarray, width: float) -> np.ndarray:
+    """Return boxes `(..., 4)` moved by whole turns so that 0 <= u_min < width. Raises `DetectionError`."""
+    box = checked_boxes(box, width)
+    moved = box - (np.floor(box[..., 0] / width) * width)[..., None] * np.array([1.0, 0.0, 1.0, 0.0])
+    # The remainder of a tiny negative number rounds up to the width itself, which is one turn too far.
+    over = moved[..., 0] >= width
+    return moved - np.where(over, width, 0.0)[..., None] * np.array([1.0, 0.0, 1.0, 0.0])
+
+
+def box_centre(box: np.ndarray) -> np.ndarray:
+    """Return centres `(..., 2)` (u, v) of boxes `(..., 4)`, the mean of opposite edges, in pixels.
+
+    u may pass the width as the box does. Its direction is the same. Source: paper 2, section 2.4.
+    """
+    box = np.asarray(box, dtype=np.float64)
+    return 0.5 * (box[..., :2] + box[..., 2:])
+
+
+def box_area(box: np.ndarray) -> np.ndarray:
+    """Return areas `(...)` of boxes `(..., 4)`, square pixels."""
+    return (box[..., 2] - box[..., 0]) * (box[..., 3] - box[..., 1])
+
+
+def box_iou(boxes_a: np.ndarray, boxes_b: np.ndarray, width: float) -> np.ndarray:
+    """Return intersection over union `(n, m)` of boxes `(n, 4)` and `(m, 4)` on the circle of columns.
+
+    IoU = |A and B| / (|A| + |B| - |A and B|)
+
+    Raises `DetectionError` for boxes that cannot be.
+    """
+    shared = shared_area(boxes_a, boxes_b, width)
+    areas_a, areas_b = (box_area(np.asarray(boxes, np.float64).reshape(-1, 4)) for boxes in (boxes_a, boxes_b))
+    return shared / (areas_a[:, None] + areas_b[None, :] - shared)
+
+
+def shared_area(boxes_a: np.ndarray, boxes_b: np.ndarray, width: float) -> np.ndarray:
+    """Return the area `(n, m)`, square pixels, that boxes `(n, 4)` and `(m, 4)` share on the circle of columns.
+
+    B is laid against A where it is and one turn to either side, so boxes on both sides of the seam meet, and two very
+    wide boxes may overlap at both ends. Raises `DetectionError` for boxes that cannot be.
+    """
+    a, b = wrapped_box(boxes_a, width).reshape(-1, 1, 4), wrapped_box(boxes_b, width).reshape(1, -1, 4)
+    across = sum(
+        np.maximum(0.0, np.minimum(a[..., 2], b[..., 2] + shift) - np.maximum(a[..., 0], b[..., 0] + shift))
+        for shift in (-width, 0.0, width)
+    )
+    down = np.maximum(0.0, np.minimum(a[..., 3], b[..., 3]) - np.maximum(a[..., 1], b[..., 1]))
+    return across * down

@@ -1,5 +1,4 @@
-"""A detector in an ONNX file, run by OpenCV. Exporters agree on the file, not on what comes out; three layouts
-are read.
+"""A detector in an ONNX file, run by OpenCV. Three layouts of its outputs are read.
 
     "yolov5"   one output (1, n, 5 + classes): cx, cy, w, h in input pixels, objectness, class probabilities
                (also YOLOv7 and Scaled-YOLOv4 exports); score = objectness * class probability
@@ -10,30 +9,34 @@ are read.
 The input is (1, 3, H, W), RGB, 0 to 1. Export with a fixed input size and without suppression inside.
 """
 
+import subprocess
+import sys
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from course_lib.child import ChildError, ChildStopped, run_apart
-from course_lib.files import MEGABYTE, require_file
-from course_lib.spherical_stereo.detection.darknet_cfg import DetectorError
-from course_lib.spherical_stereo.detection.darknet_network import require_numbers
-from course_lib.spherical_stereo.detection.shared_network import SharedNetwork
-
-MEMORY = 1_500 * MEGABYTE
-"""What a small network may take, of which most is for its intermediate results."""
+from course_lib.files import require_file
+from course_lib.spherical_stereo.detection.darknet import DetectorError, Network
 
 LAYOUTS = ("yolov5", "yolov8", "yolov4")
+_PROBE = """
+import sys, cv2, numpy
+net = cv2.dnn.readNetFromONNX(sys.argv[1])
+shape = (1, 3, int(sys.argv[3]), int(sys.argv[2]))
+for image in (numpy.zeros(shape, "f4"), numpy.linspace(0, 1, numpy.prod(shape), dtype="f4").reshape(shape)):
+    net.setInput(image)
+    net.forward(net.getUnconnectedOutLayersNames())
+"""
 
 
 def decode_onnx(
     outputs: list[np.ndarray], layout: str, n_classes: int, input_size: tuple[int, int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Boxes (n, 4) in edge coordinates of the input and scores (n, classes) from a network's outputs.
+    """Return boxes `(n, 4)` in edge coordinates of the input and scores `(n, classes)` from a network's outputs.
 
-    layout: see the module. input_size: (width, height) in pixels. Raises DetectorError: an unknown layout, or outputs
-    whose number or shapes do not fit it; the message has them. Source: paper 2, section 2.2.
+    layout: see the module. input_size: (width, height) in pixels. Raises `DetectorError` for an unknown layout, and
+    for outputs whose number or shapes do not fit it. Source: paper 2, section 2.2.
     """
     if layout not in LAYOUTS:
         raise DetectorError(f"layout {layout!r} is not known; known are {', '.join(LAYOUTS)}")
@@ -60,77 +63,28 @@ def decode_onnx(
     return np.concatenate([centre - half, centre + half], axis=1), scores
 
 
-# OpenCV's reader follows what a file says without looking: of 496 files with a changed byte four ended the process.
-_PROBE = """
-import sys
-import cv2
-import numpy as np
-net = cv2.dnn.readNetFromONNX(sys.argv[1])
-for image in (np.zeros((1, 3, {1}, {0}), np.float32), np.linspace(0, 1, 3 * {1} * {0}, dtype=np.float32)):
-    net.setInput(image.reshape(1, 3, {1}, {0}))  # a black image and a ramp: an index may be made of what is seen
-    net.forward(net.getUnconnectedOutLayersNames())
-"""
-
-
-def _require_no_crash(path: Path, input_size: tuple[int, int]) -> None:
-    """Raises DetectorError where reading the file and running it once crashes, hangs or takes all memory elsewhere."""
-    try:
-        run_apart(_PROBE.format(*input_size), str(path.resolve()), MEMORY + 20 * path.stat().st_size)
-    except ChildStopped:  # an error that OpenCV itself tells below
-        return
-    except ChildError as reason:
-        raise DetectorError(
-            f"ONNX file {path} cannot be used: reading and running it {reason}. Is it damaged?"
-        ) from None
-
-
-class OnnxNetwork(SharedNetwork):
-    """A loaded network. Threads may share it, and processes."""
+class OnnxNetwork(Network):
+    """A loaded network of an ONNX file."""
 
     def __init__(self, path: str | Path, layout: str, n_classes: int, input_size: tuple[int, int]) -> None:
         """Load a network and run it once, so that what does not fit is found now.
 
-        input_size: (width, height) in pixels that it was exported for. Raises DetectorError: a missing or unreadable
-        file, an input size that the file does not take, or what `decode_onnx` refuses. Source: paper 2, section 2.2.
+        input_size: (width, height) in pixels that it was exported for. Raises `DetectorError` for a file that is
+        missing or unreadable, for an input size that it does not take, and what `decode_onnx` refuses.
         """
-        path = Path(path)
+        path = Path(path).absolute()
         require_file(path, "ONNX file", DetectorError)
-        self.input_size: tuple[int, int] = (int(input_size[0]), int(input_size[1]))
-        _require_no_crash(path, self.input_size)
-        self.n_classes = n_classes
-        self._layout = layout
-        self._told = str(path)
-        self._path = path.absolute()
-        super().__init__()
+        size = (int(input_size[0]), int(input_size[1]))
+        self.n_classes, self._layout = n_classes, layout
+        # OpenCV's reader trusts the file. Of 496 files with one changed byte, four ended the process.
+        words = [sys.executable, "-I", "-c", _PROBE, str(path), *map(str, size)]
+        if subprocess.run(words, capture_output=True, check=False).returncode not in (0, 1):
+            raise DetectorError(f"reading and running the ONNX file {path} ends the process. Is it damaged?")
         try:
-            self._decoded(np.zeros((1, 3, self.input_size[1], self.input_size[0]), dtype=np.float32))
+            net = cv2.dnn.readNetFromONNX(str(path))
         except cv2.error as error:
-            width, height = self.input_size
-            raise DetectorError(
-                f"OpenCV cannot run {path} at an input of {width} x {height}: {error.err}. "
-                "Give the input_size (width, height) that the file was exported for"
-            ) from error
+            raise DetectorError(f"OpenCV cannot read {path} as an ONNX network: {error.err}") from error
+        super().__init__(net, str(path), size, path, layout, n_classes, size)
 
-    def _opened(self) -> cv2.dnn.Net:
-        require_file(self._path, "ONNX file", DetectorError)
-        try:
-            return cv2.dnn.readNetFromONNX(str(self._path))
-        except cv2.error as error:
-            raise DetectorError(f"OpenCV cannot read {self._told} as an ONNX network: {error.err}") from error
-
-    def infer(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Boxes (n, 4) in edge coordinates of the input, scores (n, classes), for a blob (1, 3, H, W), RGB, 0 to 1.
-
-        Raises DetectorError for results that are NaN, or that do not fit the layout, and where OpenCV fails: what a
-        file does with an image may depend on the image.
-        """
-        try:
-            return self._decoded(blob)
-        except cv2.error as error:
-            raise DetectorError(f"OpenCV cannot run {self._told} on this image: {error.err}") from error
-
-    def _decoded(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """`infer`, with OpenCV's errors as they are."""
-        boxes, scores = decode_onnx(self._results(blob), self._layout, self.n_classes, self.input_size)
-        require_numbers(boxes, scores, self._told)
-        return boxes, scores
+    def _decode(self, outputs: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        return decode_onnx(outputs, self._layout, self.n_classes, self.input_size)

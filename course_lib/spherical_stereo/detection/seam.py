@@ -14,7 +14,7 @@ Source: paper 2, section 2.2.
 
 import numpy as np
 
-from course_lib.spherical_stereo.detection.boxes import box_area, box_iou, shared_area, wrapped_box
+from course_lib.spherical_stereo.detection.detected_object import box_area, box_iou, shared_area, wrapped_box
 from course_lib.spherical_stereo.detection.suppression import limit_by_class, suppress
 
 MARGIN = 1 / 32

@@ -11,18 +11,18 @@ the lower centre costs a quarter of a metre at 4 m (2.4); the mean of several mo
 
 import numpy as np
 
-from course_lib.spherical_stereo.detection.boxes import box_iou
+from course_lib.spherical_stereo.detection.detected_object import box_iou
 
 SAME_OBJECT_IOU = 0.65
 """Intersection over union above which boxes of two classes are one object that got two names; of 0.8, 0.65 and 0.5 the
 one with the best F1 on the validation rooms."""
 
 VOTE_IOU = 0.6
-"""Intersection over union from which a box votes on another's place. On the validation rooms 0.5 to 0.8 all do about
-as well (`score-detector --voting`): centres miss exact ones by 2.96 rows, without votes by 3.22."""
+"""Intersection over union from which a box votes on another's place. On the validation rooms 0.5 to 0.8 do about as
+well (`python -m tools.score_detector --voting`): centres miss exact ones by 2.96 rows, without votes by 3.22."""
 
 VOTE_SCORE = 0.1
-"""Least score of a box that votes; there, 0.05 to 0.3 all do about as well."""
+"""Smallest score of a box that votes. On these rooms 0.05 to 0.3 do about as well."""
 
 
 def suppress(overlap: np.ndarray, rank: np.ndarray, threshold: float) -> np.ndarray:

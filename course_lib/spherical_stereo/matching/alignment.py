@@ -1,13 +1,13 @@
-"""How the lower camera is turned against the upper one, told from the features of the two images (paper 2, 2.3).
+"""How the lower camera is turned against the upper one, told by the features of the two images (paper 2, 2.3).
 
-The paper's rig is one of two upright cameras, so that a point has one azimuth in both. A lower camera turned by small
-angles w = (w_x, w_y, w_z) about x, y and z sees it at another one:
+The paper's rig has two upright cameras, so a point has one azimuth in both. A lower camera turned by small angles
+w = (w_x, w_y, w_z) about x, y and z sees the point at another azimuth:
 
     a_l - a_u = -w_z + tan e_l (w_x cos a_l + w_y sin a_l)
 
-Yaw moves every feature alike, tilt moves what is above the horizon one way and what is below it the other. A tilt that
-nobody knows of is added to every parallax: at 3 m a degree is a sixth of it. So the rig is asked first. Small angles
-are not corrected here; a rig that is turned wants to be calibrated.
+Yaw moves every feature alike. Tilt moves what is above the horizon one way and what is below it the other, and it is
+added to every parallax: at 3 m a tilt of a degree is a sixth of it. So the images are asked first. Small angles are not
+corrected here, because a rig that is turned should be calibrated.
 """
 
 from __future__ import annotations
@@ -18,17 +18,16 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE
-from course_lib.spherical_stereo.matching.feature_matching import nearest_features
-from course_lib.spherical_stereo.matching.features import PanoramaFeatures
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures, nearest_features
 from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel
 
-GREATEST_TURN = EPIPOLAR_TOLERANCE
-"""Radians: a lower camera turned further than this moves true matches out of the epipolar tolerance."""
-MOST_FEATURES = 800
-"""Upper features that are looked for below, every k-th of all: enough for a hundredth of a degree."""
-FEWEST_AGREEING = 30
+MAX_TURN = EPIPOLAR_TOLERANCE
+"""Radians. If the lower camera is turned further, true matches miss the epipolar tolerance."""
+MAX_FEATURES = 800
+"""Upper features that are matched, every k-th of all: enough for a hundredth of a degree."""
+MIN_AGREEING = 30
 """Matches that must agree on the turn; fewer tell nothing."""
-LEAST_AGREEING = 0.6
+MIN_AGREEING_SHARE = 0.6
 """Share of all matches that must agree on the turn. Chosen half way on a walk through room 10,021: pairs of one moment
 have 0.86 and more, and 0.36 at most with the lower image of the view before, 0.2 to 0.5 m away."""
 _NEAR, _STEPS = 0.1, 10
@@ -38,33 +37,33 @@ class Alignment(NamedTuple):
     """What the features of two images say of how the cameras stand to each other."""
 
     turn: np.ndarray | None
-    """`(3,)` of the lower camera against the upper one about x, y, z, radians; None: too little agrees."""
+    """`(3,)` of the lower camera against the upper one about x, y, z, radians; None if too few matches agree."""
     agreeing: float | None
-    """Share of all matches that agree on it within `EPIPOLAR_TOLERANCE`; None: there are too few to tell."""
+    """Share of all matches that agree on it within `EPIPOLAR_TOLERANCE`; None if there are too few to tell."""
 
     @property
     def of_one_moment(self) -> bool:
-        """False where the matches cannot be those of two cameras at one place; True where they can, or tell nothing."""
-        return self.agreeing is None or self.agreeing >= LEAST_AGREEING
+        """False if the matches cannot be those of two cameras at one place."""
+        return self.agreeing is None or self.agreeing >= MIN_AGREEING_SHARE
 
-
-def camera_turn(upper: PanoramaFeatures, lower: PanoramaFeatures) -> np.ndarray | None:
-    """The turn of `camera_alignment`."""
-    return camera_alignment(upper, lower).turn
+    @property
+    def is_upright(self) -> bool:
+        """False if the lower camera is turned by more than `MAX_TURN`."""
+        return self.turn is None or float(np.linalg.norm(self.turn)) <= MAX_TURN
 
 
 def camera_alignment(upper: PanoramaFeatures, lower: PanoramaFeatures) -> Alignment:
-    """The turn w of the lower camera against the upper one, and how many matches agree on it.
+    """Return the turn w of the lower camera against the upper one, and how many matches agree on it.
 
-    The commonest azimuth difference is taken first, and then least squares of what lies within 0.1 radian of it, each
-    match weighed by Cauchy's function of its residual, so strangers have no say. Exact for small tilts and any yaw.
-    Source: paper 2, section 2.3 gives none.
+    The commonest azimuth difference is taken first, and then least squares of the matches within 0.1 radian of it. Each
+    match is weighted by Cauchy's function of its residual, so wrong matches hardly count. Exact for small tilts and any
+    yaw. Beyond the paper, whose section 2.3 takes the cameras as aligned.
     """
-    every = slice(None, None, max(1, len(upper) // MOST_FEATURES))
+    every = slice(None, None, max(1, len(upper) // MAX_FEATURES))
     thinned = PanoramaFeatures(upper.keypoints[every], upper.descriptors[every], upper.width, upper.height)
     matches = nearest_features(thinned, lower, EPIPOLAR_TOLERANCE)
     gap = matches.azimuth_difference
-    if len(gap) < FEWEST_AGREEING:
+    if len(gap) < MIN_AGREEING:
         return Alignment(None, None)
     counts, edges = np.histogram(gap, bins=90, range=(-np.pi, np.pi))
     peak = int(np.argmax(np.roll(counts, 1) + counts + np.roll(counts, -1)))
@@ -76,7 +75,7 @@ def camera_alignment(upper: PanoramaFeatures, lower: PanoramaFeatures) -> Alignm
     )
     beyond = np.cos(elevation) * wrap_angle(gap - middle)
     near = np.abs(beyond) < _NEAR
-    if near.sum() < FEWEST_AGREEING:
+    if near.sum() < MIN_AGREEING:
         return Alignment(None, float(near.mean()))
     rows, beyond, turn = rows[near], beyond[near], np.zeros(3)
     for _ in range(_STEPS):
@@ -86,6 +85,6 @@ def camera_alignment(upper: PanoramaFeatures, lower: PanoramaFeatures) -> Alignm
         turn = np.linalg.lstsq(np.sqrt(weight)[:, None] * rows, np.sqrt(weight) * beyond, rcond=None)[0]
     agreeing = int((np.abs(beyond - rows @ turn) < EPIPOLAR_TOLERANCE).sum())
     share = agreeing / len(gap)
-    if agreeing < FEWEST_AGREEING:
+    if agreeing < MIN_AGREEING:
         return Alignment(None, share)
     return Alignment(np.array([turn[0], turn[1], wrap_angle(turn[2] - middle)]), share)

@@ -13,26 +13,31 @@ statement, as the baseline tilts along.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.spherical_stereo.matching.features import PanoramaFeatures
 from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_difference
 
-# How far, in radians on the sphere, a match may lie from its epipolar half-circle: 3 columns at 1280 (chosen: AKAZE's
-# own noise is about one column, and a lower camera turned by half a degree against the upper one is still let through).
+if TYPE_CHECKING:
+    from course_lib.spherical_stereo.matching.features import PanoramaFeatures
+
 EPIPOLAR_TOLERANCE = 0.015
-# No object's surface is nearer to the rig's axis than this, metres (chosen; the paper's places keep 0.3 m clear).
-NEAREST_RANGE = 0.3
-# Bits of 486 in which the descriptors of one point may differ (chosen from a real pair).
+"""Radians on the sphere by which a match may miss its epipolar half-circle: 3 columns at 1280 (chosen: AKAZE's own
+noise is about one column, and a lower camera turned by half a degree against the upper one is still let through)."""
+MIN_RANGE = 0.3
+"""Metres. No object's surface is nearer to the rig's axis (chosen; the paper's places keep 0.3 m clear)."""
 MAX_HAMMING = 120
+"""Bits of 486 in which the descriptors of one point may differ (chosen from a real pair)."""
+RATIO = 0.8
+"""Hamming distance of the best candidate over that of the second best, at most (Lowe's value for distances)."""
 
 _BIT_COUNT = np.array([bin(byte).count("1") for byte in range(256)], dtype=np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
 class EpipolarPairs:
-    """Pairs of features, one of each image, that the epipolar constraint allows: one element a pair, `(n,)` each.
+    """Pairs of features that the epipolar constraint allows: arrays `(n,)`, one element a pair.
 
     upper, lower: indices into the features. distance: Hamming distance of the descriptors, bits. disparity: e_l - e_u,
     radians, of either sign. slope: tan e_l - tan e_u, which is baseline / horizontal range for a true pair.
@@ -48,12 +53,12 @@ class EpipolarPairs:
         return len(self.upper)
 
     def where(self, chosen: np.ndarray) -> EpipolarPairs:
-        """The pairs that a mask or an index array chooses."""
+        """Return the pairs that a mask or an index array chooses."""
         return EpipolarPairs(*(getattr(self, name)[chosen] for name in self.__dataclass_fields__))
 
 
 def epipolar_residual(azimuth_upper, elevation_upper, azimuth_lower, elevation_lower) -> np.ndarray:
-    """How far two directions are from obeying the epipolar constraint, radians on the sphere, in [0, pi/2].
+    """Return how far two directions are from obeying the epipolar constraint, radians on the sphere, in [0, pi/2].
 
     Each direction has a distance to the other's epipolar half-circle, the meridian of its azimuth:
     asin(cos e |sin da|), or pi/2 - |e|, the way to the pole, when da is beyond a right angle. The larger of the two is
@@ -70,9 +75,9 @@ def epipolar_pairs(
     tolerance: float = EPIPOLAR_TOLERANCE,
     max_hamming: int = MAX_HAMMING,
 ) -> EpipolarPairs:
-    """Pairs of features within `tolerance` (radians) of the epipolar constraint and `max_hamming` bits of each other.
+    """Return the pairs within `tolerance` (radians) of the epipolar constraint and `max_hamming` bits of each other.
 
-    For each upper feature only the lower ones near its azimuth are looked at, which are few: n log n, not n squared.
+    For each upper feature only the few lower ones near its azimuth are looked at, so the cost is n log n.
     Raises `PanoramaError` for a tolerance outside (0, pi/2). Source: paper 2, section 2.3.
     """
     if not 0 < tolerance < np.pi / 2:
@@ -106,7 +111,7 @@ def _near_in_azimuth(azimuth_u, elevation_u, azimuth_l, tolerance) -> tuple[np.n
 
 
 def hamming(first: np.ndarray, second: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Hamming distances `(n,)` in bits between descriptors first[rows] and second[columns], each `(k, bytes)` uint8."""
+    """Return Hamming distances `(n,)` in bits of descriptors first[rows] and second[columns], `(k, bytes)` uint8."""
     # Eight bytes at a time; zeros fill up the last eight, equal in both, so they add nothing.
     first, second = (np.pad(d, ((0, 0), (0, -d.shape[1] % 8))).view(np.uint64) for d in (first, second))
     different = np.bitwise_xor(first[rows], second[columns])
@@ -115,17 +120,17 @@ def hamming(first: np.ndarray, second: np.ndarray, rows: np.ndarray, columns: np
     return _BIT_COUNT[different.view(np.uint8)].sum(axis=-1, dtype=np.int64)  # NumPy 1.26
 
 
-def allowed_by_rig(pairs: EpipolarPairs, baseline: float, nearest_range: float = NEAREST_RANGE) -> np.ndarray:
-    """Which pairs can be one point in front of the rig: 0 < tan e_l - tan e_u <= baseline / nearest_range; bool `(n,)`.
+def allowed_by_rig(pairs: EpipolarPairs, baseline: float, min_range: float = MIN_RANGE) -> np.ndarray:
+    """Return bool `(n,)`: can a pair be one point around the rig, 0 < tan e_l - tan e_u <= baseline / min_range?
 
-    The horizontal range is baseline / (tan e_l - tan e_u): it must be positive and at least `nearest_range` metres.
+    The horizontal range is baseline / (tan e_l - tan e_u): it must be positive and at least `min_range` metres.
     Source: paper 2, section 2.3.
     """
-    return (pairs.disparity > 0) & (pairs.slope > 0) & (pairs.slope <= baseline / nearest_range)
+    return (pairs.disparity > 0) & (pairs.slope > 0) & (pairs.slope <= baseline / min_range)
 
 
-def best_pairs(pairs: EpipolarPairs, ratio: float) -> EpipolarPairs:
-    """The pairs in which each feature is the other's nearest, and clearly so: one-to-one.
+def best_pairs(pairs: EpipolarPairs, ratio: float = RATIO) -> EpipolarPairs:
+    """Return the pairs in which each feature is clearly the other's nearest. They are one-to-one.
 
     A pair stays when its Hamming distance is the smallest of both its features (equal ones: none stays) and at most
     `ratio` times the second smallest of the upper feature.

@@ -1,10 +1,10 @@
-"""AKAZE features on panoramas: where they are, their descriptors, and which of them lie in a box (paper 2, 2.3).
+"""AKAZE features on panoramas, and what two whole panoramas say about each other before any object is known (2.3).
 
 AKAZE is made for flat images. An equirectangular image stretches everything sideways by 1 / cos(elevation): twice at 60
 degrees, without limit at the poles. Between two cameras of one vertical rig a point moves along its column, from one
-stretch to another, so features above about 60 degrees up or down match less often; furniture rarely stands there.
+stretch to another, so features above about 60 degrees up or down match less often. Furniture rarely stands there.
 
-The descriptors are the upright ones: the cameras of a rig stand upright side by side, so nothing is turned between
+The descriptors are the upright ones. The cameras of a rig stand upright side by side, so nothing is turned between
 their images, and leaving rotation out tells more features apart (a fifth more matches on a real pair).
 """
 
@@ -15,17 +15,31 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from course_lib.spherical_stereo.panorama import PanoramaError, View, azimuth_elevation_of_pixel, open_view
+from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE, RATIO, epipolar_residual
+from course_lib.spherical_stereo.panorama import (
+    PanoramaError,
+    View,
+    azimuth_difference,
+    azimuth_elevation_of_pixel,
+    open_pair,
+    open_view,
+)
 
-# Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
-# 1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none, for half as much time again; on a real pair as
-# large a share of the weaker features obeys the epipolar constraint.
 AKAZE_THRESHOLD = 2e-4
-# Octaves of scale. A fourth adds nothing on panoramas about 1,000 pixels wide.
+"""Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
+1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none, for half as much time again; on a real pair as
+large a share of the weaker features obeys the epipolar constraint."""
 AKAZE_OCTAVES = 3
-# Columns repeated at both sides of the image, pixels: the descriptor of AKAZE's coarsest feature in three octaves
-# reaches 10 sqrt(2) x 1.6 x 2^2.75 = 152 pixels, and a feature whose descriptor would leave the image is not found.
+"""Octaves of scale. A fourth adds nothing on panoramas about 1,000 pixels wide."""
 SEAM_MARGIN = 160
+"""Columns repeated at both sides of the image, pixels: the descriptor of AKAZE's coarsest feature in three octaves
+reaches 10 sqrt(2) x 1.6 x 2^2.75 = 152 pixels, and a feature whose descriptor would leave the image is not found."""
+MIN_DISPARITY = 0.0025
+"""Radians, half a row at a height of 640. A smaller disparity does not tell which camera is higher."""
+
+
+class SwappedImagesError(PanoramaError):
+    """The image given as the upper one was taken below the other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,16 +66,15 @@ class PanoramaFeatures:
 def detect_features(
     image: np.ndarray, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES
 ) -> PanoramaFeatures:
-    """`find_features` of an image, uint8 BGR `(H, W, 3)`, W = 2 H. Raises `PanoramaError` as it and `open_view` do."""
+    """Return the features of an image, uint8 BGR `(H, W, 3)`. Raises `PanoramaError` as `find_features` does."""
     return find_features(open_view(image), threshold, octaves).features
 
 
 def find_features(view: View, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES) -> View:
-    """The panorama with its AKAZE features, found unless they are there already; those on the seam too, each once.
+    """Return the panorama with its AKAZE features. If it has some already, they stay.
 
     threshold: smallest response, lower means more and weaker features. The image is extended by its own other end on
-    both sides, and only features whose place is in the image proper are kept: a feature on the seam is found whole, and
-    its copy in the extension is left out.
+    both sides, so that a feature on the seam is found whole. Its copy in the extension is left out.
     Raises `PanoramaError` for a threshold that is not positive or octaves below one. Source: paper 2, section 2.3.
     """
     if view.features is not None:
@@ -77,17 +90,16 @@ def find_features(view: View, threshold: float = AKAZE_THRESHOLD, octaves: int =
     )
     keypoints, descriptors = akaze.detectAndCompute(extended, None)
     if not keypoints:
-        nothing = PanoramaFeatures(np.zeros((0, 2)), np.zeros((0, 61), np.uint8), width, height)
-        return view.having(features=nothing)
+        return view.replace(features=PanoramaFeatures(np.zeros((0, 2)), np.zeros((0, 61), np.uint8), width, height))
     # OpenCV's keypoints have pixel centres at integers; edge coordinates have them half a pixel on.
     places = np.array([keypoint.pt for keypoint in keypoints], dtype=np.float64) + 0.5 - [margin, 0]
     proper = (places[:, 0] >= 0) & (places[:, 0] < width)
     places[:, 1] = np.clip(places[:, 1], 0, height)
-    return view.having(features=PanoramaFeatures(places[proper], descriptors[proper], width, height))
+    return view.replace(features=PanoramaFeatures(places[proper], descriptors[proper], width, height))
 
 
 def inside_box(points: np.ndarray, box: np.ndarray, width: int) -> np.ndarray:
-    """Which of the points `(n, 2)` lie in a box (u_min, v_min, u_max, v_max), on the circle of columns; bool `(n,)`.
+    """Return bool `(n,)`: does a point `(n, 2)` lie in a box (u_min, v_min, u_max, v_max) on the circle of columns?
 
     A point is inside when (u - u_min) mod W < u_max - u_min and v_min <= v < v_max, so a box may cross the seam.
     """
@@ -95,3 +107,90 @@ def inside_box(points: np.ndarray, box: np.ndarray, width: int) -> np.ndarray:
     u_min, v_min, u_max, v_max = np.asarray(box, dtype=np.float64)
     across = (points[:, 0] - u_min) % width < u_max - u_min
     return across & (points[:, 1] >= v_min) & (points[:, 1] < v_max)
+
+
+@dataclass(frozen=True, eq=False)
+class FeatureMatches:
+    """Matches of features over two whole panoramas, one row a match, before the epipolar constraint is applied.
+
+    keypoints_upper, keypoints_lower: `(n, 2)` edge coordinates, pixels. azimuth_difference: a_lower - a_upper `(n,)`,
+    radians. vertical_disparity: e_lower - e_upper `(n,)`, radians, positive for a true match. epipolar: bool `(n,)`,
+    which matches obey the epipolar constraint within `tolerance` radians on the sphere.
+    """
+
+    keypoints_upper: np.ndarray
+    keypoints_lower: np.ndarray
+    azimuth_difference: np.ndarray
+    vertical_disparity: np.ndarray
+    epipolar: np.ndarray
+    tolerance: float
+
+    def __len__(self) -> int:
+        return len(self.epipolar)
+
+    @property
+    def epipolar_share(self) -> float:
+        """Share of the matches that obey the epipolar constraint, in [0, 1]; nan without matches."""
+        return float(self.epipolar.mean()) if len(self) else float("nan")
+
+
+def match_features(
+    upper: PanoramaFeatures, lower: PanoramaFeatures, tolerance: float = EPIPOLAR_TOLERANCE
+) -> FeatureMatches:
+    """Match the features of two whole panoramas without the epipolar constraint, and then test them by it.
+
+    Nearest neighbour in Hamming distance, mutual and with the ratio test (`RATIO`). As the constraint has no part in
+    the search, the share that obeys it tells how well the images are aligned.
+    Raises `SwappedImagesError`, and `PanoramaError` for unlike sizes. Source: paper 2, section 2.3.
+    """
+    open_pair(View(upper.width, upper.height), View(lower.width, lower.height))
+    matches = nearest_features(upper, lower, tolerance)
+    check_not_swapped(matches.vertical_disparity[matches.epipolar])
+    return matches
+
+
+def nearest_features(upper: PanoramaFeatures, lower: PanoramaFeatures, tolerance: float) -> FeatureMatches:
+    """Return `match_features` of images that may be swapped or turned against each other."""
+    first, second = _mutual_matches(upper.descriptors, lower.descriptors)
+    (azimuth_u, elevation_u), (azimuth_l, elevation_l) = (
+        (angles[0][chosen], angles[1][chosen]) for angles, chosen in ((upper.angles(), first), (lower.angles(), second))
+    )
+    return FeatureMatches(
+        upper.keypoints[first],
+        lower.keypoints[second],
+        np.atleast_1d(azimuth_difference(azimuth_l, azimuth_u)),
+        elevation_l - elevation_u,
+        epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l) <= tolerance,
+        tolerance,
+    )
+
+
+def _mutual_matches(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return index arrays of descriptors that are each other's nearest and pass the ratio test."""
+    if len(first) < 2 or len(second) < 2:
+        return np.zeros(0, int), np.zeros(0, int)
+    matcher = cv2.BFMatcher(cv2.NORM_HAMMING)
+    back = np.array([match.trainIdx for match in matcher.match(second, first)])
+    kept = [
+        (best.queryIdx, best.trainIdx)
+        for best, runner_up in matcher.knnMatch(first, second, k=2)
+        if best.distance <= RATIO * runner_up.distance and back[best.trainIdx] == best.queryIdx
+    ]
+    rows, columns = np.array(kept, dtype=int).reshape(-1, 2).T
+    return rows, columns
+
+
+def check_not_swapped(disparity: np.ndarray) -> None:
+    """Raise `SwappedImagesError` if vertical disparities (radians, `(n,)`) say that upper and lower are swapped.
+
+    For a true pair they are positive; unrelated images give either sign like a coin. The images count as swapped when
+    negative signs lead by more than 3 sqrt(n), three standard deviations of a coin. Disparities below
+    `MIN_DISPARITY` (far things, one image given twice) do not count. Source: paper 2, section 2.3.
+    """
+    told = disparity[np.abs(disparity) > MIN_DISPARITY]
+    negative = int((told < 0).sum())
+    if 2 * negative - len(told) > 3 * np.sqrt(len(told)):
+        raise SwappedImagesError(
+            f"upper and lower image seem to be swapped: {negative} of {len(told)} matched features lie lower in the "
+            "image given as the lower one, but a camera further down sees them higher. Swap the two images"
+        )

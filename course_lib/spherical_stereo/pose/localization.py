@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.spherical_stereo.pose.plausibility import Residuals
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.panorama import View
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, Residuals
 from course_lib.spherical_stereo.ranging.triangulation import OK as OK
 from course_lib.spherical_stereo.semantic_map.association import Association, Observation
 
 Status = Literal["ok", "unable"]
 UNABLE: Status = "unable"
 
-# Reasons why there is no pose: all of them things that the world does. The fit's own are in `rigid_fit`.
+# Reasons why there is no pose. None of them is a mistake of the caller's. The fit's own are in `rigid_fit`.
 BLANK = "blank image"
 NO_DETECTIONS = "no detections"
 ONE_DETECTION = "one detection"
@@ -28,69 +28,89 @@ TOO_FEW_PLACED = "fewer than two objects with a distance"
 UNMAPPED_ONLY = "only unmapped classes"
 IMPLAUSIBLE = "implausible"
 
-# An outcome of an object beside those of `triangulation` and `vertical_disparity`.
+# An outcome of an object beside those of `ranging`.
 UNMAPPED = "class not on the map"
 
 
 class PlacedObject(NamedTuple):
-    """One object seen in both images, and what became of it."""
+    """One object seen in both images.
+
+    upper, lower: indices of its detections. outcome: "ok", or why there is no position (`ObjectPosition`). position:
+    X = d x_hat `(3,)`, metres, body frame with the origin at the upper camera; NaN without a position. observation: its
+    index among the observations; None without a position, or if the map has no such class.
+    """
 
     upper: int
-    """Index of its detection in the upper image."""
     lower: int
-    """Index of its detection in the lower image."""
     label: str
     outcome: str
-    """ "ok", or why there is no place: "parallel", "diverging", "azimuth gap", "too few matches", "too far"."""
     position: np.ndarray
-    """X = d x_hat `(3,)`, metres, body frame with the origin at the upper camera; NaN where there is no place."""
     observation: int | None
-    """Index among the observations; None without a place, or when the map has no such class."""
 
 
 @dataclass(frozen=True, eq=False)
 class Localization:
-    """Result of `SemanticLocalizer`. Source: paper 2, figure 2 (its sections 2.2 to 2.6 in order)."""
+    """Result of `SemanticLocalizer`. It is also the record that walks through its steps, each of which fills in a part.
 
-    pose: Pose2D | None
+    Source: paper 2, figure 2 (its sections 2.2 to 2.6 in order).
+    """
+
+    pose: Pose2D | None = None
     """s = [x, y, theta], or None."""
-    status: Status
+    status: Status = UNABLE
     """ "ok" or "unable"."""
     reason: str | None = None
-    """Why there is no pose, one of the names above; None when there is one."""
+    """Why there is no pose, one of the names above; None if there is one."""
     explanation: str = ""
     """The reason in a sentence, with its numbers."""
     matches: Sequence = ()
-    """Objects seen in both images, as given or found."""
+    """2.3: objects seen in both images, as given or found."""
     covariance: np.ndarray | None = None
-    """`(3, 3)` of [x, y, theta], metres and radians, squared; None without a pose, or without the observations'."""
-    upper_detections: Sequence = ()
-    lower_detections: Sequence = ()
+    """2.6: `(3, 3)` of [x, y, theta], metres and radians, squared; None without a pose or the observations' own."""
+    upper: View | None = None
+    """The upper panorama with its detections (2.2). Its image and features are left out at the end of the walk."""
+    lower: View | None = None
     unmatched: Sequence = ()
-    """Detections without partner in the other image, each with its reason; empty when the matches were given."""
+    """2.3: detections without partner in the other image, each with its reason; empty if the matches were given."""
     objects: tuple[PlacedObject, ...] = ()
-    """One for every match, in their order."""
+    """2.4: one for every match, in their order."""
     observations: tuple[Observation, ...] = ()
-    """Objects with a place whose class is on the map: what was matched to it."""
+    """2.4: objects with a position whose class is on the map."""
     association: Association | None = None
-    """How the observations were matched to the map; None without observations."""
+    """2.5: how the observations were matched to the map; None without observations."""
     residuals: np.ndarray | None = None
-    """`(n, 2)` metres, world: where the used observations land, minus their landmarks."""
+    """2.6: `(n, 2)` metres, world: where the used observations land, minus their landmarks."""
     statistics: Residuals | None = None
     """How large the residuals may be under the observations' covariances; None without these."""
     rejected_pose: Pose2D | None = None
-    """What was fitted, where the reason is "implausible"; None otherwise."""
+    """The pose that was fitted, if the reason is "implausible"; None otherwise."""
     turn: np.ndarray | None = None
-    """`(3,)` radians about x, y, z: of the lower camera against the upper one, as the images tell; None: not known."""
+    """`(3,)` radians about x, y, z: of the lower camera against the upper one, as the images tell; None if unknown."""
+
+    def unable(self, reason: str, explanation: str, **found: Any) -> Localization:
+        """Return the same with a reason why there is no pose, unless an earlier step gave one."""
+        if self.reason is not None:
+            return replace(self, **found)
+        return replace(self, reason=reason, explanation=explanation, **found)
+
+    @property
+    def upper_detections(self) -> tuple:
+        """What was seen in the upper image; () if observations were given directly."""
+        return () if self.upper is None else self.upper.detections
+
+    @property
+    def lower_detections(self) -> tuple:
+        """What was seen in the lower image."""
+        return () if self.lower is None else self.lower.detections
 
     @property
     def confidence(self) -> float | None:
-        """0 to 1; None from a matcher that asks for no pose, or without observations."""
+        """0 to 1; None from a matcher that weighs no poses, or without observations."""
         return None if self.association is None else self.association.confidence
 
     @property
     def alternatives(self) -> tuple:
-        """The poses that were weighed (`PoseHypothesis`), best first; () from a matcher that asks for no pose."""
+        """The poses that were weighed, best first; () from a matcher that weighs none."""
         return () if self.association is None else self.association.hypotheses
 
     @property
@@ -109,5 +129,5 @@ class Localization:
         return () if self.association is None else self.association.usable_pairs
 
     def upper_detection_of(self, observation: int) -> int | None:
-        """Index of the upper image's detection behind an observation; None when observations were given directly."""
+        """Return the index of the upper detection behind an observation; None if observations were given directly."""
         return next((one.upper for one in self.objects if one.observation == observation), None)

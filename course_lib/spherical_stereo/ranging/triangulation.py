@@ -1,4 +1,4 @@
-"""From two directions to a place: X = d x_hat, how sure it is, and when there is none (paper 2, 2.4).
+"""From two directions to a position: X = d x_hat, how sure it is, and when there is none (paper 2, section 2.4).
 
 Seen from the rig's vertical axis, upper camera, lower camera and point make a triangle. Its angle at the point is the
 parallax e_l - e_u, its angle at the lower camera pi/2 - e_l, so the law of sines gives
@@ -6,10 +6,9 @@ parallax e_l - e_u, its angle at the lower camera pi/2 - e_l, so the law of sine
     d = baseline cos e_l / sin(e_l - e_u)          (along the upper camera's direction)
     rho = d cos e_u = baseline / (tan e_l - tan e_u)          (horizontal range)
 
-The centres of two boxes around one object differ a little in azimuth too, so the two rays are skew and meet nowhere.
-The distance comes from the elevations alone and the azimuth is the upper camera's: the baseline is vertical, azimuth
-says nothing about distance. A large difference in azimuth means that the boxes do not show one object, and has its own
-outcome.
+The centres of two boxes around one object differ a little in azimuth too, so the two rays do not meet. The distance
+comes from the elevations alone, because the baseline is vertical, and the azimuth is the upper camera's. A large
+difference in azimuth means that the boxes do not show one object, and has its own outcome.
 """
 
 from __future__ import annotations
@@ -19,12 +18,12 @@ import numpy as np
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, azimuth_elevation, direction_from_angles
 
-# Parallax (e_l - e_u), radians, below which rays count as parallel: a fifth of a row at 1280 x 640, where the smallest
-# error of a box makes any distance; 300 m at a baseline of 0.3 m.
 PARALLEL_TOLERANCE = 1e-3
-# Epipolar residual, radians on the sphere, above which two box centres are not one object's: 20 columns at 1280
-# (chosen: 0.6 of the width of a chair three metres away).
+"""Parallax (e_l - e_u), radians, below which rays count as parallel: a fifth of a row at 1280 x 640, where the smallest
+error of a box makes any distance; 300 m at a baseline of 0.3 m."""
 AZIMUTH_GAP_TOLERANCE = 0.1
+"""Epipolar residual, radians on the sphere, above which two box centres are not one object's: 20 columns at 1280
+(chosen: 0.6 of the width of a chair three metres away)."""
 
 OK, PARALLEL, DIVERGING, AZIMUTH_GAP = "ok", "parallel", "diverging", "azimuth gap"
 
@@ -43,7 +42,7 @@ def triangulation_outcome(
     parallel_tolerance: float = PARALLEL_TOLERANCE,
     azimuth_gap_tolerance: float = AZIMUTH_GAP_TOLERANCE,
 ) -> np.ndarray:
-    """What two directions `(..., 3)` give: "ok", "parallel", "diverging" or "azimuth gap", an array `(...)` of names.
+    """Return the outcomes `(...)` of two directions `(..., 3)`: "ok", "parallel", "diverging" or "azimuth gap".
 
     "azimuth gap": the epipolar residual is above `azimuth_gap_tolerance`; else "diverging": e_l - e_u is below
     -`parallel_tolerance`; else "parallel": it is at most `parallel_tolerance`, or a direction is within that of
@@ -68,7 +67,7 @@ def triangulate(
     parallel_tolerance: float = PARALLEL_TOLERANCE,
     azimuth_gap_tolerance: float = AZIMUTH_GAP_TOLERANCE,
 ) -> np.ndarray:
-    """Distances d `(...)` in metres along the upper camera's directions: the object is at X = d x_hat_upper.
+    """Return distances d `(...)` in metres along the upper camera's directions: the object is at X = d x_hat_upper.
 
     d = baseline cos e_l / sin(e_l - e_u)
 
@@ -80,29 +79,26 @@ def triangulate(
     baseline = StereoRig(baseline).baseline
     outcome = triangulation_outcome(direction_upper, direction_lower, parallel_tolerance, azimuth_gap_tolerance)
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
-    for name in (AZIMUTH_GAP, DIVERGING, PARALLEL):
+    hint = {
+        AZIMUTH_GAP: "the directions do not show one object; match the objects first",
+        DIVERGING: "are the images swapped, or the boxes two objects'?",
+        PARALLEL: "they tell no distance; a nearer object or a longer baseline is needed",
+    }
+    for name in hint:
         if (outcome == name).any():
             first = tuple(np.argwhere(outcome == name)[0])
-            raise TriangulationError(_explanation(name, first, upper, lower, residual), name)
+            where = f" (element {', '.join(map(str, first))})" if first else ""
+            e_u, e_l, gap = np.degrees([upper[first], lower[first], residual[first]])
+            raise TriangulationError(
+                f"{name}: the elevations{where} are {e_u:.3f} (upper) and {e_l:.3f} degrees, and the directions "
+                f"{gap:.2f} degrees apart across the epipolar half-circle: {hint[name]}",
+                name,
+            )
     return _distance(upper, lower, baseline)
 
 
-def _explanation(name, first, upper, lower, residual) -> str:
-    """What was wrong with the first pair of directions of an outcome."""
-    where = f" (element {', '.join(map(str, first))})" if first else ""
-    e_u, e_l, gap = np.degrees([upper[first], lower[first], residual[first]])
-    return {
-        AZIMUTH_GAP: f"the two directions{where} are {gap:.2f} degrees apart across the epipolar half-circle: "
-        "they do not show one object; match the objects first",
-        DIVERGING: f"the two directions{where} diverge: the lower camera's elevation {e_l:.2f} degrees is below the "
-        f"upper camera's {e_u:.2f}. Are the images swapped, or the boxes two objects'?",
-        PARALLEL: f"the two directions{where} are parallel or along the baseline (elevations {e_u:.3f} and "
-        f"{e_l:.3f} degrees): they tell no distance; a nearer object or a longer baseline is needed",
-    }[name]
-
-
 def object_position(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
-    """Places X = d x_hat `(..., 3)` in metres, in the frame of the upper camera (x forward, y left, z up).
+    """Return positions X = d x_hat `(..., 3)` in metres, in the frame of the upper camera (x forward, y left, z up).
 
     Raises what `triangulate` raises. Source: paper 2, section 2.4.
     """
@@ -118,7 +114,7 @@ def triangulation_covariance(
     sigma_azimuth: float | np.ndarray,
     sigma_elevation: float | np.ndarray,
 ) -> np.ndarray:
-    """Covariances `(..., 3, 3)` of X = d x_hat, square metres, that noise of the two directions implies (first order).
+    """Return covariances `(..., 3, 3)` of X = d x_hat, square metres, from noise of the two directions (first order).
 
     C = J diag(s_a^2, s_e^2, s_e^2) J'  with J the derivative of
 
@@ -127,8 +123,8 @@ def triangulation_covariance(
 
     The standard deviation along the ray grows with d^2 / baseline, the one across with d only. sigma_azimuth: of the
     upper camera's azimuth, sigma_elevation: of either camera's elevation, radians, taken as independent; sigma pixels
-    are 2 pi sigma / W and pi sigma / H. (The two errors of box centres around one object are alike in part, which this
-    does not use: it errs on the side of caution.)
+    are 2 pi sigma / W and pi sigma / H. The two errors of box centres around one object are alike in part. This is not
+    used, so the covariance is rather too large.
     Raises what `triangulate` raises, and `PanoramaError` for a sigma that is negative or not finite.
     Source: paper 2, section 2.4.
     """

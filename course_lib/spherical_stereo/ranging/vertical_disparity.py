@@ -5,10 +5,9 @@ cameras at two heights see another part of the object, so the parallax of the ce
 paired the boxes are true points of the object's surface, matched to about a pixel, and each gives a horizontal range
 of its own.
 
-What they measure is the *visible surface*: the map's centroid lies behind it by about half the object's depth, and some
-features in a box belong to what is in front of the object or behind it. The centre is the median of the features'
-inverse ranges, so a minority of strangers does no harm; the missing half depth is not added here, because it is not in
-the images (a map that knows the objects' sizes could).
+They measure the *visible surface*. The map's centroid lies behind it by about half the object's depth, which is not
+added here, because it is not in the images. Some features in a box belong to something in front of the object or behind
+it, so the median of the features' inverse ranges is taken, which a minority of strangers does not move.
 """
 
 from __future__ import annotations
@@ -27,8 +26,8 @@ from course_lib.spherical_stereo.panorama import (
 from course_lib.spherical_stereo.ranging.triangulation import OK, PARALLEL, PARALLEL_TOLERANCE
 
 TOO_FEW_MATCHES = "too few matches"
-# Matches below which a median says nothing about its own spread.
-FEWEST_MATCHES = 3
+MIN_MATCHES = 3
+"""With fewer matches a median says nothing about its own spread."""
 # Standard deviation of a normal distribution over its median absolute deviation.
 _NORMAL_OVER_MAD = 1.4826
 # Standard deviation of the median over that of the mean, of normally distributed numbers: sqrt(pi / 2).
@@ -52,7 +51,7 @@ class DisparityDistance:
     n_matches: int
 
     def position(self, direction_upper: np.ndarray) -> np.ndarray:
-        """Place `(3,)` in the upper camera's frame, metres: this range, in the direction of the box centre.
+        """Return the position `(3,)` at this range in the direction of the box centre; upper camera's frame, metres.
 
         X = rho (cos a, sin a, tan e), where a and e are the direction's; nan unless the outcome is "ok".
         Raises `PanoramaError` for a direction that is none.
@@ -60,15 +59,11 @@ class DisparityDistance:
         azimuth, elevation = azimuth_elevation(direction_upper)
         return self.horizontal_range / np.cos(elevation)[..., None] * direction_from_angles(azimuth, elevation)
 
-    def distance(self, direction_upper: np.ndarray) -> float:
-        """Distance d in metres along the direction of the box centre: rho / cos e."""
-        return float(np.linalg.norm(self.position(direction_upper)))
-
 
 def horizontal_ranges(
     keypoints_upper: np.ndarray, keypoints_lower: np.ndarray, width: int, height: int, baseline: float
 ) -> np.ndarray:
-    """Horizontal ranges `(k,)` in metres of matched features `(k, 2)`: rho = baseline / (tan e_l - tan e_u).
+    """Return horizontal ranges `(k,)` in metres of matched features `(k, 2)`: rho = baseline / (tan e_l - tan e_u).
 
     Edge coordinates, pixels. A match whose disparity is not positive gives infinity. Raises `PanoramaError`
     for a baseline that is not positive, keypoints of two numbers or outside the image. Source: paper 2, section 2.4.
@@ -78,7 +73,7 @@ def horizontal_ranges(
 
 
 def disparity_distance(match, width: int, height: int, baseline: float) -> DisparityDistance:
-    """The horizontal range of a matched object from the vertical disparities of its features, robustly.
+    """Return the horizontal range of a matched object from the vertical disparities of its features, robustly.
 
     rho = baseline / median(tan e_l - tan e_u)
 
@@ -89,7 +84,7 @@ def disparity_distance(match, width: int, height: int, baseline: float) -> Dispa
     baseline = StereoRig(baseline).baseline
     slope = _slopes(match.keypoints_upper, match.keypoints_lower, width, height)
     nothing = (float("nan"),) * 3
-    if len(slope) < FEWEST_MATCHES:
+    if len(slope) < MIN_MATCHES:
         return DisparityDistance(TOO_FEW_MATCHES, *nothing, len(slope))
     middle = float(np.median(slope))
     if middle <= PARALLEL_TOLERANCE:

@@ -1,9 +1,9 @@
 """Which observed object is which on the map: the penalty of eq. (1) and the paper's greedy search (section 2.5).
 
 The distances of eq. (1) are to a centroid: x_G.camera of the *observed* objects on one side, x_G.map of *all* objects
-of the map on the other. They are the same place only when everything on the map is seen; every unseen object, and every
-false detection, moves them apart, and the distance term is then wrong for every pair. So the term needs no pose, which
-is its use, and is blunt, which is its price.
+of the map on the other. They are the same place only if everything on the map is seen. Every unseen object, and every
+false detection, moves them apart, and the distance term is then wrong for every pair. So the term needs no pose, but it
+is blunt.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.detection.detected_object import DetectionError, canonical_label
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
 DISTANCE_TERMS = ("absolute", "as_printed")
-LEAST_DISTANCE = 0.1
-"""Metres: the least |dx_m| that eq. (1) divides by. An object at the map's centroid would otherwise cost infinitely
-much, or 0/0. A decimetre is about what the centroid of a piece of furniture can be told to."""
+MIN_DISTANCE = 0.1
+"""Metres: the smallest |dx_m| that eq. (1) divides by. An object at the map's centroid would otherwise cost infinitely
+much, or 0/0. The centroid of a piece of furniture is known to about a decimetre."""
 TIE = 1e-9
-"""Penalties nearer than this are equal: rounding must not choose between two objects that are alike."""
+"""Penalties nearer than this are equal, because rounding must not choose between two objects that are alike."""
 
 
 class AssociationError(ValueError):
@@ -29,29 +29,26 @@ class AssociationError(ValueError):
 
 
 class Observation(NamedTuple):
-    """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame."""
+    """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame.
+
+    label: class; "couch" and "sofa" are one. x (forward), y (left): centroid, metres. hue: degrees [0, 360), NaN for
+    grey. saturation: percent [0, 100]. covariance: `(2, 2)` of x and y, square metres; None if nothing is known.
+    """
 
     label: str
-    """Class; "couch" and "sofa" are one (`labels`)."""
     x: float
-    """Centroid, body frame (x forward), metres."""
     y: float
-    """Centroid, body frame (y left), metres."""
     hue: float
-    """Degrees [0, 360); NaN: grey."""
     saturation: float
-    """Percent [0, 100]."""
     covariance: np.ndarray | None = None
-    """`(2, 2)` of x and y, square metres; None when nothing is known."""
 
 
 class PenaltyWeights(NamedTuple):
     """The four weights of eq. (1), "set by hand" in the paper, which gives no numbers.
 
-    The defaults are as plain as can be: one for each of the three comparisons, so that opposite hues cost half, fully
-    different saturations one, and a distance wrong by itself one; and an object weight above all that the other terms
-    can add up to (`least_object_weight`): with a guard of 0.1 m, 100 is enough for objects up to 9.8 m from the
-    observed centroid.
+    The defaults are plain: one for each of the three comparisons, so that opposite hues cost half, fully different
+    saturations one, and a distance wrong by itself one. The object weight is above all that the other terms can add up
+    to (`min_object_weight`): with a guard of 0.1 m, 100 is enough for objects up to 9.8 m from the observed centroid.
     """
 
     p_obj: float = 100.0
@@ -65,28 +62,22 @@ class PenaltyWeights(NamedTuple):
 
 
 class Penalty(NamedTuple):
-    """Eq. (1) term by term; numbers for one pair, arrays `(n_observations, n_landmarks)` in a table."""
+    """Eq. (1) term by term and their sum: numbers for one pair, arrays `(n_observations, n_landmarks)` in a table."""
 
     object: float
-    """p_obj where the classes differ, else 0."""
     hue: float
-    """p_h dh / 360; 0 where either side is grey."""
     saturation: float
-    """p_s ds / 100."""
     distance: float
-    """p_d (|dx_c| - |dx_m|) / |dx_m|, with or without absolute value."""
     total: float
-    """Their sum."""
 
 
 class AssociationStep(NamedTuple):
-    """One round of the greedy search."""
+    """One round of the greedy search: the pair, its penalty, and what had no partner before this round."""
 
     observation: int
     landmark: int
     penalty: Penalty
     open_observations: tuple[int, ...]
-    """Those without a partner before this round."""
     open_landmarks: tuple[int, ...]
 
 
@@ -98,18 +89,23 @@ class Association(NamedTuple):
     penalties: tuple[Penalty, ...]
     """Of the pairs."""
     same_class: tuple[bool, ...]
-    """Whether a pair's classes agree. One-to-one matching goes on until one side is used up, so at the end it may join
-    a chair to a plant; such a pair is never used for the fit."""
+    """True if a pair's classes agree. One-to-one matching goes on until one side is used up, so at the end it may join
+    a chair to a plant. Such a pair is never used for the fit."""
     unassigned: tuple[int, ...]
     """Observations without a partner."""
     table: Penalty
     """Every observation with every landmark, `(n_observations, n_landmarks)` arrays."""
     steps: tuple[AssociationStep, ...] = ()
-    """The rounds, for who wants to watch."""
+    """The rounds of the greedy search."""
     hypotheses: tuple = ()
-    """Poses that a matcher weighed against each other (`pose.consistent`), best first; () where it asks for none."""
+    """A matcher beyond the paper may weigh whole poses against each other. Then these are they, best first, each with
+    `pose`, `covariance` and `share`."""
     confidence: float | None = None
-    """How sure the best of them is, 0 to 1; None for a matcher that asks for no pose."""
+    """How sure the best of them is, 0 to 1; None from a matcher that weighs no poses."""
+    reason: str | None = None
+    """Why the best of them should not be given out; None if it should."""
+    explanation: str = ""
+    """The reason in a sentence."""
 
     @property
     def usable_pairs(self) -> tuple[tuple[int, int], ...]:
@@ -118,7 +114,7 @@ class Association(NamedTuple):
 
 
 def hue_difference(hue_a: np.ndarray | float, hue_b: np.ndarray | float) -> np.ndarray:
-    """Difference of hues on the circle, degrees [0, 180]: 350 and 10 differ by 20. NaN where either side is grey."""
+    """Return the difference of hues on the circle, degrees [0, 180]: 350 and 10 differ by 20. NaN for grey."""
     apart = np.abs(np.asarray(hue_a, dtype=np.float64) - np.asarray(hue_b, dtype=np.float64)) % 360.0
     return np.minimum(apart, 360.0 - apart)
 
@@ -131,32 +127,29 @@ def penalty(
     weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008 (it cannot change)
     distance_term: str = "absolute",
 ) -> Penalty:
-    """How unlike an observed object and one of the map are.
+    """Return how unlike an observed object and one of the map are.
 
     penalty = p_obj + p_h dh / 360 + p_s ds / 100 + p_d (|dx_c| - |dx_m|) / |dx_m|
 
-    p_obj counts only where the classes differ ("couch" and "sofa" do not). dh: degrees on the circle, at most 180, so
-    its term is at most half of p_h; grey on either side has no hue, and the term is 0. ds: percent.
-    dx_c = x_c - x_G.camera in the body frame, dx_m = x_m - x_G.map in the world, horizontal, metres; the divisor is at
-    least `LEAST_DISTANCE`.
-    distance_term: "absolute" takes the absolute value of the distance term. "as_printed" does not: the term then falls
-    below zero for an object that looks too near the centroid, and the nearer it looks the better it fits.
-    observed_centroid, map_centroid: `(2,)`. The fields of observed and landmark may be arrays that broadcast
-    (`penalty_table` uses that); then so are the terms. Raises `AssociationError` for weights that are negative or not
-    finite, centroids of a wrong shape, another distance_term, no label, or positions, hues and saturations that no
-    observation may have.
-    Source: paper 2, eq. (1).
+    p_obj counts only if the classes differ. dh: degrees on the circle, at most 180, so its term is at most half of p_h;
+    if either side is grey, it is 0. ds: percent. dx_c = x_c - x_G.camera in the body frame, dx_m = x_m - x_G.map in the
+    world, horizontal, metres; the divisor is at least `MIN_DISTANCE`.
+    distance_term: "absolute" takes the absolute value of the distance term. "as_printed" does not, so that the term
+    falls below zero for an object that looks too near the centroid, and the nearer it looks the better it fits.
+    observed_centroid, map_centroid: `(2,)`. The fields of observed and landmark may be arrays that broadcast, and then
+    so do the terms. Raises `AssociationError` for weights, centroids, options, labels, positions and colours that
+    cannot be. Source: paper 2, eq. (1).
     """
     _check_options(weights, distance_term)
     observed_centroid, map_centroid = _centroid(observed_centroid, "observed"), _centroid(map_centroid, "map")
-    for name, side in (("observation", observed), ("landmark", landmark)):
-        _check_values(name, side)
+    _check_values("observation", observed)
+    _check_values("landmark", landmark)
     unlike = _labels(observed) != _labels(landmark)
     d_hue = hue_difference(observed.hue, landmark.hue)
     d_saturation = np.abs(np.asarray(observed.saturation) - np.asarray(landmark.saturation))
     from_centroid_c = np.hypot(observed.x - observed_centroid[0], observed.y - observed_centroid[1])
     from_centroid_m = np.hypot(landmark.x - map_centroid[0], landmark.y - map_centroid[1])
-    d_distance = (from_centroid_c - from_centroid_m) / np.maximum(from_centroid_m, LEAST_DISTANCE)
+    d_distance = (from_centroid_c - from_centroid_m) / np.maximum(from_centroid_m, MIN_DISTANCE)
     terms = np.broadcast_arrays(
         np.where(unlike, weights.p_obj, 0.0),
         weights.p_h * np.where(np.isnan(d_hue), 0.0, d_hue) / 360.0,
@@ -172,40 +165,45 @@ def penalty_table(
     weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
     distance_term: str = "absolute",
 ) -> Penalty:
-    """Every term for every observation with every landmark: arrays `(n_observations, n_landmarks)`.
+    """Return every term for every observation with every landmark: arrays `(n_observations, n_landmarks)`.
 
     x_G.camera is the mean of the observations given, x_G.map that of the whole map. Raises `AssociationError` as
-    `penalty` does, and for observations that are not finite. Source: paper 2, section 2.5 ("all combinations").
+    `penalty` does. Source: paper 2, section 2.5 ("all combinations").
     """
     if len(observations) == 0:
         _check_options(weights, distance_term)
         return Penalty(*(np.empty((0, len(semantic_map))) for _ in Penalty._fields))
-    labels, x, y, hue, saturation = zip(*(tuple(one)[:5] for one in observations), strict=True)
-    x, y, hue, saturation = (np.array(values, dtype=np.float64)[:, None] for values in (x, y, hue, saturation))
     for number, one in enumerate(observations):
         _check_values(f"observation {number}", one)
+    labels, *numbers = zip(*(tuple(one)[:5] for one in observations), strict=True)
+    x, y, hue, saturation = np.array(numbers, dtype=np.float64)[..., None]
     rows = Observation(np.array(labels, dtype=object)[:, None], x, y, hue, saturation)
+    map_x, map_y = semantic_map.positions.T[:, None]
+    columns = Observation(
+        np.array(semantic_map.labels)[None], map_x, map_y, semantic_map.hues[None], semantic_map.saturations[None]
+    )
     centroid = np.array([x.mean(), y.mean()])
-    return penalty(rows, _columns(semantic_map), centroid, semantic_map.centroid, weights, distance_term)
+    return penalty(rows, columns, centroid, semantic_map.centroid, weights, distance_term)
 
 
-def least_object_weight(
+def min_object_weight(
     observations: Sequence[Observation],
     semantic_map: SemanticMap,
     weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
     distance_term: str = "absolute",
 ) -> float:
-    """The p_obj above which no pair of unlike classes is cheaper than one of like classes, for these observations.
+    """Return the p_obj above which no pair of unlike classes is cheaper than one of like classes, here.
 
     p_obj > max over like pairs - min over unlike pairs, of the sum of the other three terms.
 
     The distance term has no upper limit (an observation far out, an object of the map near its centroid), so no p_obj
-    is large enough for all worlds; the limit for |dx_c| <= D is p_h / 2 + p_s + p_d D / `LEAST_DISTANCE`, and p_d more
+    is large enough for all worlds; the limit for |dx_c| <= D is p_h / 2 + p_s + p_d D / `MIN_DISTANCE`, and p_d more
     with the distance term as printed, which can fall to -p_d.
     """
     table = penalty_table(observations, semantic_map, weights, distance_term)
     others = table.hue + table.saturation + table.distance
-    like = _like_classes(observations, semantic_map)
+    seen = np.array([canonical_label(one.label) for one in observations])
+    like = seen.reshape(-1, 1) == np.array(semantic_map.labels)[None]
     if not like.any() or like.all():
         return 0.0
     return max(0.0, float(others[like].max() - others[~like].min()))
@@ -217,10 +215,10 @@ def associate_greedy(
     weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
     distance_term: str = "absolute",
 ) -> Association:
-    """The paper's matcher: the cheapest of all open combinations is a pair; repeat until one-to-one.
+    """Pair observations with landmarks as the paper does: take the cheapest open combination until a side is used up.
 
-    It ends when either side is used up, and never goes back on a choice. Among equal penalties (within `TIE`) the
-    first observation, then the first landmark is taken: a rule, so that one input has one result, not knowledge.
+    A choice is never taken back. Among equal penalties (within `TIE`) the first observation is taken, then the first
+    landmark, so that one input has one result.
     No observations give an association without pairs. Raises `AssociationError` as `penalty_table` does.
     Source: paper 2, section 2.5.
     """
@@ -237,28 +235,21 @@ def associate_greedy(
         )
         steps.append(AssociationStep(i, j, one, open_observations, open_landmarks))
         open_cost[i, :] = open_cost[:, j] = np.inf
-    pairs = tuple((step.observation, step.landmark) for step in steps)
-    like = _like_classes(observations, semantic_map)
+    pairs = [(step.observation, step.landmark) for step in steps]
+    return association_of(pairs, observations, semantic_map, table)._replace(steps=tuple(steps))
+
+
+def association_of(
+    pairs: Sequence[tuple[int, int]], observations: Sequence[Observation], semantic_map: SemanticMap, table: Penalty
+) -> Association:
+    """Return the `Association` of the pairs (observation, landmark) that a matcher has chosen, in their order."""
+    pairs = tuple(pairs)
     return Association(
         pairs,
-        tuple(step.penalty for step in steps),
-        tuple(bool(like[i, j]) for i, j in pairs),
+        tuple(Penalty(*(float(term[pair]) for term in table)) for pair in pairs),
+        tuple(canonical_label(observations[i].label) == semantic_map.labels[j] for i, j in pairs),
         tuple(sorted(set(range(len(observations))) - {i for i, _ in pairs})),
         table,
-        tuple(steps),
-    )
-
-
-def _like_classes(observations: Sequence[Observation], semantic_map: SemanticMap) -> np.ndarray:
-    seen, mapped = np.array([canonical_label(one.label) for one in observations]), np.array(semantic_map.labels)
-    return seen.reshape(-1, 1) == mapped[None]
-
-
-def _columns(semantic_map: SemanticMap) -> Observation:
-    """The landmarks as one record of `(1, n_landmarks)` arrays; `Landmark` itself holds single numbers only."""
-    x, y = semantic_map.positions.T[:, None]
-    return Observation(
-        np.array(semantic_map.labels)[None], x, y, semantic_map.hues[None], semantic_map.saturations[None]
     )
 
 
@@ -278,15 +269,15 @@ def _centroid(centroid: np.ndarray, name: str) -> np.ndarray:
 
 
 def _labels(side: Observation | Landmark) -> np.ndarray:
-    """Canonical labels, an array of the shape of `side.label`."""
+    """Return canonical labels, an array of the shape of `side.label`."""
     try:
         return np.vectorize(canonical_label, otypes=[object])(side.label)
-    except ValueError as error:
+    except DetectionError as error:
         raise AssociationError(str(error)) from None
 
 
 def _check_values(name: str, side: Observation | Landmark) -> None:
-    """Raises `AssociationError` for values that neither an observation nor a landmark may have; numbers or arrays."""
+    """Raise `AssociationError` for values that no observation or landmark may have; numbers or arrays."""
     hue, saturation = np.asarray(side.hue, dtype=np.float64), np.asarray(side.saturation, dtype=np.float64)
     right = {
         "x and y must be finite metres": np.isfinite(side.x).all() and np.isfinite(side.y).all(),

@@ -1,22 +1,42 @@
 """The 2D semantic map M of paper 2, section 2.5: for every object its class c, centroid X_w, and mean H and S.
 
 World frame, metres. Hue in degrees [0, 360), NaN for grey, which has none; saturation in percent [0, 100].
-`semantic_map_files` reads and writes it as JSON and CSV.
+
+A map is saved as JSON, which keeps everything, or as CSV, which a spreadsheet opens. JSON, version 1; `name` and
+`walls` may be left out, hue is null for grey:
+
+    {"version": 1, "name": "room",
+     "landmarks": [{"label": "sofa", "x": 1.5, "y": 0.4, "hue": 210.0, "saturation": 55.0}, ...],
+     "walls": [[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [0.0, 6.0]]}
+
+CSV, version 1; hue is empty for grey. The number of landmarks may be left out; with it, a cut-off file is noticed:
+
+    # semantic map, version 1, 1 landmarks
+    label,x,y,hue,saturation
+    sofa,1.5,0.4,210.0,55.0
 """
 
 from __future__ import annotations
 
+import csv
+import io
+import json
 import math
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 
-from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.files import atomic_write, read_json, read_text
+from course_lib.spherical_stereo.detection.detected_object import DetectionError, canonical_label
 
 DUPLICATE_DISTANCE = 0.01
-"""Metres: two objects of one class whose centroids are nearer than this are one object written twice."""
+"""Metres. Two objects of one class whose centroids are nearer are one object written twice."""
+VERSION = 1
+_FIELDS = ("label", "x", "y", "hue", "saturation")
+_CSV_FIRST_LINE = f"# semantic map, version {VERSION}"
 
 
 class SemanticMapError(ValueError):
@@ -25,34 +45,35 @@ class SemanticMapError(ValueError):
 
 @dataclass(frozen=True)
 class Landmark:
-    """One object of the map. Raises `SemanticMapError` for values out of range. Source: paper 2, section 2.5."""
+    """One object of the map. Raises `SemanticMapError` for values out of range. Source: paper 2, section 2.5.
+
+    label: class, kept as its canonical label. x, y: centroid, world frame, metres. hue, saturation: means of the whole
+    object, degrees [0, 360), NaN for grey, and percent [0, 100].
+    """
 
     label: str
-    """Class, in the words of `labels`: a "couch" is kept as "sofa"."""
     x: float
-    """Centroid, world frame, metres."""
     y: float
-    """Centroid, world frame, metres."""
     hue: float
-    """Mean hue of the whole object, degrees [0, 360); NaN: the object is grey and has none."""
     saturation: float
-    """Mean saturation of the whole object, percent [0, 100]."""
 
     def __post_init__(self):
-        if not isinstance(self.label, str) or not self.label.strip():
-            raise SemanticMapError(f"label must be the name of a class, such as 'sofa'; got {self.label!r}")
         try:
             object.__setattr__(self, "label", canonical_label(self.label))
-        except ValueError:  # nothing but underscores
+        except DetectionError:
             raise SemanticMapError(f"label must be the name of a class, such as 'sofa'; got {self.label!r}") from None
-        for name in ("x", "y", "hue", "saturation"):
-            object.__setattr__(self, name, _number(getattr(self, name), f"{name} of this {self.label}"))
+        for name in _FIELDS[1:]:
+            value = getattr(self, name)
+            # A bool is an int to Python, and a text such as "1.5" would pass float(): both are slips in a file.
+            if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+                raise SemanticMapError(f"{name} of this {self.label} must be a number; got {value!r}")
+            object.__setattr__(self, name, float(value))
         if not (math.isfinite(self.x) and math.isfinite(self.y)):
             raise SemanticMapError(f"x and y of this {self.label} must be finite metres; got {self.x}, {self.y}")
-        if not math.isnan(self.hue) and not 0 <= self.hue < 360:
+        if not (math.isnan(self.hue) or 0 <= self.hue < 360):
             raise SemanticMapError(
-                f"hue of this {self.label} must lie in [0, 360) degrees, or be NaN (null in a file) for grey; "
-                f"got {self.hue}"
+                f"hue of this {self.label} must lie in [0, 360) degrees, or be NaN for grey (null in JSON, empty in "
+                f"CSV); got {self.hue}"
             )
         if not 0 <= self.saturation <= 100:
             raise SemanticMapError(
@@ -61,21 +82,18 @@ class Landmark:
 
 
 class SemanticMap:
-    """Landmarks, and for drawings the walls around them; it never changes once made.
+    """Landmarks, and for drawings the walls around them. It never changes once made.
 
     landmarks: at least one. walls: `(k, 2)` corners of the room in order, world frame, metres, the last joined to the
-    first; no method reads them. name: what the map is called in figures and results.
+    first. name: of the map in figures and results.
     Raises `SemanticMapError` for no landmarks, one object written twice (same class, centroids within 1 cm), or
     walls that are not at least three finite corners. Source: paper 2, section 2.5.
     """
 
     def __init__(self, landmarks: Sequence[Landmark], walls: np.ndarray | None = None, name: str = ""):
         self.landmarks = tuple(landmarks)
-        for landmark in self.landmarks:
-            if not isinstance(landmark, Landmark):
-                raise SemanticMapError(f"landmarks must be Landmark objects; got {type(landmark).__name__}")
-        if not self.landmarks:
-            raise SemanticMapError("the map is empty: it needs at least one landmark, and a pose needs two")
+        if not self.landmarks or not all(isinstance(one, Landmark) for one in self.landmarks):
+            raise SemanticMapError("the map is empty or holds others than Landmarks; it needs one, a pose needs two")
         self.walls = None if walls is None else _checked_walls(walls)
         self.name = str(name)
         self.labels = tuple(landmark.label for landmark in self.landmarks)
@@ -83,7 +101,14 @@ class SemanticMap:
         """`(n, 2)` centroids, world frame, metres."""
         self.hues = _read_only([landmark.hue for landmark in self.landmarks])
         self.saturations = _read_only([landmark.saturation for landmark in self.landmarks])
-        _refuse_duplicates(self.landmarks)
+        for i, first in enumerate(self.landmarks):
+            for j, second in enumerate(self.landmarks[i + 1 :], start=i + 1):
+                apart = math.hypot(first.x - second.x, first.y - second.y)
+                if first.label == second.label and apart <= DUPLICATE_DISTANCE:
+                    raise SemanticMapError(
+                        f"landmarks {i} and {j} are one {first.label} written twice, at ({first.x:g}, {first.y:g}) m, "
+                        f"{apart * 1000:.1f} mm apart: remove one"
+                    )
 
     @property
     def centroid(self) -> np.ndarray:
@@ -98,23 +123,45 @@ class SemanticMap:
 
     @classmethod
     def load(cls, path: str | Path) -> SemanticMap:
-        """The map in a `.json` or `.csv` file; raises `SemanticMapError` for a file that holds none."""
-        from course_lib.spherical_stereo.semantic_map.files import read_semantic_map
+        """Read the map in a `.json` or `.csv` file (format: see the module).
 
-        return read_semantic_map(path)
+        Raises `SemanticMapError`, with the file's name, for a file that cannot be read, is not JSON or CSV, has another
+        version, lacks fields, or holds values that no map may have.
+        """
+        path = Path(path)
+        if path.suffix.lower() not in (".json", ".csv"):
+            raise SemanticMapError(f"{path}: a semantic map is a .json or a .csv file")
+        is_json = path.suffix.lower() == ".json"
+        content = (read_json if is_json else read_text)(path, "semantic map", SemanticMapError)
+        try:
+            return (_from_json if is_json else _from_csv)(content)
+        except SemanticMapError as error:
+            raise SemanticMapError(f"{path}: {error}") from None
 
     def save(self, path: str | Path) -> None:
-        """Writes the map as `.json` or, without walls and name, `.csv`; an old file is replaced whole or not at all."""
-        from course_lib.spherical_stereo.semantic_map.files import write_semantic_map
+        """Write the map as `.json` or, without walls and name, `.csv`. An old file is replaced whole or not at all.
 
-        write_semantic_map(self, path)
-
-
-def _number(value: object, what: str) -> float:
-    # A bool is an int to Python, and a text such as "1.5" would pass float(): both are slips in a file.
-    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise SemanticMapError(f"{what} must be a number; got {value!r}")
-    return float(value)
+        Raises `SemanticMapError` for another ending, `OSError` if the file cannot be written.
+        """
+        rows = [
+            {name: None if value != value else value for name, value in asdict(landmark).items()}
+            for landmark in self.landmarks
+        ]
+        ending = Path(path).suffix.lower()
+        if ending == ".json":
+            content = {"version": VERSION, "name": self.name, "landmarks": rows}
+            if self.walls is not None:
+                content["walls"] = self.walls.tolist()
+            atomic_write(path, json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+        elif ending == ".csv":
+            text = io.StringIO()
+            text.write(f"{_CSV_FIRST_LINE}, {len(self)} landmarks\n")
+            writer = csv.DictWriter(text, _FIELDS, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+            atomic_write(path, text.getvalue())
+        else:
+            raise SemanticMapError(f"{path}: a semantic map is saved as .json or .csv")
 
 
 def _read_only(values: list) -> np.ndarray:
@@ -133,12 +180,64 @@ def _checked_walls(walls: np.ndarray) -> np.ndarray:
     return corners
 
 
-def _refuse_duplicates(landmarks: tuple[Landmark, ...]) -> None:
-    for i, first in enumerate(landmarks):
-        for j, second in enumerate(landmarks[i + 1 :], start=i + 1):
-            apart = math.hypot(first.x - second.x, first.y - second.y)
-            if first.label == second.label and apart <= DUPLICATE_DISTANCE:
-                raise SemanticMapError(
-                    f"landmarks {i} and {j} are one {first.label} written twice, at ({first.x:g}, {first.y:g}) m, "
-                    f"{apart * 1000:.1f} mm apart: remove one"
-                )
+def _from_json(content: object) -> SemanticMap:
+    if not isinstance(content, dict) or not isinstance(content.get("landmarks"), list):
+        raise SemanticMapError("the file must hold a JSON object with version and a list of landmarks")
+    _check_version(content.get("version"))
+    name = content.get("name", "")
+    if not isinstance(name, str):
+        raise SemanticMapError(f"name must be a text; got {name!r}")
+    return SemanticMap([_landmark(row, i) for i, row in enumerate(content["landmarks"])], content.get("walls"), name)
+
+
+def _from_csv(text: str) -> SemanticMap:
+    first, _, rest = text.partition("\n")
+    # A spreadsheet fills the comment's row up with commas and may put it in quotes.
+    found = re.fullmatch(r'"?#\s*semantic map,\s*version\s+([^\s,"]+)(?:,\s*(\d+) landmarks)?"?,*\s*', first)
+    if found is None:
+        raise SemanticMapError(f"the first line must be '{_CSV_FIRST_LINE}'; got {first[:60]!r}")
+    _check_version(int(found[1]) if found[1].isdecimal() else found[1])
+    reader = csv.DictReader(io.StringIO(rest))
+    if not set(_FIELDS) <= set(reader.fieldnames or []):
+        raise SemanticMapError(f"the second line must name the columns {','.join(_FIELDS)}; got {reader.fieldnames}")
+    landmarks = []
+    for number, row in enumerate(reader):
+        if None in row or None in row.values():  # the reader's mark for too many values, and for too few
+            raise SemanticMapError(
+                f"line {reader.line_num + 1} must have {len(reader.fieldnames)} values, one a column; write numbers "
+                "with a decimal point, and a label with a comma in quotes"
+            )
+        landmarks.append(_landmark({name: _csv_value(name, row[name]) for name in _FIELDS}, number))
+    if found[2] is not None and (len(landmarks) != int(found[2]) or not text.endswith("\n")):
+        raise SemanticMapError(
+            f"the first line announces {found[2]} landmarks, the file holds {len(landmarks)} and may be cut off. If "
+            "you took some out or added some, change that number, or leave it out, and end the last line"
+        )
+    return SemanticMap(landmarks)
+
+
+def _csv_value(name: str, text: str) -> object:
+    """Return the number that a text is, None for an empty hue, and otherwise the text, which `Landmark` names."""
+    if name == "hue" and not text.strip():
+        return None
+    try:
+        return text if name == "label" else float(text)
+    except ValueError:
+        return text.strip()
+
+
+def _landmark(row: object, number: int) -> Landmark:
+    """Return a landmark from its row. Here the hue of grey is None, and NaN is no hue."""
+    try:
+        missing = [name for name in _FIELDS if not isinstance(row, dict) or row.get(name, "") == ""]
+        if missing or row["hue"] != row["hue"]:
+            raise SemanticMapError(f"lacks {', '.join(missing) or 'a hue'} (grey has the hue null, or empty in CSV)")
+        hue = math.nan if row["hue"] is None else row["hue"]
+        return Landmark(row["label"], row["x"], row["y"], hue, row["saturation"])
+    except SemanticMapError as error:
+        raise SemanticMapError(f"landmark {number}: {error}") from None
+
+
+def _check_version(version: object) -> None:
+    if isinstance(version, bool) or version != VERSION:
+        raise SemanticMapError(f"the version must be {VERSION}, the only one this program knows; got {version!r}")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.guarded_depth import OUTCOMES
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.sensor_trouble import depth_run, stereo_run
 from course_lib.experiments.sensor_trouble.score import summary
@@ -59,7 +60,9 @@ def troubled_walk():
     places = [(0.0, 0.0), (0.35, 0.1), (0.1, -0.3), (-0.3, 0.1)]
     pairs = [pair_from(*place) for place in places]
     semantic_map = mapped_scene()[2]
-    localizer = SemanticLocalizer(StereoRig(BASELINE), semantic_map, KnowingDetector(*pairs), association="consistent")
+    localizer = SemanticLocalizer(
+        StereoRig(BASELINE), semantic_map, KnowingDetector(*pairs), association=associate_consistent
+    )
     poses = []
     for x, y in places:
         moved = TRUE_POSE.apply([[x, y]])[0]

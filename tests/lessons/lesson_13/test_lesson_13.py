@@ -92,7 +92,7 @@ def test_right_pairs_come_from_wrong_matches(one):
 
 def test_an_object_painted_plain_has_no_match(one):
     painted = [
-        open_view(plain_object(side.image, side.objects[0].box)).having(detections=side.objects)
+        open_view(plain_object(side.image, side.objects[0].box)).replace(detections=side.objects)
         for side in (one.upper, one.lower)
     ]
     result = match_views(*painted, one.rig)

@@ -19,7 +19,7 @@ from course_lib.spherical_stereo.semantic_map.association import (
     PenaltyWeights,
     associate_greedy,
     hue_difference,
-    least_object_weight,
+    min_object_weight,
     penalty_table,
 )
 
@@ -57,7 +57,7 @@ def test_as_printed_no_pose_is_right():
 
 
 def test_a_class_weight_of_three_is_enough_for_weights_of_one():
-    assert max(least_object_weight(scene.observations, room_map()) for scene in room_scenes().values()) < 3
+    assert max(min_object_weight(scene.observations, room_map()) for scene in room_scenes().values()) < 3
 
 
 def test_in_06_a_two_sofas_are_swapped_by_next_to_nothing_and_the_pose_hardly_moves():

@@ -7,6 +7,7 @@ import pytest
 
 from course_lib.beyond import Evidence, SemanticTracker, rank_poses
 from course_lib.beyond.look_alikes.confidence import confidence_of
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.evidence import detection_probabilities
 from course_lib.beyond.look_alikes.hypotheses import pair_poses, scene_of
 from course_lib.experiments.look_alikes import CORRECT, UNANSWERED, WRONG, is_right, pose_errors
@@ -138,7 +139,7 @@ def test_two_equal_ends_share_the_belief_and_no_pose_is_given_out():
     assert first.share + second.share == pytest.approx(1, abs=0.01)
     places = sorted([first.pose[:2], second.pose[:2]])
     assert np.allclose(places, [(-1.2, 0.7), (1.2, -0.7)], atol=1e-6)
-    found = SemanticLocalizer(StereoRig(0.3), hall, association="consistent").localize_observations(view)
+    found = SemanticLocalizer(StereoRig(0.3), hall, association=associate_consistent).localize_observations(view)
     assert (found.pose, found.reason) == (None, "ambiguous")
 
 

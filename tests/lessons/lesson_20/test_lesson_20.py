@@ -38,8 +38,7 @@ from course_lib.lessons.lesson_20.readings import (
 from course_lib.paths import REPOSITORY
 from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.matching.feature_matching import match_features
-from course_lib.spherical_stereo.matching.features import detect_features
+from course_lib.spherical_stereo.matching.features import detect_features, match_features
 from course_lib.spherical_stereo.matching.object_matching import match_objects
 from course_lib.spherical_stereo.panorama import StereoRig
 

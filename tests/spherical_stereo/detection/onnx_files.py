@@ -1,4 +1,10 @@
-"""The network of `blob_networks` as ONNX files."""
+"""The network of `blob_networks` as ONNX files, written by hand: the few fields of the format that it needs.
+
+The format is protocol buffers.
+A field is a key (number * 8 + wire type) and a value: type 0 a varint, type 2 a length and bytes, type 5 four bytes.
+"""
+
+from __future__ import annotations
 
 import numpy as np
 
@@ -11,37 +17,82 @@ from tests.spherical_stereo.detection.blob_networks import (
     kernel,
     window_kernels,
 )
-from tests.spherical_stereo.detection.onnx_model import model, node
+
+FLOAT, INT64 = 1, 7  # TensorProto.DataType
+INTS_ATTRIBUTE, INT_ATTRIBUTE = 7, 2  # AttributeProto.AttributeType
 
 
-def blob_onnx(layout: str) -> bytes:
-    """The network of `blob_networks` as an ONNX file with outputs in one of the three layouts."""
+def varint(value: int) -> bytes:
+    """A whole number, seven bits a byte."""
+    out = b""
+    while value > 127:
+        out, value = out + bytes([value & 127 | 128]), value >> 7
+    return out + bytes([value])
+
+
+def number(field: int, value: int) -> bytes:
+    """A field that is a whole number."""
+    return varint(field << 3) + varint(value)
+
+
+def block(field: int, value: bytes | str) -> bytes:
+    """A field that is a text, bytes, or a message of its own."""
+    data = value.encode() if isinstance(value, str) else value
+    return varint(field << 3 | 2) + varint(len(data)) + data
+
+
+def tensor(name: str, values: np.ndarray) -> bytes:
+    """A constant: int64 as it is, everything else as float32."""
+    kind = INT64 if values.dtype == np.int64 else FLOAT
+    values = values if kind == INT64 else values.astype("<f4")
+    dims = b"".join(number(1, size) for size in values.shape)
+    return dims + number(2, kind) + block(8, name) + block(9, values.tobytes())
+
+
+def attribute(name: str, value: int | list[int]) -> bytes:
+    """An option of an operation."""
+    if isinstance(value, int):
+        return block(1, name) + number(3, value) + number(20, INT_ATTRIBUTE)
+    return block(1, name) + b"".join(number(8, item) for item in value) + number(20, INTS_ATTRIBUTE)
+
+
+def node(operation: str, inputs: list[str], output: str, **attributes: int | list[int]) -> bytes:
+    """One operation of the graph."""
+    data = b"".join(block(1, name) for name in inputs) + block(2, output) + block(3, output) + block(4, operation)
+    return data + b"".join(block(5, attribute(name, value)) for name, value in attributes.items())
+
+
+def value_info(name: str, shape: tuple[int, ...]) -> bytes:
+    """Name and shape of an input or output."""
+    dims = b"".join(block(1, number(1, size)) for size in shape)
+    return block(1, name) + block(2, block(1, number(1, FLOAT) + block(2, dims)))
+
+
+def model(nodes: list[bytes], constants: dict[str, np.ndarray], inputs: dict, outputs: dict) -> bytes:
+    """A whole file. inputs, outputs: names and shapes."""
+    graph = b"".join(block(1, item) for item in nodes) + block(2, "blobs")
+    graph += b"".join(block(5, tensor(name, values)) for name, values in constants.items())
+    graph += b"".join(block(11, value_info(name, shape)) for name, shape in inputs.items())
+    graph += b"".join(block(12, value_info(name, shape)) for name, shape in outputs.items())
+    opset = block(1, "") + number(2, 11)
+    return number(1, 7) + block(8, opset) + block(7, graph)
+
+
+def blob_onnx() -> bytes:
+    """Return the network of `blob_networks` as an ONNX file with its output in the layout "yolov8"."""
     width, height = INPUT_SIZE
     columns, rows = width // STRIDE, height // STRIDE
-    cells = columns * rows
     x, y = np.meshgrid((np.arange(columns) + 0.5) * STRIDE, (np.arange(rows) + 0.5) * STRIDE)
     k = window_kernels()
-    moments = [kernel(k["x"], 1, 1, -2), kernel(k["y"], 1, 1, -2)]
-    if layout == "yolov4":
-        box_kernels = [m / size for m, size in zip(moments * 2, (width, height) * 2, strict=True)]
-        grid = np.array([(x - 16) / width, (y - 12) / height, (x + 16) / width, (y + 12) / height])
-    else:
-        box_kernels = [*moments, *np.zeros((2, 3, SIZE, SIZE))]
-        grid = np.array([x, y, np.full_like(x, 32), np.full_like(y, 24)])
     match, colour = kernel(k["match"], 1, 1, -2) * 40, kernel(k["sum"], 1, -1, 0) * 30
-    scores = np.array([match + colour, match - colour])
-    biases = np.full(2, -12.0 - 30.0)
-    if layout == "yolov5":
-        scores, biases = np.array([match, colour, -colour]), np.array([-12.0, 0, 0])
     constants = {
         "averaging": averaging_kernels(),
-        "box_kernels": np.array(box_kernels),
-        "score_kernels": scores,
-        "score_biases": biases,
-        "grid": grid[None],
-        "box_shape": np.array([1, 4, cells], dtype=np.int64),
-        "score_shape": np.array([1, len(scores), cells], dtype=np.int64),
-        "four_shape": np.array([1, cells, 1, 4], dtype=np.int64),
+        "box_kernels": np.array([kernel(k["x"], 1, 1, -2), kernel(k["y"], 1, 1, -2), *np.zeros((2, 3, SIZE, SIZE))]),
+        "score_kernels": np.array([match + colour, match - colour]),
+        "score_biases": np.full(2, -12.0 - 30.0),
+        "grid": np.array([[x, y, np.full_like(x, 32), np.full_like(y, 24)]]),
+        "box_shape": np.array([1, 4, columns * rows], dtype=np.int64),
+        "score_shape": np.array([1, 2, columns * rows], dtype=np.int64),
     }
     window = {"kernel_shape": [SIZE, SIZE], "strides": [STRIDE // BLOCK, STRIDE // BLOCK], "pads": [SIZE // 2] * 4}
     nodes = [
@@ -52,23 +103,6 @@ def blob_onnx(layout: str) -> bytes:
         node("Conv", ["blocks", "score_kernels", "score_biases"], "score_map", **window),
         node("Sigmoid", ["score_map"], "probability_map"),
         node("Reshape", ["probability_map", "score_shape"], "score_columns"),
+        node("Concat", ["box_columns", "score_columns"], "output", axis=1),
     ]
-    if layout == "yolov4":
-        nodes += [
-            node("Transpose", ["box_columns"], "box_rows", perm=[0, 2, 1]),
-            node("Reshape", ["box_rows", "four_shape"], "boxes"),
-            node("Transpose", ["score_columns"], "confs", perm=[0, 2, 1]),
-        ]
-        outputs = {"boxes": (1, cells, 1, 4), "confs": (1, cells, 2)}
-    elif layout == "yolov8":
-        nodes += [node("Concat", ["box_columns", "score_columns"], "output", axis=1)]
-        outputs = {"output": (1, 6, cells)}
-    else:
-        nodes += [
-            node("Concat", ["box_columns", "score_columns"], "columns", axis=1),
-            node("Transpose", ["columns"], "output", perm=[0, 2, 1]),
-        ]
-        outputs = {"output": (1, cells, 7)}
-    if layout != "yolov4":
-        constants.pop("four_shape")
-    return model(nodes, constants, {"image": (1, 3, height, width)}, outputs)
+    return model(nodes, constants, {"image": (1, 3, height, width)}, {"output": (1, 6, columns * rows)})

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.boxes import DetectionError
-from course_lib.spherical_stereo.detection.colour import central_half, mean_hue_saturation
+from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
+from course_lib.spherical_stereo.detection.detected_object import DetectionError
 
 
 def bgr(hue, saturation_percent, value=0.8):
@@ -29,17 +29,6 @@ def test_a_plain_surface_has_its_own_hue_and_saturation(hue):
     assert saturation == pytest.approx(60, abs=0.7)
 
 
-def test_hues_either_side_of_red_average_to_red():
-    hue, _ = mean_hue_saturation(plain(bgr(350, 80), bgr(10, 80)))
-    assert abs((hue + 180) % 360 - 180) < 0.5
-
-
-def test_a_pale_half_pulls_the_hue_less_than_a_vivid_half():
-    hue, saturation = mean_hue_saturation(plain(bgr(0, 90), bgr(60, 30)))
-    assert hue == pytest.approx(math.degrees(math.atan2(0.3 * math.sin(math.pi / 3), 0.9 + 0.3 * 0.5)), abs=0.8)
-    assert saturation == pytest.approx(60, abs=0.7)
-
-
 @pytest.mark.parametrize("colour", [bgr(30, 0), bgr(30, 5), bgr(200, 8), (0, 0, 0), (255, 255, 255)])
 def test_grey_has_no_hue(colour):
     hue, saturation = mean_hue_saturation(plain(colour))
@@ -57,10 +46,6 @@ def test_noise_in_the_dark_has_no_say_in_the_hue():
     """The saturation of (3, 0, 0) is 100 %: weighted by it alone, near-black pixels would decide."""
     hue, _ = mean_hue_saturation(plain(bgr(120, 60), (3, 0, 0), (9, 0, 0)))
     assert hue == pytest.approx(120, abs=1)
-
-
-def test_the_central_half_has_the_same_centre_and_half_the_sides():
-    assert central_half((10, 20, 50, 30)) == (20, 22.5, 40, 27.5)
 
 
 def test_only_the_central_half_of_the_box_counts():
@@ -87,11 +72,6 @@ def test_a_mask_selects_pixels_and_meets_the_box():
     assert mean_hue_saturation(image, box=(20, 0, 100, 40), mask=mask)[0] == pytest.approx(240, abs=1)
 
 
-def test_a_box_of_less_than_a_pixel_takes_the_pixel_that_it_lies_on():
-    image = plain(bgr(0, 80), bgr(120, 80))
-    assert mean_hue_saturation(image, box=(50.1, 5.1, 50.4, 5.3))[0] == pytest.approx(120, abs=1)
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -105,10 +85,3 @@ def test_a_box_of_less_than_a_pixel_takes_the_pixel_that_it_lies_on():
 def test_no_colour_is_made_up_where_there_is_none(arguments, message):
     with pytest.raises(DetectionError, match=message):
         mean_hue_saturation(plain((1, 2, 3)), **arguments)
-
-
-def test_what_is_no_colour_image_is_refused():
-    with pytest.raises(DetectionError, match=r"\(H, W, 3\) uint8"):
-        mean_hue_saturation(np.zeros((4, 8), dtype=np.uint8))
-    with pytest.raises(DetectionError, match="float64"):
-        mean_hue_saturation(np.zeros((4, 8, 3)))

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.boxes import box_iou
+from course_lib.spherical_stereo.detection.detected_object import box_iou
 from course_lib.spherical_stereo.detection.seam import (
-    MARGIN,
     appended_columns,
     centres_in_range,
     extend_seam,
@@ -45,17 +44,6 @@ def test_the_valid_range_is_one_turn_and_leaves_an_eighth_at_both_ends():
     assert valid_range(WIDTH) == (WIDTH / 8, WIDTH / 8 + WIDTH)
 
 
-def test_every_object_up_to_a_quarter_wide_is_whole_in_its_valid_copy():
-    quarter = appended_columns(WIDTH)
-    for u_min in range(WIDTH):
-        for object_width in (10, 77, quarter):
-            copies = [[u_min + turn, 0, u_min + object_width + turn, 10] for turn in (-WIDTH, 0, WIDTH)]
-            valid = np.array(copies, dtype=float)[centres_in_range(np.array(copies, dtype=float), WIDTH)]
-            assert len(valid) == 1
-            assert valid[0, 0] >= 0
-            assert valid[0, 2] <= WIDTH + quarter
-
-
 @pytest.mark.parametrize("object_width", [20, 100, 160, 175, 200, 320, 480, 630])
 def test_an_object_of_any_width_at_any_column_is_counted_once_and_whole(object_width):
     for u_min in range(0, WIDTH, 7):
@@ -74,15 +62,6 @@ def test_jitter_of_a_few_pixels_neither_doubles_nor_loses_an_object(object_width
         assert box_iou(boxes, true, WIDTH)[0, 0] > (0.6 if object_width < 40 else 0.75)
 
 
-def test_the_bare_range_without_margin_would_lose_an_object_that_jitters():
-    """Why there is a margin: centres at W/8 - 1 in one copy and at W/8 + W + 1 in the other are both outside."""
-    start, stop = valid_range(WIDTH)
-    boxes = np.array([[start - 21, 100, start + 19, 180], [stop - 19, 100, stop + 21, 180]])
-    assert not centres_in_range(boxes, WIDTH).any()
-    assert centres_in_range(boxes, WIDTH, MARGIN * WIDTH).all()
-    assert len(select_on_circle(boxes, np.array([0.6, 0.9]), np.zeros(2, int), WIDTH, IOU)[0]) == 1
-
-
 def test_two_objects_side_by_side_at_the_border_of_the_range_both_stay():
     start, _ = valid_range(WIDTH)
     one, two = ideal_detections(start - 42, 40), ideal_detections(start + 2, 40)
@@ -96,14 +75,6 @@ def test_objects_of_two_classes_at_one_place_both_stay_unless_their_boxes_coinci
     assert len(select_on_circle(boxes, scores, classes, WIDTH, IOU)[0]) == 2
     boxes[1] = [202, 101, 261, 180]
     assert select_on_circle(boxes, scores, classes, WIDTH, IOU)[2].tolist() == [0]
-
-
-def test_the_box_of_a_whole_copy_and_the_score_of_a_surer_cut_one_stay():
-    start, _ = valid_range(WIDTH)
-    whole, cut = [start - 10 - 78 + WIDTH, 100, start - 10 + 78 + WIDTH, 180], [0, 100, start - 10 + 78, 180]
-    boxes, scores, _ = select_on_circle(np.array([cut, whole]), np.array([0.9, 0.6]), np.zeros(2, int), WIDTH, IOU)
-    assert boxes.tolist() == [whole]
-    assert scores.tolist() == [0.9]
 
 
 def test_a_surer_copy_that_the_seam_cuts_gives_way_to_the_whole_one_even_when_both_centres_count():
@@ -128,12 +99,6 @@ def test_a_faint_copy_in_the_range_does_not_hide_a_clear_one_in_the_margin():
     found, found_scores, _ = select_on_circle(boxes, scores, np.zeros(2, int), WIDTH, IOU)
     assert found.tolist() == [[boxes[0, 0] - WIDTH, 100, boxes[0, 2] - WIDTH, 180]]
     assert found_scores.tolist() == [0.95]
-
-
-def test_the_class_comes_with_the_score():
-    boxes, scores = copies_at_the_border(0.06, 0.95)
-    _, found_scores, classes = select_on_circle(boxes, scores, np.array([2, 5]), WIDTH, IOU)
-    assert (found_scores.tolist(), classes.tolist()) == ([0.95], [5])
 
 
 def test_a_suppressed_box_gives_its_score_to_the_one_that_replaced_it_only():
@@ -166,9 +131,3 @@ def test_halves_of_two_objects_are_not_joined():
     for boxes, classes in (([high, low], [0, 0]), ([high, [*low[:1], 20, low[2], 60]], [0, 1])):
         joined, _, _ = join_cut_pairs(np.array(boxes), np.array([0.9, 0.8]), np.array(classes), WIDTH)
         assert len(joined) == 2
-
-
-def test_no_detections_stay_none():
-    nothing = np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int)
-    boxes, scores, classes = select_on_circle(*nothing, WIDTH, IOU)
-    assert (len(boxes), len(scores), len(classes)) == (0, 0, 0)

@@ -34,19 +34,9 @@ def test_across_classes_only_boxes_that_nearly_coincide_are_one_object():
     assert suppress_in_image(shifted(0, 4), scores, classes, 0.45).tolist() == [0]
 
 
-def test_a_plain_image_has_no_seam():
-    """Boxes at its two ends are two objects, however they would meet on a circle."""
-    boxes = np.array([[0.0, 0, 50, 50], [590, 0, 640, 50]])
-    assert len(suppress_in_image(boxes, np.array([0.9, 0.8]), np.zeros(2, int), 0.01)) == 2
-
-
 def test_nothing_stays_nothing():
     assert len(suppress_in_image(np.zeros((0, 4)), np.zeros(0), np.zeros(0, int), 0.45)) == 0
     assert len(suppress(np.zeros((0, 0)), np.zeros(0), 0.5)) == 0
-
-
-def test_equal_ranks_keep_the_first():
-    assert suppress(np.ones((3, 3)), np.array([1.0, 1.0, 1.0]), 0.5).tolist() == [0]
 
 
 def test_boxes_that_nearly_coincide_vote_weighted_by_their_scores():
@@ -64,11 +54,6 @@ def test_others_have_no_vote(box, score, kind):
     boxes = np.array([(0, 0, 100, 100), box], float)
     voted = vote_on_boxes(boxes, np.array([0.6, score]), np.array([1, kind]), np.array([0]))
     np.testing.assert_allclose(voted, boxes[:1])
-
-
-def test_a_box_votes_for_itself_whatever_its_score():
-    boxes = np.array([[0, 0, 100, 100]], float)
-    np.testing.assert_array_equal(vote_on_boxes(boxes, np.zeros(1), np.zeros(1, int), np.array([0])), boxes)
 
 
 def test_no_boxes_have_no_votes():

@@ -4,13 +4,17 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from course_lib.spherical_stereo.matching.alignment import camera_turn
+from course_lib.spherical_stereo.matching.alignment import camera_alignment
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features
 from course_lib.spherical_stereo.panorama import direction_to_pixel
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import BASELINE, WIDTH, seen_turned
 
 SIZE = (1280, 640)
+
+
+def camera_turn(upper, lower):
+    return camera_alignment(upper, lower).turn
 
 
 @pytest.fixture(scope="module")

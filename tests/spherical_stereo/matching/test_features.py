@@ -9,7 +9,6 @@ from course_lib.spherical_stereo.matching.epipolar import (
     best_pairs,
     epipolar_pairs,
     epipolar_residual,
-    hamming,
 )
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, inside_box
 from course_lib.spherical_stereo.panorama import PanoramaError
@@ -55,16 +54,6 @@ def test_keypoints_are_in_edge_coordinates():
     np.testing.assert_allclose(keypoints.mean(axis=0), [110, 70], atol=0.3)
 
 
-def test_a_lower_threshold_finds_more(image, features):
-    assert len(detect_features(image, threshold=2e-3)) < len(features)
-
-
-def test_an_image_without_structure_has_no_features():
-    features = detect_features(np.full((HEIGHT, WIDTH, 3), (80, 90, 100), np.uint8))
-    assert len(features) == 0
-    assert features.descriptors.shape == (0, 61)
-
-
 def test_what_is_no_panorama_or_no_threshold_is_refused(image):
     with pytest.raises(PanoramaError):
         detect_features(image[..., 0])
@@ -96,25 +85,6 @@ def test_epipolar_pairs_are_all_that_looking_at_every_pair_finds(rng):
     assert len(expected) > 100
     assert set(zip(pairs.upper.tolist(), pairs.lower.tolist(), strict=True)) == expected
     np.testing.assert_array_equal(pairs.distance, distance[pairs.upper, pairs.lower])
-
-
-def test_hamming_counts_the_bits_that_differ(rng):
-    a, b = (rng.integers(0, 256, (6, 61), dtype=np.uint8) for _ in range(2))
-    expected = (np.unpackbits(a, axis=1) != np.unpackbits(b[::-1], axis=1)).sum(axis=1)
-    np.testing.assert_array_equal(hamming(a, b, np.arange(6), np.arange(6)[::-1]), expected)
-
-
-def test_the_tolerance_must_be_an_angle(rng):
-    features = random_features(rng, 5)
-    for tolerance in (0, -0.1, 2.0, np.nan):
-        with pytest.raises(PanoramaError, match="tolerance"):
-            epipolar_pairs(features, features, tolerance)
-
-
-def test_opposite_directions_do_not_obey_the_epipolar_constraint():
-    """They span one plane with the baseline, but lie in its other half."""
-    assert epipolar_residual(0.0, -0.2, np.pi, -0.1) == pytest.approx(np.pi / 2 - 0.1)
-    assert epipolar_residual(0.7, -0.2, 0.7, -0.1) == pytest.approx(0, abs=1e-12)
 
 
 def pairs_of(*triples):

@@ -13,9 +13,7 @@ from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.rigid_fit import (
     COINCIDENT,
     MIRRORED,
-    NO_POINTS,
     TOO_FEW_PAIRS,
-    UNDETERMINED,
     Pose2D,
     RigidFitError,
     fit_covariance,
@@ -65,15 +63,6 @@ def test_noisy_points_give_the_pose_that_scikit_image_gives(source, theta, seed)
     assert wrap_angle(fitted.theta - reference.rotation) == pytest.approx(0, abs=1e-9)
 
 
-@given(points, angles, angles, st.integers(0, 10_000))
-def test_turning_the_body_by_an_angle_takes_that_angle_from_the_heading(source, theta, turn, seed):
-    assume(spread(source) > 1.0)
-    target = noisy(source, Pose2D(0.5, 2.0, theta), 0.05, seed)
-    before, after = fit_rigid_2d(source, target), fit_rigid_2d(source @ rotation_2d(turn).T, target)
-    assert after[:2] == pytest.approx(before[:2], abs=1e-9)
-    assert wrap_angle(after.theta - (before.theta - turn)) == pytest.approx(0, abs=1e-9)
-
-
 @given(angles, st.integers(0, 10_000))
 def test_turning_body_and_covariances_together_keeps_the_weighted_position(turn, seed):
     rng = np.random.default_rng(seed)
@@ -88,40 +77,11 @@ def test_turning_body_and_covariances_together_keeps_the_weighted_position(turn,
     assert wrap_angle(after.theta - before.theta + turn) == pytest.approx(0, abs=1e-8)
 
 
-def test_no_neighbouring_pose_fits_better():
-    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
-    best = fit_rigid_2d(TRIANGLE, target)
-
-    def cost(pose):
-        return ((pose.apply(TRIANGLE) - target) ** 2).sum()
-
-    for step in np.vstack([np.eye(3), -np.eye(3)]) * 1e-3:
-        assert cost(Pose2D(*(np.array(best) + step))) > cost(best)
-
-
 def test_a_pair_of_weight_zero_counts_as_if_it_were_not_there():
     target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
     far_off = np.vstack([target, [50.0, 50.0]])
     with_zero = fit_rigid_2d(np.vstack([TRIANGLE, [1.0, 1.0]]), far_off, weights=[1, 1, 1, 0])
     assert with_zero == pytest.approx(fit_rigid_2d(TRIANGLE, target), abs=1e-12)
-
-
-def test_a_weight_of_two_counts_as_the_same_pair_twice():
-    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
-    twice = fit_rigid_2d(np.vstack([TRIANGLE, TRIANGLE[2]]), np.vstack([target, target[2]]))
-    assert fit_rigid_2d(TRIANGLE, target, weights=[1, 1, 2]) == pytest.approx(twice, abs=1e-12)
-
-
-def test_equal_round_covariances_change_nothing():
-    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
-    plain = fit_rigid_2d(TRIANGLE, target)
-    assert fit_rigid_2d(TRIANGLE, target, covariances=[0.04 * np.eye(2)] * 3) == pytest.approx(plain, abs=1e-9)
-
-
-def test_a_heading_at_the_wrap_is_found():
-    fitted = fit_rigid_2d(TRIANGLE, Pose2D(0.0, 0.0, -np.pi).apply(TRIANGLE))
-    assert abs(fitted.theta) == pytest.approx(np.pi)
-    assert -np.pi <= fitted.theta < np.pi
 
 
 def ranges_with_noise(rng):
@@ -135,17 +95,6 @@ def ranges_with_noise(rng):
     )
     observed = points + along * sigma * rng.standard_normal((8, 1)) + across * 0.02 * rng.standard_normal((8, 1))
     return points, observed, covariances
-
-
-def test_knowing_which_points_are_uncertain_makes_the_position_better():
-    rng, pose, plain, weighted = np.random.default_rng(5), Pose2D(1.0, -1.0, 2.0), [], []
-    for _ in range(200):
-        points, observed, covariances = ranges_with_noise(rng)
-        target = pose.apply(points)
-        plain.append(fit_rigid_2d(observed, target)[:2])
-        weighted.append(fit_rigid_2d(observed, target, covariances=covariances)[:2])
-    error = [np.sqrt(((np.array(each) - pose[:2]) ** 2).sum(axis=1).mean()) for each in (plain, weighted)]
-    assert error[1] < 0.7 * error[0]
 
 
 @pytest.mark.parametrize("weighted", [False, True])
@@ -182,11 +131,6 @@ def test_fewer_than_two_pairs_are_too_few(n):
         fit_rigid_2d(np.zeros((n, 2)), np.zeros((n, 2)))
 
 
-def test_two_pairs_of_which_one_counts_nothing_are_too_few():
-    with refused(TOO_FEW_PAIRS):
-        fit_rigid_2d(TRIANGLE[:2], TRIANGLE[:2], weights=[1, 0])
-
-
 @pytest.mark.parametrize("side", ["source", "target"])
 def test_points_at_one_place_have_no_heading(side):
     one_place = np.tile([2.0, 1.0], (3, 1))
@@ -198,12 +142,6 @@ def test_points_at_one_place_have_no_heading(side):
 def test_a_mirror_image_is_named(theta, x, y):
     with refused(MIRRORED, match="mirror image"):
         fit_rigid_2d(TRIANGLE * [1, -1], Pose2D(x, y, theta).apply(TRIANGLE))
-
-
-def test_a_mirror_image_with_noise_is_named():
-    square = np.array([[0, 0], [4, 0], [4, 3], [0, 3], [1, 2.0]])
-    with refused(MIRRORED):
-        fit_rigid_2d(square * [1, -1], noisy(square, Pose2D(1, 2, 3), 0.1))
 
 
 def test_an_equilateral_triangle_with_two_corners_exchanged_is_a_mirror_image():
@@ -220,28 +158,6 @@ def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
     assert fitted[:2] == pytest.approx(pose[:2], abs=0.25)
 
 
-def test_pairs_that_fit_every_heading_alike_are_named():
-    # Two of the four stand still and two change places, so that neither turn nor reflection gains anything.
-    source = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
-    target = np.array([[1.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [-1.0, 0.0]])
-    with refused(UNDETERMINED):
-        fit_rigid_2d(source, target)
-
-
-@pytest.mark.parametrize("bad", [np.nan, np.inf])
-def test_numbers_that_are_none_are_named(bad):
-    broken = TRIANGLE.copy()
-    broken[1, 0] = bad
-    with refused(NO_POINTS, match=r"source must be finite.*entry 1"):
-        fit_rigid_2d(broken, TRIANGLE)
-    with refused(NO_POINTS, match="target"):
-        fit_rigid_2d(TRIANGLE, broken)
-    with refused(NO_POINTS, match="weights"):
-        fit_rigid_2d(TRIANGLE, TRIANGLE, weights=[1, bad, 1])
-    with refused(NO_POINTS, match="covariances"):
-        fit_rigid_2d(TRIANGLE, TRIANGLE, covariances=np.full((3, 2, 2), bad))
-
-
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
@@ -249,6 +165,9 @@ def test_numbers_that_are_none_are_named(bad):
         ({"target": np.zeros((3, 3))}, "shape"),
         ({"weights": [1, 1]}, "one a pair"),
         ({"weights": [1, -1, 1]}, "not be negative"),
+        ({"weights": [1, np.nan, 1]}, "weights must be finite"),
+        ({"source": np.full((3, 2), np.inf)}, "source must be finite"),
+        ({"covariances": np.full((3, 2, 2), np.nan)}, "covariances must be finite"),
         ({"covariances": np.eye(2)}, r"one \(2, 2\) matrix a pair"),
         ({"covariances": [np.zeros((2, 2))] * 3}, "positive eigenvalues"),
         ({"covariances": [[[1, 0.5], [0, 1]]] * 3}, "symmetric"),

@@ -5,16 +5,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,
     azimuth_elevation,
     direction_from_angles,
-    direction_to_pixel,
-    pixel_to_direction,
 )
 from course_lib.spherical_stereo.ranging.triangulation import (
-    AZIMUTH_GAP_TOLERANCE,
     TriangulationError,
     object_position,
     triangulate,
@@ -67,31 +63,6 @@ def test_skew_rays_give_the_distance_of_their_elevations(rng):
         assert triangulate(upper, turned, BASELINE) == pytest.approx(triangulate(upper, lower, BASELINE), rel=1e-12)
 
 
-@QUICK
-@given(point=points, turn=st.floats(-7, 7))
-def test_a_turn_about_the_vertical_leaves_the_distance(point, turn):
-    turned = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]) @ point
-    d = triangulate(*seen(point), BASELINE)
-    assert triangulate(*seen(turned), BASELINE) == pytest.approx(d, rel=1e-9)
-
-
-def test_distances_broadcast_over_leading_axes(rng):
-    point = rng.uniform(1, 3, (4, 5, 3))
-    upper, lower = seen(point)
-    d = triangulate(upper, lower, BASELINE)
-    assert d.shape == (4, 5)
-    np.testing.assert_allclose(d, np.linalg.norm(point, axis=-1))
-    assert triangulation_covariance(upper, lower, BASELINE, 0.001, 0.001).shape == (4, 5, 3, 3)
-
-
-def test_a_pixel_pair_by_hand():
-    """Level with the upper camera, 3 m away: the lower camera sees it atan(0.1) higher."""
-    upper = pixel_to_direction(np.array([640.0, 320.0]), 1280, 640)
-    lower = direction_from_angles(0.0, np.arctan(0.1))
-    assert triangulate(upper, lower, BASELINE) == pytest.approx(3.0)
-    assert direction_to_pixel(lower, 1280, 640)[1] == pytest.approx(320 - 640 * np.arctan(0.1) / np.pi)
-
-
 OUTCOMES = [
     ((0.3, -0.2), (0.3, -0.2), "parallel"),
     ((0.3, -0.2), (0.3, -0.2 + 0.0009), "parallel"),
@@ -117,14 +88,6 @@ def test_directions_without_a_distance_have_a_named_outcome(upper, lower, name):
         assert caught.value.outcome == name
 
 
-def test_outcomes_of_many_directions_come_as_an_array():
-    upper = direction_from_angles(np.array([u[0] for u, *_ in OUTCOMES]), np.array([u[1] for u, *_ in OUTCOMES]))
-    lower = direction_from_angles(np.array([o[1][0] for o in OUTCOMES]), np.array([o[1][1] for o in OUTCOMES]))
-    assert list(triangulation_outcome(upper, lower)) == [name for *_, name in OUTCOMES]
-    with pytest.raises(TriangulationError, match="element 6"):
-        triangulate(upper, lower, BASELINE)
-
-
 @QUICK
 @given(upper=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)), lower=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)))
 def test_a_distance_is_never_a_huge_number(upper, lower):
@@ -132,18 +95,6 @@ def test_a_distance_is_never_a_huge_number(upper, lower):
     upper, lower = direction_from_angles(*upper), direction_from_angles(*lower)
     if triangulation_outcome(upper, lower) == "ok":
         assert 0 < triangulate(upper, lower, BASELINE) < 303
-
-
-@QUICK
-@given(point=points, gap=st.floats(-np.pi, np.pi))
-def test_the_azimuth_gap_is_measured_on_the_sphere(point, gap):
-    """A direction turned by `gap` is asin(cos e sin |gap|) from the other's half-circle: less, the steeper it looks."""
-    (azimuth_u, e_u), (azimuth_l, e_l) = (azimuth_elevation(d) for d in seen(point))
-    residual = epipolar_residual(azimuth_u, e_u, azimuth_l + gap, e_l)
-    flattest = min(abs(e_u), abs(e_l))
-    expected = np.arcsin(np.cos(flattest) * np.sin(abs(gap))) if abs(gap) <= np.pi / 2 else np.pi / 2 - flattest
-    assert residual == pytest.approx(expected, abs=1e-6)
-    assert AZIMUTH_GAP_TOLERANCE < np.pi / 2
 
 
 def test_the_covariance_is_that_of_noise_drawn_by_hand(rng):
@@ -168,26 +119,10 @@ def test_the_deviation_along_the_ray_grows_with_distance_squared_over_baseline()
     assert along(8, 0.15) / along(8, 0.30) == pytest.approx(2, rel=0.05)
 
 
-def test_the_deviation_across_the_ray_is_distance_times_the_noise_of_the_azimuth():
-    covariance = triangulation_covariance(*seen(np.array([4.0, 0, 0])), BASELINE, 0.002, 0.001)
-    assert np.sqrt(covariance[1, 1]) == pytest.approx(4 * 0.002)
-    assert covariance[0, 1] == pytest.approx(0, abs=1e-15)
-
-
-def test_a_covariance_is_symmetric_and_not_negative(rng):
-    covariance = triangulation_covariance(*seen(rng.uniform(1, 3, (50, 3))), BASELINE, 0.002, rng.uniform(0, 0.003, 50))
-    np.testing.assert_allclose(covariance, np.swapaxes(covariance, -1, -2), atol=1e-15)
-    assert np.linalg.eigvalsh(covariance).min() > -1e-12
-
-
-@pytest.mark.parametrize("baseline", [0.0, -0.3, np.nan])
-def test_a_baseline_that_is_not_positive_is_refused(baseline):
-    with pytest.raises(PanoramaError):
-        triangulate(*seen(np.array([2.0, 0, 0])), baseline)
-
-
 def test_noise_that_is_none_and_directions_that_are_none_are_refused():
     upper, lower = seen(np.array([2.0, 0, 0]))
+    with pytest.raises(PanoramaError, match="baseline"):
+        triangulate(upper, lower, 0.0)
     with pytest.raises(PanoramaError, match="sigma_elevation"):
         triangulation_covariance(upper, lower, BASELINE, 0.001, -0.001)
     with pytest.raises(PanoramaError, match="direction"):

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import (
-    LEAST_DISTANCE,
+    MIN_DISTANCE,
     AssociationError,
     Observation,
     PenaltyWeights,
     associate_greedy,
     hue_difference,
-    least_object_weight,
+    min_object_weight,
     penalty,
     penalty_table,
 )
@@ -46,10 +46,6 @@ def test_every_term_of_equation_1_by_hand():
     assert terms.total == pytest.approx(sum(terms[:4]))
 
 
-def test_like_classes_cost_nothing():
-    assert cost(seen(), mapped()).object == 0.0
-
-
 def test_two_names_of_one_class_cost_nothing():
     assert cost(seen("couch"), mapped("sofa")).object == 0.0
     several = Observation(np.array([["couch"], ["TV"]]), 3.0, 4.0, 20.0, 50.0)
@@ -57,14 +53,11 @@ def test_two_names_of_one_class_cost_nothing():
     assert cost(several, landmarks).object.tolist() == [[0.0, 7.0], [7.0, 0.0]]
 
 
-def test_hues_on_both_sides_of_red_are_near():
-    assert hue_difference(350, 10) == pytest.approx(20)
-
-
 @given(st.floats(0, 359.999), st.floats(0, 359.999), st.floats(0, 359.999))
 def test_the_hue_difference_is_symmetric_and_turns_with_the_circle(a, b, turn):
     apart = hue_difference(a, b)
     assert 0 <= apart <= 180
+    assert hue_difference(350, 10) == pytest.approx(20)
     assert hue_difference(b, a) == pytest.approx(apart)
     assert hue_difference((a + turn) % 360, (b + turn) % 360) == pytest.approx(apart, abs=1e-9)
 
@@ -89,19 +82,10 @@ def test_the_distance_term_as_printed_rewards_objects_that_look_too_near():
     assert absolute[1] > absolute[0] == 0.0
 
 
-def test_both_distance_terms_agree_on_objects_that_look_too_far():
-    assert cost(seen(), mapped()) == cost(seen(), mapped(), distance_term="as_printed")
-
-
 def test_an_object_at_the_centroid_of_the_map_costs_a_finite_amount():
     terms = cost(seen(x=0.3, y=0.4), mapped(x=0.0, y=0.0))
-    assert terms.distance == pytest.approx(4.0 * 0.5 / LEAST_DISTANCE)
+    assert terms.distance == pytest.approx(4.0 * 0.5 / MIN_DISTANCE)
     assert cost(seen(x=0.0, y=0.0), mapped(x=0.0, y=0.0)).distance == 0.0
-
-
-def test_distances_are_to_each_sides_own_centroid():
-    terms = penalty(seen(x=13.0, y=4.0), mapped(x=100.0, y=5.0), [10.0, 0.0], [100.0, 0.0], WEIGHTS)
-    assert terms.distance == pytest.approx(0.0, abs=1e-12)
 
 
 ROOM = SemanticMap(
@@ -155,12 +139,6 @@ def test_pairs_come_in_the_order_of_choice_cheapest_open_combination_first():
         free_columns.remove(j)
 
 
-def test_unseen_objects_move_the_centroid_and_with_it_every_distance_term():
-    everything, part = observed_from(ROOM, range(5)), observed_from(ROOM, [0, 1])
-    assert penalty_table(everything, ROOM).distance[0, 0] == pytest.approx(0, abs=1e-12)
-    assert penalty_table(part, ROOM).distance[0, 0] > 0.1
-
-
 def test_an_early_choice_is_never_taken_back():
     # The second observation is the better partner of both landmarks, so the first is left with the dear one.
     semantic_map = SemanticMap([Landmark("sofa", -1, 0, 0, 50), Landmark("sofa", 1, 0, 0, 90)])
@@ -171,12 +149,6 @@ def test_an_early_choice_is_never_taken_back():
     assert total[1, 0] + total[0, 1] > total[0, 0] + total[1, 1]
 
 
-def test_equal_penalties_go_to_the_first_observation_then_the_first_landmark():
-    semantic_map = SemanticMap([Landmark("sofa", x, 0, 10, 50) for x in (-1, 1)])
-    found = associate_greedy([Observation("sofa", x, 0, 10, 50) for x in (1, -1)], semantic_map)
-    assert found.pairs == ((0, 0), (1, 1))
-
-
 @given(st.floats(-7, 7))
 def test_rounding_does_not_choose_between_objects_that_are_alike(theta):
     corners = [(1, 1), (1, -1), (-1, -1), (-1, 1)]
@@ -185,25 +157,12 @@ def test_rounding_does_not_choose_between_objects_that_are_alike(theta):
     assert found.pairs == ((0, 0), (1, 1), (2, 2), (3, 3))
 
 
-def test_more_observations_than_landmarks_leave_some_unassigned():
-    observations = [*observed_from(ROOM, range(5)), seen("chair", x=9.0, y=9.0)]
-    found = associate_greedy(observations, ROOM)
-    assert len(found.pairs) == 5
-    assert len(found.unassigned) == 1
-
-
 def test_a_pair_of_unlike_classes_is_made_at_the_end_but_never_usable():
     semantic_map = SemanticMap([Landmark("sofa", 0, 0, 10, 50), Landmark("chair", 2, 0, 10, 50)])
     found = associate_greedy([seen("sofa"), seen("sofa", x=1.0)], semantic_map)
     assert sorted(found.same_class) == [False, True]
     assert len(found.pairs) == 2
     assert found.usable_pairs == (found.pairs[0],)
-
-
-def test_a_couch_is_a_sofa():
-    found = associate_greedy([seen("couch")], SemanticMap([mapped("sofa"), mapped("chair")]))
-    assert found.pairs == ((0, 0),)
-    assert found.same_class == (True,)
 
 
 def random_scene(seed):
@@ -220,48 +179,20 @@ def random_scene(seed):
 
 
 @pytest.mark.parametrize("distance_term", ["absolute", "as_printed"])
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(5))
 def test_above_the_least_object_weight_every_like_pair_is_cheaper_than_every_unlike_one(seed, distance_term):
     observations, semantic_map = random_scene(seed)
-    bound = least_object_weight(observations, semantic_map, distance_term=distance_term)
+    bound = min_object_weight(observations, semantic_map, distance_term=distance_term)
     for p_obj, holds in ((bound * 1.001, True), (bound * 0.999, False)):
         table = penalty_table(observations, semantic_map, PenaltyWeights(p_obj=p_obj), distance_term)
         like = table.object == 0
         assert (table.total[like].max() < table.total[~like].min()) == holds
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_the_default_object_weight_is_enough_for_a_room_of_six_metres(seed):
-    assert least_object_weight(*random_scene(seed)) < PenaltyWeights().p_obj
-    found = associate_greedy(*random_scene(seed))
-    first_unlike = found.same_class.index(False) if False in found.same_class else len(found.pairs)
-    assert all(found.same_class[:first_unlike])
-    assert not any(found.same_class[first_unlike:])
-
-
-def test_a_room_without_unlike_classes_needs_no_object_weight():
-    assert least_object_weight([seen()], SemanticMap([mapped()])) == 0.0
-
-
 def test_no_observations_give_no_pairs():
     found = associate_greedy([], ROOM)
     assert found.pairs == found.unassigned == found.steps == ()
     assert found.table.total.shape == (0, 5)
-
-
-@pytest.mark.parametrize(
-    ("observation", "says"),
-    [
-        (seen(x=math.nan), "observation 1: x and y must be finite"),
-        (seen(y=math.inf), "observation 1: x and y must be finite"),
-        (seen(hue=360.0), r"observation 1: hue must lie in \[0, 360\)"),
-        (seen(saturation=math.nan), "observation 1: saturation"),
-        (seen(saturation=-1.0), "observation 1: saturation"),
-    ],
-)
-def test_an_observation_that_is_none_is_named(observation, says):
-    with pytest.raises(AssociationError, match=says):
-        associate_greedy([seen(), observation], ROOM)
 
 
 @pytest.mark.parametrize(
@@ -282,11 +213,6 @@ def test_the_penalty_refuses_what_the_matcher_refuses(change, says):
         cost(seen()._replace(**change), mapped())
 
 
-def test_the_penalty_refuses_a_landmark_that_is_none():
-    with pytest.raises(AssociationError, match="landmark: hue"):
-        cost(seen(), seen(hue=400.0))
-
-
 def test_options_that_do_not_exist_are_named():
     with pytest.raises(AssociationError, match=r"distance_term must be one of.*'squared'"):
         associate_greedy([], ROOM, distance_term="squared")
@@ -294,5 +220,7 @@ def test_options_that_do_not_exist_are_named():
         associate_greedy([seen()], ROOM, PenaltyWeights(p_h=-1))
     with pytest.raises(AssociationError, match="map centroid"):
         penalty(seen(), mapped(), [0, 0], [0, 0, 0])
-    with pytest.raises(AssociationError, match="must be finite"):
-        penalty(seen(x=math.nan), mapped(), ORIGIN, ORIGIN)
+    with pytest.raises(AssociationError, match="observation 1: x and y must be finite"):
+        associate_greedy([seen(), seen(x=math.nan)], ROOM)
+    with pytest.raises(AssociationError, match="landmark: hue"):
+        cost(seen(), seen(hue=400.0))

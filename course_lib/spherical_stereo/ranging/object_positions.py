@@ -1,7 +1,7 @@
-"""Where matched objects are: X = d x_hat with d from the box centres, the paper's way, or from the features inside.
+"""Where matched objects are (paper 2, section 2.4): X = d x_hat.
 
-The sections before give the pieces (2.3: matched features, 2.4: triangulation); here each match gets an outcome, a
-place and a covariance.
+d comes from the box centres, which is the paper's way, or from the features inside the boxes. Each match gets an
+outcome, a position and a covariance.
 """
 
 from __future__ import annotations
@@ -11,8 +11,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.spherical_stereo.detection.boxes import DetectionError, box_centre
-from course_lib.spherical_stereo.detection.labels import canonical_label
+from course_lib.spherical_stereo.detection.detected_object import DetectionError, box_centre, canonical_label
 from course_lib.spherical_stereo.panorama import (
     PanoramaError,
     StereoRig,
@@ -34,28 +33,25 @@ DISTANCES: tuple[Distance, ...] = ("box_centre", "disparity")
 BOX_CENTRE_SIGMA = 0.0075
 """Radians, standard deviation of a box centre's azimuth and elevation (chosen: 1.5 pixels at a width of 1280)."""
 CENTROID_SIGMA = 0.1
-"""Metres, standard deviation in each direction of the object's centroid about the point that its box's centre shows: a
-box is of the visible side (chosen). Without it, objects close by would seem certain to a centimetre."""
+"""Metres, standard deviation in each direction of the object's centroid about the point that its box's centre shows,
+because a box is of the visible side (chosen). Without it, objects close by would seem certain to a centimetre."""
 SURFACE_SIGMA = 0.15
-"""Metres, how far an object's centroid is from the surface that its features lie on, as a standard deviation (chosen:
-about a quarter of a sofa's depth). It is added to what the disparities say, which know nothing of the inside."""
+"""Metres, standard deviation of the distance from an object's centroid to the surface that its features lie on (chosen:
+about a quarter of a sofa's depth). The disparities know nothing of the inside, so it is added to what they say."""
 TOO_FAR = "too far"
-"""Outcome of an object beyond `greatest_range`."""
+"""Outcome of an object beyond `max_range`."""
 
 
 class Noise(NamedTuple):
-    """What makes a place uncertain: standard deviations."""
+    """What makes a position uncertain, as standard deviations (the constants above)."""
 
     box_centre: float = BOX_CENTRE_SIGMA
-    """Radians, of a box centre's azimuth and elevation."""
     centroid: float = CENTROID_SIGMA
-    """Metres, of the object's centroid about the point that the box's centre shows."""
     surface: float = SURFACE_SIGMA
-    """Metres, of the centroid about the surface that the features lie on."""
 
 
-class Place(NamedTuple):
-    """Place of one object, body frame with the origin at the upper camera."""
+class ObjectPosition(NamedTuple):
+    """Position of one object, body frame with the origin at the upper camera."""
 
     outcome: str
     """ "ok", "parallel", "diverging", "azimuth gap", "too few matches" or "too far"."""
@@ -89,20 +85,20 @@ class MeasuredObject(NamedTuple):
     label: str
     n_matches: int
     azimuth_deg: float
-    box_centre: Place
-    disparity: Place
+    box_centre: ObjectPosition
+    disparity: ObjectPosition
 
 
-def greatest_range(baseline: float) -> float:
-    """The horizontal range in metres at which one standard deviation of the parallax is all of it.
+def max_range(baseline: float) -> float:
+    """Return the horizontal range in metres at which one standard deviation of the parallax is all of it.
 
-    rho = baseline / (sqrt(2) s), s = `BOX_CENTRE_SIGMA`; 28 m at a baseline of 0.3 m. Nothing is known of the distance
-    of what seems further away. Source: paper 2, section 2.4 (which draws no line).
+    rho = baseline / (sqrt(2) s), s = `BOX_CENTRE_SIGMA`; 28 m at a baseline of 0.3 m. The distance of an object that
+    seems further away is not known. Source: paper 2, section 2.4 (which draws no line).
     """
     return baseline / (2**0.5 * BOX_CENTRE_SIGMA)
 
 
-def place_objects(
+def position_objects(
     matches: Sequence,
     pairs: Sequence[tuple[int, int]],
     upper: View,
@@ -111,35 +107,35 @@ def place_objects(
     distance: Distance = "box_centre",
     noise: Noise = Noise(),  # noqa: B008 (it cannot change)
     furthest: float = np.inf,
-) -> list[Place]:
-    """The place of every match: X = d x_hat, x_hat the direction of the box centre in the upper image.
+) -> list[ObjectPosition]:
+    """Return the position of every match: X = d x_hat, x_hat the direction of the box centre in the upper image.
 
     pairs: indices (upper, lower) of the matches' detections (`matched_indices`). distance: "box_centre", d from both
     box centres, or "disparity", d from the matched features, for which the matches must carry them (else
-    `DetectionError`). furthest: metres, horizontal; what seems further away has the outcome "too far" and no place.
+    `DetectionError`). furthest: metres, horizontal; an object that seems further away has the outcome "too far".
     Source: paper 2, section 2.4.
     """
     if not pairs:
         return []
     from_upper = pixel_to_direction(box_centre([upper.detections[i].box for i, _ in pairs]), *upper.size)
     if distance == "disparity":
-        places = [
+        found = [
             _from_features(match, direction, rig.baseline, upper.size, noise)
             for match, direction in zip(matches, from_upper, strict=True)
         ]
     else:
         from_lower = pixel_to_direction(box_centre([lower.detections[j].box for _, j in pairs]), *lower.size)
-        places = _from_box_centres(from_upper, from_lower, rig.baseline, noise)
-    return [_nowhere(TOO_FAR) if one.horizontal_range_m > furthest else one for one in places]
+        found = _from_box_centres(from_upper, from_lower, rig.baseline, noise)
+    return [_nowhere(TOO_FAR) if one.horizontal_range_m > furthest else one for one in found]
 
 
 def measure_objects(
     matches: Sequence, upper: View, lower: View, rig: StereoRig, sigma_pixels: float = 1.0
 ) -> list[MeasuredObject]:
-    """Every matched object with both its distances, in the order of the upper detections.
+    """Return every matched object with both its distances, in the order of the upper detections.
 
-    matches: `ObjectMatch`es. sigma_pixels: standard deviation of a box centre's u and v, pixels; of the disparities,
-    the spread of the features themselves tells. What neither knows, where the centroid is, is left out here.
+    matches: `ObjectMatch`es. sigma_pixels: standard deviation of a box centre's u and v, pixels. That of the
+    disparities comes from the spread of the features. The distance to the unknown centroid is left out here.
     Raises `PanoramaError` for a sigma that is negative. Source: paper 2, section 2.4.
     """
     if not sigma_pixels >= 0:
@@ -147,31 +143,34 @@ def measure_objects(
     matches = sorted(matches, key=lambda m: m.upper)
     pairs = [(match.upper, match.lower) for match in matches]
     noise = Noise(2 * np.pi / upper.width * sigma_pixels, 0.0, 0.0)
-    by_boxes, by_features = (place_objects(matches, pairs, upper, lower, rig, way, noise) for way in DISTANCES)
+    by_boxes, by_features = (position_objects(matches, pairs, upper, lower, rig, way, noise) for way in DISTANCES)
     measured = []
-    for match, *places in zip(matches, by_boxes, by_features, strict=True):
-        box = upper.detections[match.upper].box
-        azimuth, _ = azimuth_elevation(pixel_to_direction(box_centre(box), *upper.size))
+    for match, *found in zip(matches, by_boxes, by_features, strict=True):
+        direction = pixel_to_direction(box_centre(upper.detections[match.upper].box), *upper.size)
+        azimuth = float(np.degrees(azimuth_elevation(direction)[0]))
         label = canonical_label(match.label)
-        measured.append(
-            MeasuredObject(match.upper, match.lower, label, match.n_matches, float(np.degrees(azimuth)), *places)
-        )
+        measured.append(MeasuredObject(match.upper, match.lower, label, match.n_matches, azimuth, *found))
     return measured
 
 
-def _from_box_centres(from_upper: np.ndarray, from_lower: np.ndarray, baseline: float, noise: Noise) -> list[Place]:
-    """Places of directions `(n, 3)`, all that have one at once."""
+def _from_box_centres(
+    from_upper: np.ndarray, from_lower: np.ndarray, baseline: float, noise: Noise
+) -> list[ObjectPosition]:
+    """Return the positions of directions `(n, 3)`, all that have one at once."""
     outcomes = triangulation_outcome(from_upper, from_lower)
-    positions, covariances = np.full((len(outcomes), 3), np.nan), np.full((len(outcomes), 2, 2), np.nan)
-    ok = outcomes == OK
+    found = [_nowhere(str(outcome)) for outcome in outcomes]
+    ok = np.flatnonzero(outcomes == OK)
     directions = from_upper[ok], from_lower[ok]
-    positions[ok] = triangulate(*directions, baseline)[:, None] * directions[0]
+    positions = triangulate(*directions, baseline)[:, None] * directions[0]
     of_angles = triangulation_covariance(*directions, baseline, noise.box_centre, noise.box_centre)
-    covariances[ok] = of_angles[:, :2, :2] + noise.centroid**2 * np.eye(2)
-    return [Place(str(outcome), *place) for outcome, *place in zip(outcomes, positions, covariances, strict=True)]
+    for i, position, covariance in zip(ok, positions, of_angles, strict=True):
+        found[i] = ObjectPosition(OK, position, covariance[:2, :2] + noise.centroid**2 * np.eye(2))
+    return found
 
 
-def _from_features(match, from_upper: np.ndarray, baseline: float, size: tuple[int, int], noise: Noise) -> Place:
+def _from_features(
+    match, from_upper: np.ndarray, baseline: float, size: tuple[int, int], noise: Noise
+) -> ObjectPosition:
     if not hasattr(match, "keypoints_upper"):
         raise DetectionError('distance="disparity" needs ObjectMatch with its features, not a pair of indices')
     measured = disparity_distance(match, *size, baseline)
@@ -183,8 +182,8 @@ def _from_features(match, from_upper: np.ndarray, baseline: float, size: tuple[i
     variance_along = measured.sigma**2 + noise.surface**2
     variance_across = (measured.horizontal_range * noise.box_centre) ** 2 + noise.centroid**2
     covariance = variance_along * np.outer(along, along) + variance_across * np.outer(across, across)
-    return Place(OK, measured.position(from_upper), covariance)
+    return ObjectPosition(OK, measured.position(from_upper), covariance)
 
 
-def _nowhere(outcome: str) -> Place:
-    return Place(outcome, np.full(3, np.nan), np.full((2, 2), np.nan))
+def _nowhere(outcome: str) -> ObjectPosition:
+    return ObjectPosition(outcome, np.full(3, np.nan), np.full((2, 2), np.nan))

@@ -1,0 +1,137 @@
+"""One detected object: its class by one name, its box on the circle of columns, and values that can be."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from course_lib.spherical_stereo.detection.detected_object import (
+    ALIASES,
+    CANONICAL_LABELS,
+    Detection,
+    DetectionError,
+    box_centre,
+    box_iou,
+    canonical_label,
+    wrapped_box,
+)
+
+WIDTH = 1280.0
+
+
+def box(u, v, across, down):
+    return np.array([u, v, u + across, v + down])
+
+
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [
+        ("couch", "sofa"),
+        ("tvmonitor", "television"),
+        ("dining table", "table"),
+        ("potted_plant", "potted plant"),
+        (" Chair ", "chair"),
+        ("Traffic_Light", "traffic light"),
+        ("TV  Stand", "tv stand"),
+        (" bed_", "bed"),
+    ],
+)
+def test_names_of_coco_and_voc_in_any_spelling_become_one_label(name, label):
+    assert canonical_label(name) == label
+
+
+def test_every_alias_leads_to_a_canonical_label_that_stays_as_it_is():
+    assert set(ALIASES.values()) <= set(CANONICAL_LABELS)
+    assert all(canonical_label(label) == label for label in CANONICAL_LABELS)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "overlap"),
+    [
+        (box(10, 20, 30, 40), box(10, 20, 30, 40), 1),
+        (box(10, 20, 30, 40), box(40, 20, 30, 40), 0),
+        (box(0, 0, 20, 10), box(10, 0, 20, 10), 1 / 3),
+        (box(1270, 0, 40, 10), box(-10, 0, 40, 10), 1),  # one turn earlier
+        (box(1270, 0, 20, 10), box(0, 0, 10, 10), 0.5),  # across the seam
+        (box(0, 0, 700, 1), box(640, 0, 700, 1), (60 + 60) / (1400 - 120)),  # they meet at both ends
+    ],
+)
+def test_boxes_overlap_on_the_circle(a, b, overlap):
+    assert box_iou([a], [b], WIDTH) == pytest.approx(overlap)
+
+
+def test_every_pair_has_its_place_in_the_table():
+    a, b = np.array([box(0, 0, 10, 10), box(50, 0, 10, 10)]), np.array([box(50, 0, 10, 10)] * 3)
+    assert box_iou(a, b, WIDTH).tolist() == [[0, 0, 0], [1, 1, 1]]
+    assert box_iou(a, [], WIDTH).shape == (2, 0)
+
+
+@given(st.floats(0, 1279), st.floats(1, 1280), st.floats(0, 1279), st.floats(1, 1280), st.integers(-3000, 3000))
+def test_turning_both_boxes_keeps_their_overlap(u_a, across_a, u_b, across_b, columns):
+    a, b = box(u_a, 100, across_a, 50), box(u_b, 120, across_b, 60)
+    turn = np.array([columns, 0, columns, 0])
+    assert box_iou([a + turn], [b + turn], WIDTH) == pytest.approx(box_iou([a], [b], WIDTH), abs=1e-9)
+    assert 0 <= box_iou([a], [b], WIDTH)[0, 0] <= 1 + 1e-12
+
+
+@given(st.floats(-1e4, 1e4), st.floats(1, 1280))
+def test_a_wrapped_box_starts_on_the_image_and_keeps_its_size(u, across):
+    wrapped = wrapped_box(box(u, 5, across, 10), WIDTH)
+    assert 0 <= wrapped[0] < WIDTH
+    assert wrapped[2] - wrapped[0] == pytest.approx(across, abs=1e-8)
+
+
+def test_the_centre_of_a_box_across_the_seam_lies_past_the_width():
+    assert box_centre([1260, 10, 1320, 30]).tolist() == [1290, 20]
+
+
+@pytest.mark.parametrize(
+    ("bad", "says"),
+    [
+        ([[1, 2, 3]], "shape"),
+        ([[np.nan, 0, 1, 1]], "finite"),
+        ([[10, 0, 5, 1]], "above the width"),
+        ([[0, 5, 5, 5]], "v_min < v_max"),
+        ([[0, 0, 1281, 1]], "wider than the panorama"),
+    ],
+)
+def test_boxes_that_cannot_be_are_named(bad, says):
+    with pytest.raises(DetectionError, match=says):
+        box_iou(bad, [[0, 0, 1, 1]], WIDTH)
+
+
+def test_a_detection_knows_its_centre_its_size_and_its_place_on_the_circle():
+    detection = Detection("Couch", 0.5, (250, 10, 270, 40), 20.0, 55.0)
+    assert (detection.label, detection.centre, detection.size) == ("sofa", (260, 25), (20, 30))
+    assert Detection("sofa", 0.5, (506, 10, 526, 40), 20.0, 55.0).wrapped(256) == detection
+
+
+def test_a_grey_detection_says_so():
+    grey = Detection("refrigerator", 0.9, (1, 2, 3, 4), float("nan"), 3.0)
+    assert grey.is_grey
+    assert "grey, no hue" in grey.describe()
+    assert "hue 0 deg" in Detection("sofa", 0.9, (1, 2, 3, 4), 0.0, 80.0).describe()
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"label": "_-"}, "label"),
+        ({"label": 3}, "label"),
+        ({"score": "x"}, "must be numbers"),
+        ({"hue": "red"}, "must be numbers"),
+        ({"box": ("a", 2, 3, 4)}, "must be numbers"),
+        ({"score": float("nan")}, "score"),
+        ({"score": 1.1}, "score"),
+        ({"box": (1, 2, 3)}, "four finite"),
+        ({"box": (1, 2, float("inf"), 4)}, "four finite"),
+        ({"box": (3, 2, 1, 4)}, "u_min < u_max"),
+        ({"box": (-1, 2, 3, 4)}, "0 <= u_min"),
+        ({"hue": 360.0}, "hue"),
+        ({"saturation": float("nan")}, "saturation"),
+    ],
+)
+def test_a_detection_that_cannot_be_is_refused(change, says):
+    good = {"label": "sofa", "score": 0.9, "box": (1, 2, 3, 4), "hue": 10.0, "saturation": 50.0}
+    with pytest.raises(DetectionError, match=says):
+        Detection(**(good | change))
