@@ -38,9 +38,7 @@ def colour(hue: float, saturation: float, value: float) -> Colour:
 
 
 def random_colour(
-    rng: np.random.Generator,
-    saturation: tuple[float, float] = (25.0, 90.0),
-    value: tuple[float, float] = (40.0, 95.0),
+    rng: np.random.Generator, saturation: tuple[float, float] = (25.0, 90.0), value: tuple[float, float] = (40.0, 95.0)
 ) -> Colour:
     """A colour from anywhere on the hue circle; saturation and value in percent, drawn from the two ranges."""
     return colour(rng.uniform(0.0, 360.0), rng.uniform(*saturation), rng.uniform(*value))

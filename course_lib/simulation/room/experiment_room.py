@@ -77,10 +77,7 @@ def _tables(rng: np.random.Generator) -> dict[str, Piece]:
     spread = cloth(rng, colour(205, 66, 74), "tartan", size=0.7, pixels=512)
     square = Table(0.8, 1.1, 0.72, base="legs", thickness=0.07, apron=0.17, leg=0.11)
     rounded = Table(0.85, 0.85, 0.7, round=True, base="pedestal", thickness=0.03, cloth=0.45)
-    return {
-        "wooden table": build_table(square, oak, oak, oak),
-        "blue table": build_table(rounded, blue, blue, spread),
-    }
+    return {"wooden table": build_table(square, oak, oak, oak), "blue table": build_table(rounded, blue, blue, spread)}
 
 
 def _plants(rng: np.random.Generator) -> dict[str, Piece]:

@@ -86,9 +86,7 @@ def test_an_object_that_nobody_sees_is_named():
 
     with pytest.raises(ValueError, match="seen from none of the 1 places"):
         survey_room(
-            make_experiment_room(),
-            RoomSurveyModel(places=1, width=160, fewest_pixels=10**6),
-            np.random.default_rng(0),
+            make_experiment_room(), RoomSurveyModel(places=1, width=160, fewest_pixels=10**6), np.random.default_rng(0)
         )
 
 
