@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.corridor.world import (
     JUNCTION,
@@ -44,13 +44,13 @@ class DayModel:
     hand_starts: tuple[float, float] = (1.8, 26.0)  # m along x, the same of a camera carried by hand; chosen
 
 
-def another_day(building: Building, model: DayModel, rng: np.random.Generator) -> RunDay:
+def another_day(building: Building, model: DayModel, rng: Generator) -> RunDay:
     """The building on a day of its own, drawn with `rng`: nothing but the building is that of any other day."""
     angles = _door_angles(building, model, rng)
     return run_day(building, angles, _things(building, model, rng), rng)
 
 
-def _door_angles(building: Building, model: DayModel, rng: np.random.Generator) -> list[float]:
+def _door_angles(building: Building, model: DayModel, rng: Generator) -> list[float]:
     """Degrees by which each left door stands open."""
     angles = []
     for *_, surveyed, _shipped in building.layout["left doors"]:
@@ -59,7 +59,7 @@ def _door_angles(building: Building, model: DayModel, rng: np.random.Generator) 
     return angles
 
 
-def _things(building: Building, model: DayModel, rng: np.random.Generator) -> list[Thing]:
+def _things(building: Building, model: DayModel, rng: Generator) -> list[Thing]:
     """Things along the walls, `model.apart` from each other; a thing that finds no place in 100 draws stays away."""
     kinds = [kind for kind in FROM_WALL if kind != "person"]
     taken = {side: _taken(building, side) for side in (-1, 1)}
@@ -76,7 +76,7 @@ def _things(building: Building, model: DayModel, rng: np.random.Generator) -> li
     return things
 
 
-def _placed(kind: str, x: float, side: int, rng: np.random.Generator) -> Thing:
+def _placed(kind: str, x: float, side: int, rng: Generator) -> Thing:
     """A thing at its distance from the left (side 1) or right wall, turned as its kind may be."""
     wall = LEFT if side > 0 else (RIGHT if x < STEP_AT else RIGHT_NARROW)
     farther = rng.uniform(0.0, PERSON_FARTHER) if kind == "person" else 0.0

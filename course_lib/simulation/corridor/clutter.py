@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.corridor import materials as m
 from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement
 
 
-def cartons(b: MeshBuilder, place: Placement, rng: np.random.Generator) -> None:
+def cartons(b: MeshBuilder, place: Placement, rng: Generator) -> None:
     """Three stacked cartons, each turned a little, one with an open flap."""
     b.part = "carton"
     up = 0.0
@@ -20,7 +21,7 @@ def cartons(b: MeshBuilder, place: Placement, rng: np.random.Generator) -> None:
     b.box(turned.moved(up=0.24), (0.18, -0.15, 0.0), (0.186, 0.15, 0.13), m.CARDBOARD)
 
 
-def person(b: MeshBuilder, place: Placement, height: float, rng: np.random.Generator) -> None:
+def person(b: MeshBuilder, place: Placement, height: float, rng: Generator) -> None:
     """Standing person from ellipsoids and tubes: legs, trunk, arms, neck, head; a reflecting belt, a bag."""
     b.part = "person"
     s = height / 1.75
@@ -58,7 +59,7 @@ def trolley(b: MeshBuilder, place: Placement) -> None:
     b.box(place.moved(turn_deg=8.0), (-0.05, -0.16, 0.645), (0.27, 0.08, 0.86), m.PAPER, bevel=0.004)
 
 
-def plant(b: MeshBuilder, place: Placement, rng: np.random.Generator) -> None:
+def plant(b: MeshBuilder, place: Placement, rng: Generator) -> None:
     """Potted plant: a terracotta pot, a stem and 40 thin leaves."""
     b.part = "plant"
     b.cone(place, (0, 0, 0), 0.14, 0.19, 0.36, m.TERRACOTTA)

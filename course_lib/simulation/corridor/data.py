@@ -13,6 +13,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.files import staging_dir
 from course_lib.rendering.camera import DepthCamera
@@ -102,9 +103,9 @@ def _make_map(
     folder: Path,
     surveyed: WorldMesh,
     models: CorridorModels,
-    rng: np.random.Generator,
-    planar_rng: np.random.Generator,
-    measure_rng: np.random.Generator,
+    rng: Generator,
+    planar_rng: Generator,
+    measure_rng: Generator,
     progress: Progress,
 ) -> dict:
     """Surveys the world as it is given, writes map.ply and planar_map.ply; returns what was measured on them."""
@@ -134,7 +135,7 @@ def _record(
     camera: TimeOfFlightCamera,
     run: tuple[np.ndarray, np.ndarray],
     models: CorridorModels,
-    rng: np.random.Generator,
+    rng: Generator,
     progress: Progress,
 ) -> dict:
     """Records one run; returns rates over its pixels and the sizes of its steps."""

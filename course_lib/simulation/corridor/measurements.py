@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import trimesh
+from numpy.random import Generator
 
 from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor.mesh_building import WorldMesh
@@ -13,7 +14,7 @@ from course_lib.simulation.sensors.time_of_flight import Frame, TimeOfFlightCame
 
 
 def map_error(
-    map_vertices: np.ndarray, map_faces: np.ndarray, world: WorldMesh, rng: np.random.Generator, n_points: int = 50_000
+    map_vertices: np.ndarray, map_faces: np.ndarray, world: WorldMesh, rng: Generator, n_points: int = 50_000
 ) -> dict[str, float]:
     """Distance in metres from points drawn on the map, by area, to the surface of the surveyed world."""
     corners = map_vertices[map_faces].astype(np.float64)
@@ -36,7 +37,7 @@ def hole_share(
     map_faces: np.ndarray,
     surveyed: WorldCaster,
     length: float,
-    rng: np.random.Generator,
+    rng: Generator,
     n_rays: int = 100_000,
 ) -> float:
     """Share of the surveyed world, as eyes all along the corridor of `length` metres see it, with no map within 5 cm.
@@ -80,9 +81,7 @@ def frame_counts(frame: Frame, model: TimeOfFlightModel) -> dict[str, float]:
     }
 
 
-def noise_on_a_wall(
-    model: TimeOfFlightModel, distance: float, rng: np.random.Generator, reflectivity: float = 0.72
-) -> float:
+def noise_on_a_wall(model: TimeOfFlightModel, distance: float, rng: Generator, reflectivity: float = 0.72) -> float:
     """Standard deviation in metres over 50 frames of the central pixels' depth of a wall met squarely at `distance`.
 
     nan where fewer than nine in ten of the pixels come back.

@@ -8,6 +8,7 @@ building sizes (a door leaf about 0.9 m x 2.0 m, a stair rise of 0.17 m).
 from __future__ import annotations
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.corridor import materials as m
 from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement
@@ -142,7 +143,7 @@ def bench(b: MeshBuilder, place: Placement, length: float) -> None:
         b.box(place, (along - 0.02, -0.47, 0.0), (along + 0.02, -0.43, 0.43), m.METAL_FRAME, bevel=0.004)
 
 
-def notice_board(b: MeshBuilder, place: Placement, length: float, height: float, rng: np.random.Generator) -> None:
+def notice_board(b: MeshBuilder, place: Placement, length: float, height: float, rng: Generator) -> None:
     """Cork board with a frame, papers that stand off by millimetres, and one leaflet holder."""
     b.part = "notice board"
     low, high, bottom = -length / 2, length / 2, 1.0

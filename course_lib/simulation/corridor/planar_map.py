@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 import trimesh
+from numpy.random import Generator
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
@@ -17,7 +18,7 @@ from course_lib.rendering.scene_map import SceneMap
 
 def planar_simplification(
     scene_map: SceneMap,
-    rng: np.random.Generator,
+    rng: Generator,
     distance: float = 0.05,
     min_area: float = 1.0,
     max_angle_deg: float = 20.0,
@@ -80,7 +81,7 @@ def _best_plane(
     distance: float,
     least_cosine: float,
     n_trials: int,
-    rng: np.random.Generator,
+    rng: Generator,
 ) -> tuple[np.ndarray, float]:
     """The plane (unit normal, offset) with most area in support among planes through triangles drawn by area.
 

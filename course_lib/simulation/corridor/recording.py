@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose
@@ -22,7 +23,7 @@ def record(
     camera: TimeOfFlightCamera,
     run: tuple[np.ndarray, np.ndarray],
     floor_survey: FloorSurveyModel,
-    rng: np.random.Generator,
+    rng: Generator,
     progress: Callable[[Iterable], Iterable] = iter,
     frames: int | None = None,
 ) -> dict[str, int]:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor.another_day import DayModel, another_day
@@ -66,7 +67,7 @@ def building_of_data(folder: str | Path) -> Building:
     return draw_building(building_generator(json.loads(path.read_text(encoding="utf-8"))["seed"]))
 
 
-def building_generator(seed: int) -> np.random.Generator:
+def building_generator(seed: int) -> Generator:
     """The generator that `make_corridor_data` draws its building from."""
     return np.random.default_rng(seed).spawn(1)[0]
 

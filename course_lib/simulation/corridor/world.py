@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.corridor import clutter, parts
 from course_lib.simulation.corridor import materials as m
@@ -112,7 +113,7 @@ class TrueWorld:
     clutter_boxes: np.ndarray
 
 
-def make_corridor(rng: np.random.Generator) -> TrueWorld:
+def make_corridor(rng: Generator) -> TrueWorld:
     """The corridor drawn with `rng`, on the survey day and on the run day of LEFT_DOORS and CLUTTER."""
     building = draw_building(rng)
     doors = building.layout["left doors"]
@@ -124,7 +125,7 @@ def make_corridor(rng: np.random.Generator) -> TrueWorld:
     return TrueWorld(survey_builder.build(), run_builder.build(), boxes)
 
 
-def draw_building(rng: np.random.Generator) -> Building:
+def draw_building(rng: Generator) -> Building:
     """A building: the seed moves every feature by up to JITTER and draws bow and small parts."""
     moves = iter(rng.uniform(-JITTER, JITTER, 200))
     phases = rng.uniform(0, 2 * np.pi, 6)
@@ -134,9 +135,7 @@ def draw_building(rng: np.random.Generator) -> Building:
     return Building(layout, windows, phases, seed)
 
 
-def run_day(
-    building: Building, door_angles: Sequence[float], things: Sequence[Thing], rng: np.random.Generator
-) -> RunDay:
+def run_day(building: Building, door_angles: Sequence[float], things: Sequence[Thing], rng: Generator) -> RunDay:
     """The building on a day of its own: degrees that each left door stands open, and what stands in the way."""
     builder, _ = _furnished(building, door_angles, [angle > 0 for angle in door_angles])
     boxes = _clutter(builder, things, rng)
@@ -145,7 +144,7 @@ def run_day(
 
 def _furnished(
     building: Building, door_angles: Sequence[float], rooms: Sequence[bool]
-) -> tuple[MeshBuilder, np.random.Generator]:
+) -> tuple[MeshBuilder, Generator]:
     """The building with its fittings and doors, rooms behind those of `rooms`; and the generator of small parts."""
     builder = MeshBuilder(lambda points: _bow(points, building.phases))
     detail = np.random.default_rng(building.detail_seed)
@@ -228,7 +227,7 @@ def _shell(b: MeshBuilder, layout: dict, windows: list) -> None:
         b.box(world, (x, RIGHT, h - drop), (x + length, LEFT, h + 0.03), m.WALL_PAINT, bevel=0.01)
 
 
-def _fittings(b: MeshBuilder, layout: dict, windows: list, rng: np.random.Generator) -> None:
+def _fittings(b: MeshBuilder, layout: dict, windows: list, rng: Generator) -> None:
     """Windows, radiators, pillars, boards, benches, lamps, cable tray, signs, cabinet."""
     for low, high, depth, mullions, has_radiator in windows:
         place = right_wall(low)
@@ -281,7 +280,7 @@ def _doors(b: MeshBuilder, layout: dict, left_angles: Sequence[float], left_room
             parts.room_behind(b, place, width, depth, 1.1 + 0.12 * number)
 
 
-def _clutter(b: MeshBuilder, things: Sequence[Thing], rng: np.random.Generator) -> np.ndarray:
+def _clutter(b: MeshBuilder, things: Sequence[Thing], rng: Generator) -> np.ndarray:
     """Adds the things; returns their boxes on the floor plan `(n, 2, 2)`."""
     boxes = []
     for number, (kind, x, y, turn) in enumerate(things):

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
 from course_lib.simulation.room.footprints import free_places
@@ -43,7 +44,7 @@ def depth_caster(room: Room) -> WorldCaster:
     return WorldCaster(*room_triangles(room), REFLECTIVITY)
 
 
-def surveyed_mesh(room: Room, model: DepthSurveyModel, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def surveyed_mesh(room: Room, model: DepthSurveyModel, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
     """The room's mesh map, vertices `(V, 3)` metres and faces `(F, 3)`, from scans at free places."""
     stations = tuple((float(x), float(y)) for x, y in free_places(room, model.stations, rng))
     scans = survey(depth_caster(room), model.scanner, rng, stations)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.furniture.cabinet import random_cabinet
-from course_lib.simulation.furniture.piece import Piece
+from course_lib.simulation.furniture.solids import Piece
 from course_lib.simulation.furniture.television import random_television
 from course_lib.simulation.room.footprints import clear_of, overlap, rectangle
 from course_lib.simulation.room.random_shell import Shell, free_stretch, random_shell
@@ -51,7 +52,7 @@ class Plan:
         return clear_of([*self.taken, corners], self.probes, 0.35).sum() * 40 >= len(self.probes)
 
 
-def empty_room(rng: np.random.Generator, low: np.ndarray, high: np.ndarray, height: float) -> tuple[Shell, Plan]:
+def empty_room(rng: Generator, low: np.ndarray, high: np.ndarray, height: float) -> tuple[Shell, Plan]:
     """A shell from random numbers, and a plan without furniture for the room low to high `(2,)`, metres."""
     shell = random_shell(rng, low, high, height)
     probes = rng.uniform(low + 0.5, high - 0.5, (400, 2))
@@ -71,7 +72,7 @@ def furnished_room(shell: Shell, plan: Plan, height: float) -> Room:
     )
 
 
-def _by_a_wall(rng: np.random.Generator, plan: Plan, size: np.ndarray) -> Spot:
+def _by_a_wall(rng: Generator, plan: Plan, size: np.ndarray) -> Spot:
     depth, width, _ = size
     wall = plan.walls[int(rng.integers(4))]
     slack = max(wall.length - width - 0.06, 0.0)
@@ -81,14 +82,14 @@ def _by_a_wall(rng: np.random.Generator, plan: Plan, size: np.ndarray) -> Spot:
     return pose["x"], pose["y"], pose["yaw"] + turned
 
 
-def _anywhere(rng: np.random.Generator, plan: Plan, size: np.ndarray) -> Spot:
+def _anywhere(rng: Generator, plan: Plan, size: np.ndarray) -> Spot:
     reach = 0.5 * np.hypot(size[0], size[1]) + 0.05
     x, y = rng.uniform(plan.low + reach, np.maximum(plan.high - reach, plan.low + reach + 0.01))
     heading = rng.uniform(-np.pi, np.pi) if rng.random() < 0.6 else rng.integers(4) * np.pi / 2
     return float(x), float(y), float(heading)
 
 
-def _at_a_table(rng: np.random.Generator, plan: Plan, size: np.ndarray) -> Spot:
+def _at_a_table(rng: Generator, plan: Plan, size: np.ndarray) -> Spot:
     """Before one side of a table, facing it."""
     corners = plan.tables[int(rng.integers(len(plan.tables)))]
     side = int(rng.integers(4))
@@ -99,7 +100,7 @@ def _at_a_table(rng: np.random.Generator, plan: Plan, size: np.ndarray) -> Spot:
     return float(x), float(y), float(np.arctan2(-outward[1], -outward[0]) + rng.normal(0.0, 0.15))
 
 
-def _find_spot(rng: np.random.Generator, plan: Plan, label: str, size: np.ndarray) -> Spot | None:
+def _find_spot(rng: Generator, plan: Plan, label: str, size: np.ndarray) -> Spot | None:
     """Where a piece of this size fits between what stands already, or None after 60 tries."""
     at_wall = rng.random() < AGAINST_WALL[label]
     at_table = label == "chair" and bool(plan.tables) and rng.random() < 0.5
@@ -116,7 +117,7 @@ def _find_spot(rng: np.random.Generator, plan: Plan, label: str, size: np.ndarra
     return None
 
 
-def add_television(rng: np.random.Generator, plan: Plan, shell: Shell) -> None:
+def add_television(rng: Generator, plan: Plan, shell: Shell) -> None:
     """A television on its own stand, on the wall, or on a low cabinet, which the map then lists too."""
     stand = str(rng.choice(["floor", "wall", "foot", "foot"]))
     piece = random_television(rng, stand)
@@ -142,7 +143,7 @@ def add_television(rng: np.random.Generator, plan: Plan, shell: Shell) -> None:
     plan.taken.append(rectangle(*spot, *size[:2]))
 
 
-def add_piece(rng: np.random.Generator, plan: Plan, piece: Piece) -> bool:
+def add_piece(rng: Generator, plan: Plan, piece: Piece) -> bool:
     """Places the piece where it fits, and says whether it did; without space the room does without it."""
     spot = _find_spot(rng, plan, piece.label, piece.size)
     if spot is None:

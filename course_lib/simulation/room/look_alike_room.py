@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.furniture import RANDOM_PIECES
 from course_lib.simulation.room.furnishing import Plan, add_piece, add_television, empty_room, furnished_room
@@ -55,7 +56,7 @@ def make_look_alike_room(seed: int, draw: int = 0, limits: LookAlikeLimits = Loo
     raise NoRoomDrawn(f"seed {seed}: in {MOST_DRAWS} rooms the furniture found no place; ask for fewer or larger ones")
 
 
-def _furnish(rng: np.random.Generator, plan: Plan, shell: Shell, limits: LookAlikeLimits) -> bool:
+def _furnish(rng: Generator, plan: Plan, shell: Shell, limits: LookAlikeLimits) -> bool:
     """Places the look-alikes, then the others; says whether enough of them found a place."""
     kind = str(rng.choice(limits.kinds))
     piece = RANDOM_PIECES[kind](rng)

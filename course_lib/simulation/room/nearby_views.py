@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.geometry import wrap_angle
 from course_lib.simulation.room.footprints import clear_of, footprint
@@ -48,9 +49,7 @@ def experiment_of(k: int) -> int:
     return 1 + k % len(CAMERA_HEIGHTS)
 
 
-def walk_from(
-    room: Room, pose: np.ndarray, n: int, rng: np.random.Generator, model: WalkModel = WalkModel()
-) -> np.ndarray:
+def walk_from(room: Room, pose: np.ndarray, n: int, rng: Generator, model: WalkModel = WalkModel()) -> np.ndarray:
     """Poses `(n, 3)` of n further views, each a step from the one before, all at places where the rig can stand.
 
     pose: `(3,)` of the first view, which is not repeated. Where no step of `MOST_STEPS` is free the rig turns only.

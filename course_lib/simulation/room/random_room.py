@@ -7,6 +7,7 @@ pieces were moved towards it; the rooms for reporting (look_alike_room.py) are m
 from __future__ import annotations
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.furniture import RANDOM_PIECES
 from course_lib.simulation.room.furnishing import add_piece, add_television, empty_room, furnished_room
@@ -27,7 +28,7 @@ SHARES = {
 ORDER = ("television", "refrigerator", "sofa", "cabinet", "table", "potted plant", "chair")
 
 
-def _draw_labels(rng: np.random.Generator, n: int) -> list[str]:
+def _draw_labels(rng: Generator, n: int) -> list[str]:
     """The classes of n pieces; at least five different ones, so that no room teaches only chairs."""
     names = list(SHARES)
     share = np.array([SHARES[name][0] for name in names])
@@ -39,7 +40,7 @@ def _draw_labels(rng: np.random.Generator, n: int) -> list[str]:
     return sorted(labels, key=ORDER.index)
 
 
-def make_room(seed: int | np.random.Generator) -> Room:
+def make_room(seed: int | Generator) -> Room:
     """A furnished rectangular room, 4.5 to 7.5 m a side, its south-west corner at the origin.
 
     seed: the same seed gives the same room, byte for byte.

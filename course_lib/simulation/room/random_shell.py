@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation import prints, textures
 from course_lib.simulation.furniture.solids import joined
 from course_lib.simulation.room import shell as room_shell
 from course_lib.simulation.room.footprints import overlap, rectangle
 from course_lib.simulation.room.scene import Lamp
-from course_lib.simulation.textured_mesh import TexturedMesh
+from course_lib.simulation.textures import TexturedMesh
 from course_lib.simulation.textures import Surface, colour, random_colour
 
 
@@ -30,9 +31,7 @@ class Shell:
     ambient: tuple[float, float, float] = (0.35, 0.35, 0.35)
 
 
-def free_stretch(
-    rng: np.random.Generator, wall: room_shell.Wall, spans: list[tuple[float, float]], width: float
-) -> float | None:
+def free_stretch(rng: Generator, wall: room_shell.Wall, spans: list[tuple[float, float]], width: float) -> float | None:
     """Where along the wall something of this width fits beside what hangs there already: its middle, or None."""
     half = width / 2 + 0.06
     if wall.length < 2 * half + 0.1:
@@ -45,7 +44,7 @@ def free_stretch(
     return None
 
 
-def _floor(rng: np.random.Generator) -> Surface:
+def _floor(rng: Generator) -> Surface:
     kind = rng.integers(3)
     if kind == 0:
         timber = colour(rng.uniform(15, 45), rng.uniform(20, 65), rng.uniform(35, 85))
@@ -55,7 +54,7 @@ def _floor(rng: np.random.Generator) -> Surface:
     return textures.carpet(rng, random_colour(rng, (0, 60), (25, 80)))
 
 
-def _papers(rng: np.random.Generator) -> list[Surface]:
+def _papers(rng: Generator) -> list[Surface]:
     """Four walls: all alike, or one wall that differs."""
 
     def one() -> Surface:
@@ -68,7 +67,7 @@ def _papers(rng: np.random.Generator) -> list[Surface]:
     return papers
 
 
-def _small_things(rng: np.random.Generator, wall: room_shell.Wall) -> tuple[list[TexturedMesh], np.ndarray]:
+def _small_things(rng: Generator, wall: room_shell.Wall) -> tuple[list[TexturedMesh], np.ndarray]:
     """One carton, bin or standing lamp by the wall, and the rectangle it stands on."""
     s = float(rng.uniform(0.35, wall.length - 0.35))
     kind = rng.integers(3)
@@ -87,7 +86,7 @@ def _small_things(rng: np.random.Generator, wall: room_shell.Wall) -> tuple[list
     return meshes, rectangle(pose["x"], pose["y"], pose["yaw"], 0.45, 0.52)
 
 
-def _add_window(rng: np.random.Generator, shell: Shell, wall: room_shell.Wall, index: int, trim: Surface) -> None:
+def _add_window(rng: Generator, shell: Shell, wall: room_shell.Wall, index: int, trim: Surface) -> None:
     """A window, its daylight, and in six of ten cases curtains."""
     width, tall = float(rng.uniform(0.9, 1.9)), float(rng.uniform(0.9, 1.3))
     s, sill = float(rng.uniform(1.5, wall.length - 1.5)), float(rng.uniform(0.75, 1.0))
@@ -105,7 +104,7 @@ def _add_window(rng: np.random.Generator, shell: Shell, wall: room_shell.Wall, i
     shell.lamps.append(Lamp((pose["x"], pose["y"], pose["z"]), day, float(rng.uniform(0.6, 1.6))))
 
 
-def _add_door(rng: np.random.Generator, shell: Shell, wall: room_shell.Wall, index: int, trim: Surface) -> None:
+def _add_door(rng: Generator, shell: Shell, wall: room_shell.Wall, index: int, trim: Surface) -> None:
     """A door, and the floor before it kept free."""
     s = float(rng.uniform(0.7, wall.length - 0.7))
     leaf = textures.wood(rng, random_colour(rng, (0, 60), (35, 97)), 1.0)
@@ -116,7 +115,7 @@ def _add_door(rng: np.random.Generator, shell: Shell, wall: room_shell.Wall, ind
     shell.kept_free.append(rectangle(pose["x"], pose["y"], pose["yaw"], 0.7, 0.9))
 
 
-def _add_pictures(rng: np.random.Generator, shell: Shell, walls: list[room_shell.Wall], trim: Surface) -> None:
+def _add_pictures(rng: Generator, shell: Shell, walls: list[room_shell.Wall], trim: Surface) -> None:
     """One to five pictures beside windows and door."""
     for index in rng.integers(0, 4, int(rng.integers(1, 6))):
         width = float(rng.uniform(0.3, 0.9))
@@ -126,9 +125,7 @@ def _add_pictures(rng: np.random.Generator, shell: Shell, walls: list[room_shell
             shell.meshes += room_shell.framed_picture(walls[int(index)], s, float(rng.uniform(1.4, 1.65)), print_, trim)
 
 
-def _add_ceiling_lamps(
-    rng: np.random.Generator, shell: Shell, low: np.ndarray, high: np.ndarray, height: float
-) -> None:
+def _add_ceiling_lamps(rng: Generator, shell: Shell, low: np.ndarray, high: np.ndarray, height: float) -> None:
     """One, two or four lamps that share the light between them."""
     tint = colour(rng.uniform(25, 60), rng.uniform(0, 22), 100)
     glow = textures.glow(tint)
@@ -142,7 +139,7 @@ def _add_ceiling_lamps(
             shell.lamps.append(Lamp((x, y, height - drop - 0.15), tint, strength))
 
 
-def _add_rug(rng: np.random.Generator, shell: Shell, low: np.ndarray, high: np.ndarray) -> None:
+def _add_rug(rng: Generator, shell: Shell, low: np.ndarray, high: np.ndarray) -> None:
     x, y = (float(v) for v in rng.uniform(low + 1.2, high - 1.2))
     pattern = str(rng.choice(("stripes", "checks", "dots", "blotches")))
     cover = textures.cloth(rng, random_colour(rng), pattern, random_colour(rng), 1.2, 512)
@@ -150,7 +147,7 @@ def _add_rug(rng: np.random.Generator, shell: Shell, low: np.ndarray, high: np.n
     shell.meshes += room_shell.rug(x, y, float(rng.integers(2) * np.pi / 2), length, width, cover)
 
 
-def random_shell(rng: np.random.Generator, low: np.ndarray, high: np.ndarray, height: float) -> Shell:
+def random_shell(rng: Generator, low: np.ndarray, high: np.ndarray, height: float) -> Shell:
     """The shell of the room low to high `(2,)`, metres: all that the semantic map does not list."""
     walls = room_shell.walls_of(low, high)
     trim = textures.wood(rng, random_colour(rng, (0, 45), (30, 97)), 0.6, 128)

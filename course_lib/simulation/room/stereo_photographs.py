@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.room.object_boxes import object_boxes
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
@@ -15,12 +15,7 @@ from course_lib.spherical_stereo.recording import POSES_FILE, VERSION
 
 
 def photograph_pair(
-    renderer: PanoramaRenderer,
-    rig: RigPose,
-    folder: Path,
-    name: str,
-    camera: PanoramaCameraModel,
-    rng: np.random.Generator,
+    renderer: PanoramaRenderer, rig: RigPose, folder: Path, name: str, camera: PanoramaCameraModel, rng: Generator
 ) -> dict:
     """Both panoramas of a rig, written to the folder as NAME_upper.jpg and NAME_lower.jpg; returns their entry.
 

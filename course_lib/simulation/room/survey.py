@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.geometry import circular_mean
 from course_lib.simulation.room.footprints import free_places
@@ -36,7 +37,7 @@ class UnseenObject(ValueError):
     """An object that is seen from none of the survey's places."""
 
 
-def survey_room(room: Room, model: RoomSurveyModel, rng: np.random.Generator) -> SemanticMap:
+def survey_room(room: Room, model: RoomSurveyModel, rng: Generator) -> SemanticMap:
     """The semantic map of a room: class, centroid, hue and saturation of the whole object, and the walls.
 
     Hue and saturation are means over all pixels that show the object, and over the places that see it well.
@@ -61,7 +62,7 @@ def survey_room(room: Room, model: RoomSurveyModel, rng: np.random.Generator) ->
     return SemanticMap(tuple(landmarks), walls=np.asarray(room.walls, float))
 
 
-def _photographed_colours(room: Room, model: RoomSurveyModel, rng: np.random.Generator) -> list[list]:
+def _photographed_colours(room: Room, model: RoomSurveyModel, rng: Generator) -> list[list]:
     colours: list[list] = [[] for _ in room.objects]
     with PanoramaRenderer(room, model.width, number_scale=1) as renderer:
         for x, y in free_places(room, model.places, rng):

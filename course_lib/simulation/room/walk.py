@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose, wrap_angle
@@ -76,7 +77,7 @@ def record_walk(folder: Path, seed: int, models: WalkModels | None = None) -> No
     write_ply(folder / "map.ply", vertices, faces, "generated room, simulated laser survey; CC BY 4.0")
 
 
-def walk_states(room: Room, model: WalkModel, rng: np.random.Generator) -> np.ndarray:
+def walk_states(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
     """True states `(frames, 6)` of the camera. Raises `NoFreePlace` for a room in which nobody can walk."""
     way = smoothed(_way(room, model, rng), model.rounding)
     ahead = np.gradient(way, axis=0)
@@ -90,7 +91,7 @@ def walk_states(room: Room, model: WalkModel, rng: np.random.Generator) -> np.nd
     return np.column_stack([way, z, roll, np.deg2rad(model.pitch_deg) + pitch, wrap_angle(heading)])
 
 
-def _way(room: Room, model: WalkModel, rng: np.random.Generator) -> np.ndarray:
+def _way(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
     """Places `(frames, 2)` on straight stretches between free places, each clear of the furniture."""
     footprints = [footprint(item) for item in room.objects]
     for _ in range(MOST_BEGINNINGS):

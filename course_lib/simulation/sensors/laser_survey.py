@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.random import Generator
 from scipy.spatial import cKDTree
 
 from course_lib.geometry import pose_matrix
@@ -87,9 +88,7 @@ class Scan(RegisteredScan):
         return RegisteredScan(self.ranges, self.elevations, self.azimuths, self.registered_pose)
 
 
-def survey(
-    caster: WorldCaster, model: ScannerModel, rng: np.random.Generator, stations: tuple = STATIONS
-) -> list[Scan]:
+def survey(caster: WorldCaster, model: ScannerModel, rng: Generator, stations: tuple = STATIONS) -> list[Scan]:
     """Scans the world from every station (x, y in metres); each station gets its own registration error."""
     scans = []
     for x, y in stations:
@@ -109,11 +108,7 @@ def survey(
 
 
 def scan(
-    caster: WorldCaster,
-    model: ScannerModel,
-    true_pose: np.ndarray,
-    registered_pose: np.ndarray,
-    rng: np.random.Generator,
+    caster: WorldCaster, model: ScannerModel, true_pose: np.ndarray, registered_pose: np.ndarray, rng: Generator
 ) -> Scan:
     """One station's scan: ranges with noise, mixed pixels, and drop-outs on grazing, dark, near and far surfaces.
 
@@ -136,7 +131,7 @@ def _scan_rows(
     pose: np.ndarray,
     elevations: np.ndarray,
     azimuths: np.ndarray,
-    rng: np.random.Generator,
+    rng: Generator,
 ) -> np.ndarray:
     directions = _directions(elevations, azimuths) @ pose[:3, :3].T
     hits = caster.cast(pose[:3, 3], directions)
@@ -161,7 +156,7 @@ def _scan_rows(
     return np.where(lost, np.nan, measured).astype(np.float32)
 
 
-def registration_error(scans: list[Scan], rng: np.random.Generator, n_points: int = 20_000) -> dict[str, float]:
+def registration_error(scans: list[Scan], rng: Generator, n_points: int = 20_000) -> dict[str, float]:
     """How far apart neighbouring stations' points lie: the paper's "mean point distance after registration".
 
     For each pair of neighbouring stations: mean distance in metres from points of one, seen by both, to the nearest

@@ -17,7 +17,7 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkPanoramicProjectionPass, vtkRender
 from course_lib.geometry import pose_matrix
 from course_lib.rendering.off_screen import off_screen_window
 from course_lib.simulation.room.scene import Room
-from course_lib.simulation.textured_mesh import TexturedMesh
+from course_lib.simulation.textures import TexturedMesh
 
 NEAR, FAR = 0.05, 30.0  # m: nothing stands nearer to the rig than its clearance; no room is 30 m across
 FEATURE_ANGLE_DEG = 40.0  # chosen: edges sharper than this stay sharp, cushions look round

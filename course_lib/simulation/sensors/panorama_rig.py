@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.geometry import pose_matrix, state_from_matrix
 
@@ -85,7 +86,7 @@ class RigPose:
         return fields
 
 
-def assemble(model: RigModel, rng: np.random.Generator) -> Mount:
+def assemble(model: RigModel, rng: Generator) -> Mount:
     """A mount with faults drawn from the model: tilt uniformly from a disk, yaw from a range, lengths normal."""
     relative_tilt = _from_disk(np.deg2rad(model.relative_tilt_deg), rng)
     # A generator of its own: the numbers that rng gives next do not depend on how many faults a mount has.
@@ -106,7 +107,7 @@ def stand_up(
     upper_height: float,
     baseline: float,
     model: RigModel,
-    rng: np.random.Generator,
+    rng: Generator,
     mount: Mount | None = None,
 ) -> RigPose:
     """A rig set up at a place, tilted as a whole by an angle drawn uniformly from a disk of the model's radius.
@@ -128,6 +129,6 @@ def stand_up(
     )
 
 
-def _from_disk(radius: float, rng: np.random.Generator) -> tuple[float, float]:
+def _from_disk(radius: float, rng: Generator) -> tuple[float, float]:
     length, direction = radius * np.sqrt(rng.uniform()), rng.uniform(0.0, 2.0 * np.pi)
     return float(length * np.cos(direction)), float(length * np.sin(direction))
