@@ -13,7 +13,7 @@ from course_lib.geometry import optical_pose, rotation_angle, state_from_optical
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.data import PRODUCTS, CorridorModels
-from course_lib.simulation.corridor.mesh_files import read_world_ply
+from course_lib.simulation.corridor.mesh_building import read_world_ply
 from course_lib.simulation.corridor.parameters import corridor_parameters
 from course_lib.simulation.corridor.world import CLUTTER, make_corridor
 from course_lib.simulation.data_folder import checksums

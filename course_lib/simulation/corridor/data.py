@@ -19,8 +19,7 @@ from course_lib.files import staging_dir
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.measurements import hole_share, map_error, noise_on_a_wall
-from course_lib.simulation.corridor.mesh_building import WorldMesh
-from course_lib.simulation.corridor.mesh_files import write_ply, write_world_ply
+from course_lib.simulation.corridor.mesh_building import WorldMesh, write_ply, write_world_ply
 from course_lib.simulation.corridor.parameters import corridor_parameters
 from course_lib.simulation.corridor.planar_map import planar_simplification
 from course_lib.simulation.corridor.recorded_runs import (

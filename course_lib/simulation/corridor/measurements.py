@@ -7,8 +7,7 @@ import trimesh
 from numpy.random import Generator
 
 from course_lib.rendering.camera import DepthCamera
-from course_lib.simulation.corridor.mesh_building import WorldMesh
-from course_lib.simulation.corridor.mesh_files import to_polydata
+from course_lib.simulation.corridor.mesh_building import WorldMesh, to_polydata
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import Frame, TimeOfFlightCamera, TimeOfFlightModel
 

@@ -70,7 +70,7 @@ def simplify(vertices: np.ndarray, faces: np.ndarray, model: FusionModel) -> tup
     """Removes loose pieces and decimates by quadric errors to `model.triangles`; vertices come back as float32."""
     import pyvista
 
-    from course_lib.simulation.corridor.mesh_files import to_polydata
+    from course_lib.simulation.corridor.mesh_building import to_polydata
 
     mesh = to_polydata(vertices, faces)
     labels = mesh.connectivity("all").cell_data["RegionId"]

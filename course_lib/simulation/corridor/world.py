@@ -284,17 +284,8 @@ def _clutter(b: MeshBuilder, things: Sequence[Thing], rng: Generator) -> np.ndar
     """Adds the things; returns their boxes on the floor plan `(n, 2, 2)`."""
     boxes = []
     for number, (kind, x, y, turn) in enumerate(things):
-        place, piece = Placement(np.array([x, y, 0.0])).moved(turn_deg=turn), MeshBuilder()
-        if kind == "cartons":
-            clutter.cartons(piece, place, rng)
-        elif kind == "person":
-            clutter.person(piece, place, rng.uniform(1.62, 1.82), rng)
-        elif kind == "plant":
-            clutter.plant(piece, place, rng)
-        else:
-            {"chair": clutter.chair, "trolley": clutter.trolley, "ladder": clutter.ladder, "bin": clutter.bin_with_lid}[
-                kind
-            ](piece, place)
+        piece = MeshBuilder()
+        clutter.KINDS[kind](piece, Placement(np.array([x, y, 0.0])).moved(turn_deg=turn), rng)
         b.take(piece, f"clutter {number} {kind}")
         boxes.append(piece.build().vertices[:, :2])
     return np.array([[points.min(axis=0), points.max(axis=0)] for points in boxes]).reshape(-1, 2, 2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,7 +41,7 @@ def _base(shape: Chair, frame: Surface) -> list:
     elif shape.base == "sledge":
         for y in (-w, w):
             corners = [(d, y, top), (d + 0.03, y, r), (-d - 0.03, y, r), (-d, y, top)]
-            for ends in zip(corners, corners[1:], strict=False):
+            for ends in itertools.pairwise(corners):
                 parts += rod(ends, r, frame)
     else:
         for x in (-d, d):

@@ -16,18 +16,16 @@ from numpy.random import Generator
 from course_lib.simulation import prints, textures
 from course_lib.simulation.furniture.cabinet import Cabinet, build_cabinet
 from course_lib.simulation.furniture.chair import Chair, build_chair
-from course_lib.simulation.furniture.solids import Piece
 from course_lib.simulation.furniture.plant import Plant, build_plant
 from course_lib.simulation.furniture.refrigerator import Refrigerator, build_refrigerator
 from course_lib.simulation.furniture.sofa import Sofa, build_sofa
-from course_lib.simulation.furniture.solids import joined
+from course_lib.simulation.furniture.solids import Piece, joined
 from course_lib.simulation.furniture.table import Table, build_table
 from course_lib.simulation.furniture.television import Television, build_television
 from course_lib.simulation.room import shell as room_shell
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.scene import Lamp, Room
-from course_lib.simulation.textures import TexturedMesh
-from course_lib.simulation.textures import Surface, cloth, colour, metal, wood
+from course_lib.simulation.textures import Surface, TexturedMesh, cloth, colour, metal, wood
 
 LOW, HIGH = (-0.45, -0.55), (5.65, 5.5)  # metres, map frame: south-west and north-east corner of the floor
 HEIGHT = 2.7  # metres

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from course_lib.files import staging_dir
-from course_lib.simulation.corridor.mesh_files import write_ply
+from course_lib.simulation.corridor.mesh_building import write_ply
 from course_lib.simulation.data_folder import checksums, require_folder
 from course_lib.simulation.parameter_tables import parameter_table
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh

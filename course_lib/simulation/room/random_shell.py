@@ -12,8 +12,7 @@ from course_lib.simulation.furniture.solids import joined
 from course_lib.simulation.room import shell as room_shell
 from course_lib.simulation.room.footprints import overlap, rectangle
 from course_lib.simulation.room.scene import Lamp
-from course_lib.simulation.textures import TexturedMesh
-from course_lib.simulation.textures import Surface, colour, random_colour
+from course_lib.simulation.textures import Surface, TexturedMesh, colour, random_colour
 
 
 @dataclass

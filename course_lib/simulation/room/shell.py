@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from course_lib.simulation.furniture.solids import box, cylinder, grid_faces, lathe, panel, rod, textured, turn
-from course_lib.simulation.textures import TexturedMesh
-from course_lib.simulation.textures import Surface
+from course_lib.simulation.textures import Surface, TexturedMesh
 
 WALL_CELL = 0.5  # metres: longest edge of a wall's cell
 LIFT = 0.004  # metres between two faces that would otherwise lie in one plane

@@ -16,7 +16,7 @@ from numpy.random import Generator
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.rendering.camera import DepthCamera
-from course_lib.simulation.corridor.mesh_files import write_ply
+from course_lib.simulation.corridor.mesh_building import write_ply
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, depth_caster, surveyed_mesh
 from course_lib.simulation.room.footprints import NoFreePlace, clear_of, footprint, free_places
 from course_lib.simulation.room.look_alike_room import LookAlikeLimits, make_look_alike_room

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.simulation.corridor import world as corridor
-from course_lib.simulation.corridor.mesh_files import read_world_ply, write_world_ply
+from course_lib.simulation.corridor.mesh_building import read_world_ply, write_world_ply
 from course_lib.simulation.corridor.world import make_corridor
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 
