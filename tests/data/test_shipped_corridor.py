@@ -12,12 +12,12 @@ from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import optical_pose, rotation_angle, state_from_optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.data import PRODUCTS, CorridorModels
+from course_lib.simulation.corridor.idealizations import corridor_parameters
 from course_lib.simulation.corridor.mesh_building import read_world_ply
-from course_lib.simulation.corridor.parameters import corridor_parameters
 from course_lib.simulation.corridor.world import CLUTTER, make_corridor
 from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.sensors.ray_casting import WorldCaster
+from tools.corridor_data import PRODUCTS, CorridorModels
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "corridor"
 

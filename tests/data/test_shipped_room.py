@@ -8,8 +8,7 @@ import pytest
 
 from course_lib.experiments.room import counts_as_object
 from course_lib.geometry import wrap_angle
-from course_lib.simulation.data_folder import checksums
-from course_lib.simulation.parameter_tables import parameter_tables
+from course_lib.simulation.data_folder import checksums, parameter_tables
 from course_lib.simulation.room.data import PRODUCTS, RoomModels
 from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES

@@ -154,14 +154,19 @@ def _furnished(
     return builder, detail
 
 
+def right_side(x: float) -> float:
+    """Where the right wall stands at x: y in metres. It steps inward at STEP_AT."""
+    return RIGHT if x < STEP_AT else RIGHT_NARROW
+
+
 def left_wall() -> Placement:
     """Frame of the left wall: along +x, into +y."""
     return Placement(np.array([0.0, LEFT, 0.0]), np.eye(3))
 
 
 def right_wall(x: float) -> Placement:
-    """Frame of the right wall, which steps inward at STEP_AT: along +x, into -y."""
-    return Placement(np.array([0.0, RIGHT if x < STEP_AT else RIGHT_NARROW, 0.0]), np.diag([1.0, -1.0, 1.0]))
+    """Frame of the right wall: along +x, into -y."""
+    return Placement(np.array([0.0, right_side(x), 0.0]), np.diag([1.0, -1.0, 1.0]))
 
 
 def _cross_wall(x: float, y: float, sense: float) -> Placement:
@@ -220,7 +225,7 @@ def _shell(b: MeshBuilder, layout: dict, windows: list) -> None:
     parts.window_niche(b, back, start + 0.5, end - 0.7, 0.24, (0.5,))
     parts.stairwell(b, left_wall().moved(along=(STAIRS[0] + STAIRS[1]) / 2), STAIRS[1] - STAIRS[0])
     for x, jamb, drop, thick in layout["portals"]:
-        low = RIGHT if x < STEP_AT else RIGHT_NARROW
+        low = right_side(x)
         parts.portal(b, Placement(np.array([x, (LEFT + low) / 2, 0.0])), (LEFT - low) / 2, jamb, drop, thick)
     b.part = "soffit"
     for x, length, drop in layout["soffits"]:

@@ -13,8 +13,7 @@ import numpy as np
 
 from course_lib.files import staging_dir
 from course_lib.simulation.corridor.mesh_building import write_ply
-from course_lib.simulation.data_folder import checksums, require_folder
-from course_lib.simulation.parameter_tables import parameter_table
+from course_lib.simulation.data_folder import checksums, parameter_table
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh
 from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightModel
@@ -37,7 +36,7 @@ def make_finale_data(out: str | Path, seed: int, models: FinaleModels | None = N
 
     Raises `ValueError` where `out` cannot be a folder.
     """
-    models, out = models or FinaleModels(), require_folder(out)
+    models = models or FinaleModels()
     with staging_dir(out, PRODUCTS) as folder:
         room, semantic_map = surveyed_room(seed, models.recording)
         semantic_map.save(folder / "semantic_map.json")

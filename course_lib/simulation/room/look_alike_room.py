@@ -20,7 +20,7 @@ from course_lib.simulation.room.random_shell import Shell
 from course_lib.simulation.room.scene import Room
 
 STREAM = 0x100A11E  # joins every seed, so that no random number of these rooms is one of make_room's
-MOST_DRAWS = 100  # rooms drawn for one seed before giving up; chosen
+MAX_DRAWS = 100  # rooms drawn for one seed before giving up; chosen
 
 
 @dataclass(frozen=True)
@@ -47,13 +47,13 @@ def make_look_alike_room(seed: int, draw: int = 0, limits: LookAlikeLimits = Loo
     look-alikes, or too many of whose other pieces, find no place is drawn again.
     Raises `NoRoomDrawn` when that never ends, for limits that ask for too much.
     """
-    for rng in np.random.default_rng([STREAM, seed, draw]).spawn(MOST_DRAWS):
+    for rng in np.random.default_rng([STREAM, seed, draw]).spawn(MAX_DRAWS):
         low, high = np.zeros(2), rng.uniform(*limits.side, 2)
         height = float(rng.uniform(*limits.height))
         shell, plan = empty_room(rng, low, high, height)
         if _furnish(rng, plan, shell, limits):
             return furnished_room(shell, plan, height)
-    raise NoRoomDrawn(f"seed {seed}: in {MOST_DRAWS} rooms the furniture found no place; ask for fewer or larger ones")
+    raise NoRoomDrawn(f"seed {seed}: in {MAX_DRAWS} rooms the furniture found no place; ask for fewer or larger ones")
 
 
 def _furnish(rng: Generator, plan: Plan, shell: Shell, limits: LookAlikeLimits) -> bool:

@@ -14,8 +14,8 @@ import numpy as np
 
 from course_lib.files import atomic_write, read_json
 from course_lib.simulation.room.footprints import free_places
-from course_lib.simulation.room.object_boxes import object_boxes
-from course_lib.simulation.room.random_room import make_room
+from course_lib.simulation.room.furnishing import make_room
+from course_lib.simulation.room.stereo_photographs import object_boxes
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, stand_up

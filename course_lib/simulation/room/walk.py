@@ -24,7 +24,7 @@ from course_lib.simulation.room.scene import Room
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 from course_lib.simulation.smooth_signal import smooth_signal, smoothed
 
-MOST_BEGINNINGS = 100
+MAX_BEGINNINGS = 100
 WALK, WALK_CAMERA = 4, 5  # streams of a seed, beside those of depth_world
 
 
@@ -94,7 +94,7 @@ def walk_states(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
 def _way(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
     """Places `(frames, 2)` on straight stretches between free places, each clear of the furniture."""
     footprints = [footprint(item) for item in room.objects]
-    for _ in range(MOST_BEGINNINGS):
+    for _ in range(MAX_BEGINNINGS):
         here = free_places(room, 1, rng)[0]
         stretches, count = [here[None]], 1
         while count < model.frames:
@@ -107,7 +107,7 @@ def _way(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
         else:
             return np.concatenate(stretches)[: model.frames]
     raise NoFreePlace(
-        f"from none of {MOST_BEGINNINGS} places a walk of {model.frames} frames leads on, {model.clearance} m clear of "
+        f"from none of {MAX_BEGINNINGS} places a walk of {model.frames} frames leads on, {model.clearance} m clear of "
         "the furniture; ask for less clearance or shorter stretches"
     )
 

@@ -171,3 +171,29 @@ def _sub_pixel_rays(camera: DepthCamera, n: int, errors: CalibrationErrors) -> n
     fine = fine / np.linalg.norm(fine, axis=-1, keepdims=True)
     blocks = fine.reshape(camera.height, n, camera.width, n, 3).swapaxes(1, 2)
     return np.ascontiguousarray(blocks.reshape(camera.height, camera.width, n * n, 3), dtype=np.float32)
+
+
+def frame_counts(frame: Frame, model: TimeOfFlightModel) -> dict[str, int]:
+    """Counts of pixels of one frame: all, without return, saturated, beyond the unambiguous range (all, and those that
+    came back wrapped), flying.
+
+    Flying: the pixel sees two surfaces more than 0.1 m apart, and reads a range between them, more than 5 cm and three
+    times the noise away from both.
+    """
+    measured = np.isfinite(frame.depth)
+    limit = model.unambiguous_range
+    beyond = (frame.nearest > limit) & np.isfinite(frame.nearest)
+    amplitude = np.maximum(frame.amplitude, 1e-9)
+    noise_phase = np.sqrt(model.shot_noise**2 * amplitude + model.dark_noise**2) / amplitude
+    margin = np.maximum(0.05, 3 * noise_phase * limit / (2 * np.pi))
+    edge = measured & (frame.farthest - frame.nearest > 0.1) & (frame.farthest < limit)
+    between = (frame.range > frame.nearest + margin) & (frame.range < frame.farthest - margin)
+    return {
+        "pixels": frame.depth.size,
+        "no_return": int((~measured).sum()),
+        "nothing_there": int(np.isinf(frame.nearest).sum()),
+        "saturated": int((frame.amplitude > model.greatest_amplitude).sum()),
+        "beyond_range": int(beyond.sum()),
+        "wrapped": int((beyond & measured).sum()),
+        "flying": int((edge & between).sum()),
+    }

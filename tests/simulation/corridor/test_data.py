@@ -10,13 +10,12 @@ from course_lib.output_folder import MADE
 
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.data import PRODUCTS, CorridorModels, make_corridor_data
 from course_lib.simulation.corridor.recorded_runs import HandModel, WagonModel
 from course_lib.simulation.corridor.surface_fusion import FusionModel
-from course_lib.simulation.data_folder import checksums
-from course_lib.simulation.parameter_tables import field_comments, parameter_tables
+from course_lib.simulation.data_folder import checksums, field_comments, parameter_tables
 from course_lib.simulation.sensors.laser_survey import ScannerModel
 from tools import make_corridor as make_data
+from tools.corridor_data import PRODUCTS, CorridorModels, make_corridor_data
 
 SMALL = CorridorModels(
     scanner=ScannerModel(step_deg=0.8),

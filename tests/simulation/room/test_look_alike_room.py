@@ -7,9 +7,9 @@ import pytest
 
 from course_lib.simulation.room import look_alike_room
 from course_lib.simulation.room.footprints import distance_to, footprint, overlap
+from course_lib.simulation.room.furnishing import make_room
 from course_lib.simulation.room.look_alike_recording import RecordingModels, measurement_poses, mount_of
 from course_lib.simulation.room.look_alike_room import LookAlikeLimits, NoRoomDrawn, make_look_alike_room
-from course_lib.simulation.room.random_room import make_room
 
 SEEDS = (10_200, 10_201, 10_202)
 LIMITS = LookAlikeLimits()
@@ -64,7 +64,7 @@ def test_one_seed_gives_one_room_another_draw_another_and_none_is_the_training_g
 
 
 def test_limits_that_ask_for_too_much_are_named(monkeypatch):
-    monkeypatch.setattr(look_alike_room, "MOST_DRAWS", 2)
+    monkeypatch.setattr(look_alike_room, "MAX_DRAWS", 2)
     with pytest.raises(NoRoomDrawn, match="seed 10200"):
         make_look_alike_room(10_200, limits=LookAlikeLimits(look_alikes=(90, 90), side=(5.0, 5.1)))
 

@@ -4,9 +4,8 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.simulation.room.footprints import clear_of, footprint
-from course_lib.simulation.room.look_alike_recording import measurement_poses
+from course_lib.simulation.room.look_alike_recording import WalkModel, experiment_of, measurement_poses, walk_from
 from course_lib.simulation.room.look_alike_room import make_look_alike_room
-from course_lib.simulation.room.nearby_views import WalkModel, experiment_of, walk_from
 
 ROOM, WALK = make_look_alike_room(10_210), WalkModel()
 

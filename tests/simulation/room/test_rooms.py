@@ -11,7 +11,7 @@ from course_lib.simulation import textures
 from course_lib.simulation.furniture import RANDOM_PIECES, solids
 from course_lib.simulation.room.experiment_room import LAYOUT, PLACES, make_experiment_room
 from course_lib.simulation.room.footprints import NoFreePlace, distance_to, footprint, free_places, overlap, rectangle
-from course_lib.simulation.room.random_room import make_room
+from course_lib.simulation.room.furnishing import make_room
 from course_lib.spherical_stereo.matching.features import AKAZE_THRESHOLD
 
 CLASSES = {"sofa", "chair", "table", "television", "potted plant", "refrigerator", "cabinet"}

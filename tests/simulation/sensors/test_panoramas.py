@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.simulation.room.object_boxes import box_around, object_boxes
-from course_lib.simulation.room.random_room import make_room
+from course_lib.simulation.room.furnishing import make_room
+from course_lib.simulation.room.stereo_photographs import box_around, object_boxes
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, RigModel, RigPose, assemble, stand_up

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from course_lib.rendering.camera import DepthCamera
-from course_lib.simulation.corridor.measurements import noise_on_a_wall
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import (
     CalibrationErrors,
@@ -14,6 +13,7 @@ from course_lib.simulation.sensors.time_of_flight import (
     TimeOfFlightCamera,
     TimeOfFlightModel,
 )
+from tools.corridor_data import noise_on_a_wall
 
 CAMERA = DepthCamera.sr4000().resized(44, 36)
 MODEL = TimeOfFlightModel()

@@ -3,8 +3,8 @@
 import json
 
 import pytest
-
 from course_lib.simulation.corridor.kindnesses import KINDNESSES, MEASURED, kindness_table
+
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-
 from course_lib.simulation.corridor.another_day import DayModel, another_day
+
 from course_lib.simulation.corridor.recorded_runs import WagonModel, wagon_run
 from course_lib.simulation.corridor.world import draw_building, make_corridor
 
