@@ -12,6 +12,7 @@ import numpy as np
 from numpy.random import Generator
 
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
+from course_lib.simulation.furniture.solids import merged
 from course_lib.simulation.room.footprints import free_places
 from course_lib.simulation.room.scene import Room
 from course_lib.simulation.sensors.laser_survey import ScannerModel, survey
@@ -33,10 +34,7 @@ class DepthSurveyModel:
 
 def room_triangles(room: Room) -> tuple[np.ndarray, np.ndarray]:
     """All triangles of a room: vertices `(V, 3)` metres, faces `(F, 3)`."""
-    meshes = [*room.shell, *(mesh for thing in room.objects for mesh in thing.meshes)]
-    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
-    vertices = np.concatenate([mesh.vertices for mesh in meshes])
-    return vertices, np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)])
+    return merged([*room.shell, *(mesh for thing in room.objects for mesh in thing.meshes)])
 
 
 def depth_caster(room: Room) -> WorldCaster:

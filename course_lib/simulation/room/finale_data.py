@@ -32,10 +32,7 @@ class FinaleModels:
 
 
 def make_finale_data(out: str | Path, seed: int, models: FinaleModels | None = None) -> dict:
-    """Makes the data in folder `out`; returns a summary. One seed gives one set of bytes.
-
-    Raises `ValueError` where `out` cannot be a folder.
-    """
+    """Make the data in folder `out`; return a summary. One seed gives one set of bytes."""
     models = models or FinaleModels()
     with staging_dir(out, PRODUCTS) as folder:
         room, semantic_map = surveyed_room(seed, models.recording)
@@ -49,7 +46,7 @@ def make_finale_data(out: str | Path, seed: int, models: FinaleModels | None = N
 
 def finale_parameters(models: FinaleModels) -> str:
     """PARAMETERS.md: the tables of all models, from their source text."""
-    recording, mesh = models.recording, models.mesh
-    parts = (recording.limits, recording.rig, recording.camera, recording.survey, mesh.scanner, mesh.fusion)
+    one, mesh = models.recording, models.mesh
+    parts = (one.limits, one.rig, one.camera, one.survey, mesh.scanner, mesh.fusion, models.depth_camera)
     head = "# Parameters of the finale's room\n\nWritten by `make-data finale` from the models' source text.\n"
-    return "\n".join([head, *map(parameter_table, (*parts, models.depth_camera))])
+    return "\n".join([head, *map(parameter_table, parts)])
