@@ -49,9 +49,8 @@ class Mount:
 
     def tilted(self, tilt_deg: float) -> Mount:
         """The same mount with a relative tilt of exactly so many degrees, in the direction that it has already."""
-        direction = np.arctan2(self.relative_tilt[1], self.relative_tilt[0])
-        length = np.deg2rad(tilt_deg)
-        return replace(self, relative_tilt=(float(length * np.cos(direction)), float(length * np.sin(direction))))
+        roll, pitch = self.relative_tilt
+        return replace(self, relative_tilt=_tilt(np.deg2rad(tilt_deg), np.arctan2(pitch, roll)))
 
 
 @dataclass(frozen=True)
@@ -117,18 +116,13 @@ def stand_up(
     """
     tilt = _from_disk(np.deg2rad(model.tilt_deg), rng)
     mount = mount or assemble(model, rng)
-    return RigPose(
-        x,
-        y,
-        heading,
-        upper_height + mount.height_error,
-        baseline + mount.baseline_error,
-        tilt,
-        mount.relative_tilt,
-        mount.relative_yaw,
-    )
+    heights = upper_height + mount.height_error, baseline + mount.baseline_error
+    return RigPose(x, y, heading, *heights, tilt, mount.relative_tilt, mount.relative_yaw)
 
 
 def _from_disk(radius: float, rng: Generator) -> tuple[float, float]:
-    length, direction = radius * np.sqrt(rng.uniform()), rng.uniform(0.0, 2.0 * np.pi)
+    return _tilt(radius * np.sqrt(rng.uniform()), rng.uniform(0.0, 2.0 * np.pi))
+
+
+def _tilt(length: float, direction: float) -> tuple[float, float]:
     return float(length * np.cos(direction)), float(length * np.sin(direction))
