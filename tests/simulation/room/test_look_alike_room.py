@@ -8,7 +8,7 @@ import pytest
 from course_lib.simulation.room import look_alike_room
 from course_lib.simulation.room.footprints import distance_to, footprint, overlap
 from course_lib.simulation.room.furnishing import make_room
-from course_lib.simulation.room.look_alike_recording import RecordingModels, measurement_poses, mount_of
+from course_lib.simulation.room.look_alike_recording import measurement_poses
 from course_lib.simulation.room.look_alike_room import LookAlikeLimits, NoRoomDrawn, make_look_alike_room
 
 SEEDS = (10_200, 10_201, 10_202)
@@ -79,10 +79,3 @@ def test_the_rig_stands_free_in_two_headings_at_every_place(rooms):
         assert (np.round(quarters) % 4 != 0).all()
         assert min(distance_to(footprint(thing), poses[:, :2]).min() for thing in room.objects) >= 0.3
         np.testing.assert_array_equal(measurement_poses(room, 20, seed)[:5], poses)
-
-
-def test_another_tilt_changes_nothing_else_of_a_mount():
-    plain, tilted = (mount_of(10_200, RecordingModels(tilt_deg=tilt)) for tilt in (None, 1.0))
-    assert np.rad2deg(np.hypot(*tilted.relative_tilt)) == pytest.approx(1.0)
-    assert 0 < np.rad2deg(np.hypot(*plain.relative_tilt)) <= 0.3
-    assert (plain.relative_yaw, plain.baseline_error) == (tilted.relative_yaw, tilted.baseline_error)
