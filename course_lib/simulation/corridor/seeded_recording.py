@@ -21,17 +21,9 @@ from numpy.random import Generator
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose
 from course_lib.rendering.camera import DepthCamera
+from course_lib.simulation.corridor import recorded_runs
 from course_lib.simulation.corridor.mesh_building import WorldMesh
-from course_lib.simulation.corridor.recorded_runs import (
-    FloorSurveyModel,
-    HandModel,
-    PushModel,
-    WagonModel,
-    draw_pushing,
-    hand_run,
-    survey_floor_line,
-    wagon_run,
-)
+from course_lib.simulation.corridor.recorded_runs import FloorSurveyModel, HandModel, PushModel, WagonModel
 from course_lib.simulation.corridor.scene_changes import DayModel, scene_change
 from course_lib.simulation.corridor.world import Building, draw_building
 from course_lib.simulation.sensors.ray_casting import WorldCaster
@@ -99,7 +91,7 @@ def record(
         frame = camera.capture(caster, state, rng)
         depths.append(frame.depth)
         counts.update(frame_counts(frame, camera.model))
-    path = survey_floor_line(states, floor_survey, rng)
+    path = recorded_runs.survey_floor_line(states, floor_survey, rng)
     n = len(depths)
     write_sequence(folder, camera.camera.matrix, list(range(n)), depths, optical_pose(states[:n]), times[:n], "z", path)
     return counts
@@ -131,7 +123,7 @@ def record_seed(
     day_rng, path_rng, push_rng, calibration_rng, pattern_rng, noise_rng = streams
     day = scene_change(building, models.day, day_rng)
     wagon = dataclasses.replace(models.wagon, start=path_rng.uniform(*models.day.starts))
-    pushing = draw_pushing(models.push, wagon.frames, push_rng) if "pushed by hand" in hardships else None
+    pushing = recorded_runs.draw_pushing(models.push, wagon.frames, push_rng) if "pushed by hand" in hardships else None
     drawn = models.calibration.draw(calibration_rng)
     position = drawn.mount[:3] if "mount position" in hardships else (0.0,) * 3
     angles = drawn.mount[3:] if "mount angle" in hardships else (0.0,) * 3
@@ -142,8 +134,8 @@ def record_seed(
     )
     instrument = TimeOfFlightCamera(camera or DepthCamera.sr4000(), models.camera, pattern_rng, errors)
     if carried == "wagon":
-        run = wagon_run(wagon, day.clutter_boxes, path_rng, pushing)
+        run = recorded_runs.wagon_run(wagon, day.clutter_boxes, path_rng, pushing)
     else:
         hand = dataclasses.replace(models.hand, start=path_rng.uniform(*models.day.hand_starts))
-        run = hand_run(hand, day.clutter_boxes, path_rng)
+        run = recorded_runs.hand_run(hand, day.clutter_boxes, path_rng)
     record(folder, day.mesh, instrument, run, models.floor_survey, noise_rng, progress, frames)
