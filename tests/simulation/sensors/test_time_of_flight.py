@@ -112,12 +112,6 @@ def test_one_seed_gives_one_frame():
     assert (first != other).any()
 
 
-def test_the_camera_looks_along_body_x_with_left_at_the_left():
-    depth = capture(walls((3.0, 0.0)), QUIET).depth
-    assert np.isfinite(depth[:, 0]).all()  # y > 0 is left, column 0
-    assert np.isnan(depth[:, -1]).all()
-
-
 def columns_of_the_wall(errors=None):
     """How many columns a wall to the left of y = 0.6 m at 3 m covers: those of its pixels in the middle row."""
     return np.isfinite(capture(walls((3.0, 0.6)), QUIET, errors=errors).depth[18]).sum()
