@@ -36,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     require_output_folder(out)
     from tqdm import tqdm
 
-    from course_lib.simulation.corridor.data import make_corridor_data
+    from tools.corridor_data import make_corridor_data
 
     summary = make_corridor_data(
         out, arguments.seed, progress=lambda items, text: tqdm(items, desc=f"{text:28s}", ascii=True)

@@ -14,9 +14,8 @@ import numpy as np
 
 from course_lib.experiments.rooms import RoomsOptions, record_of_observations, stored_observations
 from course_lib.files import temporary_folder
-from course_lib.simulation.room.look_alike_recording import surveyed_room
+from course_lib.simulation.room.look_alike_recording import WalkModel, experiment_of, photograph_walks, surveyed_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
-from course_lib.simulation.room.nearby_views import WalkModel, experiment_of, photograph_walks
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.semantic_map.association import Observation

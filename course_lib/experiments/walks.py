@@ -8,7 +8,7 @@ from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.six_degrees import run_frames
 from course_lib.files import temporary_folder
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.room.walk import record_walk
+from course_lib.simulation.room.depth_world import record_walk
 
 
 def room_walk(seed: int, methods: Sequence[str], everies: Sequence[int]) -> list[dict]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.textures import Colour, Surface, band_noise, colour, random_colour, shaded
 
@@ -18,7 +19,7 @@ def _gradient(top: Colour, bottom: Colour, rows: int, columns: int) -> np.ndarra
     return np.ascontiguousarray(np.round(np.broadcast_to(image, (rows, columns, 3)) * 255).astype(np.uint8))
 
 
-def _lines_of_print(image: np.ndarray, rng: np.random.Generator, box: tuple[int, int, int, int], rgb: Colour) -> None:
+def _lines_of_print(image: np.ndarray, rng: Generator, box: tuple[int, int, int, int], rgb: Colour) -> None:
     """Writes rows of marks that look like words into the box (left, top, right, bottom), in pixels."""
     left, top, right, bottom = box
     height = int(rng.integers(3, 8))
@@ -31,7 +32,7 @@ def _lines_of_print(image: np.ndarray, rng: np.random.Generator, box: tuple[int,
             column = end + int(rng.integers(1, 4))
 
 
-def picture(rng: np.random.Generator, width: float, height: float, emission: float = 0.0, pixels: int = 192) -> Surface:
+def picture(rng: Generator, width: float, height: float, emission: float = 0.0, pixels: int = 192) -> Surface:
     """A landscape or a composition of figures with some print; width, height: metres."""
     columns = pixels
     rows = max(48, round(pixels * height / width))
@@ -62,7 +63,7 @@ def picture(rng: np.random.Generator, width: float, height: float, emission: flo
     return Surface(image, (width, height), emission)
 
 
-def dark_screen(rng: np.random.Generator, width: float, height: float) -> Surface:
+def dark_screen(rng: Generator, width: float, height: float) -> Surface:
     """A screen that is off: nearly black with the faint reflection of a window and dust."""
     rows, columns = 96, 160
     brightness = 0.07 + 0.012 * cv2.resize(band_noise(rng, 128, 9.0), (columns, rows))
@@ -73,7 +74,7 @@ def dark_screen(rng: np.random.Generator, width: float, height: float) -> Surfac
     return Surface(shaded(tint, np.maximum(brightness, 0.05)), (width, height))
 
 
-def label(rng: np.random.Generator, width: float, height: float) -> Surface:
+def label(rng: Generator, width: float, height: float) -> Surface:
     """A printed label or note: a coloured field, a bar, lines of print."""
     columns, rows = 96, max(32, round(96 * height / width))
     image = _gradient(random_colour(rng, (0, 60), (70, 100)), random_colour(rng, (0, 60), (70, 100)), rows, columns)
@@ -83,7 +84,7 @@ def label(rng: np.random.Generator, width: float, height: float) -> Surface:
     return Surface(image, (width, height))
 
 
-def book_row(rng: np.random.Generator, width: float, height: float, hue: float | None = None) -> Surface:
+def book_row(rng: Generator, width: float, height: float, hue: float | None = None) -> Surface:
     """A row of book spines of several widths and heights; hue: all spines keep to it within 15 degrees (None: any)."""
     columns, rows = 256, max(48, round(256 * height / width))
     image = np.full((rows, columns, 3), 35, np.uint8)
@@ -103,7 +104,7 @@ def book_row(rng: np.random.Generator, width: float, height: float, hue: float |
     return Surface(image, (width, height))
 
 
-def window_view(rng: np.random.Generator, width: float, height: float) -> Surface:
+def window_view(rng: Generator, width: float, height: float) -> Surface:
     """What is seen through a window by day: sky, clouds, roofs or trees; shines by itself."""
     columns, rows = 192, 192
     image = _gradient(colour(210, 25, 100), colour(205, 8, 100), rows, columns)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.random import Generator
 
 
-def smooth_signal(n: int, width: float, rng: np.random.Generator) -> np.ndarray:
+def smooth_signal(n: int, width: float, rng: Generator) -> np.ndarray:
     """Smooth random signal `(n,)` with zero mean and standard deviation one; `width` in frames."""
     margin = int(4 * width)
     kernel = np.exp(-0.5 * (np.arange(-margin, margin + 1) / width) ** 2)

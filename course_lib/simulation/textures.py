@@ -7,11 +7,12 @@ gives AKAZE nothing to hold on to. Patterns change the brightness first, so that
 from __future__ import annotations
 
 import colorsys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 import scipy.fft
+from numpy.random import Generator
 
 Colour = tuple[float, float, float]
 
@@ -32,23 +33,41 @@ class Surface:
         return Surface(np.ascontiguousarray(np.rot90(self.image)), self.size[::-1], self.emission)
 
 
+@dataclass(frozen=True)
+class TexturedMesh:
+    """Triangles that share one texture: what the rooms are built of and what the panorama renderer draws.
+
+    vertices: `(n, 3)` float64, metres, world frame (or the frame of the piece of furniture while it is being built).
+    faces: `(m, 3)` int64, corner indices, counter-clockwise seen from outside.
+    texture_coordinates: `(n, 2)` float64, (s, t); the texture repeats beyond [0, 1], t = 0 is the texture's lowest row.
+    texture: `(h, w, 3)` uint8, RGB.
+    emission: 0 = lit by the lamps only, 1 = shows its texture at full brightness without any lamp (screens, windows).
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    texture_coordinates: np.ndarray
+    texture: np.ndarray
+    emission: float = 0.0
+
+    def moved(self, pose: np.ndarray) -> TexturedMesh:
+        """The same mesh in another frame; pose: `(4, 4)`, old frame to new frame, a rotation and a translation."""
+        return replace(self, vertices=np.asarray(self.vertices, float) @ pose[:3, :3].T + pose[:3, 3])
+
+
 def colour(hue: float, saturation: float, value: float) -> Colour:
     """RGB 0 to 1 of a hue in degrees, a saturation and a value in percent (HSV)."""
     return colorsys.hsv_to_rgb((hue % 360.0) / 360.0, saturation / 100.0, value / 100.0)
 
 
 def random_colour(
-    rng: np.random.Generator,
-    saturation: tuple[float, float] = (25.0, 90.0),
-    value: tuple[float, float] = (40.0, 95.0),
+    rng: Generator, saturation: tuple[float, float] = (25.0, 90.0), value: tuple[float, float] = (40.0, 95.0)
 ) -> Colour:
     """A colour from anywhere on the hue circle; saturation and value in percent, drawn from the two ranges."""
     return colour(rng.uniform(0.0, 360.0), rng.uniform(*saturation), rng.uniform(*value))
 
 
-def band_noise(
-    rng: np.random.Generator, pixels: int, wavelength: float, stretch: tuple[float, float] = (1.0, 1.0)
-) -> np.ndarray:
+def band_noise(rng: Generator, pixels: int, wavelength: float, stretch: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
     """Noise of one scale that repeats at the edges: `(pixels, pixels)` float32, mean 0, standard deviation 1.
 
     wavelength: pixels from one blob to the next. stretch: how many times longer the blobs are (across, up).
@@ -75,7 +94,7 @@ def _coordinates(pixels: int) -> tuple[np.ndarray, np.ndarray]:
     return line[None, :], line[:, None]
 
 
-def _dots(rng: np.random.Generator, pixels: int, count: int, radius: tuple[float, float]) -> np.ndarray:
+def _dots(rng: Generator, pixels: int, count: int, radius: tuple[float, float]) -> np.ndarray:
     """Filled discs, wrapped at the edges: `(pixels, pixels)` float32, 0 outside, strength 0.4 to 1 inside."""
     mask = np.zeros((pixels, pixels), np.float32)
     for _ in range(count):
@@ -86,12 +105,24 @@ def _dots(rng: np.random.Generator, pixels: int, count: int, radius: tuple[float
     return mask
 
 
+def _mottled(rng: Generator, base: float | np.ndarray, size: float, pixels: int, *layers: tuple) -> np.ndarray:
+    """A brightness with layers of noise on it, each (strength, wavelength in metres, and how it is stretched)."""
+    for strength, metres, *stretch in layers:
+        base = base + strength * band_noise(rng, pixels, metres / size * pixels, *stretch)
+    return base
+
+
+def _stained(rng: Generator, size: float, pixels: int, count: int, radius: tuple[float, float]) -> np.ndarray:
+    """`_dots` with radii in metres."""
+    return _dots(rng, pixels, count, (radius[0] / size * pixels, radius[1] / size * pixels))
+
+
 # The patterns that generated rooms draw from; "tartan" and "lattice" are left to the room of the experiment.
 CLOTH_PATTERNS = ("plain", "stripes", "checks", "dots", "herringbone", "blotches", "windowpane", "waves")
 
 
 def cloth(
-    rng: np.random.Generator,
+    rng: Generator,
     rgb: Colour,
     pattern: str = "plain",
     second: Colour | None = None,
@@ -101,16 +132,14 @@ def cloth(
     """Woven cloth: threads, worn patches and a pattern; second: the pattern's colour (None: the same hue, darker)."""
     across, up = _coordinates(pixels)
     threads = np.sin(2 * np.pi * 64 * across) * np.sin(2 * np.pi * 64 * up)
-    brightness = 1.0 + 0.06 * threads
-    brightness = brightness + 0.13 * band_noise(rng, pixels, 0.07 / size * pixels)
-    brightness += 0.11 * band_noise(rng, pixels, 0.025 / size * pixels)
+    brightness = _mottled(rng, 1.0 + 0.06 * threads, size, pixels, (0.13, 0.07), (0.11, 0.025))
     repeats = int(rng.integers(4, 11))
     if pattern == "stripes":
         mask = np.broadcast_to((np.sin(2 * np.pi * repeats * across) > rng.uniform(-0.3, 0.6)), (pixels, pixels))
     elif pattern == "checks":
         mask = (np.sin(2 * np.pi * repeats * across) > 0) ^ (np.sin(2 * np.pi * repeats * up) > 0)
     elif pattern == "dots":
-        mask = _dots(rng, pixels, 60, (0.012 / size * pixels, 0.03 / size * pixels)) > 0
+        mask = _stained(rng, size, pixels, 60, (0.012, 0.03)) > 0
     elif pattern == "herringbone":
         mask = np.sin(2 * np.pi * (2 * repeats * across + repeats * np.abs(2 * ((up * 4) % 1) - 1))) > 0
     elif pattern == "windowpane":
@@ -126,29 +155,28 @@ def cloth(
     elif pattern == "blotches":
         mask = band_noise(rng, pixels, 0.09 / size * pixels) > 0.6
     else:
-        mask = _dots(rng, pixels, 40, (0.004 / size * pixels, 0.012 / size * pixels)) > 0.5
+        mask = _stained(rng, size, pixels, 40, (0.004, 0.012)) > 0.5
     weight = mask.astype(np.float32)[..., None]
     other = np.asarray(second if second is not None else np.asarray(rgb) * 0.62, np.float32)
     tint = np.asarray(rgb, np.float32) * (1 - weight) + other * weight
     return Surface(shaded(tint, brightness), (size, size))
 
 
-def leather(rng: np.random.Generator, rgb: Colour, size: float = 0.8, pixels: int = 256) -> Surface:
+def leather(rng: Generator, rgb: Colour, size: float = 0.8, pixels: int = 256) -> Surface:
     """Leather: creases, grain and patches of wear."""
     creases = np.abs(band_noise(rng, pixels, 0.06 / size * pixels))
-    brightness = 0.85 + 0.22 * np.minimum(creases, 1.2) + 0.1 * band_noise(rng, pixels, 0.02 / size * pixels)
-    brightness += 0.1 * band_noise(rng, pixels, 0.2 / size * pixels)
+    brightness = _mottled(rng, 0.85 + 0.22 * np.minimum(creases, 1.2), size, pixels, (0.1, 0.02), (0.1, 0.2))
     return Surface(shaded(rgb, brightness), (size, size))
 
 
-def wood(rng: np.random.Generator, rgb: Colour, size: float = 0.8, pixels: int = 256, boards: int = 0) -> Surface:
+def wood(rng: Generator, rgb: Colour, size: float = 0.8, pixels: int = 256, boards: int = 0) -> Surface:
     """Wood with its grain across the tile: rings, streaks, knots and, if asked, the joints of boards."""
     across, up = _coordinates(pixels)
     warp = band_noise(rng, pixels, 0.25 / size * pixels, (3.0, 1.0))
     rings = np.sin(2 * np.pi * (rng.integers(6, 13) * up) + 1.6 * warp)
-    brightness = 0.95 + 0.13 * rings + 0.1 * band_noise(rng, pixels, 0.02 / size * pixels, (8.0, 1.0))
-    brightness += 0.08 * band_noise(rng, pixels, 0.04 / size * pixels, (2.0, 1.0))
-    knots = _dots(rng, pixels, int(rng.integers(3, 9)), (0.006 / size * pixels, 0.018 / size * pixels))
+    grain = (0.1, 0.02, (8.0, 1.0)), (0.08, 0.04, (2.0, 1.0))
+    brightness = _mottled(rng, 0.95 + 0.13 * rings, size, pixels, *grain)
+    knots = _stained(rng, size, pixels, int(rng.integers(3, 9)), (0.006, 0.018))
     brightness *= 1.0 - 0.5 * cv2.GaussianBlur(knots, (0, 0), 1.0)
     if boards:
         board = np.floor(up * boards).astype(int)
@@ -159,37 +187,34 @@ def wood(rng: np.random.Generator, rgb: Colour, size: float = 0.8, pixels: int =
     return Surface(shaded(rgb, brightness), (size, size))
 
 
-def metal(rng: np.random.Generator, rgb: Colour, size: float = 0.6, pixels: int = 256) -> Surface:
+def metal(rng: Generator, rgb: Colour, size: float = 0.6, pixels: int = 256) -> Surface:
     """Brushed or painted metal: fine streaks, faint clouds and some stains."""
-    brightness = 0.95 + 0.05 * band_noise(rng, pixels, 0.012 / size * pixels, (12.0, 1.0))
-    brightness += 0.04 * band_noise(rng, pixels, 0.12 / size * pixels)
-    brightness += 0.03 * band_noise(rng, pixels, 0.04 / size * pixels)
-    brightness *= 1.0 - 0.25 * _dots(rng, pixels, 25, (0.003 / size * pixels, 0.009 / size * pixels))
+    brightness = _mottled(rng, 0.95, size, pixels, (0.05, 0.012, (12.0, 1.0)), (0.04, 0.12), (0.03, 0.04))
+    brightness *= 1.0 - 0.25 * _stained(rng, size, pixels, 25, (0.003, 0.009))
     return Surface(shaded(rgb, brightness), (size, size))
 
 
-def ceramic(rng: np.random.Generator, rgb: Colour, size: float = 0.5, pixels: int = 256) -> Surface:
+def ceramic(rng: Generator, rgb: Colour, size: float = 0.5, pixels: int = 256) -> Surface:
     """Glazed clay: runs of glaze, speckles and a few bands."""
     _, up = _coordinates(pixels)
-    brightness = 0.95 + 0.14 * band_noise(rng, pixels, 0.06 / size * pixels, (0.6, 1.4))
-    brightness *= 1.0 - 0.5 * _dots(rng, pixels, 90, (0.003 / size * pixels, 0.009 / size * pixels))
+    brightness = _mottled(rng, 0.95, size, pixels, (0.14, 0.06, (0.6, 1.4)))
+    brightness *= 1.0 - 0.5 * _stained(rng, size, pixels, 90, (0.003, 0.009))
     if rng.random() < 0.5:
         brightness *= np.where((up * rng.integers(2, 6)) % 1.0 < 0.2, 0.65, 1.0)
     return Surface(shaded(rgb, brightness), (size, size))
 
 
-def plaster(rng: np.random.Generator, rgb: Colour, size: float = 2.0, pixels: int = 512) -> Surface:
+def plaster(rng: Generator, rgb: Colour, size: float = 2.0, pixels: int = 512) -> Surface:
     """A painted wall: trowel marks, clouds and small chips, all faint."""
-    brightness = 0.97 + 0.035 * band_noise(rng, pixels, 0.3 / size * pixels)
-    brightness += 0.03 * band_noise(rng, pixels, 0.06 / size * pixels)
-    brightness *= 1.0 - 0.2 * _dots(rng, pixels, 60, (0.006 / size * pixels, 0.014 / size * pixels))
+    brightness = _mottled(rng, 0.97, size, pixels, (0.035, 0.3), (0.03, 0.06))
+    brightness *= 1.0 - 0.2 * _stained(rng, size, pixels, 60, (0.006, 0.014))
     return Surface(shaded(rgb, brightness), (size, size))
 
 
-def wallpaper(rng: np.random.Generator, rgb: Colour, size: float = 1.2, pixels: int = 512) -> Surface:
+def wallpaper(rng: Generator, rgb: Colour, size: float = 1.2, pixels: int = 512) -> Surface:
     """Wallpaper: a printed figure that repeats in staggered rows, or stripes, a little stronger than its ground."""
     across, up = _coordinates(pixels)
-    brightness = 0.97 + 0.04 * band_noise(rng, pixels, 0.1 / size * pixels)
+    brightness = _mottled(rng, 0.97, size, pixels, (0.04, 0.1))
     repeats = int(rng.integers(4, 9))
     kind = rng.integers(3)
     if kind == 0:
@@ -207,25 +232,22 @@ def wallpaper(rng: np.random.Generator, rgb: Colour, size: float = 1.2, pixels: 
     return Surface(shaded(rgb, brightness), (size, size))
 
 
-def carpet(rng: np.random.Generator, rgb: Colour, size: float = 1.5, pixels: int = 512) -> Surface:
+def carpet(rng: Generator, rgb: Colour, size: float = 1.5, pixels: int = 512) -> Surface:
     """Carpet: tufts and flecks."""
-    brightness = 0.9 + 0.12 * band_noise(rng, pixels, 0.02 / size * pixels)
-    brightness += 0.1 * band_noise(rng, pixels, 0.08 / size * pixels)
-    return Surface(shaded(rgb, brightness), (size, size))
+    return Surface(shaded(rgb, _mottled(rng, 0.9, size, pixels, (0.12, 0.02), (0.1, 0.08))), (size, size))
 
 
-def tiles(rng: np.random.Generator, rgb: Colour, size: float = 1.6, pixels: int = 512, count: int = 4) -> Surface:
+def tiles(rng: Generator, rgb: Colour, size: float = 1.6, pixels: int = 512, count: int = 4) -> Surface:
     """Floor tiles with joints; every tile has its own shade and stains."""
     across, up = _coordinates(pixels)
     shades = rng.uniform(0.82, 1.08, (count, count)).astype(np.float32)
     brightness = shades[np.floor(up * count).astype(int), np.floor(across * count).astype(int)]
-    brightness = brightness + 0.07 * band_noise(rng, pixels, 0.1 / size * pixels)
-    brightness += 0.05 * band_noise(rng, pixels, 0.03 / size * pixels)
+    brightness = _mottled(rng, brightness, size, pixels, (0.07, 0.1), (0.05, 0.03))
     joints = ((across * count) % 1.0 < 0.03) | ((up * count) % 1.0 < 0.03)
     return Surface(shaded(rgb, brightness * np.where(joints, 0.6, 1.0)), (size, size))
 
 
-def leaves(rng: np.random.Generator, rgb: Colour, size: float = 0.25, pixels: int = 128) -> Surface:
+def leaves(rng: Generator, rgb: Colour, size: float = 0.25, pixels: int = 128) -> Surface:
     """A leaf's skin: veins that leave the middle (across = 0.5), patches, lighter and darker."""
     across, up = _coordinates(pixels)
     veins = np.abs(np.sin(np.pi * (8 * up + 6 * np.abs(across - 0.5)))) < 0.15

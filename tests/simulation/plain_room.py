@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from course_lib.simulation.room.scene import Lamp, Room, RoomObject
-from course_lib.simulation.textured_mesh import TexturedMesh
+from course_lib.simulation.textures import TexturedMesh
 
 
 def box_mesh(low, high, colour, inward=False) -> TexturedMesh:

@@ -12,7 +12,7 @@ def no_work(monkeypatch):
     def made(*_, **__):
         pytest.fail("work had begun")
 
-    monkeypatch.setattr("course_lib.simulation.corridor.data.make_corridor_data", made)
+    monkeypatch.setattr("tools.corridor_data.make_corridor_data", made)
 
 
 def test_another_seed_needs_a_folder_of_its_own(capsys):

@@ -17,9 +17,14 @@ from course_lib.experiments.sensor_trouble.panoramas import PERIOD, TROUBLES, Pa
 from course_lib.experiments.sensor_trouble.placing import Arrival, generator
 from course_lib.experiments.sensor_trouble.score import Gate
 from course_lib.files import temporary_folder
-from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
+from course_lib.simulation.room.look_alike_recording import (
+    RecordingModels,
+    WalkModel,
+    experiment_of,
+    photograph_walks,
+    surveyed_room,
+)
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
-from course_lib.simulation.room.nearby_views import WalkModel, experiment_of, photograph_walks
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig

@@ -12,7 +12,7 @@ import trimesh
 from course_lib.experiments.rooms_summary import wilson_percent
 from course_lib.lessons.kit.box_world import Box, BoxWorld
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.mesh_files import to_polydata
+from course_lib.simulation.corridor.mesh_building import to_polydata
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
 from course_lib.simulation.sensors.laser_survey import Scan, ScannerModel, survey
 

@@ -1,16 +1,19 @@
-"""What stands in the corridor on the run day and was not there on the survey day. Sizes in metres, all chosen."""
+"""What stands in the corridor on the run day and was not there on the survey day. Sizes in metres, all chosen.
+
+Each function adds one thing of its kind to a `MeshBuilder`; what differs from one to the next is drawn with `rng`.
+"""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.corridor import materials as m
 from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement
 
 
-def cartons(b: MeshBuilder, place: Placement, rng: np.random.Generator) -> None:
+def cartons(b: MeshBuilder, place: Placement, rng: Generator) -> None:
     """Three stacked cartons, each turned a little, one with an open flap."""
-    b.part = "carton"
     up = 0.0
     for half_x, half_y, height in ((0.30, 0.21, 0.38), (0.26, 0.19, 0.32), (0.18, 0.15, 0.24)):
         turned = place.moved(rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), up, rng.uniform(-14, 14))
@@ -20,10 +23,9 @@ def cartons(b: MeshBuilder, place: Placement, rng: np.random.Generator) -> None:
     b.box(turned.moved(up=0.24), (0.18, -0.15, 0.0), (0.186, 0.15, 0.13), m.CARDBOARD)
 
 
-def person(b: MeshBuilder, place: Placement, height: float, rng: np.random.Generator) -> None:
+def person(b: MeshBuilder, place: Placement, rng: Generator) -> None:
     """Standing person from ellipsoids and tubes: legs, trunk, arms, neck, head; a reflecting belt, a bag."""
-    b.part = "person"
-    s = height / 1.75
+    s = rng.uniform(1.62, 1.82) / 1.75
     dark, light = (m.DARK_CLOTH, m.LIGHT_CLOTH) if rng.random() < 0.5 else (m.LIGHT_CLOTH, m.DARK_CLOTH)
     for side in (-1.0, 1.0):
         hip, knee, foot = (side * 0.10, 0.0, 0.90 * s), (side * 0.11, 0.03, 0.48 * s), (side * 0.12, 0.0, 0.06)
@@ -45,9 +47,8 @@ def person(b: MeshBuilder, place: Placement, height: float, rng: np.random.Gener
     b.box(place, (0.24, -0.12, 0.86 * s), (0.34, 0.16, 1.12 * s), m.RUBBER, bevel=0.02)
 
 
-def trolley(b: MeshBuilder, place: Placement) -> None:
+def trolley(b: MeshBuilder, place: Placement, rng: Generator) -> None:
     """Two-deck trolley with a push bar, castors and a box of paper on it."""
-    b.part = "trolley"
     for up in (0.18, 0.62):
         b.box(place, (-0.40, -0.24, up), (0.40, 0.24, up + 0.025), m.STEEL, bevel=0.005)
     for along in (-0.38, 0.38):
@@ -58,9 +59,8 @@ def trolley(b: MeshBuilder, place: Placement) -> None:
     b.box(place.moved(turn_deg=8.0), (-0.05, -0.16, 0.645), (0.27, 0.08, 0.86), m.PAPER, bevel=0.004)
 
 
-def plant(b: MeshBuilder, place: Placement, rng: np.random.Generator) -> None:
+def plant(b: MeshBuilder, place: Placement, rng: Generator) -> None:
     """Potted plant: a terracotta pot, a stem and 40 thin leaves."""
-    b.part = "plant"
     b.cone(place, (0, 0, 0), 0.14, 0.19, 0.36, m.TERRACOTTA)
     b.tube(place, (0, 0, 0.34), (0.02, 0.01, 1.05), 0.015, m.BENCH_WOOD)
     for _ in range(40):
@@ -72,16 +72,14 @@ def plant(b: MeshBuilder, place: Placement, rng: np.random.Generator) -> None:
         b.ellipsoid(leaf, (0.04 + length / 2, 0, 0), (length / 2, 0.045, 0.003), m.LEAF, 1)
 
 
-def bin_with_lid(b: MeshBuilder, place: Placement) -> None:
+def bin_with_lid(b: MeshBuilder, place: Placement, rng: Generator) -> None:
     """Waste bin, a frustum with a lid."""
-    b.part = "bin"
     b.cone(place, (0, 0, 0), 0.16, 0.20, 0.62, m.BIN_PLASTIC)
     b.cone(place, (0, 0, 0.62), 0.21, 0.10, 0.10, m.RUBBER)
 
 
-def chair(b: MeshBuilder, place: Placement) -> None:
+def chair(b: MeshBuilder, place: Placement, rng: Generator) -> None:
     """Chair: seat, back, four legs."""
-    b.part = "chair"
     b.box(place, (-0.21, -0.21, 0.43), (0.21, 0.21, 0.46), m.BENCH_WOOD, bevel=0.008)
     b.box(place, (-0.21, 0.19, 0.62), (0.21, 0.215, 0.86), m.BENCH_WOOD, bevel=0.006)
     for along in (-0.19, 0.19):
@@ -89,13 +87,21 @@ def chair(b: MeshBuilder, place: Placement) -> None:
         b.tube(place, (along, 0.20, 0.0), (along, 0.20, 0.84), 0.012, m.STEEL)
 
 
-def ladder(b: MeshBuilder, place: Placement) -> None:
+def ladder(b: MeshBuilder, place: Placement, rng: Generator) -> None:
     """Folded ladder that leans at the wall (the local `into` direction is towards the wall)."""
-    b.part = "ladder"
     for along in (-0.22, 0.22):
         b.tube(place, (along, 0.0, 0.0), (along, 0.30, 1.95), 0.022, m.STEEL)
     for i in range(1, 7):
-        share = i / 7
-        b.box(
-            place, (-0.22, 0.30 * share - 0.03, 1.95 * share), (0.22, 0.30 * share + 0.03, 1.95 * share + 0.02), m.STEEL
-        )
+        into, up = 0.30 * (i / 7), 1.95 * (i / 7)
+        b.box(place, (-0.22, into - 0.03, up), (0.22, into + 0.03, up + 0.02), m.STEEL)
+
+
+KINDS = {
+    "cartons": cartons,
+    "person": person,
+    "trolley": trolley,
+    "plant": plant,
+    "bin": bin_with_lid,
+    "chair": chair,
+    "ladder": ladder,
+}

@@ -1,4 +1,4 @@
-"""Triangles with a material: the few solids from which the corridor is put together.
+"""Triangles with a material: the few solids from which the corridor is put together, and meshes as PLY files.
 
 Everything is built in local coordinates and set into the world by a `Placement`. Metres throughout.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import trimesh
@@ -15,6 +16,7 @@ from scipy.spatial import ConvexHull
 
 from course_lib.simulation.corridor.materials import Material
 
+_UNIT_CORNERS = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
 _BOX_FACES = np.array(
     [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6],
      [1, 3, 5], [3, 7, 5]]
@@ -43,10 +45,7 @@ class WorldMesh:
 
     def part_bounds(self, part_name: str) -> np.ndarray:
         """Corners `(2, 3)` of the box, along the world axes, around the parts whose name begins with `part_name`."""
-        faces = self.faces_of(part_name)
-        if len(faces) == 0:
-            raise ValueError(f"no part begins with {part_name!r}; there are {sorted(set(self.part_names))}")
-        points = self.vertices[self.faces[faces]].reshape(-1, 3)
+        points = self.vertices[self.faces[self.faces_of(part_name)]].reshape(-1, 3)
         return np.array([points.min(axis=0), points.max(axis=0)])
 
 
@@ -91,10 +90,9 @@ class MeshBuilder:
         """Box between two local corners; `bevel` metres are cut off every edge."""
         low, high = np.minimum(low, high).astype(float), np.maximum(low, high).astype(float)
         if bevel <= 0 or (high - low).min() <= 2.1 * bevel:
-            corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
-            self.add(place(low + corners * (high - low)), _BOX_FACES, material)
-            return
-        self.add(place(low + _bevelled_corners(high - low, bevel)), _bevelled_faces(), material)
+            self.add(place(low + _UNIT_CORNERS * (high - low)), _BOX_FACES, material)
+        else:
+            self.add(place(low + _bevelled_corners(high - low, bevel)), _bevelled_faces(), material)
 
     def panel(self, place: Placement, corner: tuple, u: tuple, v: tuple, material: Material, step: float = 0.5) -> None:
         """Large rectangle from a local corner along u and v, in cells of about `step` metres, bowed like a wall."""
@@ -109,12 +107,9 @@ class MeshBuilder:
         second = np.stack([index + 1, index + n_v + 1, index + n_v + 2], axis=1)
         self.add(points, np.concatenate([first, second]), material, closed=False)
 
-    def tube(
-        self, place: Placement, start: tuple, end: tuple, radius: float, material: Material, sides: int = 12
-    ) -> None:
-        """Closed cylinder between two local points."""
-        start, end = place(start), place(end)
-        mesh = trimesh.creation.cylinder(radius=radius, segment=np.array([start, end]), sections=sides)
+    def tube(self, place: Placement, start: tuple, end: tuple, radius: float, material: Material, n: int = 12) -> None:
+        """Closed cylinder of n sides between two local points."""
+        mesh = trimesh.creation.cylinder(radius=radius, segment=np.array([place(start), place(end)]), sections=n)
         self.add(mesh.vertices, mesh.faces, material)
 
     def ellipsoid(self, place: Placement, centre: tuple, radii: tuple, material: Material, level: int = 2) -> None:
@@ -122,9 +117,7 @@ class MeshBuilder:
         ball = trimesh.creation.icosphere(subdivisions=level)
         self.add(place(np.asarray(centre) + ball.vertices * np.asarray(radii)), ball.faces, material)
 
-    def cone(
-        self, place: Placement, centre: tuple, bottom: float, top: float, height: float, material: Material
-    ) -> None:
+    def cone(self, place: Placement, at: tuple, bottom: float, top: float, height: float, material: Material) -> None:
         """Frustum standing on a local point: bottom and top radius, height; closed."""
         angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
         ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(24)], axis=1)
@@ -132,34 +125,32 @@ class MeshBuilder:
         i, k = np.arange(24), (np.arange(24) + 1) % 24
         sides = np.concatenate([np.stack([i, k, i + 24], 1), np.stack([k, k + 24, i + 24], 1)])
         caps = np.concatenate([np.stack([k, i, np.full(24, 48)], 1), np.stack([i + 24, k + 24, np.full(24, 49)], 1)])
-        self.add(place(np.asarray(centre) + points), np.concatenate([sides, caps]), material)
+        self.add(place(np.asarray(at) + points), np.concatenate([sides, caps]), material)
 
     def take(self, other: MeshBuilder, part: str) -> None:
         """Add all solids of another builder under one part name."""
         self._pieces += [(vertices, faces, material, part) for vertices, faces, material, _ in other._pieces]
 
     def build(self) -> WorldMesh:
-        """All solids as one mesh. Raises `ValueError` when nothing was added."""
-        if not self._pieces:
-            raise ValueError("nothing was added to the world: add at least one solid before build()")
-        names = tuple(dict.fromkeys(piece[3] for piece in self._pieces))
-        counts = [len(piece[1]) for piece in self._pieces]
-        starts = np.cumsum([0] + [len(piece[0]) for piece in self._pieces])
+        """All solids as one mesh."""
+        vertices, faces, materials, parts = zip(*self._pieces, strict=True)
+        names = tuple(dict.fromkeys(parts))
+        counts = [len(each) for each in faces]
+        starts = np.cumsum([0] + [len(each) for each in vertices[:-1]])
         return WorldMesh(
-            vertices=np.concatenate([piece[0] for piece in self._pieces]),
-            faces=np.concatenate([piece[1] + start for piece, start in zip(self._pieces, starts, strict=False)]),
-            reflectivity=np.repeat([piece[2].reflectivity for piece in self._pieces], counts),
-            colours=np.repeat(np.array([piece[2].colour for piece in self._pieces], dtype=np.uint8), counts, axis=0),
-            parts=np.repeat([names.index(piece[3]) for piece in self._pieces], counts),
+            vertices=np.concatenate(vertices),
+            faces=np.concatenate([each + start for each, start in zip(faces, starts, strict=True)]),
+            reflectivity=np.repeat([material.reflectivity for material in materials], counts),
+            colours=np.repeat(np.array([material.colour for material in materials], np.uint8), counts, axis=0),
+            parts=np.repeat([names.index(part) for part in parts], counts),
             part_names=names,
         )
 
 
 def _bevelled_corners(size: np.ndarray, bevel: float) -> np.ndarray:
     """Corners `(24, 3)` of a box from the origin with bevelled edges: each of its 8 corners becomes three."""
-    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
-    inner = corners * size + np.where(corners > 0, -bevel, bevel)
-    outward = np.where(corners > 0, bevel, -bevel)
+    outward = np.where(_UNIT_CORNERS > 0, bevel, -bevel)
+    inner = _UNIT_CORNERS * size - outward
     return np.concatenate([inner + outward * np.eye(3)[axis] for axis in range(3)])
 
 
@@ -171,3 +162,51 @@ def _bevelled_faces() -> np.ndarray:
     corners = points[faces]
     inward = np.einsum("ij,ij->i", trimesh.triangles.cross(corners), corners.mean(axis=1) - 0.5) < 0
     return np.where(inward[:, None], faces[:, ::-1], faces)
+
+
+def to_polydata(vertices: np.ndarray, faces: np.ndarray):
+    """pyvista mesh of vertices `(V, 3)` and triangles `(F, 3)`."""
+    import course_lib.rendering.vtk_backend  # noqa: F401, I001 - before pyvista: no display is needed
+    import pyvista
+
+    return pyvista.PolyData.from_regular_faces(np.asarray(vertices), np.asarray(faces, dtype=np.int64))
+
+
+def write_ply(path: str | Path, vertices: np.ndarray, faces: np.ndarray, comment: str) -> None:
+    """Triangles as binary little-endian PLY: float32 vertices in metres, int32 indices."""
+    columns = [(name, "<f4", "float", column) for name, column in zip("xyz", np.asarray(vertices).T, strict=True)]
+    _write_ply(path, columns, faces, comment)
+
+
+def write_world_ply(path: str | Path, world: WorldMesh, comment: str) -> None:
+    """A world as PLY with vertex colour (red, green, blue) and vertex property `reflectivity` (850 nm, 0 to 1).
+
+    Solids do not share vertices, so a value per vertex is a value per face.
+    """
+    colours, reflectivity = np.zeros((len(world.vertices), 3), np.uint8), np.zeros(len(world.vertices), np.float32)
+    colours[world.faces] = world.colours[:, None]
+    reflectivity[world.faces] = world.reflectivity[:, None]
+    columns = [(name, "<f4", "float", column) for name, column in zip("xyz", world.vertices.T, strict=True)]
+    columns += [(name, "u1", "uchar", one) for name, one in zip(("red", "green", "blue"), colours.T, strict=True)]
+    _write_ply(path, [*columns, ("reflectivity", "<f4", "float", reflectivity)], world.faces, comment)
+
+
+def _write_ply(path: str | Path, columns: list[tuple], faces: np.ndarray, comment: str) -> None:
+    """columns: of every vertex, as (name, NumPy's type, PLY's type, values)."""
+    table = np.zeros(len(columns[0][3]), dtype=[(name, kind) for name, kind, _, _ in columns])
+    for name, _, _, values in columns:
+        table[name] = values
+    rows = np.zeros(len(faces), dtype=[("count", "u1"), ("index", "<i4", 3)])
+    rows["count"], rows["index"] = 3, faces
+    header = ["ply", "format binary_little_endian 1.0", f"comment {comment}", f"element vertex {len(table)}"]
+    header += [f"property {kind} {name}" for name, _, kind, _ in columns]
+    header += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header", ""]
+    Path(path).write_bytes("\n".join(header).encode("ascii") + table.tobytes() + rows.tobytes())
+
+
+def read_world_ply(path: str | Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices `(V, 3)`, faces `(F, 3)` and reflectivity per face `(F,)` of a file by `write_world_ply`."""
+    mesh = trimesh.load(path, process=False)
+    table = mesh.metadata["_ply_raw"]["vertex"]["data"]
+    faces = np.asarray(mesh.faces)
+    return np.asarray(mesh.vertices), faces, np.asarray(table["reflectivity"])[faces[:, 0]].ravel()

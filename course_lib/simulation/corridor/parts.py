@@ -8,6 +8,7 @@ building sizes (a door leaf about 0.9 m x 2.0 m, a stair rise of 0.17 m).
 from __future__ import annotations
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.corridor import materials as m
 from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement
@@ -110,9 +111,8 @@ def radiator(b: MeshBuilder, place: Placement, low: float, high: float) -> None:
     bottom, top = 0.14, 0.72
     b.box(place, (low, -0.055, bottom), (high, -0.045, top), m.RADIATOR_ENAMEL)
     for along in np.arange(low + 0.012, high - 0.012, 0.05):
-        b.box(
-            place, (along, -0.115, bottom + 0.01), (along + 0.022, -0.055, top - 0.01), m.RADIATOR_ENAMEL, bevel=0.005
-        )
+        fin = (along, -0.115, bottom + 0.01), (along + 0.022, -0.055, top - 0.01)
+        b.box(place, *fin, m.RADIATOR_ENAMEL, bevel=0.005)
     for up in (bottom, top - 0.02):
         b.box(place, (low, -0.12, up), (high, -0.04, up + 0.02), m.RADIATOR_ENAMEL, bevel=0.004)
     b.tube(place, (high + 0.05, -0.08, 0.0), (high + 0.05, -0.08, 0.66), 0.011, m.STEEL)
@@ -142,7 +142,7 @@ def bench(b: MeshBuilder, place: Placement, length: float) -> None:
         b.box(place, (along - 0.02, -0.47, 0.0), (along + 0.02, -0.43, 0.43), m.METAL_FRAME, bevel=0.004)
 
 
-def notice_board(b: MeshBuilder, place: Placement, length: float, height: float, rng: np.random.Generator) -> None:
+def notice_board(b: MeshBuilder, place: Placement, length: float, height: float, rng: Generator) -> None:
     """Cork board with a frame, papers that stand off by millimetres, and one leaflet holder."""
     b.part = "notice board"
     low, high, bottom = -length / 2, length / 2, 1.0
@@ -174,29 +174,19 @@ def portal(b: MeshBuilder, place: Placement, half_width: float, jamb: float, dro
         b.box(place, (0, low, 0), (thick, high, CEILING_HEIGHT), m.METAL_FRAME, bevel=0.012)
         tape = (low + high) / 2 - side * 0.02
         b.box(place, (-0.001, tape - 0.022, 0.35), (0.0, tape + 0.022, 1.15), m.RETROREFLECTIVE_TAPE)
-    b.box(
-        place,
-        (0, -half_width, CEILING_HEIGHT - drop),
-        (thick, half_width, CEILING_HEIGHT + 0.03),
-        m.METAL_FRAME,
-        bevel=0.012,
-    )
+    lintel = (0, -half_width, CEILING_HEIGHT - drop), (thick, half_width, CEILING_HEIGHT + 0.03)
+    b.box(place, *lintel, m.METAL_FRAME, bevel=0.012)
     for side in (-1.0, 1.0):
         near = side * (half_width - 0.10)
-        b.box(place, (thick, near, 0.01), (thick + 1.0, near - side * 0.045, 2.1), m.PAINTED_DOOR, bevel=0.003)
-        b.box(
-            place,
-            (thick + 0.15, near - side * 0.045, 1.02),
-            (thick + 0.85, near - side * 0.10, 1.06),
-            m.STEEL,
-            bevel=0.01,
-        )
+        face, grip = near - side * 0.045, near - side * 0.10
+        b.box(place, (thick, near, 0.01), (thick + 1.0, face, 2.1), m.PAINTED_DOOR, bevel=0.003)
+        b.box(place, (thick + 0.15, face, 1.02), (thick + 0.85, grip, 1.06), m.STEEL, bevel=0.01)
 
 
 def extinguisher(b: MeshBuilder, place: Placement) -> None:
     """Fire-extinguisher on its bracket, with hose and sign."""
     b.part = "extinguisher"
-    b.tube(place, (0, -0.12, 0.35), (0, -0.12, 0.85), 0.075, m.EXTINGUISHER_RED, sides=24)
+    b.tube(place, (0, -0.12, 0.35), (0, -0.12, 0.85), 0.075, m.EXTINGUISHER_RED, n=24)
     b.ellipsoid(place, (0, -0.12, 0.85), (0.075, 0.075, 0.06), m.EXTINGUISHER_RED)
     b.tube(place, (0, -0.12, 0.88), (0, -0.12, 0.98), 0.018, m.STEEL)
     b.box(place, (-0.02, -0.20, 0.95), (0.02, -0.06, 0.99), m.RUBBER, bevel=0.005)
@@ -223,7 +213,7 @@ def cable_tray(b: MeshBuilder, place: Placement, start: float, end: float, brack
         b.box(place, (at, -0.17, -0.25), (at + 0.04, 0.17, -0.22), m.STEEL, bevel=0.003)
         b.tube(place, (at + 0.02, -0.165, -0.22), (at + 0.02, -0.165, 0.02), 0.006, m.STEEL)
     for side, radius in ((-0.08, 0.016), (-0.02, 0.012), (0.07, 0.02)):
-        b.tube(place, (start, side, -0.2), (end, side, -0.2), radius, m.RUBBER, sides=8)
+        b.tube(place, (start, side, -0.2), (end, side, -0.2), radius, m.RUBBER, n=8)
 
 
 def stairwell(b: MeshBuilder, place: Placement, width: float) -> None:
@@ -234,9 +224,8 @@ def stairwell(b: MeshBuilder, place: Placement, width: float) -> None:
     b.panel(place, (-half, 0, 0), (width, 0, 0), (0, landing, 0), m.CONCRETE)
     for i in range(steps):
         near = landing + run * i
-        b.box(
-            place, (-half, near, -rise * (i + 2)), (-0.1, near + run + 0.03, -rise * (i + 1)), m.CONCRETE, bevel=0.008
-        )
+        down = (-half, near, -rise * (i + 2)), (-0.1, near + run + 0.03, -rise * (i + 1))
+        b.box(place, *down, m.CONCRETE, bevel=0.008)
         b.box(place, (0.1, near - 0.03, rise * i), (half, near + run, rise * (i + 1)), m.CONCRETE, bevel=0.008)
     low, high = -rise * (steps + 1), CEILING_HEIGHT + 1.8
     b.part = "stairwell"
@@ -253,15 +242,8 @@ def stairwell(b: MeshBuilder, place: Placement, width: float) -> None:
         b.tube(place, (side, landing, 0.92), (side, landing + length, 0.92 + slope * drop), 0.022, m.STEEL)
         for i in range(2 * steps + 1):
             share = i / (2 * steps)
-            foot = slope * drop * share
-            b.tube(
-                place,
-                (side, landing + length * share, foot),
-                (side, landing + length * share, foot + 0.92),
-                0.008,
-                m.STEEL,
-                8,
-            )
+            foot, along = slope * drop * share, landing + length * share
+            b.tube(place, (side, along, foot), (side, along, foot + 0.92), 0.008, m.STEEL, 8)
     b.tube(place, (-0.12, landing, 0.0), (-0.12, landing, 1.02), 0.03, m.STEEL)
     b.tube(place, (0.12, landing, 0.0), (0.12, landing, 1.02), 0.03, m.STEEL)
     b.tube(place, (-0.12, landing, 0.92), (0.12, landing, 0.92), 0.022, m.STEEL)

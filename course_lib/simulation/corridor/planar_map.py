@@ -7,17 +7,39 @@ the detailed map by sequential RANSAC over its triangles, each counted by its ar
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import trimesh
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
+from numpy.random import Generator
+from scipy import ndimage
 
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.simulation.corridor.mesh_building import to_polydata
+
+Plane = tuple[np.ndarray, float]  # unit normal, offset
+
+
+class _Triangles(NamedTuple):
+    """corners `(n, 3, 3)`, centres, unit normals, areas; least_cosine between a normal and its plane's; distance."""
+
+    corners: np.ndarray
+    centres: np.ndarray
+    normals: np.ndarray
+    areas: np.ndarray
+    least_cosine: float
+    distance: float
+
+    def near(self, index: np.ndarray, plane: Plane) -> np.ndarray:
+        """Which of the triangles at `index` support the plane."""
+        normal, offset = plane
+        near = np.abs(self.centres[index] @ normal - offset) < self.distance
+        return near & (np.abs(self.normals[index] @ normal) > self.least_cosine)
 
 
 def planar_simplification(
     scene_map: SceneMap,
-    rng: np.random.Generator,
+    rng: Generator,
     distance: float = 0.05,
     min_area: float = 1.0,
     max_angle_deg: float = 20.0,
@@ -33,86 +55,60 @@ def planar_simplification(
     metres between their middles); regions of at least `min_area` square metres are projected onto the plane and kept.
     The search ends when the best plane has less than `min_area`. Last, the share `reduction` of the triangles is
     decimated away (by quadric errors, which are zero within a plane).
-    Raises `ValueError` for parameters that are not positive, a reduction outside [0, 1), or a map without any plane so
-    large.
+    Raises `ValueError` for a map without any plane so large.
     Source: Fallon et al. 2012, section III (large planar segments); RANSAC: Fischler and Bolles 1981.
     """
-    for name, value in (("distance", distance), ("min_area", min_area), ("join", join), ("n_trials", n_trials)):
-        if not value > 0:
-            raise ValueError(f"{name} must be positive; got {value!r}")
-    if not 0 <= reduction < 1:
-        raise ValueError(f"reduction must lie in [0, 1); got {reduction!r}")
     corners = scene_map.vertices[scene_map.faces]
     crosses = trimesh.triangles.cross(corners)
     areas = trimesh.triangles.area(crosses=crosses)
-    normals = crosses / (2 * areas[:, None])
-    centres = corners.mean(axis=1)
     least_cosine = np.cos(np.deg2rad(max_angle_deg))
-    free = np.ones(len(areas), dtype=bool)
+    all_ = _Triangles(corners, corners.mean(axis=1), crosses / (2 * areas[:, None]), areas, least_cosine, distance)
+    free = np.arange(len(areas))
     kept: list[np.ndarray] = []
-    while free.any() and areas[free].sum() >= min_area:
-        normal, offset = _best_plane(centres, normals, areas, free, distance, least_cosine, n_trials, rng)
-        for _ in range(2):
-            support = _support(centres, normals, free, normal, offset, distance, least_cosine)
-            if areas[support].sum() < min_area:
+    while areas[free].sum() >= min_area:
+        plane = _best_plane(all_, free, n_trials, rng)
+        for refits_left in (2, 1, 0):
+            support = all_.near(free, plane)
+            index = free[support]
+            if not refits_left or areas[index].sum() < min_area:
                 break
-            normal, offset = _fit_plane(corners[support], areas[support], normal)
-        support = _support(centres, normals, free, normal, offset, distance, least_cosine)
-        if areas[support].sum() < min_area:
+            plane = _fit_plane(corners[index], areas[index], plane[0])
+        if areas[index].sum() < min_area:
             break
-        free[support] = False
-        index = np.flatnonzero(support)
-        regions = _regions(centres[index], join)
+        free = free[~support]
+        regions = _regions(all_.centres[index], join)
         large = np.bincount(regions, weights=areas[index])[regions] >= min_area
         flat = corners[index[large]]
+        normal, offset = plane
         kept.append(flat - ((flat @ normal - offset)[..., None] * normal))
     if not sum(len(flat) for flat in kept):
         raise ValueError(f"the map has no plane of {min_area:g} square metres: lower min_area")
     vertices, faces = np.unique(np.concatenate(kept).reshape(-1, 3), axis=0, return_inverse=True)
-    return _decimated(vertices, faces.reshape(-1, 3), reduction)
+    # Flattening makes triangles without area; SceneMap drops them.
+    planes = SceneMap(vertices, faces.reshape(-1, 3))
+    if reduction == 0:
+        return planes
+    mesh = to_polydata(planes.vertices, planes.faces).decimate(reduction)
+    return SceneMap(np.asarray(mesh.points), mesh.regular_faces)
 
 
-def _best_plane(
-    centres: np.ndarray,
-    normals: np.ndarray,
-    areas: np.ndarray,
-    free: np.ndarray,
-    distance: float,
-    least_cosine: float,
-    n_trials: int,
-    rng: np.random.Generator,
-) -> tuple[np.ndarray, float]:
-    """The plane (unit normal, offset) with most area in support among planes through triangles drawn by area.
+def _best_plane(triangles: _Triangles, free: np.ndarray, n_trials: int, rng: Generator) -> Plane:
+    """The plane with most area in support among planes through triangles drawn by area.
 
     Trials are judged on at most 5,000 triangles, drawn by area: the number of them in support is the area's estimate.
     """
-    index = np.flatnonzero(free)
-    probability = areas[index] / areas[index].sum()
-    sample = rng.choice(index, size=5000, p=probability)
-    best, best_support = (normals[sample[0]], 0.0), -1
-    for face in rng.choice(index, size=n_trials, p=probability):
-        offset = float(normals[face] @ centres[face])
-        near = np.abs(centres[sample] @ normals[face] - offset) < distance
-        support = int((near & (np.abs(normals[sample] @ normals[face]) > least_cosine)).sum())
+    probability = triangles.areas[free] / triangles.areas[free].sum()
+    sample = rng.choice(free, size=5000, p=probability)
+    best, best_support = None, -1
+    for face in rng.choice(free, size=n_trials, p=probability):
+        plane = triangles.normals[face], float(triangles.normals[face] @ triangles.centres[face])
+        support = int(triangles.near(sample, plane).sum())
         if support > best_support:
-            best, best_support = (normals[face], offset), support
+            best, best_support = plane, support
     return best
 
 
-def _support(
-    centres: np.ndarray,
-    normals: np.ndarray,
-    free: np.ndarray,
-    normal: np.ndarray,
-    offset: float,
-    distance: float,
-    least_cosine: float,
-) -> np.ndarray:
-    near = np.abs(centres @ normal - offset) < distance
-    return free & near & (np.abs(normals @ normal) > least_cosine)
-
-
-def _fit_plane(corners: np.ndarray, areas: np.ndarray, towards: np.ndarray) -> tuple[np.ndarray, float]:
+def _fit_plane(corners: np.ndarray, areas: np.ndarray, towards: np.ndarray) -> Plane:
     """Plane of least squared distance to triangles `(n, 3, 3)`, their corners weighted by area."""
     points, weights = corners.reshape(-1, 3), np.repeat(areas, 3)
     centre = np.average(points, axis=0, weights=weights)
@@ -122,43 +118,10 @@ def _fit_plane(corners: np.ndarray, areas: np.ndarray, towards: np.ndarray) -> t
     return normal, float(normal @ centre)
 
 
-def _decimated(vertices: np.ndarray, faces: np.ndarray, reduction: float) -> SceneMap:
-    """The map with the share `reduction` of its triangles decimated away (VTK's quadric decimation)."""
-    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-    from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
-
-    # Flattening makes triangles without area; SceneMap drops them.
-    flat = SceneMap(vertices, faces)
-    if reduction == 0:
-        return flat
-    points, cells, mesh = vtkPoints(), vtkCellArray(), vtkPolyData()
-    points.SetData(numpy_to_vtk(flat.vertices.copy(), deep=True))
-    cells.SetData(3, numpy_to_vtkIdTypeArray(flat.faces.astype(np.int64).ravel(), deep=True))
-    mesh.SetPoints(points)
-    mesh.SetPolys(cells)
-    decimation = vtkQuadricDecimation()
-    decimation.SetInputData(mesh)
-    decimation.SetTargetReduction(reduction)
-    decimation.Update()
-    result = decimation.GetOutput()
-    triangles = vtk_to_numpy(result.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    return SceneMap(vtk_to_numpy(result.GetPoints().GetData()), triangles)
-
-
 def _regions(centres: np.ndarray, join: float) -> np.ndarray:
     """Labels `(n,)` of points that hang together on a grid of cells of `join` metres (neighbours: all 26 around)."""
-    cells, cell_of = np.unique(np.floor(centres / join).astype(np.int64), axis=0, return_inverse=True)
-    cell_of = cell_of.ravel()
-    lookup = {tuple(cell): i for i, cell in enumerate(cells)}
-    steps = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) > (0, 0, 0)]
-    pairs = [
-        (here, lookup[near])
-        for here, cell in enumerate(cells.tolist())
-        for step in steps
-        if (near := tuple(c + s for c, s in zip(cell, step, strict=True))) in lookup
-    ]
-    rows, columns = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
-    graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(len(cells), len(cells)))
-    return connected_components(graph, directed=False)[1][cell_of]
+    cells = np.floor(centres / join).astype(np.int64)
+    cells -= cells.min(axis=0)
+    occupied = np.zeros(cells.max(axis=0) + 1, bool)
+    occupied[tuple(cells.T)] = True
+    return ndimage.label(occupied, np.ones((3, 3, 3)))[0][tuple(cells.T)]

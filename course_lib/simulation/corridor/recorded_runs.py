@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.random import Generator
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from course_lib.geometry import pose_matrix, rotation_angle
@@ -88,7 +89,7 @@ class FloorSurveyModel:
 
 
 def wagon_run(
-    model: WagonModel, clutter_boxes: np.ndarray, rng: np.random.Generator, pushing: Pushing | None = None
+    model: WagonModel, clutter_boxes: np.ndarray, rng: Generator, pushing: Pushing | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """States `(T, 6)` and times `(T,)` of the wagon; its path keeps clear of the clutter `(n, 2, 2)`.
 
@@ -116,7 +117,7 @@ def wagon_run(
     return states, np.arange(model.frames) / FRAME_RATE
 
 
-def draw_pushing(model: PushModel, frames: int, rng: np.random.Generator) -> Pushing:
+def draw_pushing(model: PushModel, frames: int, rng: Generator) -> Pushing:
     """How the wagon is pushed over so many frames: speed that varies and stops, sway and wobble while it moves."""
     times = np.arange(frames) / FRAME_RATE
     slow = 1 + model.speed_spread * smooth_signal(frames, model.speed_seconds * FRAME_RATE, rng)
@@ -134,7 +135,7 @@ def draw_pushing(model: PushModel, frames: int, rng: np.random.Generator) -> Pus
     )
 
 
-def hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
     """States `(T, 6)` and times `(T,)` of the camera carried by hand, all six degrees of freedom moving.
 
     Runs are drawn until one keeps the greatest step and turn; `ValueError` after 100 that do not.
@@ -157,9 +158,7 @@ def steps_and_turns(states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.linalg.norm(np.diff(states[:, :3], axis=0), axis=1), turns
 
 
-def _draw_hand_run(
-    model: HandModel, clutter_boxes: np.ndarray, rng: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray]:
+def _draw_hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
     times = np.arange(model.frames) / FRAME_RATE
     length = model.mean_step * model.frames + 2.0
     path = _clear_path(model.start, length, model.wander, 2.3, 0.40, clutter_boxes, rng)
@@ -180,7 +179,7 @@ def _draw_hand_run(
     return np.column_stack([x, y, z, np.deg2rad(angles)]), times
 
 
-def survey_floor_line(states: np.ndarray, model: FloorSurveyModel, rng: np.random.Generator) -> np.ndarray:
+def survey_floor_line(states: np.ndarray, model: FloorSurveyModel, rng: Generator) -> np.ndarray:
     """Points `(P, 3)` on the line on the floor below the camera, as a laser survey, registered to the map, has them."""
     xy = states[:, :2]
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=1))])
@@ -193,13 +192,7 @@ def survey_floor_line(states: np.ndarray, model: FloorSurveyModel, rng: np.rando
 
 
 def _clear_path(
-    start: float,
-    length: float,
-    wander: float,
-    spacing: float,
-    clearance: float,
-    boxes: np.ndarray,
-    rng: np.random.Generator,
+    start: float, length: float, wander: float, spacing: float, clearance: float, boxes: np.ndarray, rng: Generator
 ):
     """Smooth y(x) in metres through drawn knots, moved aside where clutter boxes would come nearer than `clearance`."""
     knots = np.arange(start - spacing, start + length + 2 * spacing, spacing)

@@ -1,45 +1,43 @@
-"""A recording of its own for every seed: another day in the building of given data, another run of the wagon.
+"""Recordings: the camera is carried along a trajectory through the true world of that day.
 
-The building is that of the map; doors, clutter, path, pushing, errors of the camera and its noise are the seed's. Each
-has a stream of random numbers to itself, so that two recordings of one seed differ in what they are asked to differ in.
+Every seed has a recording of its own: another day in the building of given data, another run of the wagon. The building
+is that of the map; doors, clutter, path, pushing, errors of the camera and its noise are the seed's. Each has a stream
+of random numbers to itself, so that two recordings of one seed differ in what they are asked to differ in.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import json
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
+from numpy.random import Generator
 
+from course_lib.depth_mcl.sequence import write_sequence
+from course_lib.geometry import optical_pose
 from course_lib.rendering.camera import DepthCamera
-from course_lib.simulation.corridor.another_day import DayModel, another_day
-from course_lib.simulation.corridor.recorded_runs import (
-    FloorSurveyModel,
-    HandModel,
-    PushModel,
-    WagonModel,
-    draw_pushing,
-    hand_run,
-    wagon_run,
-)
-from course_lib.simulation.corridor.recording import record
+from course_lib.simulation.corridor import recorded_runs
+from course_lib.simulation.corridor.mesh_building import WorldMesh
+from course_lib.simulation.corridor.recorded_runs import FloorSurveyModel, HandModel, PushModel, WagonModel
+from course_lib.simulation.corridor.scene_changes import DayModel, scene_change
 from course_lib.simulation.corridor.world import Building, draw_building
+from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import (
     CalibrationErrors,
     CalibrationModel,
     TimeOfFlightCamera,
     TimeOfFlightModel,
+    frame_counts,
 )
 
 Hardship = Literal["focal length", "lens distortion", "mount position", "mount angle", "pushed by hand"]
 """What a recording may have that the shipped one has not."""
 HARDSHIPS: tuple[Hardship, ...] = get_args(Hardship)
-
-Carried = Literal["wagon", "hand"]
 
 
 @dataclass(frozen=True)
@@ -56,19 +54,47 @@ class SeedModels:
 
 
 def building_of_data(folder: str | Path) -> Building:
-    """The building whose map lies in a folder that `make-data corridor` made: its seed is in summary.json."""
+    """The building whose map lies in a folder that `tools.make_corridor` made: its seed is in summary.json.
+
+    Raises `FileNotFoundError` for a folder without one.
+    """
     path = Path(folder) / "summary.json"
     if not path.is_file():
         raise FileNotFoundError(
             f"no summary.json in {folder}: a recording needs the seed of the building whose map is there; "
-            "make the folder with make-data corridor, or use --recording shipped"
+            "make the folder with python -m tools.make_corridor, or use --recording shipped"
         )
-    return draw_building(building_generator(json.loads(path.read_text(encoding="utf-8"))["seed"]))
+    # The first stream of the seed is the building's (tools/corridor_data.py).
+    return draw_building(np.random.default_rng(json.loads(path.read_text(encoding="utf-8"))["seed"]).spawn(1)[0])
 
 
-def building_generator(seed: int) -> np.random.Generator:
-    """The generator that `make_corridor_data` draws its building from."""
-    return np.random.default_rng(seed).spawn(1)[0]
+def record(
+    folder: Path,
+    world: WorldMesh,
+    camera: TimeOfFlightCamera,
+    run: tuple[np.ndarray, np.ndarray],
+    floor_survey: FloorSurveyModel,
+    rng: Generator,
+    progress: Callable[[Iterable], Iterable] = iter,
+    frames: int | None = None,
+) -> Counter[str]:
+    """Capture a run, states `(T, 6)` and times `(T,)`, write it to `folder`, and return counts over its pixels.
+
+    frames: only the first so many images and poses; the line on the floor is always the whole run's.
+
+    What is written is what a user is told: the nominal intrinsics, and as true poses those of the body, where the user
+    believes the camera to be.
+    """
+    states, times = run
+    caster, depths, counts = WorldCaster.of(world), [], Counter()
+    for state in progress(states[:frames]):
+        frame = camera.capture(caster, state, rng)
+        depths.append(frame.depth)
+        counts.update(frame_counts(frame, camera.model))
+    path = recorded_runs.survey_floor_line(states, floor_survey, rng)
+    n = len(depths)
+    write_sequence(folder, camera.camera.matrix, list(range(n)), depths, optical_pose(states[:n]), times[:n], "z", path)
+    return counts
 
 
 def record_seed(
@@ -80,9 +106,9 @@ def record_seed(
     camera: DepthCamera | None = None,
     frames: int | None = None,
     progress: Callable[[Iterable], Iterable] = iter,
-    carried: Carried = "wagon",
+    carried: Literal["wagon", "hand"] = "wagon",
 ) -> None:
-    """Writes the recording of a seed to a new `folder`. camera: what the user is told (default: the SR4000's).
+    """Write the recording of a seed to a new `folder`. camera: what the user is told (default: the SR4000's).
     frames: only the first so many. carried: on a wagon, or by hand with all six degrees of freedom moving; what else
     the seed draws, the day among it, is the same.
 
@@ -92,28 +118,24 @@ def record_seed(
     if unknown:
         raise ValueError(f"unknown hardship {unknown[0]!r}: there are {', '.join(HARDSHIPS)}")
     models = models or SeedModels()
-    # The seed's own key keeps these streams apart from those of make_corridor_data with the same seed.
+    # The seed's own key keeps these streams apart from those of the data with the same seed.
     streams = np.random.default_rng([seed, 1]).spawn(6)
     day_rng, path_rng, push_rng, calibration_rng, pattern_rng, noise_rng = streams
-    day = another_day(building, models.day, day_rng)
+    day = scene_change(building, models.day, day_rng)
     wagon = dataclasses.replace(models.wagon, start=path_rng.uniform(*models.day.starts))
-    pushing = draw_pushing(models.push, wagon.frames, push_rng) if "pushed by hand" in hardships else None
-    errors = _only(models.calibration.draw(calibration_rng), hardships)
-    instrument = TimeOfFlightCamera(camera or DepthCamera.sr4000(), models.camera, pattern_rng, errors)
-    if carried == "wagon":
-        run = wagon_run(wagon, day.clutter_boxes, path_rng, pushing)
-    else:
-        hand = dataclasses.replace(models.hand, start=path_rng.uniform(*models.day.hand_starts))
-        run = hand_run(hand, day.clutter_boxes, path_rng)
-    record(folder, day.mesh, instrument, run, models.floor_survey, noise_rng, progress, frames)
-
-
-def _only(drawn: CalibrationErrors, hardships: Collection[Hardship]) -> CalibrationErrors:
-    """The drawn errors without those that were not asked for."""
+    pushing = recorded_runs.draw_pushing(models.push, wagon.frames, push_rng) if "pushed by hand" in hardships else None
+    drawn = models.calibration.draw(calibration_rng)
     position = drawn.mount[:3] if "mount position" in hardships else (0.0,) * 3
     angles = drawn.mount[3:] if "mount angle" in hardships else (0.0,) * 3
-    return CalibrationErrors(
+    errors = CalibrationErrors(
         drawn.focal_length if "focal length" in hardships else 0.0,
         drawn.radial if "lens distortion" in hardships else 0.0,
         (*position, *angles),
     )
+    instrument = TimeOfFlightCamera(camera or DepthCamera.sr4000(), models.camera, pattern_rng, errors)
+    if carried == "wagon":
+        run = recorded_runs.wagon_run(wagon, day.clutter_boxes, path_rng, pushing)
+    else:
+        hand = dataclasses.replace(models.hand, start=path_rng.uniform(*models.day.hand_starts))
+        run = recorded_runs.hand_run(hand, day.clutter_boxes, path_rng)
+    record(folder, day.mesh, instrument, run, models.floor_survey, noise_rng, progress, frames)

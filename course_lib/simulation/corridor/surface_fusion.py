@@ -11,11 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from course_lib.simulation.corridor.mesh_building import to_polydata
 from course_lib.simulation.sensors.laser_survey import RegisteredScan
 
 _BLOCK = 8  # voxels along the edge of a block; only blocks near measured points are worked on
-
-_NO_SURFACE = "the scans hold no surface: check the stations' poses and the scanner's greatest range"
 
 
 @dataclass(frozen=True)
@@ -37,9 +36,13 @@ def fuse(
 
     progress wraps the slabs, for a progress bar.
     """
-    clouds = [_near_points(scan, model.greatest_range) for scan in scans]
+    clouds = []
+    for scan in scans:
+        points = scan.points()
+        away = np.linalg.norm(points - scan.registered_pose[:3, 3], axis=1)
+        clouds.append(points[away < model.greatest_range])
     if not sum(map(len, clouds)):
-        raise ValueError(_NO_SURFACE)
+        raise ValueError("the scans hold no surface: check the stations' poses and the scanner's greatest range")
     block = _BLOCK * model.voxel
     occupied = np.unique(np.concatenate([np.floor(c / block).astype(np.int32) for c in clouds]), axis=0)
     around = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -61,30 +64,18 @@ def fuse(
             vertices.append(slab_vertices + origin)
             faces.append(slab_faces + n_vertices)
             n_vertices += len(slab_vertices)
-    if not vertices:
-        raise ValueError(_NO_SURFACE)
     return _weld(np.concatenate(vertices) * model.voxel, np.concatenate(faces))
 
 
 def simplify(vertices: np.ndarray, faces: np.ndarray, model: FusionModel) -> tuple[np.ndarray, np.ndarray]:
     """Removes loose pieces and decimates by quadric errors to `model.triangles`; vertices come back as float32."""
-    import pyvista
-
-    from course_lib.simulation.corridor.mesh_files import to_polydata
-
     mesh = to_polydata(vertices, faces)
     labels = mesh.connectivity("all").cell_data["RegionId"]
     keep = np.bincount(labels)[labels] >= model.least_component
     mesh = to_polydata(*_weld(vertices, faces[keep]))
     if model.triangles < mesh.n_cells:
         mesh = mesh.decimate(1.0 - model.triangles / mesh.n_cells)
-    points, triangles = _weld(np.asarray(mesh.points, np.float32), np.asarray(pyvista.PolyData(mesh).regular_faces))
-    return points, triangles
-
-
-def _near_points(scan: RegisteredScan, greatest_range: float) -> np.ndarray:
-    points = scan.points()
-    return points[np.linalg.norm(points - scan.registered_pose[:3, 3], axis=1) < greatest_range]
+    return _weld(np.asarray(mesh.points, np.float32), np.asarray(mesh.regular_faces))
 
 
 def _range_image(scan: RegisteredScan) -> tuple[np.ndarray, np.ndarray]:
@@ -129,7 +120,12 @@ def _integrate(
             continue
         local = (world - scan.registered_pose[:3, 3]) @ scan.registered_pose[:3, :3]
         far = np.linalg.norm(local, axis=1)
-        row, column = _pixel(scan, local, far)
+        # The nearest row and column of the scan.
+        step = scan.azimuths[1] - scan.azimuths[0]
+        elevation = np.arcsin(np.clip(local[:, 2] / np.maximum(far, 1e-9), -1.0, 1.0))
+        row = np.rint((elevation - scan.elevations[0]) / step).astype(np.int64)
+        column = np.rint((np.arctan2(local[:, 1], local[:, 0]) - scan.azimuths[0]) / step).astype(np.int64)
+        column %= len(scan.azimuths)
         seen = (row >= 0) & (row < len(scan.elevations)) & (far < model.greatest_range) & (far > 0.1)
         row, column, far = row[seen], column[seen], far[seen]
         measured, cosine = ranges[row, column], cosines[row, column]
@@ -151,15 +147,6 @@ def _integrate(
     return distances, weights
 
 
-def _pixel(scan: RegisteredScan, local: np.ndarray, far: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nearest row and column of a scan for points in its frame."""
-    step = scan.azimuths[1] - scan.azimuths[0]
-    elevation = np.arcsin(np.clip(local[:, 2] / np.maximum(far, 1e-9), -1.0, 1.0))
-    row = np.rint((elevation - scan.elevations[0]) / step).astype(np.int64)
-    column = np.rint((np.arctan2(local[:, 1], local[:, 0]) - scan.azimuths[0]) / step).astype(np.int64)
-    return row, column % len(scan.azimuths)
-
-
 def _iso_surface(distance: np.ndarray, observed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Zero surface in voxel units, without the triangles of cells that have an unobserved corner."""
     import pyvista
@@ -170,12 +157,7 @@ def _iso_surface(distance: np.ndarray, observed: np.ndarray) -> tuple[np.ndarray
     if surface.n_cells == 0:
         return np.empty((0, 3)), np.empty((0, 3), int)
     points, faces = np.asarray(surface.points, np.float64), surface.regular_faces
-    whole = np.ones(np.array(distance.shape) - 1, bool)
-    for i in (0, 1):
-        for j in (0, 1):
-            for k in (0, 1):
-                n_x, n_y, n_z = whole.shape
-                whole &= observed[i : i + n_x, j : j + n_y, k : k + n_z]
+    whole = np.lib.stride_tricks.sliding_window_view(observed, (2, 2, 2)).all(axis=(3, 4, 5))
     cell = np.clip(np.floor(points[faces].mean(axis=1)).astype(int), 0, np.array(whole.shape) - 1)
     return points, faces[whole[tuple(cell.T)]]
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.corridor import clutter, parts
 from course_lib.simulation.corridor import materials as m
@@ -112,7 +113,7 @@ class TrueWorld:
     clutter_boxes: np.ndarray
 
 
-def make_corridor(rng: np.random.Generator) -> TrueWorld:
+def make_corridor(rng: Generator) -> TrueWorld:
     """The corridor drawn with `rng`, on the survey day and on the run day of LEFT_DOORS and CLUTTER."""
     building = draw_building(rng)
     doors = building.layout["left doors"]
@@ -124,7 +125,7 @@ def make_corridor(rng: np.random.Generator) -> TrueWorld:
     return TrueWorld(survey_builder.build(), run_builder.build(), boxes)
 
 
-def draw_building(rng: np.random.Generator) -> Building:
+def draw_building(rng: Generator) -> Building:
     """A building: the seed moves every feature by up to JITTER and draws bow and small parts."""
     moves = iter(rng.uniform(-JITTER, JITTER, 200))
     phases = rng.uniform(0, 2 * np.pi, 6)
@@ -134,9 +135,7 @@ def draw_building(rng: np.random.Generator) -> Building:
     return Building(layout, windows, phases, seed)
 
 
-def run_day(
-    building: Building, door_angles: Sequence[float], things: Sequence[Thing], rng: np.random.Generator
-) -> RunDay:
+def run_day(building: Building, door_angles: Sequence[float], things: Sequence[Thing], rng: Generator) -> RunDay:
     """The building on a day of its own: degrees that each left door stands open, and what stands in the way."""
     builder, _ = _furnished(building, door_angles, [angle > 0 for angle in door_angles])
     boxes = _clutter(builder, things, rng)
@@ -145,7 +144,7 @@ def run_day(
 
 def _furnished(
     building: Building, door_angles: Sequence[float], rooms: Sequence[bool]
-) -> tuple[MeshBuilder, np.random.Generator]:
+) -> tuple[MeshBuilder, Generator]:
     """The building with its fittings and doors, rooms behind those of `rooms`; and the generator of small parts."""
     builder = MeshBuilder(lambda points: _bow(points, building.phases))
     detail = np.random.default_rng(building.detail_seed)
@@ -155,14 +154,19 @@ def _furnished(
     return builder, detail
 
 
+def right_side(x: float) -> float:
+    """Where the right wall stands at x: y in metres. It steps inward at STEP_AT."""
+    return RIGHT if x < STEP_AT else RIGHT_NARROW
+
+
 def left_wall() -> Placement:
     """Frame of the left wall: along +x, into +y."""
     return Placement(np.array([0.0, LEFT, 0.0]), np.eye(3))
 
 
 def right_wall(x: float) -> Placement:
-    """Frame of the right wall, which steps inward at STEP_AT: along +x, into -y."""
-    return Placement(np.array([0.0, RIGHT if x < STEP_AT else RIGHT_NARROW, 0.0]), np.diag([1.0, -1.0, 1.0]))
+    """Frame of the right wall: along +x, into -y."""
+    return Placement(np.array([0.0, right_side(x), 0.0]), np.diag([1.0, -1.0, 1.0]))
 
 
 def _cross_wall(x: float, y: float, sense: float) -> Placement:
@@ -221,14 +225,14 @@ def _shell(b: MeshBuilder, layout: dict, windows: list) -> None:
     parts.window_niche(b, back, start + 0.5, end - 0.7, 0.24, (0.5,))
     parts.stairwell(b, left_wall().moved(along=(STAIRS[0] + STAIRS[1]) / 2), STAIRS[1] - STAIRS[0])
     for x, jamb, drop, thick in layout["portals"]:
-        low = RIGHT if x < STEP_AT else RIGHT_NARROW
+        low = right_side(x)
         parts.portal(b, Placement(np.array([x, (LEFT + low) / 2, 0.0])), (LEFT - low) / 2, jamb, drop, thick)
     b.part = "soffit"
     for x, length, drop in layout["soffits"]:
         b.box(world, (x, RIGHT, h - drop), (x + length, LEFT, h + 0.03), m.WALL_PAINT, bevel=0.01)
 
 
-def _fittings(b: MeshBuilder, layout: dict, windows: list, rng: np.random.Generator) -> None:
+def _fittings(b: MeshBuilder, layout: dict, windows: list, rng: Generator) -> None:
     """Windows, radiators, pillars, boards, benches, lamps, cable tray, signs, cabinet."""
     for low, high, depth, mullions, has_radiator in windows:
         place = right_wall(low)
@@ -281,21 +285,12 @@ def _doors(b: MeshBuilder, layout: dict, left_angles: Sequence[float], left_room
             parts.room_behind(b, place, width, depth, 1.1 + 0.12 * number)
 
 
-def _clutter(b: MeshBuilder, things: Sequence[Thing], rng: np.random.Generator) -> np.ndarray:
+def _clutter(b: MeshBuilder, things: Sequence[Thing], rng: Generator) -> np.ndarray:
     """Adds the things; returns their boxes on the floor plan `(n, 2, 2)`."""
     boxes = []
     for number, (kind, x, y, turn) in enumerate(things):
-        place, piece = Placement(np.array([x, y, 0.0])).moved(turn_deg=turn), MeshBuilder()
-        if kind == "cartons":
-            clutter.cartons(piece, place, rng)
-        elif kind == "person":
-            clutter.person(piece, place, rng.uniform(1.62, 1.82), rng)
-        elif kind == "plant":
-            clutter.plant(piece, place, rng)
-        else:
-            {"chair": clutter.chair, "trolley": clutter.trolley, "ladder": clutter.ladder, "bin": clutter.bin_with_lid}[
-                kind
-            ](piece, place)
+        piece = MeshBuilder()
+        clutter.KINDS[kind](piece, Placement(np.array([x, y, 0.0])).moved(turn_deg=turn), rng)
         b.take(piece, f"clutter {number} {kind}")
         boxes.append(piece.build().vertices[:, :2])
     return np.array([[points.min(axis=0), points.max(axis=0)] for points in boxes]).reshape(-1, 2, 2)

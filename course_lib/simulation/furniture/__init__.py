@@ -17,5 +17,3 @@ RANDOM_PIECES = {
     "refrigerator": random_refrigerator,
     "cabinet": random_cabinet,
 }
-
-__all__ = ["RANDOM_PIECES"]

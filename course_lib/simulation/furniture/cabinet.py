@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 
-from course_lib.simulation.furniture.piece import Piece
-from course_lib.simulation.furniture.solids import box, cylinder, panel, rod
+from course_lib.simulation.furniture.solids import Piece, box, cylinder, panel, rod
 from course_lib.simulation.prints import book_row
 from course_lib.simulation.textures import Surface, colour, metal, random_colour, wood
 
@@ -29,38 +29,32 @@ class Cabinet:
     board: float = 0.022
 
 
-def _bay(
-    kind: str, left: float, low: float, width: float, height: float, shape: Cabinet, materials: dict, order: int
+def _open_bay(left: float, low: float, width: float, height: float, depth: float, inside: Surface, books: list) -> list:
+    """A back wall and, if there are books, a row of them."""
+    parts = [panel((0.04 - depth / 2, left, low), (0, width, 0), (0, 0, height), inside)]
+    if books:
+        tall = min(0.88 * height, 0.34)
+        parts += box((depth * 0.6, width * 0.94, tall), (-0.02, left + width / 2, low + tall / 2), inside, front=books)
+    return parts
+
+
+def _closed_bay(
+    kind: str, y: float, z: float, width: float, height: float, shape: Cabinet, face: Surface, knob: Surface, hinge: int
 ) -> list:
-    """One bay of the front, its lower right-hand corner (as it sees the room) at (left, low)."""
+    """A door or a drawer with its middle at (y, z), and its knob."""
     front, gap = shape.depth / 2, 0.006
-    y, z = left + width / 2, low + height / 2
-    if kind == "open":
-        back = 0.04 - shape.depth / 2
-        parts = [panel((back, left, low), (0, width, 0), (0, 0, height), materials["inside"])]
-        books = materials["books"]
-        if books:
-            row = books[order % len(books)]
-            tall = min(0.88 * height, 0.34)
-            depth = shape.depth * 0.6
-            parts += box(
-                (depth, width * 0.94, tall), (-0.02, y, low + tall / 2), materials["inside"], front=row, fit=True
-            )
-        return parts
-    face = materials["front"][order % len(materials["front"])]
     parts = box((0.02, width - gap, height - gap), (front - 0.002, y, z), face)
     if kind == "door" and min(width, height) > 0.24:
         # A raised field inside the door catches light on its edges.
         parts += box((0.012, width - 0.14, height - 0.14), (front + 0.012, y, z), face)
     x = front + 0.022
-    inward = width / 2 - 0.045
-    at = (y, z) if kind == "drawer" else (y + (inward if order % 2 == 0 else -inward), z + 0.12 * height)
+    at = (y, z) if kind == "drawer" else (y + hinge * (width / 2 - 0.045), z + 0.12 * height)
     if shape.knob == "knob":
-        parts += rod([(x - 0.014, *at), (x + 0.014, *at)], 0.017, materials["knob"], n=10)
+        parts += rod([(x - 0.014, *at), (x + 0.014, *at)], 0.017, knob, n=10)
     elif shape.knob == "bar":
         reach = (0.06, 0.0) if kind == "drawer" else (0.0, 0.07)
         ends = [(x + 0.012, at[0] + s * reach[0], at[1] + s * reach[1]) for s in (-1, 1)]
-        parts += rod(ends, 0.009, materials["knob"], n=8)
+        parts += rod(ends, 0.009, knob, n=8)
     return parts
 
 
@@ -82,7 +76,6 @@ def build_cabinet(
                 parts += cylinder(0.014, low + 0.005, (x, y, 0), knob, top=0.022, n=8)
     else:
         parts += box((d - 0.05, w - 0.02, low), (-0.02, 0, low / 2), body)
-    materials = {"front": fronts, "inside": inside, "knob": knob, "books": books}
     total = sum(share for _, share in shape.rows)
     space, bay = h - t - low - t, (w - t) / shape.columns
     level, order = low + t, 0
@@ -91,24 +84,25 @@ def build_cabinet(
         if level > low + t + 0.01:
             parts += box((d - 0.03, w - 2 * t, t * 0.8), (-0.012, 0, level), body)
         for column in range(shape.columns):
-            left = -w / 2 + t / 2 + column * bay + t / 2
-            parts += _bay(
-                kind, left, level + (0.4 * t if kind == "open" else 0.0), bay - t, height - t, shape, materials, order
-            )
+            left, width, tall = -w / 2 + t / 2 + column * bay + t / 2, bay - t, height - t
+            if kind == "open":
+                row = books[order % len(books)] if books else None
+                parts += _open_bay(left, level + 0.4 * t, width, tall, d, inside, row)
+            else:
+                face, hinge = fronts[order % len(fronts)], 1 if order % 2 == 0 else -1
+                parts += _closed_bay(kind, left + width / 2, level + tall / 2, width, tall, shape, face, knob, hinge)
             order += 1
-
         level += height
     return Piece.of("cabinet", parts)
 
 
-def random_cabinet(rng: np.random.Generator, kind: str | None = None) -> Piece:
+def random_cabinet(rng: Generator, kind: str | None = None) -> Piece:
     """A cabinet of any kind; kind: "sideboard", "drawers", "wardrobe" or "shelf" (None: any)."""
     kind = kind or str(rng.choice(["sideboard", "sideboard", "drawers", "drawers", "wardrobe", "shelf"]))
     depth = rng.uniform(0.32, 0.5)
     if kind == "sideboard":
-        rows = ((("door", 1.0),), (("door", 2.0), ("drawer", 1.0)), (("door", 1.6), ("open", 1.0)))[
-            int(rng.integers(3))
-        ]
+        choices = ((("door", 1.0),), (("door", 2.0), ("drawer", 1.0)), (("door", 1.6), ("open", 1.0)))
+        rows = choices[int(rng.integers(3))]
         width, height, columns = rng.uniform(0.9, 1.7), rng.uniform(0.5, 0.95), int(rng.integers(2, 5))
     elif kind == "drawers":
         rows = (("drawer", 1.0),) * int(rng.integers(3, 6))
@@ -123,16 +117,9 @@ def random_cabinet(rng: np.random.Generator, kind: str | None = None) -> Piece:
             rows = (("door", 1.6), *rows[1:])
         width, height, columns = rng.uniform(0.6, 1.3), rng.uniform(0.9, 1.95), int(rng.integers(1, 3))
         depth = rng.uniform(0.26, 0.38)
-    shape = Cabinet(
-        width=width,
-        depth=depth,
-        height=height,
-        columns=columns,
-        rows=rows,
-        knob=str(rng.choice(["knob", "bar", "none"])),
-        legs=rng.uniform(0.08, 0.2) if kind in ("sideboard", "drawers") and rng.random() < 0.4 else 0.0,
-        board=rng.uniform(0.016, 0.038),
-    )
+    knob_kind = str(rng.choice(["knob", "bar", "none"]))
+    legs = rng.uniform(0.08, 0.2) if kind in ("sideboard", "drawers") and rng.random() < 0.4 else 0.0
+    shape = Cabinet(width, depth, height, columns, rows, knob_kind, legs, board=rng.uniform(0.016, 0.038))
     natural = colour(rng.uniform(10, 50), rng.uniform(15, 75), rng.uniform(25, 95))
     hue, saturation, value = rng.uniform(0.0, 360.0), rng.uniform(5.0, 85.0), rng.uniform(25.0, 97.0)
     finish = str(rng.choice(["one", "two shades", "many", "many"]))
@@ -146,6 +133,5 @@ def random_cabinet(rng: np.random.Generator, kind: str | None = None) -> Piece:
         fronts = [wood(rng, random_colour(rng, (0, 85), (30, 98)), 0.9) for _ in range(int(rng.integers(1, 4)))]
     inside = wood(rng, natural, 0.6, 128)
     knob = metal(rng, random_colour(rng, (0, 40), (10, 85)), 0.3, 128)
-    bay = width / columns
-    books = [book_row(rng, bay, 0.3) for _ in range(3)] if "open" in dict(rows) else []
+    books = [book_row(rng, width / columns, 0.3) for _ in range(3)] if "open" in dict(rows) else []
     return build_cabinet(shape, body, fronts, inside, knob, books)

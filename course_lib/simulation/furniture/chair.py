@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 
-from course_lib.simulation.furniture.piece import Piece
-from course_lib.simulation.furniture.solids import box, cylinder, rod, rounded_box, swept, turn
+from course_lib.simulation.furniture.solids import Piece, box, cylinder, rod, rounded_box, swept, turn
 from course_lib.simulation.textures import CLOTH_PATTERNS, Surface, cloth, colour, metal, random_colour, wood
 
 
@@ -28,7 +29,7 @@ class Chair:
 
 
 def _base(shape: Chair, frame: Surface) -> list:
-    d, w, top = shape.depth / 2 - 0.03, shape.width / 2 - 0.03, shape.seat_height - 0.04
+    d, w, top, r = shape.depth / 2 - 0.03, shape.width / 2 - 0.03, shape.seat_height - 0.04, shape.leg_radius
     parts = []
     if shape.base == "star":
         parts += cylinder(0.028, top - 0.08, (0, 0, 0.09), frame)
@@ -38,20 +39,18 @@ def _base(shape: Chair, frame: Surface) -> list:
             parts += rod([(0, 0, 0.12), (x, y, 0.075)], 0.022, frame)
             parts += rod([(x - 0.02, y, 0.03), (x + 0.02, y, 0.03)], 0.03, frame, n=10)
     elif shape.base == "sledge":
-        for sign in (-1.0, 1.0):
-            y = sign * w
-            r = shape.leg_radius
-            parts += rod([(d, y, top), (d + 0.03, y, r)], r, frame)
-            parts += rod([(d + 0.03, y, r), (-d - 0.03, y, r)], r, frame)
-            parts += rod([(-d - 0.03, y, r), (-d, y, top)], r, frame)
+        for y in (-w, w):
+            corners = [(d, y, top), (d + 0.03, y, r), (-d - 0.03, y, r), (-d, y, top)]
+            for ends in itertools.pairwise(corners):
+                parts += rod(ends, r, frame)
     else:
         for x in (-d, d):
             for y in (-w, w):
                 out = 1.0 + shape.splay / max(abs(x), 1e-3)
-                parts += rod([(x * out, y * out, 0.0), (x, y, top)], shape.leg_radius, frame)
+                parts += rod([(x * out, y * out, 0.0), (x, y, top)], r, frame)
         if shape.splay < 0.02:
             for y in (-w, w):
-                parts += rod([(-d, y, 0.2), (d, y, 0.2)], 0.6 * shape.leg_radius, frame)
+                parts += rod([(-d, y, 0.2), (d, y, 0.2)], 0.6 * r, frame)
     return parts
 
 
@@ -67,7 +66,8 @@ def _back(shape: Chair, frame: Surface, cover: Surface) -> list:
         return rounded_box((0.05, w, height * 0.86), (0, 0, height * 0.57), cover, 0.024)
     parts = []
     for sign in (-1.0, 1.0):
-        parts += rod([(0, sign * (w / 2 - 0.015), -0.03), (0, sign * (w / 2 - 0.015), height)], 0.018, frame)
+        y = sign * (w / 2 - 0.015)
+        parts += rod([(0, y, -0.03), (0, y, height)], 0.018, frame)
     if shape.back == "ladder":
         for level in (0.35, 0.62, 0.9):
             parts += rounded_box((0.022, w - 0.03, 0.075), (0, 0, level * height), cover, 0.01)
@@ -97,39 +97,33 @@ def build_chair(shape: Chair, frame: Surface, cover: Surface) -> Piece:
     return Piece.of("chair", parts)
 
 
-def random_chair(rng: np.random.Generator) -> Piece:
+def random_chair(rng: Generator) -> Piece:
     """A chair of any kind that a generated room may have."""
     kind = rng.choice(["wooden", "upholstered", "office", "shell", "stool"])
     rgb = random_colour(rng, (10, 95), (25, 95))
     timber = wood(rng, colour(rng.uniform(10, 50), rng.uniform(25, 75), rng.uniform(25, 85)), size=0.6)
     steel = metal(rng, colour(rng.uniform(0, 360), rng.uniform(0, 25), rng.uniform(15, 80)))
-    common = {
-        "width": rng.uniform(0.38, 0.56),
-        "depth": rng.uniform(0.38, 0.54),
-        "seat_height": rng.uniform(0.42, 0.5),
-        "leg_radius": rng.uniform(0.012, 0.0275),
-        "splay": rng.uniform(0.0, 0.06),
-    }
+    width, depth, seat_height = rng.uniform(0.38, 0.56), rng.uniform(0.38, 0.54), rng.uniform(0.42, 0.5)
+    legs = {"leg_radius": rng.uniform(0.012, 0.0275), "splay": rng.uniform(0.0, 0.06)}
     fabric = cloth(rng, rgb, str(rng.choice(CLOTH_PATTERNS)), random_colour(rng) if rng.random() < 0.3 else None, 0.5)
     painted = wood(rng, rgb, size=0.6)
+    size = (width, depth, seat_height)
     if kind == "wooden":
-        shape = Chair(height=rng.uniform(0.8, 1.05), back=str(rng.choice(["ladder", "spindles", "solid"])), **common)
+        shape = Chair(*size, rng.uniform(0.8, 1.05), back=str(rng.choice(["ladder", "spindles", "solid"])), **legs)
         frame = timber if rng.random() < 0.6 else painted
         return build_chair(shape, frame, frame if rng.random() < 0.6 else painted)
     if kind == "upholstered":
-        shape = Chair(height=rng.uniform(0.8, 1.08), back="solid", armrests=bool(rng.random() < 0.3), **common)
+        shape = Chair(*size, rng.uniform(0.8, 1.08), armrests=bool(rng.random() < 0.3), **legs)
         return build_chair(shape, (timber, timber, steel, painted)[int(rng.integers(4))], fabric)
     if kind == "office":
-        shape = Chair(
-            height=rng.uniform(0.85, 1.15), base="star", back="solid", armrests=bool(rng.random() < 0.6), **common
-        )
+        shape = Chair(*size, rng.uniform(0.85, 1.15), "star", armrests=bool(rng.random() < 0.6), **legs)
         return build_chair(shape, steel, fabric)
     if kind == "shell":
         base = str(rng.choice(["legs", "sledge"]))
-        shape = Chair(height=rng.uniform(0.75, 0.9), base=base, back="shell", **common)
+        shape = Chair(*size, rng.uniform(0.75, 0.9), base, "shell", **legs)
         frame = (timber, steel, painted)[int(rng.integers(3))]
         return build_chair(shape, frame, painted if rng.random() < 0.5 else fabric)
-    common["depth"] = common["width"]
-    common["seat_height"] = rng.uniform(0.5, 0.68)
-    shape = Chair(height=common["seat_height"] + rng.uniform(0.2, 0.32), back="ladder", round_seat=True, **common)
+    seat_height = rng.uniform(0.5, 0.68)
+    height = seat_height + rng.uniform(0.2, 0.32)
+    shape = Chair(width, width, seat_height, height, back="ladder", round_seat=True, **legs)
     return build_chair(shape, steel if rng.random() < 0.5 else timber, painted)

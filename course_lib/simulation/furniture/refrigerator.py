@@ -6,9 +6,9 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 
-from course_lib.simulation.furniture.piece import Piece
-from course_lib.simulation.furniture.solids import box, panel, rod, rounded_box
+from course_lib.simulation.furniture.solids import Piece, box, panel, rod, rounded_box
 from course_lib.simulation.prints import label
 from course_lib.simulation.textures import Surface, colour, metal, random_colour
 
@@ -67,14 +67,12 @@ def build_refrigerator(
     return Piece.of("refrigerator", parts)
 
 
-def random_refrigerator(rng: np.random.Generator) -> Piece:
+def random_refrigerator(rng: Generator) -> Piece:
     """A refrigerator of any kind that a generated room may have."""
     double = bool(rng.random() < 0.25)
     height = rng.uniform(0.82, 1.2) if not double and rng.random() < 0.3 else rng.uniform(1.4, 1.88)
     small = height < 1.25
-    split = ((), (0.3,), (0.38,), (0.68,), (0.33, 0.52))[
-        int(rng.integers(1 if not small else 0, 5 if not small else 2))
-    ]
+    split = ((), (0.3,), (0.38,), (0.68,), (0.33, 0.52))[int(rng.integers(0, 2) if small else rng.integers(1, 5))]
     shape = Refrigerator(
         width=rng.uniform(0.78, 0.95) if double else rng.uniform(0.5, 0.68),
         depth=rng.uniform(0.54, 0.7),

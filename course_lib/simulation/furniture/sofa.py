@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 
-from course_lib.simulation.furniture.piece import Piece
-from course_lib.simulation.furniture.solids import cylinder, rod, rounded_box, turn
+from course_lib.simulation.furniture.solids import Piece, cylinder, rod, rounded_box, turn
 from course_lib.simulation.textures import CLOTH_PATTERNS, Surface, cloth, colour, leather, metal, random_colour, wood
+
+BACK_DEPTH = 0.2  # metres
 
 
 @dataclass(frozen=True)
@@ -29,47 +31,42 @@ class Sofa:
     back_lean: float = 0.12
 
 
+def _arm(shape: Sofa, y: float, cover: Surface) -> list:
+    d, wide, low = shape.depth, shape.arm_width, shape.leg_height
+    height = shape.arm_height - low
+    if shape.arm == "roll":
+        parts = rounded_box((d, wide * 0.8, height - 0.06), (0, y, low + (height - 0.06) / 2), cover, 0.03)
+        radius = wide * 0.56
+        path = [(x, y, shape.arm_height - radius) for x in np.linspace(-d / 2 + 0.01, d / 2 + 0.02, 3)]
+        return parts + rod(path, radius, cover, n=14)
+    if shape.arm == "slope":
+        parts = rounded_box((d * 0.97, wide, height * 0.72), (0, y, low + height * 0.36), cover, 0.05)
+        slope = rounded_box((d * 0.62, wide, height * 0.5), (0, 0, 0), cover, 0.06)
+        return parts + turn(slope, x=-d * 0.14, y=y, z=low + height * 0.72, pitch=0.18)
+    return rounded_box((d, wide, height), (0, y, low + height / 2), cover, 0.045)
+
+
 def build_sofa(shape: Sofa, cover: Surface, seat: Surface, legs: Surface, pillow: Surface) -> Piece:
     """The sofa's parts: frame, arms, seat and back cushions, legs, pillows."""
     d, w, low = shape.depth, shape.width, shape.leg_height
     inner = w - 2 * shape.arm_width
     base = shape.seat_height - 0.14
     parts = rounded_box((d - 0.02, w - 0.02, base - low), (0.0, 0.0, (base + low) / 2), cover, 0.025)
-    back_depth = 0.2
-    parts += turn(
-        rounded_box(
-            (back_depth, inner + 0.06, shape.back_height - base), (0, 0, (shape.back_height - base) / 2), cover, 0.06
-        ),
-        x=-d / 2 + back_depth / 2 + 0.06,
-        z=base - 0.01,
-        pitch=-shape.back_lean,
-    )
+    tall = shape.back_height - base
+    back = rounded_box((BACK_DEPTH, inner + 0.06, tall), (0, 0, tall / 2), cover, 0.06)
+    parts += turn(back, x=-d / 2 + BACK_DEPTH / 2 + 0.06, z=base - 0.01, pitch=-shape.back_lean)
     for sign in (-1.0, 1.0):
-        y = sign * (w - shape.arm_width) / 2
-        height = shape.arm_height - low
-        if shape.arm == "roll":
-            parts += rounded_box(
-                (d, shape.arm_width * 0.8, height - 0.06), (0, y, low + (height - 0.06) / 2), cover, 0.03
-            )
-            radius = shape.arm_width * 0.56
-            path = [(x, y, shape.arm_height - radius) for x in np.linspace(-d / 2 + 0.01, d / 2 + 0.02, 3)]
-            parts += rod(path, radius, cover, n=14)
-        elif shape.arm == "slope":
-            parts += rounded_box((d * 0.97, shape.arm_width, height * 0.72), (0, y, low + height * 0.36), cover, 0.05)
-            slope = rounded_box((d * 0.62, shape.arm_width, height * 0.5), (0, 0, 0), cover, 0.06)
-            parts += turn(slope, x=-d * 0.14, y=y, z=low + height * 0.72, pitch=0.18)
-        else:
-            parts += rounded_box((d, shape.arm_width, height), (0, y, low + height / 2), cover, 0.045)
+        parts += _arm(shape, sign * (w - shape.arm_width) / 2, cover)
     each = inner / shape.seats
     for index in range(shape.seats):
         y = -inner / 2 + (index + 0.5) * each
-        size = (d - back_depth - 0.02, each - 0.012, 0.15)
-        parts += rounded_box(size, (back_depth / 2 + 0.02, y, base + 0.075), seat, 0.045, bulge=0.03)
+        size = (d - BACK_DEPTH - 0.02, each - 0.012, 0.15)
+        parts += rounded_box(size, (BACK_DEPTH / 2 + 0.02, y, base + 0.075), seat, 0.045, bulge=0.03)
         if shape.loose_back:
             height = shape.back_height - shape.seat_height + 0.02
             cushion = rounded_box((0.15, each - 0.02, height), (0, 0, height / 2), seat, 0.06)
             lean = shape.back_lean + 0.08
-            parts += turn(cushion, x=-d / 2 + back_depth + 0.16, y=y, z=shape.seat_height - 0.01, pitch=-lean)
+            parts += turn(cushion, x=-d / 2 + BACK_DEPTH + 0.16, y=y, z=shape.seat_height - 0.01, pitch=-lean)
     if low > 0.02:
         for x in (-d / 2 + 0.09, d / 2 - 0.09):
             for y in (-w / 2 + 0.1, w / 2 - 0.1):
@@ -82,7 +79,7 @@ def build_sofa(shape: Sofa, cover: Surface, seat: Surface, legs: Surface, pillow
     return Piece.of("sofa", parts)
 
 
-def random_sofa(rng: np.random.Generator) -> Piece:
+def random_sofa(rng: Generator) -> Piece:
     """A sofa of any kind that a generated room may have."""
     width = rng.uniform(1.25, 2.15)
     leg = rng.choice([0.0, rng.uniform(0.04, 0.16)])
@@ -108,10 +105,9 @@ def random_sofa(rng: np.random.Generator) -> Piece:
         second = random_colour(rng) if rng.random() < 0.3 else None
         cover = cloth(rng, rgb, str(rng.choice(CLOTH_PATTERNS)), second, rng.uniform(0.7, 1.0))
     seat = cover if rng.random() < 0.65 else cloth(rng, random_colour(rng, (8, 95), (25, 95)), size=0.8)
-    legs = (
-        wood(rng, colour(rng.uniform(15, 45), 55, rng.uniform(20, 70)))
-        if rng.random() < 0.7
-        else metal(rng, (0.7, 0.7, 0.72))
-    )
+    if rng.random() < 0.7:
+        legs = wood(rng, colour(rng.uniform(15, 45), 55, rng.uniform(20, 70)))
+    else:
+        legs = metal(rng, (0.7, 0.7, 0.72))
     pillow = cloth(rng, random_colour(rng), str(rng.choice(CLOTH_PATTERNS)), random_colour(rng), 0.45)
     return build_sofa(shape, cover, seat, legs, pillow)

@@ -1,19 +1,63 @@
 """The solids that furniture and rooms are made of, as textured triangles with outward counter-clockwise winding.
 
 Texture coordinates run in metres divided by the tile's size, so that a material has the same scale on every part.
+A piece of furniture is built before it stands anywhere: x forward (its front), y to its left, z up, floor at z = 0.
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from course_lib.simulation.textured_mesh import TexturedMesh
-from course_lib.simulation.textures import Surface
+from course_lib.simulation.room.scene import RoomObject
+from course_lib.simulation.textures import Surface, TexturedMesh
 
 CELL = 0.4  # metres: longest edge of a flat cell, because straight edges bulge in a panorama
+
+Triple = Sequence[float]
+
+# The six sides of a box: normal axis, its sign, axis along, its sign, axis up, its sign; along x up = outward normal.
+SIDES = (
+    (0, 1, 1, 1, 2, 1),
+    (0, -1, 1, -1, 2, 1),
+    (1, 1, 0, -1, 2, 1),
+    (1, -1, 0, 1, 2, 1),
+    (2, 1, 1, 1, 0, -1),
+    (2, -1, 1, 1, 0, 1),
+)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """label: class name. meshes: one per texture, in the piece's frame, the footprint's centre at the origin."""
+
+    label: str
+    meshes: tuple[TexturedMesh, ...]
+
+    @classmethod
+    def of(cls, label: str, meshes: Sequence[TexturedMesh]) -> Piece:
+        """A piece from its parts, shifted so that the footprint's centre is the origin."""
+        vertices = np.concatenate([mesh.vertices for mesh in meshes])
+        shift = np.eye(4)
+        shift[:2, 3] = -(vertices[:, :2].min(axis=0) + vertices[:, :2].max(axis=0)) / 2
+        return cls(label, tuple(mesh.moved(shift) for mesh in joined(meshes)))
+
+    @property
+    def size(self) -> np.ndarray:
+        """`(3,)` depth, width, height in metres."""
+        vertices = np.concatenate([mesh.vertices for mesh in self.meshes])
+        return np.append(np.ptp(vertices[:, :2], axis=0), vertices[:, 2].max())
+
+    def at(self, x: float, y: float, heading: float, z: float = 0.0) -> RoomObject:
+        """The piece standing in the room, its front towards heading (radians); z: metres above the floor."""
+        cosine, sine = np.cos(heading), np.sin(heading)
+        pose = np.eye(4)
+        pose[:2, :2] = [[cosine, -sine], [sine, cosine]]
+        pose[:3, 3] = x, y, z
+        return RoomObject(self.label, float(x), float(y), float(heading), tuple(m.moved(pose) for m in self.meshes))
 
 
 def grid_faces(rows: int, columns: int) -> np.ndarray:
@@ -30,12 +74,7 @@ def textured(vertices: np.ndarray, faces: np.ndarray, metres: np.ndarray, surfac
 
 
 def panel(
-    corner: Sequence[float],
-    along: Sequence[float],
-    up: Sequence[float],
-    surface: Surface,
-    fit: bool = False,
-    cell: float = CELL,
+    corner: Triple, along: Triple, up: Triple, surface: Surface, fit: bool = False, cell: float = CELL
 ) -> TexturedMesh:
     """A flat rectangle from its lower left corner as seen from outside; fit: the picture covers it exactly once."""
     corner, along, up = (np.asarray(vector, float) for vector in (corner, along, up))
@@ -43,64 +82,41 @@ def panel(
     columns, rows = np.maximum(1, np.ceil(length / cell - 1e-9)).astype(int)
     s, t = np.meshgrid(np.linspace(0.0, 1.0, columns + 1), np.linspace(0.0, 1.0, rows + 1))
     s, t = s.reshape(-1, 1), t.reshape(-1, 1)
-    size = np.asarray(surface.size)
-    if fit:
-        metres = np.concatenate([s, t], 1) * size
-    else:
-        start = np.array([corner @ along, corner @ up]) / length
-        metres = np.concatenate([s, t], 1) * length + start
+    metres = np.concatenate([s, t], 1) * (surface.size if fit else length)
+    if not fit:
+        metres = metres + np.array([corner @ along, corner @ up]) / length
     return textured(corner + s * along + t * up, grid_faces(rows + 1, columns + 1), metres, surface)
 
 
-def box(
-    size: Sequence[float],
-    centre: Sequence[float],
-    surface: Surface,
-    front: Surface | None = None,
-    fit: bool = False,
-    cell: float = CELL,
-) -> list[TexturedMesh]:
-    """A box; front: another surface for the side towards +x, which fit stretches over it exactly once."""
+def box(size: Triple, centre: Triple, surface: Surface, front: Surface | None = None) -> list[TexturedMesh]:
+    """A box; front: a picture that covers the side towards +x exactly once."""
     dx, dy, dz = np.asarray(size, float)
     x0, y0, z0 = np.asarray(centre, float) - (dx / 2, dy / 2, dz / 2)
     x1, y1, z1 = x0 + dx, y0 + dy, z0 + dz
     return [
-        panel((x1, y0, z0), (0, dy, 0), (0, 0, dz), front or surface, fit and front is not None, cell),
-        panel((x0, y1, z0), (0, -dy, 0), (0, 0, dz), surface, False, cell),
-        panel((x1, y1, z0), (-dx, 0, 0), (0, 0, dz), surface, False, cell),
-        panel((x0, y0, z0), (dx, 0, 0), (0, 0, dz), surface, False, cell),
-        panel((x1, y0, z1), (0, dy, 0), (-dx, 0, 0), surface, False, cell),
-        panel((x0, y0, z0), (0, dy, 0), (dx, 0, 0), surface, False, cell),
+        panel((x1, y0, z0), (0, dy, 0), (0, 0, dz), front or surface, fit=front is not None),
+        panel((x0, y1, z0), (0, -dy, 0), (0, 0, dz), surface),
+        panel((x1, y1, z0), (-dx, 0, 0), (0, 0, dz), surface),
+        panel((x0, y0, z0), (dx, 0, 0), (0, 0, dz), surface),
+        panel((x1, y0, z1), (0, dy, 0), (-dx, 0, 0), surface),
+        panel((x0, y0, z0), (0, dy, 0), (dx, 0, 0), surface),
     ]
 
 
 def rounded_box(
-    size: Sequence[float],
-    centre: Sequence[float],
-    surface: Surface,
-    radius: float = 0.04,
-    bulge: float = 0.0,
-    cell: float = CELL,
+    size: Triple, centre: Triple, surface: Surface, radius: float = 0.04, bulge: float = 0.0
 ) -> list[TexturedMesh]:
     """A box with rounded edges; radius: metres; bulge: metres by which its upper side rises in the middle."""
     half = np.asarray(size, float) / 2
     radius = min(radius, 0.98 * float(half.min()))
     steps = []
     for extent in half:
-        count = max(1, int(np.ceil(2 * (extent - radius) / cell)), 4 if bulge else 1)
+        count = max(1, int(np.ceil(2 * (extent - radius) / CELL)), 4 if bulge else 1)
         inner = np.linspace(-(extent - radius), extent - radius, count + 1)
         bend = radius * np.tan(np.radians([22.5, 45.0]))
         steps.append(np.concatenate([inner[0] - bend[::-1], inner, inner[-1] + bend]))
     meshes = []
-    # (normal axis, sign, axis along, its sign, axis up, its sign) with along x up = outward normal, as in box().
-    for normal, sign, along, s_sign, up, t_sign in (
-        (0, 1, 1, 1, 2, 1),
-        (0, -1, 1, -1, 2, 1),
-        (1, 1, 0, -1, 2, 1),
-        (1, -1, 0, 1, 2, 1),
-        (2, 1, 1, 1, 0, -1),
-        (2, -1, 1, 1, 0, 1),
-    ):
+    for normal, sign, along, s_sign, up, t_sign in SIDES:
         s, t = np.meshgrid(steps[along][::s_sign], steps[up][::t_sign])
         points = np.empty((s.size, 3))
         points[:, normal], points[:, along], points[:, up] = sign * half[normal], s.reshape(-1), t.reshape(-1)
@@ -118,7 +134,7 @@ def rounded_box(
 
 def lathe(
     profile: Sequence[tuple[float, float]],
-    centre: Sequence[float],
+    centre: Triple,
     surface: Surface,
     n: int = 18,
     stretch: tuple[float, float] = (1.0, 1.0),
@@ -139,19 +155,15 @@ def lathe(
         if abs(r1 - r0) > 2.0 * abs(z1 - z0):
             metres = vertices[:, :2] * (1.0, 1.0 if r1 < r0 else -1.0)
         else:
-            across = np.tile(angle * widest, 2)
-            metres = np.stack([across, np.repeat([height, height + slope], n + 1)], 1)
+            metres = np.stack([np.tile(angle * widest, 2), np.repeat([height, height + slope], n + 1)], 1)
         height += slope
-        faces = grid_faces(2, n + 1)
-        keep = np.ones(len(faces), bool)
-        keep[: len(faces) // 2] = r0 > 0
-        keep[len(faces) // 2 :] = r1 > 0
-        meshes.append(textured(vertices, faces[keep], metres, surface))
+        keep = np.repeat([r0 > 0, r1 > 0], n)  # a ring without radius is a point: no triangles along it
+        meshes.append(textured(vertices, grid_faces(2, n + 1)[keep], metres, surface))
     return meshes
 
 
 def cylinder(
-    radius: float, height: float, centre: Sequence[float], surface: Surface, top: float | None = None, n: int = 14
+    radius: float, height: float, centre: Triple, surface: Surface, top: float | None = None, n: int = 14
 ) -> list[TexturedMesh]:
     """An upright cylinder, or a cone's frustum with another radius at the top; centre: of its lower end."""
     upper = radius if top is None else top
@@ -180,9 +192,7 @@ def swept(
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
     reach = float(np.max(widths))
     metres = np.stack([np.tile(reach * (1 - np.cos(angle)), k), np.repeat(along, n + 1)], 1)
-    vertices = (path[:, None] + section).reshape(-1, 3)
-    faces = grid_faces(k, n + 1)
-    meshes = [textured(vertices, faces, metres, surface)]
+    meshes = [textured((path[:, None] + section).reshape(-1, 3), grid_faces(k, n + 1), metres, surface)]
     for end, order in ((0, slice(None, None, -1)), (k - 1, slice(None))):
         rim = np.concatenate([path[end : end + 1], (path[end] + section[end])[order]])
         fan = np.stack([np.zeros(n, int), np.arange(1, n + 1), np.arange(2, n + 2)], 1)
@@ -191,18 +201,17 @@ def swept(
     return meshes
 
 
-def rod(points: Sequence[Sequence[float]], radius: float, surface: Surface, n: int = 8) -> list[TexturedMesh]:
+def rod(points: Sequence[Triple], radius: float, surface: Surface, n: int = 8) -> list[TexturedMesh]:
     """A round bar through the points."""
     path = np.asarray(points, float)
-    direction = path[-1] - path[0]
-    side = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    side = np.eye(3)[int(np.argmin(np.abs(path[-1] - path[0])))]
     radii = np.full(len(path), radius)
     return swept(path, side, radii, radii, surface, n)
 
 
 def turn(
     meshes: Sequence[TexturedMesh], x: float = 0.0, y: float = 0.0, z: float = 0.0, yaw: float = 0.0, pitch: float = 0.0
-):
+) -> list[TexturedMesh]:
     """The meshes pitched about y (positive leans the top towards +x), turned by yaw about z, then shifted."""
     cy, sy, cp, sp = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch)
     pose = np.eye(4)
@@ -218,14 +227,14 @@ def joined(meshes: Sequence[TexturedMesh]) -> tuple[TexturedMesh, ...]:
         groups.setdefault((id(mesh.texture), mesh.emission), []).append(mesh)
     result = []
     for group in groups.values():
-        first = np.cumsum([0] + [len(mesh.vertices) for mesh in group[:-1]])
-        result.append(
-            TexturedMesh(
-                np.concatenate([mesh.vertices for mesh in group]),
-                np.concatenate([mesh.faces + start for mesh, start in zip(group, first, strict=True)]),
-                np.concatenate([mesh.texture_coordinates for mesh in group]),
-                group[0].texture,
-                group[0].emission,
-            )
-        )
+        vertices, faces = merged(group)
+        coordinates = np.concatenate([mesh.texture_coordinates for mesh in group])
+        result.append(TexturedMesh(vertices, faces, coordinates, group[0].texture, group[0].emission))
     return tuple(result)
+
+
+def merged(meshes: Sequence[TexturedMesh]) -> tuple[np.ndarray, np.ndarray]:
+    """All triangles of the meshes: vertices `(V, 3)`, faces `(F, 3)`."""
+    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
+    vertices = np.concatenate([mesh.vertices for mesh in meshes])
+    return vertices, np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)])

@@ -1,8 +1,4 @@
-"""Everything under data/room from one seed: the paper's stereo panoramas, exact boxes and poses, the semantic map.
-
-Everything is made beside its place and put there at the end: a run that is stopped leaves the old data as they were,
-and what was made goes, with the next run where this one was killed.
-"""
+"""Everything under data/room from one seed: the paper's stereo panoramas, exact boxes and poses, the semantic map."""
 
 from __future__ import annotations
 
@@ -13,8 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from course_lib.files import staging_dir
-from course_lib.simulation.data_folder import checksums, require_folder
-from course_lib.simulation.parameter_tables import parameter_tables
+from course_lib.simulation.data_folder import checksums, parameter_tables
 from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.stereo_photographs import photograph_pair, write_poses
@@ -24,8 +19,6 @@ from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, RigModel, assemble, stand_up
 
 PRODUCTS = ("experiment_1", "experiment_2", "semantic_map.json", "PARAMETERS.md", "SHA256SUMS")
-
-Progress = Callable[[Iterable], Iterable]
 
 
 @dataclass(frozen=True)
@@ -50,37 +43,35 @@ class RoomModels:
 
 
 def make_room_data(
-    out: str | Path, seed: int, models: RoomModels | None = None, progress: Progress = lambda items: items
+    out: str | Path,
+    seed: int,
+    models: RoomModels | None = None,
+    progress: Callable[[Iterable], Iterable] = lambda items: items,
 ) -> dict:
-    """Make the data in folder `out`; returns a summary. One seed gives one set of bytes.
+    """Make the data in folder `out`; return a summary. One seed gives one set of bytes.
 
-    progress(items) wraps the loop over the 40 pairs. Raises `ValueError` where `out` cannot be a folder.
+    progress(items) wraps the loop over the 40 pairs. A run that is stopped leaves the old data as they were.
     """
     models = models or RoomModels()
-    out = require_folder(out)
     survey_rng, rng = np.random.default_rng(seed).spawn(2)
     room = make_experiment_room()
     mount = None if models.rig.assembled_anew else assemble(models.rig, rng.spawn(1)[0])
+    baseline, heights = models.heights.baseline, {1: models.heights.upper_1, 2: models.heights.upper_2}
+    places = [place for place in MEASUREMENT_PLACES if place.place in models.places]
+    shots = [(experiment, place, turn) for experiment in heights for place in places for turn in range(2)]
+    lists: dict[int, list[dict]] = {experiment: [] for experiment in heights}
     with staging_dir(out, PRODUCTS) as folder:
         survey_room(room, models.survey, survey_rng).save(folder / "semantic_map.json")
-        shots = [
-            (experiment, upper_height, place, turn)
-            for experiment, upper_height in ((1, models.heights.upper_1), (2, models.heights.upper_2))
-            for place in MEASUREMENT_PLACES
-            if place.place in models.places
-            for turn in range(2)
-        ]
-        lists: dict[int, list[dict]] = {1: [], 2: []}
+        for experiment in heights:
+            (folder / f"experiment_{experiment}").mkdir()
         with PanoramaRenderer(room, models.width) as renderer:
-            for experiment, upper_height, place, turn in progress(shots):
-                (folder / f"experiment_{experiment}").mkdir(exist_ok=True)
-                name = f"{place.place:02d}_{'ab'[turn]}"
+            for experiment, place, turn in progress(shots):
                 heading = np.deg2rad(place.headings_deg[turn])
-                rig = stand_up(place.x, place.y, heading, upper_height, models.heights.baseline, models.rig, rng, mount)
-                entry = photograph_pair(renderer, rig, folder / f"experiment_{experiment}", name, models.camera, rng)
-                lists[experiment].append(entry)
+                rig = stand_up(place.x, place.y, heading, heights[experiment], baseline, models.rig, rng, mount)
+                name, where = f"{place.place:02d}_{'ab'[turn]}", folder / f"experiment_{experiment}"
+                lists[experiment].append(photograph_pair(renderer, rig, where, name, models.camera, rng))
         for experiment, entries in lists.items():
-            write_poses(folder / f"experiment_{experiment}", seed, models.width, models.heights.baseline, entries)
+            write_poses(folder / f"experiment_{experiment}", seed, models.width, baseline, entries)
         (folder / "PARAMETERS.md").write_text(parameter_tables(models, "room"))
         (folder / "SHA256SUMS").write_text(checksums(folder, PRODUCTS))
     return {"seed": seed, "pairs": sum(map(len, lists.values())), "objects": len(room.objects)}

@@ -2,22 +2,38 @@
 
 What the camera sees is cast against the room itself; the map is what a few registered scans of it gave, with noise,
 holes behind furniture, and decimation. The filter never sees the room.
+
+A person may carry the camera from place to place where the floor is free, and look about: all six degrees of freedom
+move. The room is small and its walls are bare, so that a camera that sees 44 degrees of it often sees nothing but a
+wall: harder than the corridor, and nobody shaped it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
+from numpy.random import Generator
 
+from course_lib.depth_mcl.sequence import write_sequence
+from course_lib.geometry import optical_pose, wrap_angle
+from course_lib.rendering.camera import DepthCamera
+from course_lib.simulation.corridor.mesh_building import write_ply
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
-from course_lib.simulation.room.footprints import free_places
+from course_lib.simulation.furniture.solids import merged
+from course_lib.simulation.room.footprints import NoFreePlace, clear_of, footprint, free_places
+from course_lib.simulation.room.look_alike_room import LookAlikeLimits, make_look_alike_room
 from course_lib.simulation.room.scene import Room
 from course_lib.simulation.sensors.laser_survey import ScannerModel, survey
 from course_lib.simulation.sensors.ray_casting import WorldCaster
+from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
+from course_lib.simulation.smooth_signal import smooth_signal, smoothed
 
 STREAM = 77  # joins a seed's generators of what the depth camera meets: apart from those of the photographs
-MAP, CAMERA, PLACE = 1, 2, 3  # streams of a seed: the mesh map's survey, the camera's fixed pattern, each place
+# Streams of a seed: the mesh map's survey, the camera's fixed pattern, each place, a walk, its camera.
+MAP, CAMERA, PLACE, WALK, WALK_CAMERA = range(1, 6)
+MAX_BEGINNINGS = 100
 REFLECTIVITY = 0.6  # of every surface, at 850 nm: textures say nothing of it (chosen: paint and cloth)
 
 
@@ -32,10 +48,7 @@ class DepthSurveyModel:
 
 def room_triangles(room: Room) -> tuple[np.ndarray, np.ndarray]:
     """All triangles of a room: vertices `(V, 3)` metres, faces `(F, 3)`."""
-    meshes = [*room.shell, *(mesh for thing in room.objects for mesh in thing.meshes)]
-    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
-    vertices = np.concatenate([mesh.vertices for mesh in meshes])
-    return vertices, np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)])
+    return merged([*room.shell, *(mesh for thing in room.objects for mesh in thing.meshes)])
 
 
 def depth_caster(room: Room) -> WorldCaster:
@@ -43,8 +56,98 @@ def depth_caster(room: Room) -> WorldCaster:
     return WorldCaster(*room_triangles(room), REFLECTIVITY)
 
 
-def surveyed_mesh(room: Room, model: DepthSurveyModel, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def surveyed_mesh(room: Room, model: DepthSurveyModel, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
     """The room's mesh map, vertices `(V, 3)` metres and faces `(F, 3)`, from scans at free places."""
     stations = tuple((float(x), float(y)) for x, y in free_places(room, model.stations, rng))
     scans = survey(depth_caster(room), model.scanner, rng, stations)
     return simplify(*fuse([scan.as_registered() for scan in scans], model.fusion), model.fusion)
+
+
+@dataclass(frozen=True)
+class WalkModel:
+    """How the camera is carried through a room."""
+
+    frames: int = 120  # number of frames; chosen
+    frames_per_second: float = 10.0  # frames per second; chosen, within the SR4000's rates
+    step: float = 0.08  # m between frames on a straight stretch; chosen: a slow walk
+    clearance: float = 0.25  # m from the way to furniture; chosen
+    shortest_stretch: float = 0.7  # m from one place to the next; chosen
+    rounding: float = 3.0  # frames over which corners of the way are rounded; chosen
+    turning: float = 6.0  # frames over which the way's direction is followed; chosen
+    height: float = 1.35  # m, camera above the floor; chosen: held before the chest
+    height_sway: float = 0.06  # m, one sigma; chosen
+    pitch_deg: float = 8.0  # degrees, mean pitch: it looks down a little; chosen
+    tilt_sway_deg: float = 6.0  # degrees, one sigma, of roll and pitch; chosen
+    look_deg: float = 20.0  # degrees, one sigma, of the view's turn from the way forward; chosen
+    sway_frames: float = 8.0  # frames over which the hand sways and the view turns; chosen
+
+
+@dataclass(frozen=True)
+class WalkModels:
+    """All parameters of a recorded walk."""
+
+    limits: LookAlikeLimits = field(default_factory=LookAlikeLimits)
+    mesh: DepthSurveyModel = field(default_factory=DepthSurveyModel)
+    camera: TimeOfFlightModel = field(default_factory=TimeOfFlightModel)
+    walk: WalkModel = field(default_factory=WalkModel)
+
+
+def record_walk(folder: Path, seed: int, models: WalkModels | None = None) -> None:
+    """Writes a seed's recording and its mesh map, map.ply, to a new `folder`. Same seed, same bytes.
+
+    Raises `ValueError` for a folder that holds a recording, `NoFreePlace` for a room in which nobody can walk.
+    """
+    models = models or WalkModels()
+    room = make_look_alike_room(seed, limits=models.limits)
+    vertices, faces = surveyed_mesh(room, models.mesh, np.random.default_rng([STREAM, seed, MAP]))
+    states = walk_states(room, models.walk, np.random.default_rng([STREAM, seed, WALK]))
+    pattern_rng, noise_rng = np.random.default_rng([STREAM, seed, WALK_CAMERA]).spawn(2)
+    sensor = TimeOfFlightCamera(DepthCamera.sr4000(), models.camera, pattern_rng)
+    caster = depth_caster(room)
+    depths = [sensor.capture(caster, state, noise_rng).depth for state in states]
+    times = np.arange(len(states)) / models.walk.frames_per_second
+    write_sequence(
+        folder, sensor.camera.matrix, list(range(len(states))), depths, optical_pose(states), times=times, up="z"
+    )
+    write_ply(folder / "map.ply", vertices, faces, "generated room, simulated laser survey; CC BY 4.0")
+
+
+def walk_states(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
+    """True states `(frames, 6)` of the camera. Raises `NoFreePlace` for a room in which nobody can walk."""
+    way = smoothed(_way(room, model, rng), model.rounding)
+    ahead = np.gradient(way, axis=0)
+    # The direction as a vector: at a turn on the spot an angle would jump.
+    ahead = smoothed(ahead / np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9), model.turning)
+    n = model.frames
+    heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
+    heading = smoothed(heading, model.turning) + np.deg2rad(model.look_deg) * smooth_signal(n, model.sway_frames, rng)
+    roll, pitch = (np.deg2rad(model.tilt_sway_deg) * smooth_signal(n, model.sway_frames, rng) for _ in range(2))
+    z = model.height + model.height_sway * smooth_signal(n, model.sway_frames, rng)
+    return np.column_stack([way, z, roll, np.deg2rad(model.pitch_deg) + pitch, wrap_angle(heading)])
+
+
+def _way(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
+    """Places `(frames, 2)` on straight stretches between free places, each clear of the furniture."""
+    footprints = [footprint(item) for item in room.objects]
+    for _ in range(MAX_BEGINNINGS):
+        here = free_places(room, 1, rng)[0]
+        stretches, count = [here[None]], 1
+        while count < model.frames:
+            there = next((p for p in free_places(room, 200, rng) if _can_go(here, p, footprints, model)), None)
+            if there is None:
+                break  # a dead end: the walk begins anew elsewhere
+            steps = int(np.ceil(np.linalg.norm(there - here) / model.step))
+            stretches.append(here + (there - here) * (np.arange(1, steps + 1) / steps)[:, None])
+            here, count = there, count + steps
+        else:
+            return np.concatenate(stretches)[: model.frames]
+    raise NoFreePlace(
+        f"from none of {MAX_BEGINNINGS} places a walk of {model.frames} frames leads on, {model.clearance} m clear of "
+        "the furniture; ask for less clearance or shorter stretches"
+    )
+
+
+def _can_go(here: np.ndarray, there: np.ndarray, footprints: list[np.ndarray], model: WalkModel) -> bool:
+    between = here + (there - here) * np.linspace(0, 1, 50)[:, None]
+    far = np.linalg.norm(there - here) >= model.shortest_stretch
+    return bool(far and clear_of(footprints, between, model.clearance).all())

@@ -11,22 +11,21 @@ Source: paper 2, section 3 (table 1, figure 7)
 from __future__ import annotations
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation import prints, textures
 from course_lib.simulation.furniture.cabinet import Cabinet, build_cabinet
 from course_lib.simulation.furniture.chair import Chair, build_chair
-from course_lib.simulation.furniture.piece import Piece
 from course_lib.simulation.furniture.plant import Plant, build_plant
 from course_lib.simulation.furniture.refrigerator import Refrigerator, build_refrigerator
 from course_lib.simulation.furniture.sofa import Sofa, build_sofa
-from course_lib.simulation.furniture.solids import joined
+from course_lib.simulation.furniture.solids import Piece, joined
 from course_lib.simulation.furniture.table import Table, build_table
 from course_lib.simulation.furniture.television import Television, build_television
 from course_lib.simulation.room import shell as room_shell
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.scene import Lamp, Room
-from course_lib.simulation.textured_mesh import TexturedMesh
-from course_lib.simulation.textures import Surface, cloth, colour, metal, wood
+from course_lib.simulation.textures import Surface, TexturedMesh, cloth, colour, metal, wood
 
 LOW, HIGH = (-0.45, -0.55), (5.65, 5.5)  # metres, map frame: south-west and north-east corner of the floor
 HEIGHT = 2.7  # metres
@@ -53,14 +52,14 @@ LAYOUT = (
 )
 
 
-def _sofa(rng: np.random.Generator, hue: float) -> Piece:
+def _sofa(rng: Generator, hue: float) -> Piece:
     cover = cloth(rng, colour(hue, 62, 62), "tartan", size=0.9, pixels=512)
     legs = wood(rng, colour(22, 60, 30), 0.4, 128)
     shape = Sofa(1.5, 0.8, 0.42, 0.8, "box", arm_width=0.28, arm_height=0.58, leg_height=0.07, seats=2)
     return build_sofa(shape, cover, cover, legs, cover)
 
 
-def _chairs(rng: np.random.Generator) -> dict[str, Piece]:
+def _chairs(rng: Generator) -> dict[str, Piece]:
     red, green, blue = (
         (cloth(rng, colour(hue, 78, value), "lattice", size=0.4), wood(rng, colour(hue, 72, 0.8 * value), 0.5))
         for hue, value in ((4, 75), (98, 62), (222, 72))
@@ -72,18 +71,15 @@ def _chairs(rng: np.random.Generator) -> dict[str, Piece]:
     }
 
 
-def _tables(rng: np.random.Generator) -> dict[str, Piece]:
+def _tables(rng: Generator) -> dict[str, Piece]:
     oak, blue = wood(rng, colour(30, 68, 78), 0.9, 512), wood(rng, colour(208, 60, 55), 0.6)
     spread = cloth(rng, colour(205, 66, 74), "tartan", size=0.7, pixels=512)
     square = Table(0.8, 1.1, 0.72, base="legs", thickness=0.07, apron=0.17, leg=0.11)
     rounded = Table(0.85, 0.85, 0.7, round=True, base="pedestal", thickness=0.03, cloth=0.45)
-    return {
-        "wooden table": build_table(square, oak, oak, oak),
-        "blue table": build_table(rounded, blue, blue, spread),
-    }
+    return {"wooden table": build_table(square, oak, oak, oak), "blue table": build_table(rounded, blue, blue, spread)}
 
 
-def _plants(rng: np.random.Generator) -> dict[str, Piece]:
+def _plants(rng: Generator) -> dict[str, Piece]:
     earth = textures.carpet(rng, colour(28, 45, 22), 0.5, 128)
     pieces = {}
     for name, hue, pot_hue, shape in (
@@ -97,7 +93,7 @@ def _plants(rng: np.random.Generator) -> dict[str, Piece]:
     return pieces
 
 
-def _cabinets(rng: np.random.Generator) -> dict[str, Piece]:
+def _cabinets(rng: Generator) -> dict[str, Piece]:
     brass = metal(rng, colour(45, 45, 75), 0.3, 128)
     mahogany = wood(rng, colour(8, 72, 62), 0.9, 512)
     teal, dark_teal = wood(rng, colour(178, 62, 66), 0.9, 512), wood(rng, colour(182, 66, 50), 0.9)
@@ -110,7 +106,7 @@ def _cabinets(rng: np.random.Generator) -> dict[str, Piece]:
     }
 
 
-def _pieces(rng: np.random.Generator) -> dict[str, Piece]:
+def _pieces(rng: Generator) -> dict[str, Piece]:
     """All furniture by the names in LAYOUT."""
     steel, dark = metal(rng, (0.7, 0.72, 0.74), 0.3, 128), metal(rng, (0.13, 0.13, 0.14), 0.4, 128)
     notes = [prints.label(rng, 0.15, 0.2) for _ in range(3)]
@@ -130,7 +126,7 @@ def _pieces(rng: np.random.Generator) -> dict[str, Piece]:
     }
 
 
-def _shell(rng: np.random.Generator) -> tuple[TexturedMesh, ...]:
+def _shell(rng: Generator) -> tuple[TexturedMesh, ...]:
     """Parquet, striped walls, two windows, a door, pictures, two lamps, a rug and a bin."""
     south, east, north, west = room_shell.walls_of(LOW, HIGH)
     trim = wood(rng, colour(35, 14, 92), 0.6, 128)

@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from course_lib.files import staging_dir
-from course_lib.simulation.corridor.mesh_files import write_ply
-from course_lib.simulation.data_folder import checksums, require_folder
-from course_lib.simulation.parameter_tables import parameter_table
+from course_lib.simulation.corridor.mesh_building import write_ply
+from course_lib.simulation.data_folder import checksums, parameter_table
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh
 from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightModel
@@ -33,11 +32,8 @@ class FinaleModels:
 
 
 def make_finale_data(out: str | Path, seed: int, models: FinaleModels | None = None) -> dict:
-    """Makes the data in folder `out`; returns a summary. One seed gives one set of bytes.
-
-    Raises `ValueError` where `out` cannot be a folder.
-    """
-    models, out = models or FinaleModels(), require_folder(out)
+    """Make the data in folder `out`; return a summary. One seed gives one set of bytes."""
+    models = models or FinaleModels()
     with staging_dir(out, PRODUCTS) as folder:
         room, semantic_map = surveyed_room(seed, models.recording)
         semantic_map.save(folder / "semantic_map.json")
@@ -50,7 +46,7 @@ def make_finale_data(out: str | Path, seed: int, models: FinaleModels | None = N
 
 def finale_parameters(models: FinaleModels) -> str:
     """PARAMETERS.md: the tables of all models, from their source text."""
-    recording, mesh = models.recording, models.mesh
-    parts = (recording.limits, recording.rig, recording.camera, recording.survey, mesh.scanner, mesh.fusion)
+    one, mesh = models.recording, models.mesh
+    parts = (one.limits, one.rig, one.camera, one.survey, mesh.scanner, mesh.fusion, models.depth_camera)
     head = "# Parameters of the finale's room\n\nWritten by `make-data finale` from the models' source text.\n"
-    return "\n".join([head, *map(parameter_table, (*parts, models.depth_camera))])
+    return "\n".join([head, *map(parameter_table, parts)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.room.scene import Room, RoomObject
 
@@ -51,7 +52,7 @@ class NoFreePlace(ValueError):
     """The room has not enough space where a rig can stand."""
 
 
-def free_places(room: Room, n: int, rng: np.random.Generator, clearance: float = 0.3, wall: float = 0.5) -> np.ndarray:
+def free_places(room: Room, n: int, rng: Generator, clearance: float = 0.3, wall: float = 0.5) -> np.ndarray:
     """Places `(n, 2)` at least clearance from every object's footprint and wall from every wall; metres.
 
     The room is a rectangle along the world's axes. Raises NoFreePlace when 500 n random places do not hold n free ones.

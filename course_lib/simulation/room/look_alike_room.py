@@ -12,14 +12,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.furniture import RANDOM_PIECES
-from course_lib.simulation.room.furnishing import Plan, add_piece, add_television, empty_room, furnished_room
-from course_lib.simulation.room.random_shell import Shell
+from course_lib.simulation.room.furnishing import add_piece, add_television
 from course_lib.simulation.room.scene import Room
+from course_lib.simulation.room.shell import Plan, random_shell
 
 STREAM = 0x100A11E  # joins every seed, so that no random number of these rooms is one of make_room's
-MOST_DRAWS = 100  # rooms drawn for one seed before giving up; chosen
+MAX_DRAWS = 100  # rooms drawn for one seed before giving up; chosen
 
 
 @dataclass(frozen=True)
@@ -46,16 +47,15 @@ def make_look_alike_room(seed: int, draw: int = 0, limits: LookAlikeLimits = Loo
     look-alikes, or too many of whose other pieces, find no place is drawn again.
     Raises `NoRoomDrawn` when that never ends, for limits that ask for too much.
     """
-    for rng in np.random.default_rng([STREAM, seed, draw]).spawn(MOST_DRAWS):
-        low, high = np.zeros(2), rng.uniform(*limits.side, 2)
-        height = float(rng.uniform(*limits.height))
-        shell, plan = empty_room(rng, low, high, height)
-        if _furnish(rng, plan, shell, limits):
-            return furnished_room(shell, plan, height)
-    raise NoRoomDrawn(f"seed {seed}: in {MOST_DRAWS} rooms the furniture found no place; ask for fewer or larger ones")
+    for rng in np.random.default_rng([STREAM, seed, draw]).spawn(MAX_DRAWS):
+        high = rng.uniform(*limits.side, 2)
+        plan = random_shell(rng, np.zeros(2), high, float(rng.uniform(*limits.height)))
+        if _furnish(rng, plan, limits):
+            return plan.room()
+    raise NoRoomDrawn(f"seed {seed}: in {MAX_DRAWS} rooms the furniture found no place; ask for fewer or larger ones")
 
 
-def _furnish(rng: np.random.Generator, plan: Plan, shell: Shell, limits: LookAlikeLimits) -> bool:
+def _furnish(rng: Generator, plan: Plan, limits: LookAlikeLimits) -> bool:
     """Places the look-alikes, then the others; says whether enough of them found a place."""
     kind = str(rng.choice(limits.kinds))
     piece = RANDOM_PIECES[kind](rng)
@@ -67,7 +67,7 @@ def _furnish(rng: np.random.Generator, plan: Plan, shell: Shell, limits: LookAli
     n = int(rng.integers(limits.others[0], limits.others[1] + 1))
     for label in rng.permutation(classes)[:n]:
         if label == "television":
-            add_television(rng, plan, shell)
+            add_television(rng, plan)
         else:
             add_piece(rng, plan, RANDOM_PIECES[str(label)](rng))
     return len(plan.objects) - alike >= limits.fewest_others

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from course_lib.simulation.textured_mesh import TexturedMesh
+from course_lib.simulation.textures import TexturedMesh
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,23 @@
 """What a room is apart from its listed furniture: floor, walls, windows, door, pictures, lamps, and small things.
 
 The semantic map lists none of it; the small things (boxes, bins, rugs, curtains) are there so that a detector meets
-objects that are not of its classes. Everything that stands on the floor stays within 0.45 m of a wall.
+objects that are not of its classes. Everything that stands on the floor stays within 0.45 m of a wall. `random_shell`
+draws all of it from random numbers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.random import Generator
 
-from course_lib.simulation.furniture.solids import box, cylinder, grid_faces, lathe, panel, rod, textured, turn
-from course_lib.simulation.textured_mesh import TexturedMesh
-from course_lib.simulation.textures import Surface
+from course_lib.simulation import prints, textures
+from course_lib.simulation.furniture.solids import box, cylinder, grid_faces, joined, lathe, panel, rod, textured, turn
+from course_lib.simulation.room.footprints import clear_of, overlap, rectangle
+from course_lib.simulation.room.scene import Lamp, Room, RoomObject
+from course_lib.simulation.textures import Surface, TexturedMesh, colour, random_colour
 
 WALL_CELL = 0.5  # metres: longest edge of a wall's cell
 LIFT = 0.004  # metres between two faces that would otherwise lie in one plane
@@ -37,17 +41,13 @@ class Wall:
 def walls_of(low: Sequence[float], high: Sequence[float]) -> list[Wall]:
     """The four walls of the rectangle low to high: south (y = low), east, north, west, seen from inside."""
     (x0, y0), (x1, y1) = low, high
-    corners = [
-        ((x1, y0), (-1, 0), (0, 1)),
-        ((x1, y1), (0, -1), (-1, 0)),
-        ((x0, y1), (1, 0), (0, -1)),
-        ((x0, y0), (0, 1), (1, 0)),
+    sides = [
+        ((x1, y0), (-1, 0), (0, 1), x1 - x0),
+        ((x1, y1), (0, -1), (-1, 0), y1 - y0),
+        ((x0, y1), (1, 0), (0, -1), x1 - x0),
+        ((x0, y0), (0, 1), (1, 0), y1 - y0),
     ]
-    lengths = [x1 - x0, y1 - y0, x1 - x0, y1 - y0]
-    return [
-        Wall(np.array(start, float), np.array(along, float), np.array(inward, float), float(length))
-        for (start, along, inward), length in zip(corners, lengths, strict=True)
-    ]
+    return [Wall(*(np.array(vector, float) for vector in vectors), float(length)) for *vectors, length in sides]
 
 
 def bare_room(
@@ -110,9 +110,8 @@ def door(wall: Wall, s: float, leaf: Surface, frame: Surface, knob: Surface) -> 
     for y in (-0.465, 0.465):
         parts += box((0.05, 0.08, 2.09), (0.025, y, 1.045), frame)
     parts += box((0.05, 0.85, 0.08), (0.025, 0, 2.05), frame)
-    parts += rod([(0.075, 0.25, 1.02), (0.075, 0.37, 1.02)], 0.012, knob) + rod(
-        [(0.03, 0.37, 1.02), (0.075, 0.37, 1.02)], 0.01, knob
-    )
+    parts += rod([(0.075, 0.25, 1.02), (0.075, 0.37, 1.02)], 0.012, knob)
+    parts += rod([(0.03, 0.37, 1.02), (0.075, 0.37, 1.02)], 0.01, knob)
     return turn(parts, **wall.pose(s))
 
 
@@ -159,3 +158,188 @@ def floor_lamp(wall: Wall, s: float, height: float, pole: Surface, shade: Surfac
     parts = cylinder(0.13, 0.03, (x, 0, 0), pole, n=18) + rod([(x, 0, 0.02), (x, 0, height - 0.1)], 0.012, pole)
     parts += lathe([(0, 0), (0.18, 0), (0.11, 0.25), (0, 0.25)], (x, 0, height - 0.25), shade, 20)
     return turn(parts, **wall.pose(s))
+
+
+GAP = 0.06  # metres between two footprints
+
+
+@dataclass
+class Plan:
+    """A room while it is being made: from the floor's corner low to high `(2,)`, with a ceiling at height, metres.
+
+    meshes: of the plan. lamps: the lights. taken: rectangles `(4, 2)` on which nothing else may stand. spans: for each
+    of the four walls, the stretches (from, to) in metres along it that windows, the door and pictures cover.
+    probes: places of which some must stay free for a rig. objects: the furniture. tables: their rectangles.
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+    height: float
+    walls: list[Wall]
+    meshes: list[TexturedMesh]
+    lamps: list[Lamp] = field(default_factory=list)
+    taken: list[np.ndarray] = field(default_factory=list)
+    spans: list[list[tuple[float, float]]] = field(default_factory=lambda: [[], [], [], []])
+    ambient: tuple[float, float, float] = (0.35, 0.35, 0.35)
+    probes: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+    objects: list[RoomObject] = field(default_factory=list)
+    tables: list[np.ndarray] = field(default_factory=list)
+
+    def fits(self, corners: np.ndarray, gap: float = GAP) -> bool:
+        """Whether the rectangle lies inside the walls and apart from all others."""
+        inside = (corners.min(axis=0) >= self.low + 0.005).all() and (corners.max(axis=0) <= self.high - 0.005).all()
+        return bool(inside) and not any(overlap(corners, other, gap) for other in self.taken)
+
+    def leaves_space(self, corners: np.ndarray) -> bool:
+        """Whether one probe in 40 stays free when the rectangle is taken."""
+        return clear_of([*self.taken, corners], self.probes, 0.35).sum() * 40 >= len(self.probes)
+
+    def room(self) -> Room:
+        """The room with the furniture that the plan holds."""
+        (x0, y0), (x1, y1) = self.low, self.high
+        walls = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)
+        parts = tuple(self.objects), tuple(self.meshes), tuple(self.lamps)
+        return Room(walls, self.height, *parts, self.ambient)
+
+
+def free_stretch(rng: Generator, wall: Wall, spans: list[tuple[float, float]], width: float) -> float | None:
+    """Where along the wall something of this width fits beside what hangs there already: its middle, or None."""
+    half = width / 2 + 0.06
+    if wall.length < 2 * half + 0.1:
+        return None
+    for _ in range(30):
+        s = float(rng.uniform(half, wall.length - half))
+        if all(s + half <= start or s - half >= end for start, end in spans):
+            spans.append((s - half, s + half))
+            return s
+    return None
+
+
+def _floor(rng: Generator) -> Surface:
+    kind = rng.integers(3)
+    if kind == 0:
+        timber = colour(rng.uniform(15, 45), rng.uniform(20, 65), rng.uniform(35, 85))
+        return textures.wood(rng, timber, 1.6, 512, boards=int(rng.integers(8, 16)))
+    if kind == 1:
+        return textures.tiles(rng, random_colour(rng, (0, 35), (40, 90)), count=int(rng.integers(2, 6)))
+    return textures.carpet(rng, random_colour(rng, (0, 60), (25, 80)))
+
+
+def _papers(rng: Generator) -> list[Surface]:
+    """Four walls: all alike, or one wall that differs."""
+
+    def one() -> Surface:
+        rgb = random_colour(rng, (0, 40), (60, 97))
+        return textures.wallpaper(rng, rgb) if rng.random() < 0.45 else textures.plaster(rng, rgb)
+
+    papers = [one()] * 4
+    if rng.random() < 0.5:
+        papers[int(rng.integers(4))] = one()
+    return papers
+
+
+def _small_things(rng: Generator, wall: Wall) -> tuple[list[TexturedMesh], np.ndarray]:
+    """One carton, bin or standing lamp by the wall, and the rectangle it stands on."""
+    s = float(rng.uniform(0.35, wall.length - 0.35))
+    kind = rng.integers(3)
+    if kind == 0:
+        size = rng.uniform((0.2, 0.25, 0.15), (0.4, 0.5, 0.45))
+        brown = textures.cloth(rng, random_colour(rng, (15, 60), (40, 85)), "blotches", size=0.5, pixels=128)
+        meshes = carton(wall, s, size, brown, prints.label(rng, 0.2, 0.15))
+    elif kind == 1:
+        side = textures.ceramic(rng, random_colour(rng, (0, 80), (20, 95)), pixels=128)
+        meshes = waste_bin(wall, s, float(rng.uniform(0.11, 0.17)), float(rng.uniform(0.22, 0.4)), side)
+    else:
+        pole = textures.metal(rng, random_colour(rng, (0, 30), (10, 80)), 0.3, 64)
+        shade = Surface(textures.cloth(rng, colour(40, 25, 95), size=0.4, pixels=128).image, (0.4, 0.4), 0.75)
+        meshes = floor_lamp(wall, s, float(rng.uniform(1.2, 1.7)), pole, shade)
+    pose = wall.pose(s, out=0.22)
+    return meshes, rectangle(pose["x"], pose["y"], pose["yaw"], 0.45, 0.52)
+
+
+def _add_window(rng: Generator, plan: Plan, index: int, trim: Surface) -> None:
+    """A window, its daylight, and in six of ten cases curtains."""
+    wall, width, tall = plan.walls[index], float(rng.uniform(0.9, 1.9)), float(rng.uniform(0.9, 1.3))
+    s, sill = float(rng.uniform(1.5, wall.length - 1.5)), float(rng.uniform(0.75, 1.0))
+    plan.meshes += window(wall, s, width, tall, sill, prints.window_view(rng, width, tall), trim)
+    reach = width / 2 + 0.1
+    if rng.random() < 0.6:
+        pattern = str(rng.choice(textures.CLOTH_PATTERNS))
+        cover = textures.cloth(rng, random_colour(rng), pattern, random_colour(rng))
+        for sign in (-1.0, 1.0):
+            plan.meshes += curtain(wall, s + sign * (width / 2 + 0.12), 0.4, sill + tall + 0.12, cover)
+        reach = width / 2 + 0.42
+    plan.spans[index].append((s - reach, s + reach))
+    pose = wall.pose(s, sill + tall / 2, out=0.5)
+    day = colour(rng.uniform(190, 230), rng.uniform(0, 12), 100)
+    plan.lamps.append(Lamp((pose["x"], pose["y"], pose["z"]), day, float(rng.uniform(0.6, 1.6))))
+
+
+def _add_door(rng: Generator, plan: Plan, index: int, trim: Surface) -> None:
+    """A door, and the floor before it kept free."""
+    wall = plan.walls[index]
+    s = float(rng.uniform(0.7, wall.length - 0.7))
+    leaf = textures.wood(rng, random_colour(rng, (0, 60), (35, 97)), 1.0)
+    knob = textures.metal(rng, (0.75, 0.72, 0.6), 0.3, 64)
+    plan.meshes += door(wall, s, leaf.turned(), trim, knob)
+    plan.spans[index].append((s - 0.55, s + 0.55))
+    pose = wall.pose(s, out=0.35)
+    plan.taken.append(rectangle(pose["x"], pose["y"], pose["yaw"], 0.7, 0.9))
+
+
+def _add_pictures(rng: Generator, plan: Plan, trim: Surface) -> None:
+    """One to five pictures beside windows and door."""
+    for index in rng.integers(0, 4, int(rng.integers(1, 6))):
+        wall, width = plan.walls[int(index)], float(rng.uniform(0.3, 0.9))
+        s = free_stretch(rng, wall, plan.spans[int(index)], width + 0.06)
+        if s is not None:
+            print_ = prints.picture(rng, width, float(width * rng.uniform(0.6, 1.4)), pixels=160)
+            plan.meshes += framed_picture(wall, s, float(rng.uniform(1.4, 1.65)), print_, trim)
+
+
+def _add_ceiling_lamps(rng: Generator, plan: Plan) -> None:
+    """One, two or four lamps that share the light between them."""
+    tint = colour(rng.uniform(25, 60), rng.uniform(0, 22), 100)
+    glow = textures.glow(tint)
+    columns, rows = ((1, 1), (1, 1), (2, 1), (1, 2), (2, 2))[int(rng.integers(5))]
+    radius, drop = float(rng.uniform(0.12, 0.28)), float(rng.uniform(0.12, 0.4))
+    strength = float(rng.uniform(1.6, 3.2) / np.sqrt(columns * rows))
+    for i in range(columns):
+        for j in range(rows):
+            x, y = (float(v) for v in plan.low + (plan.high - plan.low) * ((i + 0.5) / columns, (j + 0.5) / rows))
+            plan.meshes += ceiling_lamp(x, y, plan.height, radius, glow, drop)
+            plan.lamps.append(Lamp((x, y, plan.height - drop - 0.15), tint, strength))
+
+
+def _add_rug(rng: Generator, plan: Plan) -> None:
+    x, y = (float(v) for v in rng.uniform(plan.low + 1.2, plan.high - 1.2))
+    pattern = str(rng.choice(("stripes", "checks", "dots", "blotches")))
+    cover = textures.cloth(rng, random_colour(rng), pattern, random_colour(rng), 1.2, 512)
+    length, width = (float(v) for v in rng.uniform((1.0, 0.7), (2.0, 1.4)))
+    plan.meshes += rug(x, y, float(rng.integers(2) * np.pi / 2), length, width, cover)
+
+
+def random_shell(rng: Generator, low: np.ndarray, high: np.ndarray, height: float) -> Plan:
+    """A room without furniture, low to high `(2,)`, metres: all that the semantic map does not list."""
+    trim = textures.wood(rng, random_colour(rng, (0, 45), (30, 97)), 0.6, 128)
+    ceiling = textures.plaster(rng, random_colour(rng, (0, 8), (85, 98)), 2.0, 256)
+    bare = bare_room(low, high, height, _papers(rng), _floor(rng), ceiling, trim)
+    plan = Plan(low, high, height, walls_of(low, high), bare)
+    order = [int(index) for index in rng.permutation(4)]
+    for index in order[: int(rng.integers(1, 3))]:
+        _add_window(rng, plan, index, trim)
+    _add_door(rng, plan, order[2], trim)
+    _add_pictures(rng, plan, trim)
+    _add_ceiling_lamps(rng, plan)
+    if rng.random() < 0.6:
+        _add_rug(rng, plan)
+    for index in rng.integers(0, 4, int(rng.integers(0, 4))):
+        things, corners = _small_things(rng, plan.walls[int(index)])
+        if not any(overlap(corners, other) for other in plan.taken):
+            plan.meshes += things
+            plan.taken.append(corners)
+    warm = np.asarray(colour(rng.uniform(20, 60), rng.uniform(0, 8), 100)) * rng.uniform(0.28, 0.45)
+    plan.ambient = tuple(float(channel) for channel in warm)
+    plan.meshes = list(joined(plan.meshes))
+    plan.probes = rng.uniform(low + 0.5, high - 0.5, (400, 2))
+    return plan

@@ -1,26 +1,86 @@
-"""A room photographed by a rig: pairs of panoramas with exact boxes, written as a recording that the methods read."""
+"""The exact boxes of a room's objects on a panorama, and a room photographed by a rig with them, as a recording.
+
+The boxes, seen and unoccluded, come from pictures of object numbers.
+"""
 
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.random import Generator
 
-from course_lib.simulation.room.object_boxes import object_boxes
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
-from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
+from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import RigPose
 from course_lib.spherical_stereo.recording import POSES_FILE, VERSION
 
+Box = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class ObjectBox:
+    """Where one object is on a panorama.
+
+    number: index into `room.objects`. visible_box: around the pixels that show it. unoccluded_box: around the pixels
+    that would show it if nothing stood before it. visible_fraction: the first pixels' number over the second's. Boxes
+    are (u_min, v_min, u_max, v_max) in edge coordinates, 0 <= u_min < width; u_max passes the width at the seam.
+    """
+
+    number: int
+    label: str
+    visible_box: Box
+    unoccluded_box: Box
+    visible_fraction: float
+
+    def as_dict(self) -> dict:
+        """For JSON: plain lists and numbers, boxes to a hundredth of a pixel."""
+        return {
+            "object": self.number,
+            "label": self.label,
+            "visible_box": [round(value, 2) for value in self.visible_box],
+            "unoccluded_box": [round(value, 2) for value in self.unoccluded_box],
+            "visible_fraction": round(self.visible_fraction, 4),
+        }
+
+
+def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[ObjectBox]:
+    """The boxes of all objects of which at least one pixel is seen, in the order of `room.objects`.
+
+    state: `(6,)` pose of the camera, metres and radians.
+    """
+    numbers = renderer.render_objects(state)
+    scale = numbers.shape[1] / renderer.width
+    boxes = []
+    for number in np.flatnonzero(np.bincount(numbers.ravel(), minlength=BACKGROUND + 1)[:BACKGROUND]):
+        visible = numbers == number
+        whole = renderer.render_alone(state, int(number)) | visible
+        label, share = renderer.room.objects[number].label, float(visible.sum() / whole.sum())
+        boxes.append(ObjectBox(int(number), label, box_around(visible, scale), box_around(whole, scale), share))
+    return boxes
+
+
+def box_around(mask: np.ndarray, scale: float = 1.0) -> Box:
+    """The narrowest box around the True pixels of a panorama, across the seam where that is narrower.
+
+    mask: `(h, w)` bool, at least one pixel True. scale: mask pixels per image pixel. Returns edge coordinates in image
+    pixels.
+    """
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    width = mask.shape[1]
+    # The box leaves out the widest run of empty columns on the circle.
+    widest = int(np.argmax(np.diff(columns, append=columns[0] + width)))
+    u_min = columns[(widest + 1) % len(columns)]
+    u_max = columns[widest] + 1
+    if u_max <= u_min:
+        u_max += width
+    return (float(u_min / scale), float(rows[0] / scale), float(u_max / scale), float((rows[-1] + 1) / scale))
+
 
 def photograph_pair(
-    renderer: PanoramaRenderer,
-    rig: RigPose,
-    folder: Path,
-    name: str,
-    camera: PanoramaCameraModel,
-    rng: np.random.Generator,
+    renderer: PanoramaRenderer, rig: RigPose, folder: Path, name: str, camera: PanoramaCameraModel, rng: Generator
 ) -> dict:
     """Both panoramas of a rig, written to the folder as NAME_upper.jpg and NAME_lower.jpg; returns their entry.
 
@@ -36,12 +96,6 @@ def photograph_pair(
 
 def write_poses(folder: Path, seed: int, width: int, baseline: float, entries: list[dict]) -> None:
     """The poses.json of a recording. width: of the panoramas, pixels. baseline: metres, as told to the method."""
-    content = {
-        "version": VERSION,
-        "seed": seed,
-        "width": width,
-        "height": width // 2,
-        "baseline": baseline,
-        "pairs": entries,
-    }
+    size = {"width": width, "height": width // 2}
+    content = {"version": VERSION, "seed": seed, **size, "baseline": baseline, "pairs": entries}
     (folder / POSES_FILE).write_text(json.dumps(content) + "\n")

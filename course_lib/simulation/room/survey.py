@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.geometry import circular_mean
 from course_lib.simulation.room.footprints import free_places
@@ -36,18 +37,15 @@ class UnseenObject(ValueError):
     """An object that is seen from none of the survey's places."""
 
 
-def survey_room(room: Room, model: RoomSurveyModel, rng: np.random.Generator) -> SemanticMap:
+def survey_room(room: Room, model: RoomSurveyModel, rng: Generator) -> SemanticMap:
     """The semantic map of a room: class, centroid, hue and saturation of the whole object, and the walls.
 
     Hue and saturation are means over all pixels that show the object, and over the places that see it well.
     Raises `UnseenObject` for an object that no place sees.
     """
-    lamps = tuple(
-        Lamp(lamp.position, tuple(np.multiply(lamp.colour, model.lamp_colour)), lamp.strength * model.lamp_gain)
-        for lamp in room.lamps
-    )
-    lit = replace(room, lamps=lamps, ambient=tuple(np.multiply(room.ambient, model.lamp_colour)))
-    colours = _photographed_colours(lit, model, rng)
+    colour = np.asarray(model.lamp_colour)
+    lamps = tuple(Lamp(one.position, tuple(colour * one.colour), one.strength * model.lamp_gain) for one in room.lamps)
+    colours = _photographed_colours(replace(room, lamps=lamps, ambient=tuple(colour * room.ambient)), model, rng)
     landmarks = []
     for number, thing in enumerate(room.objects):
         if not colours[number]:
@@ -61,7 +59,8 @@ def survey_room(room: Room, model: RoomSurveyModel, rng: np.random.Generator) ->
     return SemanticMap(tuple(landmarks), walls=np.asarray(room.walls, float))
 
 
-def _photographed_colours(room: Room, model: RoomSurveyModel, rng: np.random.Generator) -> list[list]:
+def _photographed_colours(room: Room, model: RoomSurveyModel, rng: Generator) -> list[list]:
+    """For every object its (hue, saturation) from each place that sees it well."""
     colours: list[list] = [[] for _ in room.objects]
     with PanoramaRenderer(room, model.width, number_scale=1) as renderer:
         for x, y in free_places(room, model.places, rng):
@@ -76,10 +75,10 @@ def _photographed_colours(room: Room, model: RoomSurveyModel, rng: np.random.Gen
 
 
 def _mean_colour(colours: list[tuple[float, float]]) -> tuple[float, float]:
+    """The mean; an object that is grey from most places has no hue (nan)."""
     hues, saturations = np.array(colours).T
-    coloured = np.isfinite(hues)
-    # Seen as grey from most places: grey.
+    saturation, coloured = round(float(saturations.mean()), 1), np.isfinite(hues)
     if coloured.sum() * 2 < len(hues):
-        return float("nan"), round(float(saturations.mean()), 1)
+        return float("nan"), saturation
     hue = np.rad2deg(circular_mean(np.deg2rad(hues[coloured]), saturations[coloured])) % 360.0
-    return round(float(hue), 1) % 360.0, round(float(saturations.mean()), 1)
+    return round(float(hue), 1) % 360.0, saturation

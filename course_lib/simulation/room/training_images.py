@@ -14,8 +14,8 @@ import numpy as np
 
 from course_lib.files import atomic_write, read_json
 from course_lib.simulation.room.footprints import free_places
-from course_lib.simulation.room.object_boxes import object_boxes
-from course_lib.simulation.room.random_room import make_room
+from course_lib.simulation.room.furnishing import make_room
+from course_lib.simulation.room.stereo_photographs import object_boxes
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, stand_up
@@ -51,13 +51,8 @@ def make_room_images(
     Writes NNNNNN_K.jpg (room, photograph) and boxes.json, which is complete after every room. A room depends on its
     seed alone; its photographs depend on images_per_room too, because the places of all of them are drawn first.
     Returns the list of images as boxes.json holds it.
-    Raises `ValueError` for numbers below one, `OtherImagesPerRoom` for a folder begun with another number of images.
+    Raises `OtherImagesPerRoom` for a folder begun with another number of images.
     """
-    if n_rooms < 1 or images_per_room < 1 or first_seed < 0:
-        raise ValueError(
-            f"rooms {n_rooms}, images per room {images_per_room}, first seed {first_seed}: expected at least one room, "
-            "one image each, and a seed that is not negative."
-        )
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     images = read_image_list(folder) if (folder / BOXES_FILE).exists() else []
@@ -69,34 +64,28 @@ def make_room_images(
                 "go on with the same number, or give another folder."
             )
     for seed in progress(range(first_seed, first_seed + n_rooms)):
-        if seed in done:
-            continue
-        images += _photograph_room(folder, seed, images_per_room)
-        _write_image_list(folder, images)
+        if seed not in done:
+            images += _photograph_room(folder, seed, images_per_room)
+            atomic_write(folder / BOXES_FILE, json.dumps({"version": VERSION, "images": images}))
     return images
 
 
 def read_image_list(folder: str | Path) -> list[dict]:
     """The images of a folder with their objects, from its boxes.json.
 
-    Raises `FileNotFoundError` where there is none, `ValueError` for another version, and for a field that is missing or
-    of another kind: the message says of which image.
+    Raises `FileNotFoundError` if there is none, `ValueError` for another version or a field that cannot be read.
     """
     path = Path(folder) / BOXES_FILE
     content = read_json(path, "list of images", ValueError, missing=FileNotFoundError)
-    version = content.get("version") if isinstance(content, dict) else None
-    if version != VERSION:
-        raise ValueError(f"{path} has version {version!r}; this program reads version {VERSION}.")
-    if not isinstance(content.get("images"), list):
-        raise ValueError(f"{path} must have a list of images; got {content.get('images')!r}")
-    for number, image in enumerate(content["images"]):
-        try:
-            if not isinstance(image["file"], str):
-                raise TypeError(f"file must be a name; got {image['file']!r}")
+    try:
+        if content["version"] != VERSION:
+            raise ValueError(f"version {content['version']!r}; this program reads version {VERSION}")
+        for image in content["images"]:
+            Path(image["file"])
             for entry in image["objects"]:
                 true_object(entry)
-        except (KeyError, TypeError, ValueError) as error:
-            raise ValueError(f"{path}, image {number}: a field is missing or of the wrong kind ({error!r})") from None
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{path}: a field is missing or of the wrong kind ({error!r})") from None
     return content["images"]
 
 
@@ -120,7 +109,3 @@ def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:
             objects = [box.as_dict() for box in object_boxes(renderer, state)]
             images.append({"file": name, "room_seed": seed, "width": WIDTH, "height": WIDTH // 2, "objects": objects})
     return images
-
-
-def _write_image_list(folder: Path, images: list[dict]) -> None:
-    atomic_write(folder / BOXES_FILE, json.dumps({"version": VERSION, "images": images}))

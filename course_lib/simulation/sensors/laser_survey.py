@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.random import Generator
 from scipy.spatial import cKDTree
 
 from course_lib.geometry import pose_matrix
@@ -58,17 +59,13 @@ class RegisteredScan:
     azimuths: np.ndarray
     registered_pose: np.ndarray
 
-    def directions(self) -> np.ndarray:
-        """Unit vectors `(E, A, 3)` in the scanner's frame."""
-        return _directions(self.elevations, self.azimuths)
-
     def points(self) -> np.ndarray:
         """Measured points `(n, 3)` in the world by the registered pose."""
         return self._points(self.registered_pose)
 
     def _points(self, pose: np.ndarray) -> np.ndarray:
         measured = np.isfinite(self.ranges)
-        local = self.directions()[measured] * self.ranges[measured][:, None]
+        local = _directions(self.elevations, self.azimuths)[measured] * self.ranges[measured][:, None]
         return local @ pose[:3, :3].T + pose[:3, 3]
 
 
@@ -87,20 +84,15 @@ class Scan(RegisteredScan):
         return RegisteredScan(self.ranges, self.elevations, self.azimuths, self.registered_pose)
 
 
-def survey(
-    caster: WorldCaster, model: ScannerModel, rng: np.random.Generator, stations: tuple = STATIONS
-) -> list[Scan]:
+def survey(caster: WorldCaster, model: ScannerModel, rng: Generator, stations: tuple = STATIONS) -> list[Scan]:
     """Scans the world from every station (x, y in metres); each station gets its own registration error."""
+    turns = np.deg2rad([model.registration_tilt_deg] * 2 + [model.registration_heading_deg])
+    sigma = np.concatenate([np.full(3, model.registration_position), turns])
     scans = []
     for x, y in stations:
         heading = rng.uniform(-np.pi, np.pi)
         true_pose = pose_matrix(np.array([x, y, model.height, 0.0, 0.0, heading]))
-        error = rng.normal(size=6) * np.concatenate(
-            [
-                np.full(3, model.registration_position),
-                np.deg2rad([model.registration_tilt_deg] * 2 + [model.registration_heading_deg]),
-            ]
-        )
+        error = rng.normal(size=6) * sigma
         # The error turns the station about itself and moves it: it multiplies the pose's rotation, adds to its place.
         registered = pose_matrix(np.concatenate([np.zeros(3), error[3:]])) @ true_pose
         registered[:3, 3] = true_pose[:3, 3] + error[:3]
@@ -109,11 +101,7 @@ def survey(
 
 
 def scan(
-    caster: WorldCaster,
-    model: ScannerModel,
-    true_pose: np.ndarray,
-    registered_pose: np.ndarray,
-    rng: np.random.Generator,
+    caster: WorldCaster, model: ScannerModel, true_pose: np.ndarray, registered_pose: np.ndarray, rng: Generator
 ) -> Scan:
     """One station's scan: ranges with noise, mixed pixels, and drop-outs on grazing, dark, near and far surfaces.
 
@@ -123,22 +111,16 @@ def scan(
     step = np.deg2rad(model.step_deg)
     elevations = np.arange(np.deg2rad(model.lowest_deg), np.pi / 2 - step, step)
     azimuths = np.arange(round(2 * np.pi / step)) * step - np.pi
-    rows = [
-        _scan_rows(caster, model, true_pose, band, azimuths, rng)
-        for band in np.array_split(elevations, max(1, len(elevations) // 200))
-    ]
-    return Scan(np.concatenate(rows), elevations, azimuths, registered_pose, true_pose)
+    bands = np.array_split(elevations, max(1, len(elevations) // 200))
+    ranges = np.concatenate([_ranges(caster, model, true_pose, _directions(band, azimuths), rng) for band in bands])
+    return Scan(ranges, elevations, azimuths, registered_pose, true_pose)
 
 
-def _scan_rows(
-    caster: WorldCaster,
-    model: ScannerModel,
-    pose: np.ndarray,
-    elevations: np.ndarray,
-    azimuths: np.ndarray,
-    rng: np.random.Generator,
+def _ranges(
+    caster: WorldCaster, model: ScannerModel, pose: np.ndarray, directions: np.ndarray, rng: Generator
 ) -> np.ndarray:
-    directions = _directions(elevations, azimuths) @ pose[:3, :3].T
+    """Measured ranges `(E, A)` along directions `(E, A, 3)` in the scanner's frame."""
+    directions = directions @ pose[:3, :3].T
     hits = caster.cast(pose[:3, 3], directions)
     ranges = hits.distance.astype(np.float64)
     shape = ranges.shape
@@ -161,7 +143,7 @@ def _scan_rows(
     return np.where(lost, np.nan, measured).astype(np.float32)
 
 
-def registration_error(scans: list[Scan], rng: np.random.Generator, n_points: int = 20_000) -> dict[str, float]:
+def registration_error(scans: list[Scan], rng: Generator, n_points: int = 20_000) -> dict[str, float]:
     """How far apart neighbouring stations' points lie: the paper's "mean point distance after registration".
 
     For each pair of neighbouring stations: mean distance in metres from points of one, seen by both, to the nearest

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.files import atomic_write
 
@@ -26,7 +27,7 @@ class PanoramaCameraModel:
     jpeg_quality: tuple[int, int] = (78, 86)  # 0 to 100, OpenCV's scale; chosen
 
 
-def photograph(light: np.ndarray, model: PanoramaCameraModel, rng: np.random.Generator) -> np.ndarray:
+def photograph(light: np.ndarray, model: PanoramaCameraModel, rng: Generator) -> np.ndarray:
     """One photograph of the light of a panorama.
 
     light: `(H, W, 3)` float32 BGR, 255 = full scale at exposure 1. Returns `(H, W, 3)` uint8 BGR.
@@ -43,7 +44,7 @@ def photograph(light: np.ndarray, model: PanoramaCameraModel, rng: np.random.Gen
     return np.clip(np.rint(image), 0, 255).astype(np.uint8)
 
 
-def write_photograph(path: str | Path, image: np.ndarray, model: PanoramaCameraModel, rng: np.random.Generator) -> None:
+def write_photograph(path: str | Path, image: np.ndarray, model: PanoramaCameraModel, rng: Generator) -> None:
     """Write a photograph as JPEG with a quality of its own. Raises `OSError` when it cannot be written."""
     quality = int(rng.integers(model.jpeg_quality[0], model.jpeg_quality[1] + 1))
     atomic_write(path, cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes())

@@ -16,8 +16,8 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkPanoramicProjectionPass, vtkRender
 
 from course_lib.geometry import pose_matrix
 from course_lib.rendering.vtk_backend import off_screen_window
-from course_lib.simulation.room.scene import Room
-from course_lib.simulation.textured_mesh import TexturedMesh
+from course_lib.simulation.room.scene import Lamp, Room
+from course_lib.simulation.textures import TexturedMesh
 
 NEAR, FAR = 0.05, 30.0  # m: nothing stands nearer to the rig than its clearance; no room is 30 m across
 FEATURE_ANGLE_DEG = 40.0  # chosen: edges sharper than this stay sharp, cushions look round
@@ -28,34 +28,28 @@ OVERSAMPLING = 2  # pictures are drawn twice as large and averaged down, against
 class PanoramaRenderer:
     """Draws one room. A context manager: the two windows live until `close`.
 
-    room: what to draw; at most 255 objects.
+    room: what to draw; fewer than 255 objects.
     width: of the panoramas, pixels, an even number; their height is half of it.
     number_scale: the pictures of object numbers are so many times as large: boxes exact to a part of a pixel.
     alone_scale: the same for pictures of one object alone, a divisor of number_scale; None: as fine. They are most of
     the work, one for each object, and less depends on them.
-    Raises `ValueError` for an odd or too large width, or too many objects.
     """
 
     def __init__(self, room: Room, width: int = 1280, number_scale: int = 2, alone_scale: int | None = None) -> None:
-        if width % 2 or not 16 <= width <= 4096:
-            raise ValueError(f"a panorama {width} pixels wide: expected an even width from 16 to 4096.")
-        if len(room.objects) >= BACKGROUND:
-            raise ValueError(f"{len(room.objects)} objects: one panorama can tell apart at most {BACKGROUND - 1}.")
         self.room, self.width, self.height = room, width, width // 2
         self._picture = _Scene(OVERSAMPLING * width, interpolate=True)
         self._numbers = _Scene(number_scale * width, interpolate=False)
         self._repeats = number_scale // (alone_scale or number_scale)
         self._alone = _Scene(alone_scale * width, interpolate=False) if self._repeats > 1 else self._numbers
         for lamp in room.lamps:
-            self._picture.add_lamp(lamp.position, lamp.colour, lamp.strength)
+            self._picture.add_lamp(lamp)
         numbered = [(mesh, BACKGROUND) for mesh in room.shell]
         numbered += [(mesh, number) for number, thing in enumerate(room.objects) for mesh in thing.meshes]
         for mesh, number in numbered:
             data = _poly_data(mesh)
-            self._picture.add(data, mesh.texture, mesh.emission, room.ambient)
-            self._numbers.add_flat(data, number)
-            if self._alone is not self._numbers:
-                self._alone.add_flat(data, number)
+            self._picture.add(data, mesh, room.ambient)
+            for scene in {self._numbers, self._alone}:
+                scene.add_flat(data, number)
 
     def render(self, state: np.ndarray) -> np.ndarray:
         """The panorama from a camera pose, without the camera's own faults: noise and the like come later.
@@ -76,11 +70,9 @@ class PanoramaRenderer:
     def render_alone(self, state: np.ndarray, number: int) -> np.ndarray:
         """Which pixels would show one object if nothing stood before it: bool, of the size of `render_objects`."""
         self._alone.show_only(number)
-        try:
-            mask = self._alone.draw(state)[..., 0] == number
-        finally:
-            self._alone.show_only(None)
-        return mask if self._repeats == 1 else mask.repeat(self._repeats, axis=0).repeat(self._repeats, axis=1)
+        mask = self._alone.draw(state)[..., 0] == number
+        self._alone.show_only(None)
+        return mask.repeat(self._repeats, axis=0).repeat(self._repeats, axis=1)
 
     def close(self) -> None:
         """Free the windows."""
@@ -121,35 +113,42 @@ class _Scene:
         self._window.AddRenderer(self._renderer)
         self._pixels = vtkUnsignedCharArray()
 
-    def add_lamp(self, position, colour, strength: float) -> None:
+    def add_lamp(self, lamp: Lamp) -> None:
         light = vtkLight()
         light.SetLightTypeToSceneLight()
         light.SetPositional(True)
-        light.SetPosition(*position)
+        light.SetPosition(*lamp.position)
         light.SetConeAngle(180.0)
-        light.SetColor(*colour)
-        light.SetIntensity(strength)
+        light.SetColor(*lamp.colour)
+        light.SetIntensity(lamp.strength)
         # Falls off with the square of the distance, but stays finite beside the lamp; 1 at one metre.
         light.SetAttenuationValues(0.4, 0.0, 0.6)
         self._renderer.AddLight(light)
 
-    def add(self, data: vtkPolyData, texture: np.ndarray, emission: float, ambient) -> None:
-        actor = _actor(data)
-        actor.SetTexture(_texture(texture))
+    def add(self, data: vtkPolyData, mesh: TexturedMesh, ambient: tuple[float, float, float]) -> None:
+        """A mesh in its texture, lit by the lamps and by light from everywhere (ambient, RGB)."""
+        actor = self._actor(data)
+        actor.SetTexture(_texture(mesh.texture))
         surface = actor.GetProperty()
         surface.SetAmbient(1.0)
-        surface.SetAmbientColor(*np.clip(emission + (1.0 - emission) * np.asarray(ambient), 0.0, 1.0))
-        surface.SetDiffuse(1.0 - emission)
+        surface.SetAmbientColor(*np.clip(mesh.emission + (1.0 - mesh.emission) * np.asarray(ambient), 0.0, 1.0))
+        surface.SetDiffuse(1.0 - mesh.emission)
         surface.SetSpecular(0.0)
-        self._renderer.AddActor(actor)
 
     def add_flat(self, data: vtkPolyData, number: int) -> None:
-        actor = _actor(data)
-        surface = actor.GetProperty()
-        surface.LightingOff()
-        surface.SetColor(number / 255.0, number / 255.0, number / 255.0)
-        self._renderer.AddActor(actor)
+        """A mesh painted with the number of its object."""
+        actor = self._actor(data)
+        actor.GetProperty().LightingOff()
+        actor.GetProperty().SetColor(number / 255.0, number / 255.0, number / 255.0)
         self._actors.append((actor, number))
+
+    def _actor(self, data: vtkPolyData) -> vtkActor:
+        mapper = vtkPolyDataMapper()
+        mapper.SetInputData(data)
+        actor = vtkActor()
+        actor.SetMapper(mapper)
+        self._renderer.AddActor(actor)
+        return actor
 
     def show_only(self, number: int | None) -> None:
         for actor, its_number in self._actors:
@@ -168,13 +167,10 @@ class _Scene:
         return image[::-1]
 
     def close(self) -> None:
-        if self._window is not None:
-            self._pass.ReleaseGraphicsResources(self._window)
-            self._renderer.RemoveAllViewProps()
-            self._window.RemoveRenderer(self._renderer)
-            self._window.Finalize()
-        self._window = self._renderer = self._pass = None
-        self._actors = []
+        self._pass.ReleaseGraphicsResources(self._window)
+        self._renderer.RemoveAllViewProps()
+        self._window.RemoveRenderer(self._renderer)
+        self._window.Finalize()
 
 
 def _poly_data(mesh: TexturedMesh) -> vtkPolyData:
@@ -185,14 +181,6 @@ def _poly_data(mesh: TexturedMesh) -> vtkPolyData:
     return data.compute_normals(
         cell_normals=False, split_vertices=True, feature_angle=FEATURE_ANGLE_DEG, consistent_normals=False
     )
-
-
-def _actor(data: vtkPolyData) -> vtkActor:
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputData(data)
-    actor = vtkActor()
-    actor.SetMapper(mapper)
-    return actor
 
 
 def _texture(picture: np.ndarray) -> vtkTexture:

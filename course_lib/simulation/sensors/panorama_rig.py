@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.geometry import pose_matrix, state_from_matrix
 
@@ -48,9 +49,8 @@ class Mount:
 
     def tilted(self, tilt_deg: float) -> Mount:
         """The same mount with a relative tilt of exactly so many degrees, in the direction that it has already."""
-        direction = np.arctan2(self.relative_tilt[1], self.relative_tilt[0])
-        length = np.deg2rad(tilt_deg)
-        return replace(self, relative_tilt=(float(length * np.cos(direction)), float(length * np.sin(direction))))
+        roll, pitch = self.relative_tilt
+        return replace(self, relative_tilt=_tilt(np.deg2rad(tilt_deg), np.arctan2(pitch, roll)))
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class RigPose:
         return fields
 
 
-def assemble(model: RigModel, rng: np.random.Generator) -> Mount:
+def assemble(model: RigModel, rng: Generator) -> Mount:
     """A mount with faults drawn from the model: tilt uniformly from a disk, yaw from a range, lengths normal."""
     relative_tilt = _from_disk(np.deg2rad(model.relative_tilt_deg), rng)
     # A generator of its own: the numbers that rng gives next do not depend on how many faults a mount has.
@@ -106,7 +106,7 @@ def stand_up(
     upper_height: float,
     baseline: float,
     model: RigModel,
-    rng: np.random.Generator,
+    rng: Generator,
     mount: Mount | None = None,
 ) -> RigPose:
     """A rig set up at a place, tilted as a whole by an angle drawn uniformly from a disk of the model's radius.
@@ -116,18 +116,13 @@ def stand_up(
     """
     tilt = _from_disk(np.deg2rad(model.tilt_deg), rng)
     mount = mount or assemble(model, rng)
-    return RigPose(
-        x,
-        y,
-        heading,
-        upper_height + mount.height_error,
-        baseline + mount.baseline_error,
-        tilt,
-        mount.relative_tilt,
-        mount.relative_yaw,
-    )
+    heights = upper_height + mount.height_error, baseline + mount.baseline_error
+    return RigPose(x, y, heading, *heights, tilt, mount.relative_tilt, mount.relative_yaw)
 
 
-def _from_disk(radius: float, rng: np.random.Generator) -> tuple[float, float]:
-    length, direction = radius * np.sqrt(rng.uniform()), rng.uniform(0.0, 2.0 * np.pi)
+def _from_disk(radius: float, rng: Generator) -> tuple[float, float]:
+    return _tilt(radius * np.sqrt(rng.uniform()), rng.uniform(0.0, 2.0 * np.pi))
+
+
+def _tilt(length: float, direction: float) -> tuple[float, float]:
     return float(length * np.cos(direction)), float(length * np.sin(direction))

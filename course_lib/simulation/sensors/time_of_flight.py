@@ -18,6 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 from scipy.ndimage import gaussian_filter
 
 from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix
@@ -82,7 +83,7 @@ class CalibrationModel:
     mount_position: float = 0.005  # m per axis, a bracket measured with a tape; chosen
     mount_angle_deg: float = 0.3  # degrees per axis, a bracket set with a spirit level; chosen
 
-    def draw(self, rng: np.random.Generator) -> CalibrationErrors:
+    def draw(self, rng: Generator) -> CalibrationErrors:
         """Errors of these sizes, each with a sign of its own."""
         signs = rng.choice((-1.0, 1.0), 8)
         sizes = np.concatenate([np.full(3, self.mount_position), np.full(3, np.deg2rad(self.mount_angle_deg))])
@@ -109,11 +110,7 @@ class TimeOfFlightCamera:
     `errors`: how the true camera differs from what is told."""
 
     def __init__(
-        self,
-        camera: DepthCamera,
-        model: TimeOfFlightModel,
-        rng: np.random.Generator,
-        errors: CalibrationErrors | None = None,
+        self, camera: DepthCamera, model: TimeOfFlightModel, rng: Generator, errors: CalibrationErrors | None = None
     ) -> None:
         errors = errors or CalibrationErrors()
         self.camera = camera
@@ -122,7 +119,7 @@ class TimeOfFlightCamera:
         self._rays = _sub_pixel_rays(camera, model.sub_rays, errors)
         self._mount = pose_matrix(np.array(errors.mount))
 
-    def capture(self, world: WorldCaster, state: np.ndarray, rng: np.random.Generator) -> Frame:
+    def capture(self, world: WorldCaster, state: np.ndarray, rng: Generator) -> Frame:
         """Frame from a body pose [x, y, z, roll, pitch, yaw]; the camera looks along body +x.
 
         Ranges become depths by the rays that the user is told of, as they would in the user's hands.
@@ -154,7 +151,7 @@ class TimeOfFlightCamera:
         scattered = gaussian_filter(phasors.real, width) + 1j * gaussian_filter(phasors.imag, width)
         return (1 - share) * phasors + share * scattered
 
-    def _measure(self, phasors: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    def _measure(self, phasors: np.ndarray, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
         """Ranges `(H, W)` in metres, nan = no return, and amplitudes, from phasors without noise."""
         m = self.model
         sigma = np.sqrt(m.shot_noise**2 * np.abs(phasors) + m.dark_noise**2)
@@ -174,3 +171,29 @@ def _sub_pixel_rays(camera: DepthCamera, n: int, errors: CalibrationErrors) -> n
     fine = fine / np.linalg.norm(fine, axis=-1, keepdims=True)
     blocks = fine.reshape(camera.height, n, camera.width, n, 3).swapaxes(1, 2)
     return np.ascontiguousarray(blocks.reshape(camera.height, camera.width, n * n, 3), dtype=np.float32)
+
+
+def frame_counts(frame: Frame, model: TimeOfFlightModel) -> dict[str, int]:
+    """Counts of pixels of one frame: all, without return, saturated, beyond the unambiguous range (all, and those that
+    came back wrapped), flying.
+
+    Flying: the pixel sees two surfaces more than 0.1 m apart, and reads a range between them, more than 5 cm and three
+    times the noise away from both.
+    """
+    measured = np.isfinite(frame.depth)
+    limit = model.unambiguous_range
+    beyond = (frame.nearest > limit) & np.isfinite(frame.nearest)
+    amplitude = np.maximum(frame.amplitude, 1e-9)
+    noise_phase = np.sqrt(model.shot_noise**2 * amplitude + model.dark_noise**2) / amplitude
+    margin = np.maximum(0.05, 3 * noise_phase * limit / (2 * np.pi))
+    edge = measured & (frame.farthest - frame.nearest > 0.1) & (frame.farthest < limit)
+    between = (frame.range > frame.nearest + margin) & (frame.range < frame.farthest - margin)
+    return {
+        "pixels": frame.depth.size,
+        "no_return": int((~measured).sum()),
+        "nothing_there": int(np.isinf(frame.nearest).sum()),
+        "saturated": int((frame.amplitude > model.greatest_amplitude).sum()),
+        "beyond_range": int(beyond.sum()),
+        "wrapped": int((beyond & measured).sum()),
+        "flying": int((edge & between).sum()),
+    }

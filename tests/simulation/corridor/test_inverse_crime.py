@@ -13,7 +13,6 @@ import pytest
 
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor import data
 from course_lib.simulation.corridor.materials import WALL_PAINT
 from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement
 from course_lib.simulation.corridor.recorded_runs import HandModel, WagonModel
@@ -21,6 +20,7 @@ from course_lib.simulation.corridor.surface_fusion import FusionModel
 from course_lib.simulation.corridor.world import TrueWorld
 from course_lib.simulation.sensors.laser_survey import ScannerModel
 from course_lib.simulation.sensors.ray_casting import WorldCaster
+from tools import corridor_data as data
 
 LONG = 8.0  # m: a box of 8 x 2.4 x 2.4 m instead of the corridor
 SCREEN = 5.0  # m along x: a screen across the box, there on the run day only
@@ -64,7 +64,7 @@ def make(tmp_path_factory):
         models = dataclasses.replace(MODELS, scanner=dataclasses.replace(MODELS.scanner, **scanner))
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(data, "make_corridor", box_world)
-            patch.setattr(data, "PLANAR_LEAST_AREA", 0.5)
+            patch.setattr(data, "PLANAR_MIN_AREA", 0.5)
             patch.setattr(data, "fuse", lambda scans, *rest: fused.extend(scans) or fuse(scans, *rest))
             return Made(folder, data.make_corridor_data(folder, 3, models), fused)
 

@@ -28,6 +28,7 @@ def planar():
 
 def test_the_six_walls_stay_and_the_ball_goes(planar):
     assert area(planar) == pytest.approx(2 * (4 * 3 + 4 * 2.5 + 3 * 2.5), rel=0.05)
+    assert len(planar.faces) < 0.2 * len(rough_room(np.random.default_rng(0)).faces)
     used = planar.vertices[np.unique(planar.faces)]
     assert (np.linalg.norm(used, axis=1) > 1.0).all()
 
@@ -43,10 +44,6 @@ def test_walls_are_flat_to_a_millimetre(planar):
             wall = mine[np.sign(mine[:, 0]) == side]
             assert np.std(wall) < 0.005
             assert np.mean(wall) == pytest.approx(side * half, abs=0.005)
-
-
-def test_it_has_far_fewer_triangles(planar):
-    assert len(planar.faces) < 0.2 * len(rough_room(np.random.default_rng(0)).faces)
 
 
 def sheets(*sizes_and_places):
@@ -87,24 +84,7 @@ def test_a_plane_is_fitted_by_area_and_not_by_the_number_of_triangles():
     assert np.abs(kept.vertices[:, 2]).max() < 0.012
 
 
-def test_the_seed_decides(planar):
-    again = planar_simplification(rough_room(np.random.default_rng(0)), np.random.default_rng(1))
-    assert np.array_equal(planar.vertices, again.vertices)
-    assert np.array_equal(planar.faces, again.faces)
-
-
 def test_without_large_planes_it_says_so():
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.3)
     with pytest.raises(ValueError, match="no plane of 1 square metres"):
         planar_simplification(SceneMap(ball.vertices, ball.faces), np.random.default_rng(0))
-
-
-@pytest.mark.parametrize("name", ["distance", "min_area", "join", "n_trials"])
-def test_parameters_must_be_positive(name):
-    with pytest.raises(ValueError, match=f"{name} must be positive"):
-        planar_simplification(rough_room(np.random.default_rng(0)), np.random.default_rng(0), **{name: 0})
-
-
-def test_the_reduction_must_leave_something():
-    with pytest.raises(ValueError, match=r"reduction must lie in \[0, 1\)"):
-        planar_simplification(rough_room(np.random.default_rng(0)), np.random.default_rng(0), reduction=1.0)

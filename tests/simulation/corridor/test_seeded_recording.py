@@ -5,7 +5,7 @@ import pytest
 
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.rendering.camera import DepthCamera
-from course_lib.simulation.corridor.mesh_files import read_world_ply
+from course_lib.simulation.corridor.mesh_building import read_world_ply
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
 from course_lib.simulation.corridor.world import run_day
 

@@ -14,7 +14,6 @@ from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.survey import RoomSurveyModel
 from course_lib.simulation.room.training_images import BOXES_FILE, OtherImagesPerRoom, make_room_images, read_image_list
-from course_lib.spherical_stereo.panorama import PanoramaError
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -52,14 +51,6 @@ def test_the_recording_says_where_each_pair_was_taken(small):
 
 
 @pytest.mark.slow
-def test_a_second_heading_is_not_a_roll_of_the_first(small):
-    first, second = (pair.images()[0] for pair in read_stereo_recording(small / "experiment_1").pairs)
-    # 180 and -90 degrees: a quarter turn of 80 columns.
-    rolled = np.roll(first, 80, axis=1).astype(float)
-    assert abs(rolled.mean() - second.mean()) > 0.5, "exposures differ"
-
-
-@pytest.mark.slow
 def test_the_map_lists_every_object_of_the_room_where_it_stands(small):
     room, semantic_map = make_experiment_room(), SemanticMap.load(small / "semantic_map.json")
     assert list(semantic_map.labels) == [thing.label for thing in room.objects]
@@ -69,55 +60,13 @@ def test_the_map_lists_every_object_of_the_room_where_it_stands(small):
     np.testing.assert_allclose(semantic_map.walls, room.walls)
 
 
-@pytest.mark.slow
-def test_a_run_that_is_stopped_leaves_the_old_data_alone(small):
-    before = checksums(small, PRODUCTS)
-
-    def stop(items):
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        make_room_data(small, 12, SMALL, progress=stop)
-    assert checksums(small, PRODUCTS) == before
-
-
 def test_an_object_that_nobody_sees_is_named():
     from course_lib.simulation.room.survey import survey_room
 
     with pytest.raises(ValueError, match="seen from none of the 1 places"):
         survey_room(
-            make_experiment_room(),
-            RoomSurveyModel(places=1, width=160, fewest_pixels=10**6),
-            np.random.default_rng(0),
+            make_experiment_room(), RoomSurveyModel(places=1, width=160, fewest_pixels=10**6), np.random.default_rng(0)
         )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (lambda c: c.update(version=2), "version 2"),
-        (lambda c: c["pairs"][0].pop("upper"), "missing or of the wrong kind"),
-        (lambda c: c["pairs"][0]["rig"].update(upper_height=2.0), "expected one height"),
-        (lambda c: c["pairs"][0]["upper"].update(file="gone.jpg"), "gone.jpg"),
-    ],
-)
-def test_a_damaged_recording_is_named(small, tmp_path, change, message):
-    for path in (small / "experiment_1").iterdir():
-        (tmp_path / path.name).write_bytes(path.read_bytes())
-    content = json.loads((tmp_path / "poses.json").read_text())
-    change(content)
-    (tmp_path / "poses.json").write_text(json.dumps(content))
-    with pytest.raises(PanoramaError, match=message):
-        read_stereo_recording(tmp_path)
-
-
-def test_a_folder_without_a_recording_is_named(tmp_path):
-    with pytest.raises(PanoramaError, match="is missing"):
-        read_stereo_recording(tmp_path)
-    (tmp_path / "poses.json").write_text("{")
-    with pytest.raises(PanoramaError, match="not JSON"):
-        read_stereo_recording(tmp_path)
 
 
 @pytest.mark.slow
@@ -149,9 +98,8 @@ def test_a_folder_begun_with_another_number_of_images_is_refused(tmp_path):
     assert make_room_images(tmp_path, 5, 1, 3) == images, "the same number goes on, and here all is done"
 
 
-def test_an_image_list_of_another_version_is_refused(tmp_path):
-    (tmp_path / BOXES_FILE).write_text('{"version": 9, "images": []}')
-    with pytest.raises(ValueError, match="version 9"):
-        read_image_list(tmp_path)
-    with pytest.raises(ValueError, match="at least one room"):
-        make_room_images(tmp_path / "none", 1, 0)
+def test_an_image_list_that_cannot_be_read_is_named(tmp_path):
+    for content in ('{"version": 9, "images": []}', '{"version": 1, "images": [{"file": "a.jpg"}]}', "[]"):
+        (tmp_path / BOXES_FILE).write_text(content)
+        with pytest.raises(ValueError, match=r"boxes\.json: a field is missing or of the wrong kind"):
+            read_image_list(tmp_path)

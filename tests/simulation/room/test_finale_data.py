@@ -22,7 +22,7 @@ SEED = 10_001
 MESH = DepthSurveyModel(
     stations=2,
     scanner=dataclasses.replace(ScannerModel(), step_deg=2.0),
-    fusion=dataclasses.replace(FusionModel(), triangles=3_000),
+    fusion=FusionModel(voxel=0.1, truncation=0.3, triangles=3_000),
 )
 SMALL = FinaleModels(recording=RecordingModels(survey=RoomSurveyModel(width=320, fewest_pixels=5)), mesh=MESH)
 

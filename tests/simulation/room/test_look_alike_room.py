@@ -5,11 +5,12 @@ import itertools
 import numpy as np
 import pytest
 
+from course_lib.geometry import wrap_angle
 from course_lib.simulation.room import look_alike_room
-from course_lib.simulation.room.footprints import distance_to, footprint, overlap
-from course_lib.simulation.room.look_alike_recording import RecordingModels, measurement_poses, mount_of
+from course_lib.simulation.room.footprints import clear_of, distance_to, footprint, overlap
+from course_lib.simulation.room.furnishing import make_room
+from course_lib.simulation.room.look_alike_recording import WalkModel, experiment_of, measurement_poses, walk_from
 from course_lib.simulation.room.look_alike_room import LookAlikeLimits, NoRoomDrawn, make_look_alike_room
-from course_lib.simulation.room.random_room import make_room
 
 SEEDS = (10_200, 10_201, 10_202)
 LIMITS = LookAlikeLimits()
@@ -64,7 +65,7 @@ def test_one_seed_gives_one_room_another_draw_another_and_none_is_the_training_g
 
 
 def test_limits_that_ask_for_too_much_are_named(monkeypatch):
-    monkeypatch.setattr(look_alike_room, "MOST_DRAWS", 2)
+    monkeypatch.setattr(look_alike_room, "MAX_DRAWS", 2)
     with pytest.raises(NoRoomDrawn, match="seed 10200"):
         make_look_alike_room(10_200, limits=LookAlikeLimits(look_alikes=(90, 90), side=(5.0, 5.1)))
 
@@ -81,8 +82,31 @@ def test_the_rig_stands_free_in_two_headings_at_every_place(rooms):
         np.testing.assert_array_equal(measurement_poses(room, 20, seed)[:5], poses)
 
 
-def test_another_tilt_changes_nothing_else_of_a_mount():
-    plain, tilted = (mount_of(10_200, RecordingModels(tilt_deg=tilt)) for tilt in (None, 1.0))
-    assert np.rad2deg(np.hypot(*tilted.relative_tilt)) == pytest.approx(1.0)
-    assert 0 < np.rad2deg(np.hypot(*plain.relative_tilt)) <= 0.3
-    assert (plain.relative_yaw, plain.baseline_error) == (tilted.relative_yaw, tilted.baseline_error)
+WALK = WalkModel()
+
+
+@pytest.fixture(scope="module")
+def walks(rooms):
+    rng = np.random.default_rng(0)
+    starts = measurement_poses(rooms[0], 20, SEEDS[0])
+    return [(start, walk_from(rooms[0], start, 3, rng)) for start in starts]
+
+
+def test_every_step_of_a_walk_is_short_and_ends_where_a_rig_can_stand(walks, rooms):
+    for start, walk in walks:
+        poses = np.vstack([start, walk])
+        steps = np.linalg.norm(np.diff(poses[:, :2], axis=0), axis=1)
+        assert ((steps >= WALK.step[0]) & (steps <= WALK.step[1])).all()
+        assert (np.abs(wrap_angle(np.diff(poses[:, 2]))) <= np.deg2rad(WALK.turn_deg)).all()
+    places = np.vstack([walk[:, :2] for _, walk in walks])
+    assert clear_of([footprint(item) for item in rooms[0].objects], places, WALK.clearance).all()
+    low, high = np.min(rooms[0].walls, axis=0) + WALK.wall, np.max(rooms[0].walls, axis=0) - WALK.wall
+    assert ((places >= low) & (places <= high)).all()
+    np.testing.assert_array_equal(walk_from(rooms[0], walks[0][0], 3, np.random.default_rng(0)), walks[0][1])
+
+
+def test_where_no_step_is_free_the_rig_turns(rooms):
+    walk = walk_from(rooms[0], np.array([2.0, 2.0, 0.0]), 2, np.random.default_rng(0), WalkModel(clearance=50.0))
+    np.testing.assert_array_equal(walk[:, :2], [[2.0, 2.0], [2.0, 2.0]])
+    assert (walk[:, 2] != 0).all()
+    assert [experiment_of(k) for k in range(4)] == [1, 2, 1, 2], "the two heights take turns"

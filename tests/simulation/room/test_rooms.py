@@ -10,15 +10,8 @@ import pytest
 from course_lib.simulation import textures
 from course_lib.simulation.furniture import RANDOM_PIECES, solids
 from course_lib.simulation.room.experiment_room import LAYOUT, PLACES, make_experiment_room
-from course_lib.simulation.room.footprints import (
-    NoFreePlace,
-    distance_to,
-    footprint,
-    free_places,
-    overlap,
-    rectangle,
-)
-from course_lib.simulation.room.random_room import make_room
+from course_lib.simulation.room.footprints import NoFreePlace, distance_to, footprint, free_places, overlap, rectangle
+from course_lib.simulation.room.furnishing import make_room
 from course_lib.spherical_stereo.matching.features import AKAZE_THRESHOLD
 
 CLASSES = {"sofa", "chair", "table", "television", "potted plant", "refrigerator", "cabinet"}
@@ -62,18 +55,6 @@ def volume(meshes) -> float:
     return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6)
 
 
-def hue_and_saturation(item) -> tuple[float, float]:
-    """Means over the surface: hue in degrees, weighted by saturation; saturation in percent."""
-    hue_sum, saturation_sum, area_sum = 0.0 + 0.0j, 0.0, 0.0
-    for mesh in item.meshes:
-        area = np.linalg.norm(area_vectors(mesh.vertices[mesh.faces]), axis=1).sum()
-        hsv = cv2.cvtColor(mesh.texture.astype(np.float32) / 255, cv2.COLOR_RGB2HSV)
-        hue_sum += area * np.mean(hsv[..., 1] * np.exp(1j * np.radians(hsv[..., 0])))
-        saturation_sum += area * hsv[..., 1].mean()
-        area_sum += area
-    return float(np.degrees(np.angle(hue_sum)) % 360), float(100 * saturation_sum / area_sum)
-
-
 def apart(first: float, second: float) -> float:
     return abs((first - second + 180) % 360 - 180)
 
@@ -85,21 +66,17 @@ def solid_examples(cover):
         "rounded box": (solids.rounded_box((0.5, 1.2, 0.3), (1, 2, 3), cover, 0.02), 0.18, 0.01),
         "cylinder": (solids.cylinder(0.2, 0.6, (1, 2, 0), cover, n=64), np.pi * 0.04 * 0.6, 0.01),
         "bar": (solids.rod([(0, 0, 0), (0, 0.4, 0.3)], 0.02, cover, n=32), np.pi * 0.0004 * 0.5, 0.01),
+        "turned box": (solids.turn(solids.box((0.5, 1.2, 0.3), (0, 0, 0), cover), 1, 2, 3, 0.7, 0.4), 0.18, 1e-9),
         "leaf": (solids.swept(path, (0, 1, 0), np.full(4, 0.03), np.full(4, 0.01), cover, n=32), 7.75e-4, 0.08),
     }
 
 
-@pytest.mark.parametrize("name", ["box", "rounded box", "cylinder", "bar", "leaf"])
+@pytest.mark.parametrize("name", ["box", "rounded box", "turned box", "cylinder", "bar", "leaf"])
 def test_a_solid_is_closed_and_encloses_its_volume_outwards(cover, name):
     meshes, expected, tolerance = solid_examples(cover)[name]
     vectors = area_vectors(triangles(meshes))
     assert np.abs(vectors.sum(axis=0)).max() < 1e-9 * len(vectors) + 1e-12
     assert volume(meshes) == pytest.approx(expected, rel=max(tolerance, 1e-9))
-
-
-def test_a_turned_solid_keeps_its_volume(cover):
-    meshes = solids.turn(solids.box((0.5, 1.2, 0.3), (0, 0, 0), cover), x=1, y=2, z=3, yaw=0.7, pitch=0.4)
-    assert volume(meshes) == pytest.approx(0.18)
 
 
 def test_a_material_has_the_same_scale_on_every_side_of_a_box(cover):
@@ -111,7 +88,7 @@ def test_a_material_has_the_same_scale_on_every_side_of_a_box(cover):
 
 
 def test_a_picture_is_upright_and_not_mirrored_seen_from_outside(cover):
-    front = solids.box((0.5, 1.2, 0.3), (0, 0, 0), cover, front=cover, fit=True)[0]
+    front = solids.box((0.5, 1.2, 0.3), (0, 0, 0), cover, front=cover)[0]
     s, t = front.texture_coordinates.T
     # Seen against -x, right is +y and up is +z.
     assert np.corrcoef(s, front.vertices[:, 1])[0, 1] == pytest.approx(1.0)
@@ -157,6 +134,7 @@ def test_shading_keeps_hue_and_saturation():
 def test_the_same_seed_makes_the_same_bytes(rooms):
     assert bytes_of(make_room(SEEDS[0])) == bytes_of(rooms[0])
     assert bytes_of(rooms[0]) != bytes_of(rooms[1])
+    assert bytes_of(make_experiment_room()) == bytes_of(make_experiment_room())
 
 
 def test_a_room_has_nine_to_sixteen_pieces_of_at_least_four_classes(rooms):
@@ -174,35 +152,13 @@ def test_no_two_pieces_at_one_height_overlap_and_none_leaves_the_room(rooms, exp
             corners = footprint(item)
             assert (corners >= low).all()
             assert (corners <= high).all()
+            np.testing.assert_allclose(corners.mean(axis=0), (item.x, item.y), atol=1e-6)
         for first, second in itertools.combinations(room.objects, 2):
             if overlap(footprint(first), footprint(second)):
                 # Only what stands on top: a television on a cabinet.
                 lower, upper = sorted((first, second), key=lambda item: item.vertices()[:, 2].min())
                 assert (lower.label, upper.label) == ("cabinet", "television")
                 assert upper.vertices()[:, 2].min() >= lower.vertices()[:, 2].max() - 0.005
-
-
-def test_a_piece_is_where_its_footprint_is(rooms, experiment):
-    for room in [*rooms, experiment]:
-        for item in room.objects:
-            np.testing.assert_allclose(footprint(item).mean(axis=0), (item.x, item.y), atol=1e-6)
-
-
-def test_rooms_are_light_enough_to_draw(rooms, experiment):
-    for room in [*rooms, experiment]:
-        meshes = [*room.shell, *(mesh for item in room.objects for mesh in item.meshes)]
-        assert sum(len(mesh.faces) for mesh in meshes) < 60_000
-        assert max(len(item.meshes) for item in room.objects) <= 12
-        assert max(max(mesh.texture.shape[:2]) for mesh in meshes) <= 512
-
-
-def test_large_flat_faces_are_cut_into_cells(rooms):
-    for room in rooms:
-        corners = triangles(room.shell)
-        edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-        # Diagonal of a cell of 0.5 m; bars are long but thin.
-        wide = np.linalg.norm(area_vectors(corners), axis=1) > 0.05
-        assert edges[wide].max() <= 0.5 * np.sqrt(2) + 1e-9
 
 
 def test_free_places_keep_their_distance(rooms):
@@ -212,9 +168,6 @@ def test_free_places_keep_their_distance(rooms):
         assert min(distance_to(footprint(item), places).min() for item in room.objects) >= 0.4
         assert (places >= room.walls.min(axis=0) + 0.5).all()
         assert (places <= room.walls.max(axis=0) - 0.5).all()
-
-
-def test_a_room_without_space_says_so(rooms):
     with pytest.raises(NoFreePlace, match="less clearance"):
         free_places(rooms[0], 2, np.random.default_rng(0), clearance=6.0)
 
@@ -225,32 +178,11 @@ def test_the_distance_from_a_rectangle_is_measured_from_its_edges_and_corners():
     np.testing.assert_allclose(distance_to(corners, places), [0.0, 0.5, 1.0, 0.5], atol=1e-12)
 
 
-def test_the_experiment_room_is_always_the_same(experiment):
-    assert bytes_of(make_experiment_room()) == bytes_of(experiment)
-
-
-def test_the_papers_places_are_clear(experiment):
-    clearances = [distance_to(footprint(item), PLACES).min() for item in experiment.objects]
-    assert min(clearances) >= 0.3
-
-
 def test_the_experiment_room_has_the_classes_of_the_issue(experiment):
     labels = [item.label for item in experiment.objects]
     expected = {"sofa": 3, "chair": 3, "table": 2, "television": 1, "potted plant": 2, "refrigerator": 1, "cabinet": 2}
     assert {label: labels.count(label) for label in labels} == expected
-
-
-def test_only_the_sofas_look_alike(experiment):
-    looks = [hue_and_saturation(item) for item in experiment.objects]
-    for (i, first), (j, second) in itertools.combinations(enumerate(experiment.objects), 2):
-        if first.label != second.label:
-            continue
-        if first.label == "sofa":
-            assert apart(looks[i][0], looks[j][0]) < 8
-            assert abs(looks[i][1] - looks[j][1]) < 3
-        else:
-            assert apart(looks[i][0], looks[j][0]) >= 60, (LAYOUT[i][0], LAYOUT[j][0])
-            assert min(looks[i][1], looks[j][1]) >= 40, (LAYOUT[i][0], LAYOUT[j][0])
+    assert min(distance_to(footprint(item), PLACES).min() for item in experiment.objects) >= 0.3, "the paper's places"
 
 
 def test_only_the_distance_from_the_centroid_tells_the_sofas_apart(experiment):

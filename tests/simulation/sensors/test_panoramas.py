@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 
-import cv2
 import numpy as np
 import pytest
 
-from course_lib.simulation.room.object_boxes import box_around, object_boxes
-from course_lib.simulation.room.random_room import make_room
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
+from course_lib.simulation.room.furnishing import make_room
+from course_lib.simulation.room.stereo_photographs import object_boxes
+from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph
 from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, RigModel, RigPose, assemble, stand_up
 from course_lib.spherical_stereo.panorama import direction_to_pixel
@@ -38,11 +37,8 @@ def test_ahead_is_the_centre_left_is_a_quarter_behind_is_the_seam(renderer):
     assert np.argmax(image[row, WIDTH // 4]) == 1, "green on the left"
     assert np.argmax(image[row, 0]) == 0, "blue behind, on both edges"
     assert np.argmax(image[row, -1]) == 0
-
-
-def test_row_zero_is_straight_up(renderer):
     numbers = renderer.render_objects(EYE)
-    assert np.all(numbers[: WIDTH // 2] == BACKGROUND), "every object stands below the camera's horizon"
+    assert np.all(numbers[: WIDTH // 2] == BACKGROUND), "row 0 is straight up: objects stand below the horizon"
     assert np.any(numbers[WIDTH // 2 :] != BACKGROUND)
 
 
@@ -69,13 +65,9 @@ def test_a_box_is_where_its_corners_project(renderer, yaw):
         assert v_min == pytest.approx(corners_on_image(thing, state, WIDTH)[:, 1].min(), abs=0.6)
 
 
-def test_a_box_across_the_seam_passes_the_width(renderer):
-    behind = next(box for box in object_boxes(renderer, EYE) if box.number == 2)
-    assert 0 <= behind.visible_box[0] < WIDTH < behind.visible_box[2]
-
-
 def test_a_hidden_object_knows_how_much_of_it_is_seen(renderer):
     boxes = {box.number: box for box in object_boxes(renderer, EYE)}
+    assert 0 <= boxes[2].visible_box[0] < WIDTH < boxes[2].visible_box[2], "across the seam a box passes the width"
     assert boxes[0].visible_fraction == 1.0
     assert 0.0 < boxes[3].visible_fraction < 0.6
     seen, whole = boxes[3].visible_box, boxes[3].unoccluded_box
@@ -93,27 +85,6 @@ def test_a_turned_camera_sees_the_same_rolled_by_columns(renderer):
     rolled = np.roll(renderer.render(EYE), shift, axis=1)
     # The cube's faces meet elsewhere after a turn, which moves edges by a part of a pixel.
     assert np.mean(np.abs(rolled - renderer.render(turned)) < 3) > 0.97
-
-
-def test_an_empty_mask_has_no_box():
-    with pytest.raises(ValueError, match="no pixel"):
-        box_around(np.zeros((4, 8), bool))
-
-
-def test_odd_or_huge_panoramas_are_refused():
-    with pytest.raises(ValueError, match="even width"):
-        PanoramaRenderer(plain_room(AHEAD), 641)
-
-
-def test_the_lower_camera_sees_the_same_azimuth_at_a_higher_elevation():
-    rig = RigPose(0.2, -0.1, 0.4, 1.32, 0.3)
-    upper, lower = rig.camera_states()
-    np.testing.assert_allclose(upper[:3] - lower[:3], [0, 0, 0.3], atol=1e-12)
-    with PanoramaRenderer(plain_room(LEFT), WIDTH) as renderer:
-        above, below = (object_boxes(renderer, state)[0].visible_box for state in (upper, lower))
-    assert above[0] == pytest.approx(below[0], abs=0.6)
-    assert above[2] == pytest.approx(below[2], abs=0.6)
-    assert below[3] < above[3] - 5, "seen from lower down, the foot of the table is nearer to the horizon"
 
 
 def test_rig_tilts_stay_within_their_limits_and_are_shared():
@@ -183,39 +154,20 @@ def test_an_object_alone_is_as_large_at_a_coarser_scale():
             assert one.visible_fraction == pytest.approx(other.visible_fraction, abs=0.02)
 
 
-def test_photographs_from_one_place_differ_and_one_seed_gives_one_photograph():
-    light = np.full((64, 128, 3), 120.0, np.float32)
-    model = PanoramaCameraModel()
-    first, again, other = (photograph(light, model, np.random.default_rng(seed)) for seed in (1, 1, 2))
+def test_a_photograph_has_noise_of_its_own_that_grows_with_brightness_and_blur_across_the_seam():
+    light = np.full((128, 256, 3), 120.0, np.float32)
+    first, again, other = (photograph(light, PanoramaCameraModel(), np.random.default_rng(seed)) for seed in (1, 1, 2))
     np.testing.assert_array_equal(first, again)
     assert abs(first.mean() - other.mean()) > 0.5, "exposures differ"
-    assert first.dtype == np.uint8
-    assert first.shape == light.shape
-
-
-def test_noise_grows_with_brightness_as_the_model_says():
-    model = PanoramaCameraModel(exposure_stops=0.0, white_balance=0.0)
-    for level in (20.0, 180.0):
-        image = photograph(np.full((128, 256, 3), level, np.float32), model, np.random.default_rng(5))
-        expected = np.sqrt(model.shot_noise * level + model.read_noise**2)
-        assert image.astype(float).std() == pytest.approx(expected, rel=0.05)
-
-
-def test_the_blur_goes_across_the_seam():
-    light = np.zeros((64, 128, 3), np.float32)
-    light[:, 0] = 200.0
+    assert (first.dtype, first.shape) == (np.uint8, light.shape)
     model = PanoramaCameraModel(exposure_stops=0.0, white_balance=0.0, blur=(8.0, 8.0))
-    image = photograph(light, model, np.random.default_rng(0)).astype(float)
-    assert image[:, -1].mean() > 20.0
-
-
-def test_a_photograph_is_written_or_the_error_names_it(tmp_path):
-    image = np.full((64, 128, 3), 90, np.uint8)
-    model, rng = PanoramaCameraModel(), np.random.default_rng(0)
-    write_photograph(tmp_path / "a.jpg", image, model, rng)
-    assert cv2.imread(str(tmp_path / "a.jpg")).shape == image.shape
-    with pytest.raises(OSError, match="missing"):
-        write_photograph(tmp_path / "missing" / "a.jpg", image, model, rng)
+    for level in (20.0, 180.0):
+        image = photograph(np.full_like(light, level), model, np.random.default_rng(5))
+        assert image.astype(float).std() == pytest.approx(
+            np.sqrt(model.shot_noise * level + model.read_noise**2), rel=0.05
+        )
+    light[:, 1:] = 0.0
+    assert photograph(light, model, np.random.default_rng(0))[:, -1].mean() > 5.0
 
 
 def test_a_view_that_once_never_ended_is_drawn():

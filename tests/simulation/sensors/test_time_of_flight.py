@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from course_lib.rendering.camera import DepthCamera
-from course_lib.simulation.corridor.measurements import noise_on_a_wall
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import (
     CalibrationErrors,
@@ -14,6 +13,7 @@ from course_lib.simulation.sensors.time_of_flight import (
     TimeOfFlightCamera,
     TimeOfFlightModel,
 )
+from tools.corridor_data import noise_on_a_wall
 
 CAMERA = DepthCamera.sr4000().resized(44, 36)
 MODEL = TimeOfFlightModel()
@@ -110,12 +110,6 @@ def test_one_seed_gives_one_frame():
     assert first.dtype == np.float32
     assert first.shape == CAMERA.shape
     assert (first != other).any()
-
-
-def test_the_camera_looks_along_body_x_with_left_at_the_left():
-    depth = capture(walls((3.0, 0.0)), QUIET).depth
-    assert np.isfinite(depth[:, 0]).all()  # y > 0 is left, column 0
-    assert np.isnan(depth[:, -1]).all()
 
 
 def columns_of_the_wall(errors=None):

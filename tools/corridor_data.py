@@ -1,8 +1,4 @@
-"""Everything under data/corridor from one seed: true world, surveyed map, planar map, two recorded runs, checksums.
-
-Everything is made beside its place and put there at the end: a run that is stopped leaves the old data as they were,
-and what was made goes, with the next run where this one was killed.
-"""
+"""Everything under data/corridor from one seed: true world, surveyed map, planar map, two recorded runs, checksums."""
 
 from __future__ import annotations
 
@@ -13,14 +9,14 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import trimesh
+from numpy.random import Generator
 
 from course_lib.files import staging_dir
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.measurements import hole_share, map_error, noise_on_a_wall
-from course_lib.simulation.corridor.mesh_building import WorldMesh
-from course_lib.simulation.corridor.mesh_files import write_ply, write_world_ply
-from course_lib.simulation.corridor.parameters import corridor_parameters
+from course_lib.simulation.corridor.idealizations import corridor_parameters
+from course_lib.simulation.corridor.mesh_building import WorldMesh, to_polydata, write_ply, write_world_ply
 from course_lib.simulation.corridor.planar_map import planar_simplification
 from course_lib.simulation.corridor.recorded_runs import (
     FRAME_RATE,
@@ -31,27 +27,19 @@ from course_lib.simulation.corridor.recorded_runs import (
     steps_and_turns,
     wagon_run,
 )
-from course_lib.simulation.corridor.recording import record
+from course_lib.simulation.corridor.seeded_recording import record
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
 from course_lib.simulation.corridor.world import LENGTH, make_corridor
-from course_lib.simulation.data_folder import checksums, require_folder
+from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.sensors.laser_survey import STATIONS, ScannerModel, registration_error, survey
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 
 # What is made; other files of the folder (its README) stay.
-PRODUCTS = (
-    "true_world.ply",
-    "map.ply",
-    "planar_map.ply",
-    "wagon",
-    "hand",
-    "summary.json",
-    "PARAMETERS.md",
-    "SHA256SUMS",
-)
+MADE = ("true_world.ply", "map.ply", "planar_map.ply", "wagon", "hand", "summary.json", "PARAMETERS.md")
+PRODUCTS = (*MADE, "SHA256SUMS")
 PLANAR_DISTANCE = 0.05  # m within which a triangle belongs to a plane; chosen
-PLANAR_LEAST_AREA = 1.0  # m^2; chosen: "large planar segments"
+PLANAR_MIN_AREA = 1.0  # m^2; chosen: "large planar segments"
 
 Progress = Callable[[Iterable, str], Iterable]
 
@@ -72,11 +60,11 @@ class CorridorModels:
 def make_corridor_data(
     out: str | Path, seed: int, models: CorridorModels | None = None, progress: Progress = lambda items, text: items
 ) -> dict:
-    """Makes the data in folder `out` and returns what `summary.json` holds. One seed gives one set of bytes.
+    """Make the data in folder `out` and return what `summary.json` holds. One seed gives one set of bytes.
 
-    progress(items, text) wraps the loops, for progress bars. Raises `ValueError` where `out` cannot be a folder.
+    progress(items, text) wraps the loops, for progress bars. A run that is stopped leaves the old data as they were.
     """
-    out, models = require_folder(out), models or CorridorModels()
+    models = models or CorridorModels()
     generators = np.random.default_rng(seed).spawn(7)
     world_rng, survey_rng, planar_rng, camera_rng, wagon_rng, hand_rng, measure_rng = generators
     with staging_dir(out, PRODUCTS) as folder:
@@ -102,12 +90,12 @@ def _make_map(
     folder: Path,
     surveyed: WorldMesh,
     models: CorridorModels,
-    rng: np.random.Generator,
-    planar_rng: np.random.Generator,
-    measure_rng: np.random.Generator,
+    rng: Generator,
+    planar_rng: Generator,
+    measure_rng: Generator,
     progress: Progress,
 ) -> dict:
-    """Surveys the world as it is given, writes map.ply and planar_map.ply; returns what was measured on them."""
+    """Survey the world as it is given, write map.ply and planar_map.ply, and return what was measured on them."""
     caster = WorldCaster.of(surveyed)
     scans = survey(caster, models.scanner, rng, progress(models.stations, "surveying from the stations"))
     registered = [scan.as_registered() for scan in scans]
@@ -116,7 +104,7 @@ def _make_map(
         vertices, faces = simplify(vertices, faces, models.fusion)
     write_ply(folder / "map.ply", vertices, faces, "corridor map, simulated laser survey; CC BY 4.0")
     for _ in progress(range(1), "finding the large planes"):
-        planar = planar_simplification(SceneMap(vertices, faces), planar_rng, PLANAR_DISTANCE, PLANAR_LEAST_AREA)
+        planar = planar_simplification(SceneMap(vertices, faces), planar_rng, PLANAR_DISTANCE, PLANAR_MIN_AREA)
     write_ply(folder / "planar_map.ply", planar.vertices, planar.faces, "corridor map, large planes only; CC BY 4.0")
     return {
         "triangles": len(faces),
@@ -134,37 +122,29 @@ def _record(
     camera: TimeOfFlightCamera,
     run: tuple[np.ndarray, np.ndarray],
     models: CorridorModels,
-    rng: np.random.Generator,
+    rng: Generator,
     progress: Progress,
 ) -> dict:
-    """Records one run; returns rates over its pixels and the sizes of its steps."""
-    states = run[0]
+    """Record one run; return rates over its pixels and the sizes of its steps."""
     text = f"recording the {folder.name} run"
     total = record(folder, world, camera, run, models.floor_survey, rng, lambda items: progress(items, text))
-    _shrink(folder / "depth")
-    steps, turns = steps_and_turns(states)
+    # The images again as smaller PNGs: in a noisy image nothing repeats, so Huffman coding alone wins.
+    options = [cv2.IMWRITE_PNG_COMPRESSION, 9, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY]
+    for path in sorted((folder / "depth").glob("*.png")):
+        image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+        path.write_bytes(cv2.imencode(".png", image, options)[1].tobytes())
+    steps, turns = steps_and_turns(run[0])
+    counts = {"beyond_range": "beyond_unambiguous_range"}
+    shares = ("no_return", "nothing_there", "saturated", "beyond_range", "wrapped", "flying")
     return {
-        "frames": len(states),
+        "frames": len(run[0]),
         "frames_per_second": FRAME_RATE,
         "length_m": float(steps.sum()),
         "step_mean_m": float(steps.mean()),
         "step_max_m": float(steps.max()),
         "turn_max_deg": float(np.rad2deg(turns.max())),
-        "no_return_share": total["no_return"] / total["pixels"],
-        "nothing_there_share": total["nothing_there"] / total["pixels"],
-        "saturated_share": total["saturated"] / total["pixels"],
-        "beyond_unambiguous_range_share": total["beyond_range"] / total["pixels"],
-        "wrapped_share": total["wrapped"] / total["pixels"],
-        "flying_share": total["flying"] / total["pixels"],
+        **{f"{counts.get(name, name)}_share": total[name] / total["pixels"] for name in shares},
     }
-
-
-def _shrink(folder: Path) -> None:
-    """Writes the depth images again as smaller PNGs: in a noisy image nothing repeats, so Huffman coding alone wins."""
-    options = [cv2.IMWRITE_PNG_COMPRESSION, 9, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY]
-    for path in sorted(folder.glob("*.png")):
-        image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
-        path.write_bytes(cv2.imencode(".png", image, options)[1].tobytes())
 
 
 def _rounded(value: object) -> object:
@@ -174,3 +154,56 @@ def _rounded(value: object) -> object:
     if isinstance(value, float):
         return float(f"{value:.5g}") if np.isfinite(value) else None
     return value
+
+
+def map_error(
+    map_vertices: np.ndarray, map_faces: np.ndarray, world: WorldMesh, rng: Generator, n_points: int = 50_000
+) -> dict[str, float]:
+    """Distance in metres from points drawn on the map, by area, to the surface of the surveyed world."""
+    corners = map_vertices[map_faces].astype(np.float64)
+    areas = trimesh.triangles.area(corners)
+    face = rng.choice(len(areas), n_points, p=areas / areas.sum())
+    u, v = np.sort(rng.random((2, n_points)), axis=0)
+    points = np.einsum("nk,nkd->nd", np.stack([u, v - u, 1 - v], axis=1), corners[face])
+    distance = _distance(points, world.vertices, world.faces)
+    return {
+        "median_m": float(np.median(distance)),
+        "p90_m": float(np.percentile(distance, 90)),
+        "mean_m": float(distance.mean()),
+        "area_m2": float(areas.sum()),
+    }
+
+
+def hole_share(
+    map_vertices: np.ndarray, map_faces: np.ndarray, surveyed: WorldCaster, length: float, rng: Generator
+) -> float:
+    """Share of the surveyed world, as eyes all along the corridor of `length` metres see it, with no map within 5 cm.
+
+    100,000 rays in all directions from places at most 0.6 m beside the middle, 0.4 to 2.0 m above the floor; what they
+    meet of the survey day's world counts as mapped where the map lies within 0.05 m.
+    """
+    eyes = rng.uniform([1.0, -0.6, 0.4], [length - 1.0, 0.6, 2.0], (100_000, 3))
+    directions = rng.normal(size=eyes.shape)
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    distance = surveyed.cast(eyes, directions).distance
+    hit = np.isfinite(distance)
+    points = eyes[hit] + directions[hit] * distance[hit][:, None]
+    return float((_distance(points, map_vertices, map_faces) > 0.05).mean())
+
+
+def _distance(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Distances `(n,)` of points `(n, 3)` from a surface, metres."""
+    nearest = to_polydata(vertices, faces).find_closest_cell(points, return_closest_point=True)[1]
+    return np.linalg.norm(points - nearest, axis=1)
+
+
+def noise_on_a_wall(model: TimeOfFlightModel, distance: float, rng: Generator, reflectivity: float = 0.72) -> float:
+    """Standard deviation in metres over 50 frames of the central pixels' depth of a wall met squarely at `distance`.
+
+    nan where fewer than nine in ten of the pixels come back.
+    """
+    vertices = np.array([[distance, y, z] for y in (-5.0, 5.0) for z in (-5.0, 5.0)])
+    wall = WorldCaster(vertices, np.array([[0, 1, 2], [1, 3, 2]]), reflectivity)
+    camera = TimeOfFlightCamera(DepthCamera.sr4000().resized(44, 36), model, rng)
+    depths = np.stack([camera.capture(wall, np.zeros(6), rng).depth for _ in range(50)])[:, 14:22, 18:26]
+    return float(np.sqrt(np.nanmean(np.nanvar(depths, axis=0)))) if np.isfinite(depths).mean() >= 0.9 else float("nan")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.simulation.corridor.another_day import DayModel, another_day
 from course_lib.simulation.corridor.recorded_runs import WagonModel, wagon_run
+from course_lib.simulation.corridor.scene_changes import DayModel, scene_change
 from course_lib.simulation.corridor.world import draw_building, make_corridor
 
 SEEDS = (10_000, 10_001, 10_002)
@@ -17,24 +17,24 @@ def building():
 
 @pytest.fixture(scope="module")
 def days(building):
-    return [another_day(building, DayModel(), np.random.default_rng(seed)) for seed in SEEDS]
+    return [scene_change(building, DayModel(), np.random.default_rng(seed)) for seed in SEEDS]
 
 
-def door_leaves(mesh):
-    return np.array([mesh.part_bounds(f"door {number} leaf") for number in range(7)])
+@pytest.fixture(scope="module")
+def surveyed():
+    return make_corridor(np.random.default_rng(4)).survey_day
 
 
-def test_the_building_is_that_of_the_map(days):
-    surveyed = make_corridor(np.random.default_rng(4)).survey_day
+def test_the_building_is_that_of_the_map(days, surveyed):
     for part in ("wall", "pillar", "radiator", "cable tray", "notice board"):
         for day in days:
             mine = day.mesh.vertices[day.mesh.faces[day.mesh.faces_of(part)]]
             assert np.array_equal(mine, surveyed.vertices[surveyed.faces[surveyed.faces_of(part)]])
 
 
-def test_doors_and_things_differ_from_day_to_day_and_from_the_survey(building, days):
-    surveyed = make_corridor(np.random.default_rng(4)).survey_day
-    leaves = [door_leaves(mesh) for mesh in (surveyed, *(day.mesh for day in days))]
+def test_doors_and_things_differ_from_day_to_day_and_from_the_survey(days, surveyed):
+    meshes = [surveyed, *(day.mesh for day in days)]
+    leaves = [np.array([mesh.part_bounds(f"door {number} leaf") for number in range(7)]) for mesh in meshes]
     for i, one in enumerate(leaves):
         for other in leaves[:i]:
             assert (np.abs(one - other).max(axis=(1, 2)) > 0.1).sum() >= 2
@@ -46,13 +46,15 @@ def test_doors_and_things_differ_from_day_to_day_and_from_the_survey(building, d
 
 
 def test_one_seed_gives_one_day(building, days):
-    again = another_day(building, DayModel(), np.random.default_rng(SEEDS[0]))
+    again = scene_change(building, DayModel(), np.random.default_rng(SEEDS[0]))
     assert np.array_equal(again.mesh.vertices, days[0].mesh.vertices)
 
 
 def test_a_door_that_stands_open_has_a_room_behind_it(building):
-    all_open = another_day(building, DayModel(as_surveyed=0.0, closed=0.0), np.random.default_rng(0)).mesh
-    all_closed = another_day(building, DayModel(as_surveyed=0.0, closed=1.0), np.random.default_rng(0)).mesh
+    all_open, all_closed = (
+        scene_change(building, DayModel(as_surveyed=0.0, closed=closed), np.random.default_rng(0)).mesh
+        for closed in (0.0, 1.0)
+    )
     assert len(all_open.faces_of("room")) > 7 * 12
     assert len(all_closed.faces_of("room")) == 0
 
@@ -61,8 +63,7 @@ def test_a_door_that_stands_open_has_a_room_behind_it(building):
 def test_things_stand_apart_inside_the_corridor_and_the_wagon_gets_past(days, number):
     boxes = days[number].clutter_boxes
     assert 6 <= len(boxes) <= 12
-    middles = np.sort(boxes.mean(axis=1)[:, 0])
-    assert np.diff(middles).min() > 1.8
+    assert np.diff(np.sort(boxes.mean(axis=1)[:, 0])).min() > 1.8
     assert np.abs(boxes[:, :, 1]).max() < 1.45
     states, _ = wagon_run(WagonModel(), boxes, np.random.default_rng(number))
     for low, high in boxes:

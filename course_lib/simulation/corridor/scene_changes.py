@@ -1,24 +1,13 @@
-"""Another day of recording in the same building: how the doors stand, and what stands where in the way."""
+"""What changes from day to day in one building: how the doors stand, and what stands where in the way."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
+from numpy.random import Generator
 
-from course_lib.simulation.corridor.world import (
-    JUNCTION,
-    LEFT,
-    LENGTH,
-    RIGHT,
-    RIGHT_NARROW,
-    STAIRS,
-    STEP_AT,
-    Building,
-    RunDay,
-    Thing,
-    run_day,
-)
+from course_lib.simulation.corridor import world
+from course_lib.simulation.corridor.world import LENGTH, Building, RunDay, Thing, run_day
 
 # How far each kind's middle stands from its wall, in metres; a person up to PERSON_FARTHER more. Chosen, as CLUTTER is.
 FROM_WALL = {
@@ -44,22 +33,16 @@ class DayModel:
     hand_starts: tuple[float, float] = (1.8, 26.0)  # m along x, the same of a camera carried by hand; chosen
 
 
-def another_day(building: Building, model: DayModel, rng: np.random.Generator) -> RunDay:
-    """The building on a day of its own, drawn with `rng`: nothing but the building is that of any other day."""
-    angles = _door_angles(building, model, rng)
-    return run_day(building, angles, _things(building, model, rng), rng)
-
-
-def _door_angles(building: Building, model: DayModel, rng: np.random.Generator) -> list[float]:
-    """Degrees by which each left door stands open."""
+def scene_change(building: Building, model: DayModel, rng: Generator) -> RunDay:
+    """Return the building on a day drawn with `rng`: the doors, then the things, and nothing of any other day."""
     angles = []
     for *_, surveyed, _shipped in building.layout["left doors"]:
         drawn = 0.0 if rng.random() < model.closed else rng.uniform(*model.open_deg)
         angles.append(surveyed if rng.random() < model.as_surveyed else drawn)
-    return angles
+    return run_day(building, angles, _things(building, model, rng), rng)
 
 
-def _things(building: Building, model: DayModel, rng: np.random.Generator) -> list[Thing]:
+def _things(building: Building, model: DayModel, rng: Generator) -> list[Thing]:
     """Things along the walls, `model.apart` from each other; a thing that finds no place in 100 draws stays away."""
     kinds = [kind for kind in FROM_WALL if kind != "person"]
     taken = {side: _taken(building, side) for side in (-1, 1)}
@@ -76,9 +59,9 @@ def _things(building: Building, model: DayModel, rng: np.random.Generator) -> li
     return things
 
 
-def _placed(kind: str, x: float, side: int, rng: np.random.Generator) -> Thing:
+def _placed(kind: str, x: float, side: int, rng: Generator) -> Thing:
     """A thing at its distance from the left (side 1) or right wall, turned as its kind may be."""
-    wall = LEFT if side > 0 else (RIGHT if x < STEP_AT else RIGHT_NARROW)
+    wall = world.LEFT if side > 0 else world.right_side(x)
     farther = rng.uniform(0.0, PERSON_FARTHER) if kind == "person" else 0.0
     spread = {"person": 180.0, "chair": 180.0, "plant": 180.0, "cartons": 15.0, "trolley": 5.0}.get(kind, 0.0)
     turn = rng.uniform(-spread, spread)
@@ -95,7 +78,7 @@ def _taken(building: Building, side: int) -> list[tuple[float, float]]:
     widths += [(x + 0.5, 1.3) for x, *_ in layout["portals"]]
     if side > 0:
         widths += layout["benches"] + [(x, 0.2) for (x,) in layout["extinguishers"]]
-        widths += [(sum(pair) / 2, pair[1] - pair[0]) for pair in (JUNCTION[:2], STAIRS)]
+        widths += [(sum(pair) / 2, pair[1] - pair[0]) for pair in (world.JUNCTION[:2], world.STAIRS)]
     else:
         widths.append((10.9, 0.3))  # the cabinet
     return [(x - width / 2 - BESIDE, x + width / 2 + BESIDE) for x, width in widths] + [(LENGTH - 1.0, LENGTH)]

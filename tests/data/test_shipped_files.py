@@ -1,0 +1,58 @@
+"""What is shipped: complete, unchanged, small, and with the parameters that stand in the code."""
+
+from pathlib import Path
+
+import pytest
+
+from course_lib.experiments.project_rooms import SEEDS
+from course_lib.simulation.corridor.idealizations import corridor_parameters
+from course_lib.simulation.data_folder import checksums, parameter_tables
+from course_lib.simulation.room import data as room
+from course_lib.simulation.room import finale_data as finale
+from tools import corridor_data as corridor
+
+DATA = Path(__file__).resolve().parents[2] / "data"
+PROJECTS = tuple(f"rooms_{name}.json" for name in SEEDS)
+DETECTOR = ("room_yolo.cfg", "room_yolo.names", "room_yolo.weights", "scores.json", "training.json", "training_picture")
+PRODUCTS = {
+    "corridor": corridor.PRODUCTS,
+    "room": room.PRODUCTS,
+    "finale": finale.PRODUCTS,
+    "projects": PROJECTS,
+    "detector": DETECTOR,
+}
+MAX_BYTES = {"corridor": 18e6, "room": 15e6, "finale": 2e6, "projects": 1e6, "detector": 10e6}
+
+
+@pytest.mark.parametrize("name", PRODUCTS)
+def test_every_file_is_as_its_checksum_says(name):
+    assert (DATA / name / "SHA256SUMS").read_text() == checksums(DATA / name, PRODUCTS[name])
+
+
+@pytest.mark.parametrize("name", ["corridor", "room", "finale"])
+def test_nothing_is_missing_and_nothing_lies_about(name):
+    names = {path.name for path in (DATA / name).iterdir()}
+    expected = {*PRODUCTS[name], "README.md"}
+    assert expected <= names <= {*expected, "results"}  # results: the stored experiment
+
+
+@pytest.mark.parametrize("name", PRODUCTS)
+def test_sizes_stay_small(name):
+    files = [
+        path for product in PRODUCTS[name] for path in (DATA / name / product, *(DATA / name / product).rglob("*"))
+    ]
+    sizes = [path.stat().st_size for path in files if path.is_file()]
+    assert sum(sizes) < MAX_BYTES[name]
+    assert max(sizes) < 10e6
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters"),
+    [
+        ("corridor", corridor_parameters(corridor.CorridorModels())),
+        ("room", parameter_tables(room.RoomModels(), "room")),
+        ("finale", finale.finale_parameters(finale.FinaleModels())),
+    ],
+)
+def test_the_parameters_are_those_of_the_code(name, parameters):
+    assert (DATA / name / "PARAMETERS.md").read_text() == parameters
