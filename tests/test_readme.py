@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from course_lib.cli import find_command, main
 from course_lib.commands.demo_corridor import table_1
 from course_lib.commands.demo_finale import finale_text
 from course_lib.commands.demo_lost import lost_table
 from course_lib.commands.six_degrees_table import six_degrees_table
 from course_lib.commands.trouble_table import trouble_table
 from course_lib.experiments.lost_and_found import summarize
-from course_lib.experiments.rooms_summary import wilson_percent
+
+from course_lib.cli import find_command, main
+from course_lib.experiments.intervals import wilson_percent
 from tools.bench_table import table
 
 ROOT = Path(__file__).parents[1]

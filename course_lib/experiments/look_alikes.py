@@ -1,7 +1,7 @@
 """Rooms that look alike: answers within half a metre and 10 degrees, wrong ones given out, and none given.
 
 Table 2 of the paper calls a pose correct when every match is right and the errors are below 2 m. Here a pose is judged
-by where it is: within `LARGEST_ERROR_M` and `LARGEST_TURN_DEG` it is correct, given out and not correct it is wrong,
+by where it is: within `MAX_ERROR_M` and `MAX_TURN_DEG` it is correct, given out and not correct it is wrong,
 and not given out it is unanswered. The paper's measure, all matches right, stands beside it.
 """
 
@@ -19,11 +19,10 @@ from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import rotations
 from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
 from course_lib.beyond.several_views import Motion, SemanticTracker
+from course_lib.experiments.intervals import bootstrap_percent, wilson_percent
+from course_lib.experiments.observed_rooms import stored_map, stored_observations, stored_sequences
 from course_lib.experiments.room import PairResult
 from course_lib.experiments.room_evaluation import NO_OBJECT
-from course_lib.experiments.room_views import stored_sequences
-from course_lib.experiments.rooms import stored_map, stored_observations
-from course_lib.experiments.rooms_summary import bootstrap_percent, wilson_percent
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
@@ -32,10 +31,14 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 CORRECT, WRONG, UNANSWERED = "correct", "wrong", "unanswered"
 KINDS = (CORRECT, WRONG, UNANSWERED)
-LARGEST_ERROR_M, LARGEST_TURN_DEG = 0.5, 10.0
+MAX_ERROR_M, MAX_TURN_DEG = 0.5, 10.0
 ODOMETRY_STREAM = 0x0D0  # joins a room's seed
 THINNING_STREAM = 0x7117  # likewise
 LEFT_OUT = 0.5  # share of the observations, drawn one by one; chosen
+HEAD = (
+    f"  {'':24}{'n':>5}{'correct':>20}{'wrong':>18}{'unanswered':>20}{'all matches right':>22}"
+    f"{'dx [m]':>9}{'dy [m]':>9}{'dtheta [deg]':>14}"
+)
 SAME_PLACE = 0.05  # m, within which two poses of a recording are one place
 # Without each part in turn: what it is worth.
 ABLATION: dict[str, Evidence] = {
@@ -95,7 +98,7 @@ def pose_errors(pose: Pose2D | None, true_pose: Sequence[float]) -> tuple[float,
 
 def is_right(errors: tuple[float, float, float]) -> bool:
     """Whether an error is within half a metre and 10 degrees; False for NaN."""
-    return bool(np.hypot(*errors[:2]) <= LARGEST_ERROR_M and errors[2] <= LARGEST_TURN_DEG)
+    return bool(np.hypot(*errors[:2]) <= MAX_ERROR_M and errors[2] <= MAX_TURN_DEG)
 
 
 def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None, confidence, true_pose, pairs_right):
@@ -183,7 +186,7 @@ def measured_motion(
 
 
 def answers_of_sequences(
-    rooms: Sequence[dict], views: Sequence[dict], progress: Callable[[Iterable], Iterable] = iter
+    rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable[[Iterable], Iterable] = iter
 ) -> list[Answer]:
     """Every sequence of views, followed with odometry and without; the answer after the last view is judged.
 
@@ -199,7 +202,7 @@ def answers_of_sequences(
 
 
 def answers_of_thinned_sequences(
-    rooms: Sequence[dict], views: Sequence[dict], progress: Callable[[Iterable], Iterable] = iter
+    rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable[[Iterable], Iterable] = iter
 ) -> list[Answer]:
     """The same sequences with `LEFT_OUT` of all observations, after one view, after two, and so on.
 
@@ -316,7 +319,7 @@ def why_not_answered(
 def answers_summary(
     rooms: Sequence[dict],
     methods: Sequence[str] = tuple(ASSOCIATIONS),
-    views: Sequence[dict] | None = None,
+    views: Sequence[list[dict]] | None = None,
     ablation: bool = False,
     progress: Callable[[Iterable], Iterable] = iter,
 ) -> dict:
@@ -328,7 +331,7 @@ def answers_summary(
         found["risk_coverage"] = risk_coverage(consistent)
         found["why_unanswered"] = why_not_answered(rooms, consistent)
     if views is not None:
-        found["n_views"] = views[0]["options"]["views"]
+        found["n_views"] = 1 + len(views[0][0]["views"])
         found["several_views"] = tables_by_method(answers_of_sequences(rooms, views, progress))
         found["thinned_views"] = tables_by_method(answers_of_thinned_sequences(rooms, views, progress))
     if ablation:
@@ -337,3 +340,51 @@ def answers_summary(
             for name, wrong_map in (("right_map", False), ("wrong_map", True))
         }
     return found
+
+
+def answer_tables(answers: dict) -> str:
+    """Shares in percent with Wilson's 95 % intervals; mean errors of the correct ones."""
+    lines = [*_what_is_counted("both heights, from images"), *_group("One view", answers["one_view"])]
+    if "several_views" in answers:
+        lines += _several(answers)
+        lines += _group("Half of all observations left out", answers["thinned_views"])
+    for which, tables in answers.get("ablation", {}).items():
+        lines += _group(f"Evidence switched off, {which.replace('_', ' ')}", tables)
+    return "\n".join(lines)
+
+
+def views_table(found: dict) -> str:
+    """Several views alone: n_views and several_views of a summary."""
+    return "\n".join([*_what_is_counted("both experiments, from images"), *_several(found)])
+
+
+def _what_is_counted(of: str) -> list[str]:
+    return [
+        f"Answers [%]: correct within {MAX_ERROR_M:g} m and {MAX_TURN_DEG:g} degrees, wrong when given out and "
+        f"not; {of};",
+        "95 % intervals as if poses were independent; mean errors when correct",
+    ]
+
+
+def _several(found: dict) -> list[str]:
+    return _group(f"{found['n_views']} views, consistent", found["several_views"])
+
+
+def _group(title: str, tables: dict) -> list[str]:
+    return ["", title, HEAD, *(_row(name, table) for name, table in tables.items())]
+
+
+def _row(name: str, table: dict) -> str:
+    shares = [_share(table, kind) for kind in KINDS]
+    right = _share(table, "all_matches_right") if table["all_matches_right_percent"] is not None else "-"
+    errors = [table[f"mean_{error}"] for error in ("dx_m", "dy_m", "dtheta_deg")]
+    texts = ["-" if error is None else f"{error:.3f}" for error in errors]
+    return (
+        f"  {name.replace('_', ' '):24}{table['n']:5d}{shares[0]:>20}{shares[1]:>18}{shares[2]:>20}{right:>22}"
+        f"{texts[0]:>9}{texts[1]:>9}{texts[2]:>14}"
+    )
+
+
+def _share(table: dict, kind: str) -> str:
+    low, high = table[f"{kind}_wilson_percent"]
+    return f"{table[f'{kind}_percent']:.1f} ({low:.1f}-{high:.1f})"

@@ -11,10 +11,10 @@ import sys
 
 import numpy as np
 import pytest
+from course_lib.commands.corridor_tables import table_1, table_over_recordings
 
 from course_lib.cli import main
 from course_lib.commands import demo_corridor
-from course_lib.commands.corridor_tables import table_1, table_over_recordings
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
 

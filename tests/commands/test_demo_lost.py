@@ -4,6 +4,7 @@ import json
 
 from course_lib.commands.demo_lost import lost_table
 from course_lib.experiments.lost_and_found import summarize
+
 from course_lib.experiments.results import write_results
 
 

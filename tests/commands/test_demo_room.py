@@ -6,9 +6,9 @@ import io
 import json
 
 import pytest
+from course_lib.commands.room_tables import remarks
 
 from course_lib.cli import main
-from course_lib.commands.room_tables import remarks
 from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
 from course_lib.simulation.room import data as room_data
 

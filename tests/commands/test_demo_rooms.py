@@ -4,12 +4,12 @@ import csv
 import json
 
 import pytest
+from course_lib.commands.demo_rooms import detector_identity
+from course_lib.experiments.rooms_summary import METHODS
 
 from course_lib.cli import main
 from course_lib.commands.arguments import parse_seeds
-from course_lib.commands.demo_rooms import detector_identity
 from course_lib.experiments import rooms as rooms_module
-from course_lib.experiments.rooms_summary import METHODS
 from tests.experiments.test_rooms import entry, record
 
 

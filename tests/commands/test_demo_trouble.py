@@ -4,11 +4,11 @@ import json
 import re
 
 import pytest
-
-from course_lib.cli import main
 from course_lib.commands.demo_trouble import FRAMES, PAIRS
 from course_lib.commands.trouble_table import told, trouble_table
 from course_lib.experiments.sensor_trouble.depth_frames import TROUBLES
+
+from course_lib.cli import main
 from course_lib.paths import data_path
 from course_lib.plots.trouble_figure import trouble_figure
 

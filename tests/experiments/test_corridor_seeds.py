@@ -5,10 +5,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from course_lib.experiments.corridor_seeds import BY_HAND, Maps, over_recordings, own_recordings, run_rows
 
 from course_lib.experiments import corridor_seeds
 from course_lib.experiments.corridor import METHODS
-from course_lib.experiments.corridor_seeds import BY_HAND, Maps, over_recordings, own_recordings, run_rows
 from course_lib.rendering.scene_map import SceneMap
 
 

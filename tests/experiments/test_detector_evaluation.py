@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from course_lib.experiments.detector_evaluation import centre_errors, compare_voting, match_image, score_detector
 
 from course_lib.experiments import detector_evaluation
 from course_lib.experiments.detection_scores import DetectionScoreError
-from course_lib.experiments.detector_evaluation import centre_errors, compare_voting, match_image, score_detector
 from course_lib.spherical_stereo.detection import suppression
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.recording import TrueObject

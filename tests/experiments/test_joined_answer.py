@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from course_lib.experiments.joined_answer import joined, start_covariance
 
 from course_lib.experiments.finale import LEVEL_SIGMA
-from course_lib.experiments.joined_answer import joined, start_covariance
 from course_lib.geometry import wrap_angle
 
 SEMANTIC = np.array([[0.0025, 0.0005, 0.0002], [0.0005, 0.0036, -0.0001], [0.0002, -0.0001, 0.0004]])

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from course_lib.experiments.room_views import ViewsOptions, stored_sequences
 
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.experiments import look_alikes
@@ -22,7 +23,6 @@ from course_lib.experiments.look_alikes import (
     risk_coverage,
     why_not_answered,
 )
-from course_lib.experiments.room_views import ViewsOptions, stored_sequences
 from course_lib.experiments.rooms import record_of_observations
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed, scattered

@@ -5,13 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import norm
-
-from course_lib.experiments import rooms as rooms_module
-from course_lib.experiments.room import localize_pair
-from course_lib.experiments.room_evaluation import NO_OBJECT, PoseOutcome
 from course_lib.experiments.room_views import ViewsOptions, observe_views
-from course_lib.experiments.rooms import RoomsOptions, observe_room, observe_rooms, stored_map, stored_observations
 from course_lib.experiments.rooms_summary import (
     METHODS,
     JudgedPose,
@@ -22,6 +16,12 @@ from course_lib.experiments.rooms_summary import (
     rooms_summary,
     wilson_percent,
 )
+from scipy.stats import norm
+
+from course_lib.experiments import rooms as rooms_module
+from course_lib.experiments.room import localize_pair
+from course_lib.experiments.room_evaluation import NO_OBJECT, PoseOutcome
+from course_lib.experiments.rooms import RoomsOptions, observe_room, observe_rooms, stored_map, stored_observations
 from course_lib.geometry import wrap_angle
 from course_lib.paths import data_path
 from course_lib.simulation.room.look_alike_recording import RecordingModels, measurement_poses, surveyed_room

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from course_lib.experiments import sweep
 from course_lib.experiments.sweeps import SweepError
 from course_lib.writing import WriteError
+
+from course_lib.experiments import sweep
 
 ROOT = Path(__file__).parents[2]
 HANGS_S = 1200

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from course_lib.experiments.sensor_trouble.depth_frames import (
     GREATEST_RANGE,
     SPOILS,

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from course_lib.experiments.sensor_trouble.panoramas import STOPS, TROUBLES, troubled_walk
 from course_lib.experiments.sensor_trouble.placing import troubled_frames
 

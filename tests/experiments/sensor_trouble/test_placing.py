@@ -4,7 +4,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-
 from course_lib.experiments.sensor_trouble.placing import (
     LEFT_AT_THE_END,
     generator,

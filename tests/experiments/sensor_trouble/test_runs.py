@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from course_lib.experiments.sensor_trouble import depth_run, stereo_run
+from course_lib.experiments.sensor_trouble.score import summary
 
 from course_lib.beyond.guarded_depth import OUTCOMES
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.sensor_trouble import depth_run, stereo_run
-from course_lib.experiments.sensor_trouble.score import summary
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed

@@ -1,7 +1,6 @@
 """What is counted of troubled runs, on runs made up by hand."""
 
 import pytest
-
 from course_lib.experiments.sensor_trouble.score import (
     Gate,
     Usual,

@@ -6,9 +6,9 @@ import json
 
 import numpy as np
 import pytest
+from course_lib.output_folder import MADE
 
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.output_folder import MADE
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.data import PRODUCTS, CorridorModels, make_corridor_data
 from course_lib.simulation.corridor.recorded_runs import HandModel, WagonModel

@@ -54,7 +54,7 @@ def test_a_list_that_is_not_names_the_image_and_the_field(tmp_path, content, sai
 
 
 def test_score_detector_says_so_before_it_scores_anything(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("course_lib.experiments.detector_evaluation.score_detector", lambda *given: 1 / 0)
+    monkeypatch.setattr("tools.detector_evaluation.score_detector", lambda *given: 1 / 0)
     words = ["score-detector", "--images", str(written(tmp_path, listed(OBJECT | {"visible_box": 5})))]
     assert main(words) == 2
     assert "image 0: a field is missing or of the wrong kind" in capsys.readouterr().err

@@ -6,11 +6,11 @@ import os
 
 import numpy as np
 import pytest
+from course_lib.writing import WriteError
 from hypothesis import given
 from hypothesis import strategies as st
 
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
-from course_lib.writing import WriteError
 
 WALLS = [[0.0, 0.0], [6.0, 0.0], [6.0, 5.5], [0.0, 5.5]]
 

@@ -1,7 +1,8 @@
-"""Kidnapped, started from anywhere, or left in peace: does the filter find itself, and does it raise false alarms?
+"""Lost and found: kidnap the camera, start it anywhere, leave it in peace, and count how often it finds itself.
 
-A kidnapping is made of a recording: it is played to some frame, then nothing is seen for a while, and it goes on from a
-frame in another place. Gravity is what an accelerometer would say: the truth's, with a degree of noise.
+In the corridor every seed makes a recording of its own, carried by hand. A recording of your own needs its truth, to be
+judged by. A kidnapping is made of a recording: it is played to some frame, then nothing is seen for a while, and it
+goes on from a frame in another place. Gravity is what an accelerometer would say: the truth's, with a degree of noise.
 """
 
 from __future__ import annotations
@@ -18,8 +19,10 @@ from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.experiments.runner import Outcome, Runner
 from course_lib.files import temporary_folder
 from course_lib.geometry import optical_pose, state_from_optical_pose
+from course_lib.paths import data_path
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed
@@ -27,17 +30,25 @@ from course_lib.simulation.corridor.seeded_recording import building_of_data, re
 GRAVITY_SIGMA = np.deg2rad(1.0)
 RIGHT = 0.20, 20.0  # metres, degrees: within both, a place is the right one
 BEFORE, COVERED, AFTER = 12, 5, 30  # frames of a kidnapping: followed, nothing seen, elsewhere
-LEAST_JUMP = 1.0, 40.0  # metres, degrees: a kidnapping moves the camera by one of them at least
+MIN_JUMP = 1.0, 40.0  # metres, degrees: a kidnapping moves the camera by one of them at least
 START_FRAMES = 20
 
 
-def gravity_in_camera(camera_to_world: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """What an accelerometer at rest says is down, `(3,)` in the optical frame, with noise."""
-    return -camera_to_world[2, :3] + GRAVITY_SIGMA * rng.standard_normal(3)
+def run(runner: Runner, *, seeds: list[int], recording: Path | None, data: Path | None) -> Outcome:
+    """Run `demo lost`: the trials that are missing, then all of them together."""
+    if recording:
+        read_sequence(recording).require_poses()  # told now, not after the first run
+        folder = recording.absolute()
+        function, common = trial, {"map_file": str(folder / "map.ply"), "sequence": str(folder)}
+    else:
+        function, common = corridor_trial, {"data": str((data or data_path("corridor")).absolute())}
+    trials = runner.rows(function, [{**common, "seed": seed} for seed in seeds], "lost", "trial")
+    result = {"seeds": seeds, **summarize(trials)}
+    return Outcome(result, lost_table(result), {"lost.json": (result, None)})
 
 
 def trial(map_file: str, sequence: str, seed: int) -> dict[str, dict]:
-    """A point of a sweep: a kidnapping, a start from anywhere, and the recording in peace."""
+    """One trial: a kidnapping, a start from anywhere, and the recording in peace."""
     return {
         "kidnapped": kidnapping(map_file, sequence, seed),
         "start": start_anywhere(map_file, sequence, seed),
@@ -46,7 +57,7 @@ def trial(map_file: str, sequence: str, seed: int) -> dict[str, dict]:
 
 
 def corridor_trial(data: str, seed: int) -> dict[str, dict]:
-    """A point of a sweep: the same on a recording of the seed's own, carried by hand through the corridor."""
+    """The same on a recording of the seed's own, carried by hand through the corridor."""
     with temporary_folder() as temporary:
         folder = temporary / "hand"
         record_seed(folder, building_of_data(data), seed, carried="hand")
@@ -72,6 +83,22 @@ def summarize(trials: Sequence[dict[str, dict]]) -> dict[str, float | None]:
         "undisturbed_frames": sum(t["in peace"]["frames"] for t in trials),
         "false_alarms": sum(t["in peace"]["alarms"] for t in trials),
     }
+
+
+def lost_table(s: dict) -> str:
+    """Return `summarize` in words."""
+    of = f"of {s['trials']}"
+    median = "-" if s["frames_to_recover"] is None else f"{s['frames_to_recover']:.0f}"
+    return "\n".join(
+        [
+            f"kidnapped           {s['kidnapped_recovered']} {of} recovered within 30 frames (median {median})",
+            f"started anywhere    {s['started_right']} {of} in the right place within 20 frames, "
+            f"{s['started_wrong']} in a wrong one, {s['started_several']} said: several",
+            f"                    median {s['frames_to_start']:.0f} frames, {s['particles_to_start']:,.0f} particles, "
+            f"{s['seconds_to_start']:.0f} s",
+            f"left in peace       {s['false_alarms']} false alarms in {s['undisturbed_frames']} frames",
+        ]
+    )
 
 
 def kidnapping(map_file: str, sequence: str, seed: int) -> dict:
@@ -133,6 +160,11 @@ def start_anywhere(map_file: str, sequence: str, seed: int) -> dict:
     }
 
 
+def gravity_in_camera(camera_to_world: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """What an accelerometer at rest says is down, `(3,)` in the optical frame, with noise."""
+    return -camera_to_world[2, :3] + GRAVITY_SIGMA * rng.standard_normal(3)
+
+
 def _played(
     recording: DepthSequence, frames: Iterable[int | None]
 ) -> Iterator[tuple[int, np.ndarray, np.ndarray | None]]:
@@ -152,9 +184,9 @@ def _places_of_kidnapping(recording: DepthSequence, rng: np.random.Generator) ->
         if first + BEFORE <= len(recording):
             end = recording.camera_to_world[first + BEFORE - 1]
             position, rotation = pose_errors(end, recording.camera_to_world[after])
-            if position >= LEAST_JUMP[0] or np.rad2deg(rotation) >= LEAST_JUMP[1]:
+            if position >= MIN_JUMP[0] or np.rad2deg(rotation) >= MIN_JUMP[1]:
                 return first, after
-    raise ValueError(f"{recording!r} has no two places {LEAST_JUMP[0]} m apart with {AFTER} frames after them")
+    raise ValueError(f"{recording!r} has no two places {MIN_JUMP[0]} m apart with {AFTER} frames after them")
 
 
 def _right(state: np.ndarray, true: np.ndarray) -> bool:

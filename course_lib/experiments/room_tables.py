@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
+from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
+
 HEAD = f"{'':46} {'dx [m]':>8} {'dy [m]':>8} {'dtheta [deg]':>13}   {'std x':>6} {'std y':>6} {'std theta':>9}"
 MEANS = ("mean_dx_m", "mean_dy_m", "mean_dtheta_deg")
 COLUMNS = (*MEANS, "std_dx_m", "std_dy_m", "std_dtheta_deg")
@@ -14,9 +17,6 @@ MANY_PAIRS = 8  # so many that the others outvote two wrong ones
 
 def tables(summary: dict) -> str:
     """Tables 1 to 5, the paper's numbers beside ours."""
-    from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
-    from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
-
     lines = ["Table 1: places (x [m], y [m]) and the two headings [deg] at each"]
     lines += [
         f"  {p.place:2d}: ({p.x:.2f}, {p.y:.2f})  {p.headings_deg[0]:4.0f}, {p.headings_deg[1]:4.0f}"
@@ -55,8 +55,6 @@ def tables(summary: dict) -> str:
 
 def remarks(summary: dict) -> list[str]:
     """What sets the numbers from images apart from the paper's: a sentence for each difference that is there."""
-    from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
-
     ours = [
         next(values for key, values in summary[f"experiment_{number}"].items() if not key.endswith(EXACT))
         for number in (1, 2)

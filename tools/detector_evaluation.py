@@ -1,14 +1,15 @@
-"""Precision and recall of a finished detector on panoramas whose objects are known, at its one threshold."""
+"""Precision and recall of detectors on panoramas whose objects are known; the choice of a threshold, and of votes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.detection_scores import Boxes, DetectionScoreError, Matching, match_detections
+from course_lib.experiments.detection_scores import DetectionScoreError, Matching, match_image
 from course_lib.experiments.room import counts_as_object
 from course_lib.spherical_stereo.detection import detector as detector_module
 from course_lib.spherical_stereo.detection import suppression
@@ -114,17 +115,6 @@ def _voting(iou: float, score: float) -> Iterator[None]:
         detector_module.VOTE_SCORE = before[1]
 
 
-def match_image(detections: Sequence, objects: Sequence[TrueObject], width: int) -> Matching:
-    """The detections of one panorama against its objects."""
-    wanted = [thing for thing in objects if counts_as_object(thing, width)]
-    ignored = [thing for thing in objects if not counts_as_object(thing, width)]
-    boxes = np.array([one.box for one in detections], float).reshape(-1, 4)
-    scores = np.array([one.score for one in detections], float)
-    return match_detections(
-        Boxes([one.label for one in detections], boxes, scores), *map(_boxes, (wanted, ignored)), width
-    )
-
-
 def labelled_panoramas(recording: StereoRecording) -> Iterable[tuple[np.ndarray, Sequence[TrueObject]]]:
     """Every image of a recording with its objects."""
     for pair in recording.pairs:
@@ -142,5 +132,61 @@ def _count(matchings: Iterable[Matching]) -> DetectorScore:
     return DetectorScore(len(matchings), n_objects, found, sum(len(m.correct) for m in matchings) - found)
 
 
-def _boxes(objects: Sequence[TrueObject]) -> Boxes:
-    return Boxes([thing.label for thing in objects], np.array([thing.visible_box for thing in objects]).reshape(-1, 4))
+@dataclass(frozen=True)
+class PrecisionRecall:
+    """Precision and recall over falling thresholds."""
+
+    threshold: np.ndarray
+    """(k,) scores, falling: entry i keeps all detections of at least this score."""
+    precision: np.ndarray
+    """(k,) share of the kept detections that are right."""
+    recall: np.ndarray
+    """(k,) share of the objects that are found."""
+
+
+def precision_recall_curve(matchings: Sequence[Matching]) -> PrecisionRecall:
+    """Precision and recall of many panoramas together, at every score that occurs.
+
+    precision(t) = right detections with score >= t / all detections with score >= t
+    recall(t)    = right detections with score >= t / objects
+
+    Ignored detections are in neither count. Raises `DetectionScoreError` when there is no object at all.
+    """
+    n_objects = sum(matching.n_objects for matching in matchings)
+    if n_objects == 0:
+        raise DetectionScoreError("there is no object to be found in these panoramas, so recall is not defined")
+    scores = np.concatenate([matching.scores for matching in matchings])
+    correct = np.concatenate([matching.correct for matching in matchings])
+    order = np.argsort(-scores, kind="stable")
+    scores, right = scores[order], np.cumsum(correct[order])
+    # A threshold keeps all detections of equal score: only the last of them is a point of the curve.
+    last = np.ones(len(scores), dtype=bool)
+    last[:-1] = scores[1:] != scores[:-1]
+    kept = np.arange(1, len(scores) + 1)
+    return PrecisionRecall(scores[last], (right / kept)[last], (right / n_objects)[last])
+
+
+def scores_at(curve: PrecisionRecall, threshold: float) -> tuple[float, float]:
+    """(precision, recall) of the detections with at least this score; precision is nan when there are none."""
+    kept = np.flatnonzero(curve.threshold >= threshold)
+    return (float(curve.precision[kept[-1]]), float(curve.recall[kept[-1]])) if len(kept) else (float("nan"), 0.0)
+
+
+def best_threshold(curve: PrecisionRecall) -> float:
+    """The threshold with the largest F1 = 2 precision recall / (precision + recall).
+
+    Raises `DetectionScoreError` when no detection is right, since no threshold is then better than another.
+    """
+    total = curve.precision + curve.recall
+    f1 = np.divide(2 * curve.precision * curve.recall, total, out=np.zeros_like(total), where=total > 0)
+    if not len(f1) or f1.max() == 0.0:
+        raise DetectionScoreError("no detection is right at any threshold: train the detector before choosing one")
+    return float(curve.threshold[f1.argmax()])
+
+
+def average_precision(curve: PrecisionRecall) -> float:
+    """Area under precision over recall, precision made monotone from the right (as PASCAL VOC since 2010)."""
+    if not len(curve.recall):
+        return 0.0
+    envelope = np.maximum.accumulate(curve.precision[::-1])[::-1]
+    return float(np.sum(np.diff(curve.recall, prepend=0.0) * envelope))
