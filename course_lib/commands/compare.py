@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments import six_degrees
     from course_lib.experiments.results import write_results
     from course_lib.experiments.runner import kept_rows
-    from course_lib.plots.covariance_figure import covariance_figure
+    from course_lib.plots.experiment_figures import covariance_figure
     from course_lib.rendering.scene_map import SceneMap
 
     seeds = parse_seeds(arguments.seeds)

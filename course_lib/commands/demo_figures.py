@@ -13,11 +13,9 @@ from course_lib.depth_mcl.poses import write_tum
 from course_lib.depth_mcl.sequence import FAR, NEAR
 from course_lib.experiments.room_evaluation import CORRECT, INCORRECT
 from course_lib.plots import corridor_figures, room_figures
-from course_lib.plots.covariance_figure import covariance_figure
+from course_lib.plots.experiment_figures import covariance_figure, risk_coverage_figure, trouble_figure
 from course_lib.plots.location_scene import location_scene
-from course_lib.plots.look_alike_figures import risk_coverage_figure
 from course_lib.plots.track_scene import track_scene
-from course_lib.plots.trouble_figure import trouble_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,7 +15,7 @@ and returns whose amplitude falls below the camera's threshold are lost: far one
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -26,7 +26,7 @@ from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
-from course_lib.experiments.troubled_frames import Arrival, Gate, generator, troubled_runs
+from course_lib.experiments.troubled_frames import SECOND, Arrival, Gate, Spoil, troubles_of
 from course_lib.files import temporary_folder
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.camera import DepthCamera
@@ -43,23 +43,19 @@ FILTERS = {"xyyaw": MonteCarloLocalizer, "6": AnnealedLocalizer}
 LIGHT_LEFT = 1 / 16  # share of the exposure that is left after a jump: four stops; chosen
 WHITE_SHARE = 0.3  # reflectivity times cosine of what is seen, which a depth image does not tell; chosen
 MAX_RANGE = 9.99  # m, where a saturated sensor stops: the SR4000's unambiguous range
-SECOND = 1.0
-
-# (image that is due, image that arrived before, generator) -> image that arrives
-Spoil = Callable[[np.ndarray, np.ndarray, np.random.Generator], np.ndarray]
 
 
-def black(image: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def black(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """No return in any pixel."""
     return np.full_like(image, np.nan)
 
 
-def repeated(image: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def repeated(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """The image that arrived before, once more."""
     return before.copy()
 
 
-def half_covered(image: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def half_covered(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """One half, upper, lower, left or right, without returns: a hand before the lens is too near for any."""
     covered = image.copy()
     height, width = image.shape
@@ -73,7 +69,7 @@ def half_covered(image: np.ndarray, before: np.ndarray, rng: np.random.Generator
     return covered
 
 
-def saturated(image: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def saturated(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """All pixels at zero, all at the greatest range, or all anywhere between: one of the three, drawn."""
     kind = rng.integers(3)
     if kind == 2:
@@ -81,7 +77,7 @@ def saturated(image: np.ndarray, before: np.ndarray, rng: np.random.Generator) -
     return np.full_like(image, (0.0, MAX_RANGE)[kind])
 
 
-def underexposed(image: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def underexposed(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """The image with `LIGHT_LEFT` of its light: noisier, and without what is far (the model above)."""
     model = TimeOfFlightModel()
     amplitude = LIGHT_LEFT * WHITE_SHARE * 4 / np.maximum(image.astype(np.float64), 0.05) ** 2
@@ -98,39 +94,9 @@ SPOILS: dict[str, Spoil] = {
     "saturated": saturated,
     "exposure jump": underexposed,
 }
-TROUBLES = ("dropped", *SPOILS, "time backwards")
-LONGEST_RUN = round(SECOND * FRAME_RATE)
-"""Frames of the longest trouble in recordings of the corridor."""
-
-
-def run_length(trouble: str, period: float) -> int:
-    """How many frames one after the other a trouble lasts: a second's for a frozen camera, one for all others."""
-    return round(SECOND / period) if trouble == "frozen for a second" else 1
-
-
-def troubled_recording(
-    trouble: str, images: Sequence[np.ndarray], times: np.ndarray, share: float, rng: np.random.Generator
-) -> tuple[list[Arrival], list[tuple[int, int]]]:
-    """What arrives of a recording, an `Arrival` for each frame that is due, and the troubled stretches (first, end).
-
-    trouble: of `TROUBLES`. images: `(H, W)` metres, NaN = no measurement. times: `(T,)` seconds. share: of the frames.
-    A frame whose time goes backwards is stamped up to a second before the frame before it.
-    Raises `ValueError` for a trouble that does not exist, or does not fit into the recording.
-    """
-    if trouble not in TROUBLES:
-        raise ValueError(f"trouble must be one of {', '.join(TROUBLES)}; got {trouble!r}")
-    period = float(np.median(np.diff(times)))
-    runs = troubled_runs(len(images), share, run_length(trouble, period), rng)
-    arrivals = [Arrival(image, float(time)) for image, time in zip(images, times, strict=True)]
-    for index in (index for first, end in runs for index in range(first, end)):
-        image, time = arrivals[index]
-        if trouble == "dropped":
-            arrivals[index] = Arrival(None, time)
-        elif trouble == "time backwards":
-            arrivals[index] = Arrival(image, arrivals[index - 1].time - rng.uniform(0.0, SECOND))
-        else:
-            arrivals[index] = Arrival(SPOILS[trouble](image, arrivals[index - 1].image, rng), time)
-    return arrivals, runs
+LONGEST_RUN = round(SECOND * FRAME_RATE)  # frames of the longest trouble
+LENGTHS = dict.fromkeys(("dropped", *SPOILS, "time backwards"), 1) | {"frozen for a second": LONGEST_RUN}
+"""How many frames one after the other each trouble lasts."""
 
 
 def watched_frames(
@@ -162,10 +128,7 @@ def watched_frames(
 
 
 def corridor_trouble(data: str, seed: int, frames: int, shares: Sequence[float], dof: Dof) -> dict:
-    """Run a filter on a seed's recording undisturbed, and with every trouble at every share (0 to 1).
-
-    {"undisturbed": frames, "troubles": [{"trouble", "share", "runs", "frames"}]}, frames as `watched_frames` has them.
-    """
+    """Return `troubles_of` a filter on a seed's recording of the corridor."""
     scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
     with temporary_folder() as temporary:
         folder = temporary / "recording"
@@ -173,25 +136,23 @@ def corridor_trouble(data: str, seed: int, frames: int, shares: Sequence[float],
         carried = "wagon" if dof == "xyyaw" else "hand"
         record_seed(folder, building, seed, camera=camera, frames=frames, carried=carried)
         recording = read_sequence(folder)
-        return troubles_of(recording, scene_map, seed, shares, dof)
+        return recording_trouble(recording, scene_map, seed, shares, dof)
 
 
-def troubles_of(
-    recording: DepthSequence, scene_map: SceneMap, seed: int, shares: Sequence[float], dof: Dof, troubles=TROUBLES
+def recording_trouble(
+    recording: DepthSequence,
+    scene_map: SceneMap,
+    seed: int,
+    shares: Sequence[float],
+    dof: Dof,
+    lengths: Mapping[str, int] = LENGTHS,
 ) -> dict:
     """`corridor_trouble` of a recording with its truth and times, z up."""
     images = [recording.depth(index) for index in range(len(recording))]
-    times, true = recording.times, recording.camera_to_world
-    period = float(np.median(np.diff(times)))
+    period = float(np.median(np.diff(recording.times)))
     with DepthRenderer(scene_map, recording.camera()) as renderer:
 
         def run(arrivals: Sequence[Arrival]) -> list[dict]:
-            return watched_frames(dof, renderer, arrivals, true, period, seed)
+            return watched_frames(dof, renderer, arrivals, recording.camera_to_world, period, seed)
 
-        calm = run([Arrival(image, float(time)) for image, time in zip(images, times, strict=True)])
-        rows = []
-        for trouble in troubles:
-            for share in shares:
-                arrivals, runs = troubled_recording(trouble, images, times, share, generator(seed, trouble, share))
-                rows.append({"trouble": trouble, "share": share, "runs": runs, "frames": run(arrivals)})
-    return {"undisturbed": calm, "troubles": rows}
+        return troubles_of(run, lengths, SPOILS, images, recording.times, seed, shares)

@@ -7,7 +7,7 @@ and not given out it is unanswered. The paper's measure, all matches right, stan
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -57,14 +57,10 @@ ABLATION: dict[str, Evidence] = {
 class OdometryModel(NamedTuple):
     """How well a rig on wheels knows its steps: standard deviations."""
 
-    distance: float = 0.01
-    """Metres, however short the step; chosen."""
-    distance_share: float = 0.05
-    """Of the step; chosen: wheels slip."""
-    turn: float = float(np.deg2rad(1.0))
-    """Radians, however small the turn; chosen."""
-    turn_share: float = 0.05
-    """Of the turn; chosen."""
+    distance: float = 0.01  # metres, however short the step; chosen
+    distance_share: float = 0.05  # of the step; chosen: wheels slip
+    turn: float = float(np.deg2rad(1.0))  # radians, however small the turn; chosen
+    turn_share: float = 0.05  # of the turn; chosen
 
 
 class Answer(NamedTuple):
@@ -113,8 +109,7 @@ def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None,
 def answers_of_rooms(
     rooms: Sequence[dict],
     methods: Sequence[str] = tuple(ASSOCIATIONS),
-    source: str = "images",
-    progress: Callable[[Iterable], Iterable] = iter,
+    progress: Callable = iter,
 ) -> list[Answer]:
     """Every pose of every room by every matcher, one view each; none is rejected by its residuals."""
     answers = []
@@ -126,8 +121,8 @@ def answers_of_rooms(
             for name in methods
         }
         for pose in room["poses"]:
-            observations = stored_observations(pose["sources"][source])
-            truth = pose["sources"][source]["true_landmarks"]
+            observations = stored_observations(pose["sources"]["images"])
+            truth = pose["sources"]["images"]["true_landmarks"]
             where = (room["seed"], pose["experiment"], pose["name"])
             for name, localizer in localizers.items():
                 found = localizer.localize_observations(observations)
@@ -142,12 +137,11 @@ def answers_of_evidence(
     rooms: Sequence[dict],
     variants: dict[str, Evidence] = ABLATION,
     wrong_map: bool = False,
-    progress: Callable[[Iterable], Iterable] = iter,
+    progress: Callable = iter,
 ) -> list[Answer]:
-    """Every pose of every room by the consistent matcher, its evidence switched off in parts.
+    """Localize every pose of every room by the consistent matcher, its evidence switched off in parts.
 
-    wrong_map: every room is looked for on the map of the next one, where no answer is right: what tells an absolute fit
-    from a gap to the runner-up.
+    wrong_map: look for every room on the map of the next one, where no answer is right.
     """
     answers = []
     for number, room in enumerate(progress(rooms)):
@@ -185,40 +179,41 @@ def measured_motion(
     return Motion(*(np.array([forward, left, turn]) + sigma * rng.standard_normal(3)), np.diag(sigma**2))
 
 
-def answers_of_sequences(
-    rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable[[Iterable], Iterable] = iter
-) -> list[Answer]:
-    """Every sequence of views, followed with odometry and without; the answer after the last view is judged.
+def answers_of_sequences(rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable = iter) -> list[Answer]:
+    """Follow every sequence of views with odometry and without; the answer after the last view is judged.
 
-    views: records of `room_views.observe_views`, in the order of the rooms.
+    views: records of `observe_views`, in the order of the rooms.
     """
-    answers = []
-    for room, further in progress(list(zip(rooms, views, strict=True))):
-        semantic_map = stored_map(room)
-        for number, sequence in enumerate(stored_sequences(room, further)):
-            where = (room["seed"], sequence.experiment, sequence.name)
-            answers += followed(where, semantic_map, sequence.poses, sequence.observations, number)
-    return answers
+    return [
+        answer
+        for where, semantic_map, sequence, number in _sequences(rooms, views, progress)
+        for answer in followed(where, semantic_map, sequence.poses, sequence.observations, number)
+    ]
 
 
 def answers_of_thinned_sequences(
-    rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable[[Iterable], Iterable] = iter
+    rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable = iter
 ) -> list[Answer]:
-    """The same sequences with `LEFT_OUT` of all observations, after one view, after two, and so on.
+    """Follow the same sequences with `LEFT_OUT` of all observations, after one view, after two, and so on.
 
     Where one view tells nearly everything, more cannot tell more: this is what they are worth where it does not.
     """
     answers = []
+    for where, semantic_map, sequence, number in _sequences(rooms, views, progress):
+        rng = np.random.default_rng([THINNING_STREAM, where[0], number])
+        seen = [[one for one in view if rng.random() >= LEFT_OUT] for view in sequence.observations]
+        for n in range(1, len(seen) + 1):
+            for one in followed(where, semantic_map, sequence.poses[:n], seen[:n], number):
+                answers.append(one._replace(method=f"{n}_views_{one.method}"))
+    return answers
+
+
+def _sequences(rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable) -> Iterator[tuple]:
+    """(seed, experiment, name), map, sequence, and its number in the room, of every sequence of every room."""
     for room, further in progress(list(zip(rooms, views, strict=True))):
         semantic_map = stored_map(room)
         for number, sequence in enumerate(stored_sequences(room, further)):
-            rng = np.random.default_rng([THINNING_STREAM, room["seed"], number])
-            seen = [[one for one in view if rng.random() >= LEFT_OUT] for view in sequence.observations]
-            where = (room["seed"], sequence.experiment, sequence.name)
-            for n in range(1, len(seen) + 1):
-                for one in followed(where, semantic_map, sequence.poses[:n], seen[:n], number):
-                    answers.append(one._replace(method=f"{n}_views_{one.method}"))
-    return answers
+            yield (room["seed"], sequence.experiment, sequence.name), semantic_map, sequence, number
 
 
 def answers_of_places(results: Sequence[PairResult], semantic_map: SemanticMap, experiment: int = 1) -> list[Answer]:
@@ -234,10 +229,9 @@ def answers_of_places(results: Sequence[PairResult], semantic_map: SemanticMap, 
 
 
 def followed(where: tuple, semantic_map: SemanticMap, poses: np.ndarray, views: Sequence, number: int) -> list[Answer]:
-    """One sequence of views, followed with odometry and without, and judged after the last.
+    """Follow one sequence of views with odometry and without, and judge after the last.
 
-    poses: `(n, 3)` where the rig really stood. views: the observations from each. number: of the sequence in its room,
-    for the odometry's noise.
+    poses: `(n, 3)` where the rig really stood. views: the observations from each. number: of the sequence in its room.
     """
     answers = []
     for method in ("odometry", "no_odometry"):
@@ -283,10 +277,9 @@ def tables_by_method(answers: Sequence[Answer]) -> dict[str, dict]:
 
 
 def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
-    """What a threshold on the confidence buys: share answered, and share of the answered that is wrong, in percent.
+    """Return what a threshold on the confidence buys: share answered, and share of the answered that is wrong, percent.
 
-    One point for every different confidence, from the surest on; the threshold is the least confidence answered. Poses
-    of confidence 0 (too few matches, or none) are never answered.
+    One point for every different confidence above 0, from the surest on; the threshold is the least one answered.
     """
     confidence = np.array([one.confidence for one in answers])
     wrong = ~np.array([one.best_is_right for one in answers], dtype=bool)
@@ -299,10 +292,8 @@ def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
     }
 
 
-def why_not_answered(
-    rooms: Sequence[dict], answers: Sequence[Answer], source: str = "images"
-) -> dict[str, float | None]:
-    """Observations of landmarks a pose, of answered poses and of the others: too few of them, or enough and alike?"""
+def why_not_answered(rooms: Sequence[dict], answers: Sequence[Answer]) -> dict[str, float | None]:
+    """Return observations of landmarks a pose, of answered poses and of the others: too few, or enough and alike?"""
     seen = {
         (room["seed"], pose["experiment"], pose["name"]): sum(
             landmark != NO_OBJECT for landmark in pose["sources"]["images"]["true_landmarks"]
@@ -321,7 +312,7 @@ def answers_summary(
     methods: Sequence[str] = tuple(ASSOCIATIONS),
     views: Sequence[list[dict]] | None = None,
     ablation: bool = False,
-    progress: Callable[[Iterable], Iterable] = iter,
+    progress: Callable = iter,
 ) -> dict:
     """All of it: one view, several views where there are any, risk over coverage, and the ablation on either map."""
     one_view = answers_of_rooms(rooms, methods, progress=progress)

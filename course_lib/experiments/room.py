@@ -67,19 +67,6 @@ class PairResult(NamedTuple):
     """From two images in memory to the pose."""
 
 
-class MatchingCounts(NamedTuple):
-    """Stereo matching over many pairs."""
-
-    matched: int
-    """Pairs of detections of which at least one shows an object that was detected in both images."""
-    right: int
-    """Of them, those whose two detections show one object."""
-    seen_in_both: int
-    """Objects detected in both images."""
-    unmatched: int
-    """Of them, those that no match was found for."""
-
-
 class Record(NamedTuple):
     """Both experiments, for figures."""
 
@@ -166,7 +153,6 @@ def run(
 def _summarize(record: Record, summaries: dict, baseline: float) -> dict:
     """Tables 3 to 5 by experiment and association method, stereo matching and distances over all poses."""
     from_images, from_boxes = ([one for by in record.results.values() for one in by[source]] for source in SOURCES)
-    counts = matching_counts(from_images)
     ranges = {
         "exact_boxes": range_errors(from_boxes, record.semantic_map, baseline, "box_centre"),
         "detected_box_centres": range_errors(from_images, record.semantic_map, baseline, "box_centre"),
@@ -178,12 +164,7 @@ def _summarize(record: Record, summaries: dict, baseline: float) -> dict:
     return {
         "poses": len(from_images) // 2,
         **summaries,
-        "stereo_matching": {
-            "matched": counts.matched,
-            "right_percent": 100.0 * counts.right / max(1, counts.matched),
-            "seen_in_both": counts.seen_in_both,
-            "unmatched_percent": 100.0 * counts.unmatched / max(1, counts.seen_in_both),
-        },
+        "stereo_matching": matching_rates(from_images),
         "median_relative_range_error_percent": {
             key: 100.0 * float(np.median(errors)) if len(errors) else None for key, errors in ranges.items()
         },
@@ -232,10 +213,7 @@ def counts_as_object(thing: TrueObject, width: int) -> bool:
 
 
 def exact_detections(objects: Sequence[TrueObject], image: np.ndarray) -> tuple[list[Detection], list[int]]:
-    """What a perfect detector would report of an image `(H, W, 3)` BGR, and which object each detection shows.
-
-    The boxes are those around the visible pixels; hue and saturation are measured on the image as always.
-    """
+    """Return what a perfect detector would report of an image `(H, W, 3)` BGR, and the object each detection shows."""
     chosen = [thing for thing in objects if counts_as_object(thing, image.shape[1])]
     detections = [
         Detection(thing.label, 1.0, thing.visible_box, *mean_hue_saturation(image, thing.visible_box))
@@ -245,13 +223,10 @@ def exact_detections(objects: Sequence[TrueObject], image: np.ndarray) -> tuple[
 
 
 def localize_pair(pair: StereoPair, localizer: SemanticLocalizer, source: str = "images") -> PairResult:
-    """Localize one pair and judge the result by table 2. Landmark k of the map is object k of the recording.
+    """Localize one pair from a source ("images" or "exact_boxes") and judge the result by table 2.
 
-    source: "images" or "exact_boxes". Raises `ValueError` for another source, `PanoramaError` for images that cannot
-    be used. Source: paper 2, section 3.
+    Landmark k of the map is object k of the recording. Source: paper 2, section 3.
     """
-    if source not in SOURCES:
-        raise ValueError(f"the source must be one of {SOURCES}; got {source!r}")
     upper_image, lower_image = pair.images()
     width, height = upper_image.shape[1], upper_image.shape[0]
     start = time.perf_counter()
@@ -259,11 +234,8 @@ def localize_pair(pair: StereoPair, localizer: SemanticLocalizer, source: str = 
         found = localizer.localize(upper_image, lower_image)
         seconds = time.perf_counter() - start
         identities = [
-            _identities(detections, objects, width)
-            for detections, objects in (
-                (found.upper_detections, pair.upper_objects),
-                (found.lower_detections, pair.lower_objects),
-            )
+            _identities(found.upper_detections, pair.upper_objects, width),
+            _identities(found.lower_detections, pair.lower_objects, width),
         ]
     else:
         upper, upper_numbers = exact_detections(pair.upper_objects, upper_image)
@@ -284,7 +256,7 @@ def run_experiment(
     source: str = "images",
     progress: Callable = iter,
 ) -> list[PairResult]:
-    """Localize every pair of a recording. progress: wraps the pairs (tqdm). Source: paper 2, section 3."""
+    """Localize every pair of a recording. Source: paper 2, section 3."""
     return [localize_pair(pair, localizer, source) for pair in progress(recording.pairs)]
 
 
@@ -294,10 +266,7 @@ def experiment_summary(results: Sequence[PairResult]) -> dict:
 
 
 def fitted_by_covariance(found: Localization, localizer: SemanticLocalizer) -> Localization:
-    """A localization fitted anew (2.6): each observation weighted by its covariance, not counted alike.
-
-    localizer: the one that found it; its map and its association stay. What has no observations stays as it is.
-    """
+    """Return a localization fitted anew (2.6): each observation weighted by its covariance, not counted alike."""
     if not found.observations:
         return found
     weighted = SemanticLocalizer(
@@ -322,8 +291,8 @@ def weighted_summary(results: Sequence[PairResult], localizer: SemanticLocalizer
     )
 
 
-def matching_counts(results: Sequence[PairResult]) -> MatchingCounts:
-    """How often stereo matching was right about the objects detected in both images, over all pairs.
+def matching_rates(results: Sequence[PairResult]) -> dict[str, float]:
+    """Return how often stereo matching was right about the objects detected in both images, over all pairs.
 
     A detection that shows no object has no right partner, and is not counted. Source: paper 2, section 2.3.
     """
@@ -336,17 +305,21 @@ def matching_counts(results: Sequence[PairResult]) -> MatchingCounts:
         right += sum(a == b for a, b in judged)
         both += len(seen)
         unmatched += len(seen - {a for a, _ in judged})
-    return MatchingCounts(matched, right, both, unmatched)
+    return {
+        "matched": matched,
+        "right_percent": 100.0 * right / max(1, matched),
+        "seen_in_both": both,
+        "unmatched_percent": 100.0 * unmatched / max(1, both),
+    }
 
 
 def range_errors(
     results: Sequence[PairResult], semantic_map: SemanticMap, baseline: float, distance: str
 ) -> np.ndarray:
-    """Relative errors of the horizontal distances to the objects' centroids on the map, below 4 m.
+    """Return relative errors `(n,)` of the horizontal distances to the objects' centroids on the map, below 4 m.
 
-    |rho - rho_true| / rho_true for every match that joins two views of one object; a match without a distance counts
-    as infinite. distance: "box_centre" or "disparity" (which needs matches with features). Returns `(n,)`.
-    Source: paper 2, section 2.4.
+    |rho - rho_true| / rho_true for every match that joins two views of one object; one without a distance counts
+    as infinite. distance: "box_centre" or "disparity" (of matches with features). Source: paper 2, section 2.4.
     """
     errors = []
     for result in results:

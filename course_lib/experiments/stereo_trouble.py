@@ -7,13 +7,13 @@ has recovered with the first good pair, by construction.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from course_lib.beyond.guarded_stereo import NO_IMAGE, WatchedRig
 from course_lib.experiments.look_alikes import MAX_ERROR_M, MAX_TURN_DEG, pose_errors
-from course_lib.experiments.troubled_frames import Arrival, Gate, generator, troubled_runs
+from course_lib.experiments.troubled_frames import Arrival, Gate, Spoil, troubles_of
 from course_lib.files import temporary_folder
 from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
@@ -30,8 +30,6 @@ HOT_PIXELS = 2e-5  # share of a dark image's pixels that shine all the same; cho
 STOPS = 2.0  # by which an exposure jumps, up or down; chosen
 
 Pair = tuple[np.ndarray, np.ndarray]
-# (pair that is due, the good pair before it, pair that arrived before, generator) -> pair that arrives
-Spoil = Callable[[Pair, Pair, Pair, np.random.Generator], Pair]
 
 
 def one_dark(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
@@ -75,27 +73,8 @@ SPOILS: dict[str, Spoil] = {
     "repeated": repeated,
     "exposure jump": exposure_jump,
 }
-TROUBLES = ("dropped", *SPOILS)
-
-
-def troubled_walk(
-    trouble: str, pairs: Sequence[Pair], share: float, rng: np.random.Generator
-) -> tuple[list[Arrival], list[tuple[int, int]]]:
-    """What arrives of a walk, an `Arrival` for each pair that is due, and the troubled stretches (first, end).
-
-    trouble: of `TROUBLES`. pairs: (upper, lower), uint8 BGR `(H, W, 3)` each. share: of the pairs, 0 to 1.
-    Raises `ValueError` for a trouble that does not exist, or does not fit into the walk.
-    """
-    if trouble not in TROUBLES:
-        raise ValueError(f"trouble must be one of {', '.join(TROUBLES)}; got {trouble!r}")
-    runs = troubled_runs(len(pairs), share, 1, rng)
-    arrivals = [Arrival(pair, PERIOD * k) for k, pair in enumerate(pairs)]
-    for index, _ in runs:
-        image = None
-        if trouble != "dropped":
-            image = SPOILS[trouble](pairs[index], pairs[index - 1], arrivals[index - 1].image, rng)
-        arrivals[index] = Arrival(image, arrivals[index].time)
-    return arrivals, runs
+LENGTHS = dict.fromkeys(("dropped", *SPOILS), 1)
+"""How many pairs one after the other each trouble lasts."""
 
 
 class RememberedAnswers:
@@ -140,10 +119,7 @@ def watched_pairs(localizer, arrivals: Sequence[Arrival], true_poses: np.ndarray
 
 
 def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float]) -> dict:
-    """Localize along a walk through a seed's room undisturbed, and with every trouble at every share (0 to 1).
-
-    detector: folder of the network. As `depth_trouble.corridor_trouble` gives it.
-    """
+    """Return `troubles_of` the localizer on a walk through a seed's room. detector: folder of the network."""
     models = RecordingModels()
     room, semantic_map = surveyed_room(seed, models)
     with temporary_folder() as folder:
@@ -153,24 +129,16 @@ def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float])
         StereoRig(round(upper - lower, 6), upper), semantic_map, YoloDetector.load(detector), association="consistent"
     )
     pairs = [(view.upper_image, view.lower_image) for view in walk]
-    return troubles_of(localizer, pairs, np.array([view.pose for view in walk]), seed, shares)
+    return walk_trouble(localizer, pairs, np.array([view.pose for view in walk]), seed, shares)
 
 
-def troubles_of(
-    localizer: SemanticLocalizer,
-    pairs: Sequence[Pair],
-    true_poses: np.ndarray,
-    seed: int,
-    shares: Sequence[float],
-    troubles: Sequence[str] = TROUBLES,
+def walk_trouble(
+    localizer: SemanticLocalizer, pairs: Sequence[Pair], true_poses: np.ndarray, seed: int, shares: Sequence[float]
 ) -> dict:
     """`room_trouble` of a walk that was photographed."""
-    remembering = RememberedAnswers(localizer)
-    calm = watched_pairs(remembering, [Arrival(pair, PERIOD * k) for k, pair in enumerate(pairs)], true_poses)
-    rows = []
-    for trouble in troubles:
-        for share in shares:
-            arrivals, runs = troubled_walk(trouble, pairs, share, generator(seed, trouble, share))
-            frames = watched_pairs(remembering, arrivals, true_poses)
-            rows.append({"trouble": trouble, "share": share, "runs": runs, "frames": frames})
-    return {"undisturbed": calm, "troubles": rows}
+    remembering, times = RememberedAnswers(localizer), PERIOD * np.arange(len(pairs))
+
+    def run(arrivals: Sequence[Arrival]) -> list[dict]:
+        return watched_pairs(remembering, arrivals, true_poses)
+
+    return troubles_of(run, LENGTHS, SPOILS, pairs, times, seed, shares)

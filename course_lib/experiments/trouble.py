@@ -6,11 +6,14 @@ exchanged, of different moments; at shares of the frames that --share names.
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
+
+import numpy as np
 
 from course_lib.experiments import depth_trouble, stereo_trouble
 from course_lib.experiments.runner import Outcome, Runner
-from course_lib.experiments.troubled_frames import GOOD_FRAMES, require_fits, summary
+from course_lib.experiments.troubled_frames import GOOD_FRAMES, summary, troubled_runs
 from course_lib.paths import data_path
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 
@@ -46,19 +49,16 @@ def run(
         if name == "stereo":
             network = (detector or data_path("detector")).absolute()
             YoloDetector.load(network)  # what is wrong with it is told now, not after the first room
-            function, gate, lengths = stereo_trouble.room_trouble, stereo_trouble.GATE, [1]
+            module, function = stereo_trouble, stereo_trouble.room_trouble
             common = {"detector": str(network), "frames": frames or PAIRS}
         else:
             folder = (data or data_path("corridor")).absolute()
-            function, gate, lengths = (
-                depth_trouble.corridor_trouble,
-                depth_trouble.GATE,
-                [1, depth_trouble.LONGEST_RUN],
-            )
+            module, function = depth_trouble, depth_trouble.corridor_trouble
             common = {"data": str(folder), "frames": frames or FRAMES, "dof": dof}
-        require_fits(common["frames"], shares, lengths)
+        for length, part in product(set(module.LENGTHS.values()), shares):
+            troubled_runs(common["frames"], part, length, np.random.default_rng(0))  # one that does not fit is told now
         rows = runner.rows(function, [{**common, "shares": shares, "seed": seed} for seed in seeds], name)
-        results[name] = {"method": name, "seeds": seeds, "frames": common["frames"], **summary(rows, gate)}
+        results[name] = {"method": name, "seeds": seeds, "frames": common["frames"], **summary(rows, module.GATE)}
     text = "\n\n".join(trouble_table(one) for one in results.values())
     return Outcome(results, text, {f"{name}.json": (one, None) for name, one in results.items()}, "trouble", results)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,12 +14,16 @@ from course_lib.spherical_stereo.pose import localization
 STREAM = 0x7B0B1E  # joins a recording's seed
 GOOD_FRAMES = 10  # after a trouble, before recovery is asked
 LEFT_AT_THE_END = GOOD_FRAMES + 2  # frames, never troubled, so that most troubles can be recovered from
-USUAL_QUANTILE = 0.95
-"""Of the undisturbed run's errors: what is within is usual."""
+SECOND = 1.0
+USUAL_QUANTILE = 0.95  # of the undisturbed run's errors: what is within is usual
 FAULTS = frozenset(OUTCOMES) - {"tracked", "doubtful", "lost"} | {
     localization.BLANK, localization.SWAPPED, localization.TURNED, localization.MOMENTS,
 }  # fmt: skip
 """Outcomes that blame the sensor: of a good frame they are false alarms."""
+
+
+# (image that is due, good image before it, image that arrived before, generator) -> image that arrives
+Spoil = Callable[[object, object, object, np.random.Generator], object]
 
 
 class Arrival(NamedTuple):
@@ -32,11 +36,10 @@ class Arrival(NamedTuple):
 
 
 def troubled_runs(n_frames: int, share: float, length: int, rng: np.random.Generator) -> list[tuple[int, int]]:
-    """Stretches (first, end) of troubled frames in a recording, ascending, none touching another.
+    """Draw stretches (first, end) of troubled frames in a recording, ascending, none touching another.
 
     share: of all frames, 0 to 1: as many stretches as come nearest to it, at least one. length: frames of each. The
-    first frame is good, and so are the last `LEFT_AT_THE_END`.
-    Raises `ValueError` for a recording too short for them.
+    first frame is good, and so are the last `LEFT_AT_THE_END`. Raises `ValueError` for a recording too short for them.
     """
     count = max(1, round(share * n_frames / length))
     room = n_frames - 1 - LEFT_AT_THE_END
@@ -52,15 +55,60 @@ def troubled_runs(n_frames: int, share: float, length: int, rng: np.random.Gener
     return [(int(first), int(first) + length) for first in firsts]
 
 
-def require_fits(n_frames: int, shares: Sequence[float], lengths: Sequence[int]) -> None:
-    """Raises `ValueError`, before anything is run, where one of the troubles does not fit (`troubled_runs`)."""
-    for length in lengths:
+def troubled_recording(
+    trouble: str,
+    spoils: Mapping[str, Spoil],
+    images: Sequence,
+    times: Sequence[float],
+    share: float,
+    rng: np.random.Generator,
+    length: int = 1,
+) -> tuple[list[Arrival], list[tuple[int, int]]]:
+    """Return what arrives of a recording, an `Arrival` for each frame that is due, and the troubled stretches.
+
+    trouble: "dropped", "time backwards" (stamped up to a second before the frame before it), or one of `spoils`.
+    images, times: of the good recording; seconds. share: of the frames. length: frames one after the other.
+    """
+    runs = troubled_runs(len(images), share, length, rng)
+    arrivals = [Arrival(image, float(time)) for image, time in zip(images, times, strict=True)]
+    for index in (index for first, end in runs for index in range(first, end)):
+        image, time = arrivals[index]
+        if trouble == "dropped":
+            image = None
+        elif trouble == "time backwards":
+            time = arrivals[index - 1].time - rng.uniform(0.0, SECOND)
+        else:
+            image = spoils[trouble](image, images[index - 1], arrivals[index - 1].image, rng)
+        arrivals[index] = Arrival(image, time)
+    return arrivals, runs
+
+
+def troubles_of(
+    run: Callable[[list[Arrival]], list[dict]],
+    lengths: Mapping[str, int],
+    spoils: Mapping[str, Spoil],
+    images: Sequence,
+    times: Sequence[float],
+    seed: int,
+    shares: Sequence[float],
+) -> dict:
+    """Run a method on a recording undisturbed, and with every trouble at every share (0 to 1).
+
+    run: gives, for each frame that was due, {"outcome", "confident", "position_m", "rotation_deg"}. lengths: of each
+    trouble. Returns {"undisturbed": frames, "troubles": [{"trouble", "share", "runs", "frames"}]}.
+    """
+    calm = run([Arrival(image, float(time)) for image, time in zip(images, times, strict=True)])
+    rows = []
+    for trouble, length in lengths.items():
         for share in shares:
-            troubled_runs(n_frames, share, length, np.random.default_rng(0))
+            rng = generator(seed, trouble, share)
+            arrivals, runs = troubled_recording(trouble, spoils, images, times, share, rng, length)
+            rows.append({"trouble": trouble, "share": share, "runs": runs, "frames": run(arrivals)})
+    return {"undisturbed": calm, "troubles": rows}
 
 
 def troubled_frames(runs: list[tuple[int, int]], n_frames: int) -> np.ndarray:
-    """Which frames lie in a stretch, bool `(n_frames,)`."""
+    """Return which frames lie in a stretch, bool `(n_frames,)`."""
     mask = np.zeros(n_frames, bool)
     for first, end in runs:
         mask[first:end] = True
@@ -68,28 +116,21 @@ def troubled_frames(runs: list[tuple[int, int]], n_frames: int) -> np.ndarray:
 
 
 def generator(seed: int, name: str, share: float) -> np.random.Generator:
-    """The generator of one trouble at one share in one seed's recording: each has a stream of its own."""
+    """Return the generator of one trouble at one share in one seed's recording: each has a stream of its own."""
     return np.random.default_rng([STREAM, seed, round(10_000 * share), *name.encode()])
 
 
 class Gate(NamedTuple):
-    """Beyond either a pose is wrong; given out with confidence it must not be."""
+    """Limits of a pose's error: what is usual, or beyond which a pose is wrong."""
 
     metres: float
     degrees: float
 
 
-class Usual(NamedTuple):
-    """The method's usual error: the `USUAL_QUANTILE` of an undisturbed run, position and rotation each."""
-
-    metres: float
-    degrees: float
-
-
-def usual_error(frames: Sequence[dict]) -> Usual:
-    """Of undisturbed frames: {"position_m", "rotation_deg"}; without a pose both are None, which is not counted."""
+def usual_error(frames: Sequence[dict]) -> Gate:
+    """Return a method's usual error: `USUAL_QUANTILE` of undisturbed frames; those without a pose are not counted."""
     known = [(one["position_m"], one["rotation_deg"]) for one in frames if one["position_m"] is not None]
-    return Usual(*np.quantile(known, USUAL_QUANTILE, axis=0).tolist())
+    return Gate(*np.quantile(known, USUAL_QUANTILE, axis=0).tolist())
 
 
 def frames_to_judge(runs: Sequence[tuple[int, int]], n_frames: int) -> list[int]:
@@ -102,7 +143,7 @@ def frames_to_judge(runs: Sequence[tuple[int, int]], n_frames: int) -> list[int]
     return sorted({int(one[0]) for one in after if len(one)})
 
 
-def within(frame: dict, usual: Usual) -> bool:
+def within(frame: dict, usual: Gate) -> bool:
     """Whether a pose was given for a frame, and its error is usual."""
     return (
         frame["position_m"] is not None
@@ -116,26 +157,23 @@ def is_confident_wrong(frame: dict, gate: Gate) -> bool:
     return bool(frame["confident"] and (frame["position_m"] > gate.metres or frame["rotation_deg"] > gate.degrees))
 
 
-def row(troubled: Sequence[dict], undisturbed: Sequence[Sequence[dict]], gate: Gate, usual: Usual) -> dict:
-    """One row of the table: a trouble at a share, over all recordings.
+def row(troubled: Sequence[dict], undisturbed: Sequence[Sequence[dict]], gate: Gate, usual: Gate) -> dict:
+    """Return one row of the table: a trouble at a share, over all recordings.
 
-    troubled: of each recording {"runs": stretches, "frames": as `usual_error` has them, with "outcome" and
-    "confident"}. undisturbed: the frames of the same recordings without trouble.
+    troubled: of each recording {"runs": stretches, "frames"}. undisturbed: the same recordings' frames without trouble.
     """
-    outcomes, good_outcomes, recovered, beside, wrong, total = Counter(), Counter(), [], [], 0, 0
+    outcomes, good_outcomes, recovered, beside, wrong = Counter(), Counter(), [], [], 0
     for one, calm in zip(troubled, undisturbed, strict=True):
         frames = one["frames"]
-        mask = troubled_frames(one["runs"], len(frames))
-        outcomes.update(frame["outcome"] for frame, bad in zip(frames, mask, strict=True) if bad)
-        good_outcomes.update(frame["outcome"] for frame, bad in zip(frames, mask, strict=True) if not bad)
+        for frame, bad in zip(frames, troubled_frames(one["runs"], len(frames)), strict=True):
+            (outcomes if bad else good_outcomes)[frame["outcome"]] += 1
         judged = frames_to_judge(one["runs"], len(frames))
         recovered += [within(frames[index], usual) for index in judged]
         beside += [within(calm[index], usual) for index in judged]
         wrong += sum(is_confident_wrong(frame, gate) for frame in frames)
-        total += len(frames)
     return {
-        "frames": total,
-        "troubled": sum(outcomes.values()),
+        "frames": outcomes.total() + good_outcomes.total(),
+        "troubled": outcomes.total(),
         "outcomes": dict(sorted(outcomes.items())),
         "good_frames": dict(sorted(good_outcomes.items())),
         "judged": len(recovered),
@@ -146,7 +184,7 @@ def row(troubled: Sequence[dict], undisturbed: Sequence[Sequence[dict]], gate: G
 
 
 def summary(results: Sequence[dict], gate: Gate) -> dict:
-    """The table of one method, over all recordings (`depth_run.corridor_trouble`, `stereo_run.room_trouble`)."""
+    """Return the table of one method, over the `troubles_of` all recordings."""
     calm = [one["undisturbed"] for one in results]
     all_calm = [frame for frames in calm for frame in frames]
     usual = usual_error(all_calm)

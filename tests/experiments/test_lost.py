@@ -1,11 +1,6 @@
-"""`demo lost`: what its trials gave is told and stored, whatever they gave."""
+"""`demo lost`: what its trials gave is told, whatever they gave."""
 
-import json
-
-from course_lib.commands.demo_lost import lost_table
-from course_lib.experiments.lost_and_found import summarize
-
-from course_lib.experiments.results import write_results
+from course_lib.experiments.lost import lost_table, summarize
 
 
 def a_trial(frames_to_recover):
@@ -16,11 +11,10 @@ def a_trial(frames_to_recover):
     }
 
 
-def test_cameras_that_are_never_found_again_are_told_and_stored(tmp_path):
+def test_cameras_that_are_never_found_again_are_told():
     found = summarize([a_trial(None), a_trial(None)])
     assert "0 of 2 recovered within 30 frames (median -)" in lost_table(found)
-    write_results(tmp_path / "lost.json", found)
-    assert json.loads((tmp_path / "lost.json").read_text())["frames_to_recover"] is None
+    assert found["frames_to_recover"] is None
 
 
 def test_the_median_is_of_the_cameras_that_were_found_again():

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.commands.arguments import parse_numbers
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
-from course_lib.experiments import walks
+from course_lib.experiments import walk
 from course_lib.experiments.six_degrees import ABLATIONS, METHODS, require_methods
 
 
@@ -21,12 +20,12 @@ def recorded(corridor_folder, monkeypatch):
         (folder / "map.ply").write_bytes((corridor_folder / "map.ply").read_bytes())
         seeds.append(seed)
 
-    monkeypatch.setattr(walks, "record_walk", record)
+    monkeypatch.setattr(walk, "record_walk", record)
     return seeds
 
 
 def test_each_offset_of_each_thinning_is_run_and_the_floor_once(recorded):
-    rows = walks.room_walk(10_001, ["annealed", "floor"], [1, 2])
+    rows = walk.room_walk(10_001, ["annealed", "floor"], [1, 2])
     assert recorded == [10_001]
     assert [(row["method"], row["every"], len(row["run"]["status"])) for row in rows] == [
         ("annealed", 1, 5),
@@ -35,7 +34,7 @@ def test_each_offset_of_each_thinning_is_run_and_the_floor_once(recorded):
         ("floor", 1, 5),
     ]
     assert np.median(rows[0]["run"]["position_m"]) < 0.05
-    assert rows == walks.room_walk(10_001, ["annealed", "floor"], [1, 2])
+    assert rows == walk.room_walk(10_001, ["annealed", "floor"], [1, 2])
 
 
 def test_methods_are_named_or_all_of_them():
@@ -43,9 +42,3 @@ def test_methods_are_named_or_all_of_them():
     assert require_methods("floor,without refinement") == ["floor", "without refinement"]
     with pytest.raises(ValueError, match=r"--methods must name annealed, paper, floor.*got 'magic'"):
         require_methods("magic")
-
-
-@pytest.mark.parametrize("text", ["0", "two", "1,,2", "", "-1", "1.5"])
-def test_numbers_that_are_none_are_told(text):
-    with pytest.raises(ValueError, match="--every must be whole numbers"):
-        parse_numbers("--every", text)
