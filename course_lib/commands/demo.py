@@ -34,201 +34,137 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_options, parser.description = DEMOS[name]
     parser.set_defaults(experiment=name)
     add_options(parser)
-    parser.add_argument(
+    _folder(
+        parser,
         "--out",
-        type=Path,
-        metavar="FOLDER",
-        help="where results and figures go, and finished seeds are looked for (default: a folder of this run in "
+        "where results and figures go, and finished seeds are looked for (default: a folder of this run in "
         f"results/demo_{name}, which holds the finished seeds of all runs)",
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
 
 
-def _seeds(parser: argparse.ArgumentParser, of: str, default: str | None = None) -> None:
-    told = "several seeds instead: " if default is None else ""
-    usual = "" if default is None else f" (default: {default})"
-    parser.add_argument(
-        "--seeds", default=default, metavar="A-B", help=f"{told}{of}, such as 4, 1-20 or 1-5,8{usual}. {REPORTING}"
-    )
+def _number(parser: argparse.ArgumentParser, option: str, told: str, default: int | None = None) -> None:
+    parser.add_argument(option, type=int, default=default, metavar="N", help=told)
+
+
+def _folder(parser: argparse.ArgumentParser, option: str, told: str) -> None:
+    parser.add_argument(option, type=Path, metavar="FOLDER", help=told)
+
+
+def _text(parser: argparse.ArgumentParser, option: str, metavar: str, told: str, default: str | None = None) -> None:
+    parser.add_argument(option, default=default, metavar=metavar, help=told)
+
+
+def _choice(parser: argparse.ArgumentParser, option: str, told: str, choices: tuple, default=None) -> None:
+    parser.add_argument(option, choices=choices, default=default, type=type(choices[0]), help=told)
+
+
+def _flag(parser: argparse.ArgumentParser, option: str, told: str, **more: str) -> None:
+    parser.add_argument(option, action="store_true", help=told, **more)
+
+
+def _seeds(parser: argparse.ArgumentParser, told: str, default: str | None = None) -> None:
+    usual = f" (default: {default})" if default else ""
+    _text(parser, "--seeds", "A-B", f"{told}{usual}, such as 4, 1-20 or 1-5,8. {REPORTING}", default)
 
 
 def _corridor(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="seed of the recording and of the filter (default: 0)"
-    )
-    _seeds(parser, "median, least and greatest over their recordings")
-    parser.add_argument(
-        "--recording",
-        choices=["own", "shipped"],
-        default="own",
-        help="made anew for the seed (default), or data/corridor/wagon, where a seed is the filter's alone",
-    )
-    parser.add_argument(
-        "--idealizations",
-        action="store_true",
-        help="measure instead what the simulator's idealizations are worth, on small images (seeds 10001-10003)",
-    )
-    parser.add_argument("--kindnesses", action="store_true", dest="idealizations", help=argparse.SUPPRESS)
-    parser.add_argument(
-        "--dof",
-        choices=["xyyaw", "6"],
-        default="xyyaw",
-        help="xyyaw: the paper's experiment on a wagon (default); 6: cameras carried by hand, the annealed filter "
-        "beside the paper's and the floor",
-    )
-    parser.add_argument(
-        "--methods",
-        metavar="NAMES",
-        help="with --seeds: rows of the table by name, with commas, among them proposed and fallon (default: all)",
-    )
-    parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
-    parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames (default: all)")
-    parser.add_argument("--data", type=Path, metavar="FOLDER", help="corridor data (default: data/corridor)")
+    _number(parser, "--seed", "seed of the recording and of the filter (default: 0)", 0)
+    _seeds(parser, "several seeds instead: median, least and greatest over their recordings")
+    told = "made anew for the seed (default), or data/corridor/wagon, where a seed is the filter's alone"
+    _choice(parser, "--recording", told, ("own", "shipped"), "own")
+    told = "measure instead what the simulator's idealizations are worth, on small images (seeds 10001-10003)"
+    _flag(parser, "--idealizations", told)
+    _flag(parser, "--kindnesses", argparse.SUPPRESS, dest="idealizations")  # its name before
+    told = "the paper's experiment on a wagon (default); 6: cameras carried by hand, the annealed filter beside "
+    _choice(parser, "--dof", f"xyyaw: {told}the paper's and the floor", ("xyyaw", "6"), "xyyaw")
+    told = "with --seeds: rows of the table by name, with commas, among them proposed and fallon (default: all)"
+    _text(parser, "--methods", "NAMES", told)
+    _number(parser, "--particles", "number of particles (default: 200)", 200)
+    _number(parser, "--frames", "only the first N frames (default: all)")
+    _folder(parser, "--data", "corridor data (default: data/corridor)")
     add_backend_argument(parser)
 
 
 def _room(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--seed",
-        type=int,
-        metavar="N",
-        help="of the photographs; another than 4 takes them anew (default: 4, the shipped ones)",
-    )
-    parser.add_argument(
-        "--poses", type=int, metavar="N", help="only the first N poses of each experiment (default: all)"
-    )
-    parser.add_argument("--data", type=Path, metavar="FOLDER", help="made by tools.make_room (default: data/room)")
+    _number(parser, "--seed", "of the photographs; another than 4 takes them anew (default: 4, the shipped ones)")
+    _number(parser, "--poses", "only the first N poses of each experiment (default: all)")
+    _folder(parser, "--data", "made by tools.make_room (default: data/room)")
     add_detector_arguments(parser)
-    parser.add_argument(
-        "--association",
-        default="greedy",
-        metavar="NAME",
-        help="how objects are matched to the map: greedy (the paper's), hungarian, consistent (default: greedy)",
+    told = "how objects are matched to the map: greedy (the paper's), hungarian, consistent (default: greedy)"
+    _text(parser, "--association", "NAME", told, "greedy")
+    told = "2: with --association consistent, also follow the two views of every place as the rig turns there"
+    _choice(parser, "--views", f"{told}, with and without odometry (default: 1)", (1, 2), 1)
+    told = (
+        "also localize from the images rolled by K columns, as if the rig had turned, and print how far the pose moves"
     )
-    parser.add_argument(
-        "--views",
-        type=int,
-        default=1,
-        choices=(1, 2),
-        help="2: with --association consistent, also follow the two views of every place as the rig turns there, with "
-        "and without odometry (default: 1)",
-    )
-    parser.add_argument(
-        "--roll",
-        type=int,
-        nargs="+",
-        metavar="K",
-        default=[],
-        help="also localize from the images rolled by K columns, as if the rig had turned, and print how far the pose "
-        "moves (default: not)",
-    )
+    parser.add_argument("--roll", type=int, nargs="+", metavar="K", default=[], help=f"{told} (default: not)")
 
 
 def _rooms(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "of the rooms", "1-20")
-    parser.add_argument(
-        "--poses", type=int, default=20, metavar="N", help="poses in each room at each height (default: the paper's 20)"
+    _number(parser, "--poses", "poses in each room at each height (default: the paper's 20)", 20)
+    told = (
+        "also run the same rooms with the lower camera tilted by exactly DEG degrees against the upper one, and print"
     )
-    parser.add_argument(
-        "--tilts",
-        type=float,
-        nargs="+",
-        default=[],
-        metavar="DEG",
-        help="also run the same rooms with the lower camera tilted by exactly DEG degrees against the upper one, and "
-        "print the errors (default: not at all), for example 0 0.1 0.3 1",
-    )
-    matchers = ("greedy", "hungarian", "consistent")
+    told += " the errors (default: not at all), for example 0 0.1 0.3 1"
+    parser.add_argument("--tilts", type=float, nargs="+", default=[], metavar="DEG", help=told)
+    all_of_them = ["greedy", "hungarian", "consistent"]
+    told = "matchers whose answers within 0.5 m and 10 degrees are counted: greedy (the paper's), hungarian, consistent"
     parser.add_argument(
         "--association",
-        choices=matchers,
+        choices=all_of_them,
         nargs="+",
-        default=list(matchers),
+        default=all_of_them,
         metavar="NAME",
-        help="matchers whose answers within 0.5 m and 10 degrees are counted: greedy (the paper's), hungarian, "
-        "consistent (default: all three)",
+        help=f"{told} (default: all)",
     )
-    parser.add_argument(
-        "--views",
-        type=int,
-        default=1,
-        metavar="N",
-        help="also take N - 1 further views, a few steps on from the first poses, and follow them with and without "
-        "odometry (default: 1, one view)",
+    told = (
+        "also take N - 1 further views, a few steps on from the first poses, and follow them with and without odometry"
     )
-    parser.add_argument(
-        "--view-poses",
-        type=int,
-        metavar="N",
-        help="from how many poses of a room further views are taken, at the two heights by turns (default: --poses)",
-    )
-    parser.add_argument(
-        "--ablation",
-        action="store_true",
-        help="also switch off each part of the consistent matcher's evidence, on the right map and on a wrong one",
-    )
+    _number(parser, "--views", f"{told} (default: 1, one view)", 1)
+    told = "from how many poses of a room further views are taken, at the two heights by turns (default: --poses)"
+    _number(parser, "--view-poses", told)
+    told = "also switch off each part of the consistent matcher's evidence, on the right map and on a wrong one"
+    _flag(parser, "--ablation", told)
     add_detector_arguments(parser)
-    parser.add_argument("--processes", type=int, metavar="N", help="rooms made at a time (default: one for each core)")
+    _number(parser, "--processes", "rooms made at a time (default: one for each core)")
 
 
 def _walk(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="seed of room and walk (default: 1)")
-    _seeds(parser, "told together")
-    parser.add_argument(
-        "--every", default="1,2,4", metavar="NUMBERS", help="thin the recordings: 1,2,4 runs each (default: 1,2,4)"
-    )
-    parser.add_argument(
-        "--methods",
-        default="annealed,floor",
-        metavar="NAMES",
-        help="with commas: annealed, paper, floor, or the annealed filter with one idea switched off, as in compare "
-        "(default: annealed,floor)",
-    )
+    _number(parser, "--seed", "seed of room and walk (default: 1)", 1)
+    _seeds(parser, "several rooms instead, told together")
+    _text(parser, "--every", "NUMBERS", "thin the recordings: 1,2,4 runs each (default: 1,2,4)", "1,2,4")
+    told = "with commas: annealed, paper, floor, or the annealed filter with one idea switched off, as in compare"
+    _text(parser, "--methods", "NAMES", f"{told} (default: annealed,floor)", "annealed,floor")
 
 
 def _lost(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "a trial each: recording, kidnapping, start", "1-3")
-    parser.add_argument(
-        "--recording",
-        type=Path,
-        metavar="FOLDER",
-        help="instead of the corridor, a recording of this folder with its truth and, in map.ply, its map",
-    )
-    parser.add_argument("--data", type=Path, metavar="FOLDER", help="corridor data (default: data/corridor)")
+    told = "instead of the corridor, a recording of this folder with its truth and, in map.ply, its map"
+    _folder(parser, "--recording", told)
+    _folder(parser, "--data", "corridor data (default: data/corridor)")
 
 
 def _trouble(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "a recording, or a room and a walk, each", "1-5")
-    parser.add_argument(
-        "--share", default="1,5,20", metavar="PERCENT", help="of the frames that are troubled (default: 1,5,20)"
-    )
-    parser.add_argument(
-        "--method",
-        choices=["depth", "stereo"],
-        help="paper 1's filter on depth images, or paper 2's on panoramas (default: both)",
-    )
-    parser.add_argument(
-        "--dof",
-        choices=["xyyaw", "6"],
-        default="xyyaw",
-        help="of the depth camera: the paper's filter on a wagon (default), or the annealed one, carried by hand",
-    )
-    parser.add_argument(
-        "--frames",
-        type=int,
-        metavar="N",
-        help="of each depth recording and each walk (default: 100 depth images, 24 pairs of panoramas)",
-    )
-    parser.add_argument("--processes", type=int, metavar="N", help="seeds run at a time (default: one for each core)")
-    parser.add_argument("--data", type=Path, metavar="FOLDER", help="corridor data (default: data/corridor)")
-    parser.add_argument("--detector", type=Path, metavar="FOLDER", help="the network (default: data/detector)")
+    _text(parser, "--share", "PERCENT", "of the frames that are troubled (default: 1,5,20)", "1,5,20")
+    told = "paper 1's filter on depth images, or paper 2's on panoramas (default: both)"
+    _choice(parser, "--method", told, ("depth", "stereo"))
+    told = "of the depth camera: the paper's filter on a wagon (default), or the annealed one, carried by hand"
+    _choice(parser, "--dof", told, ("xyyaw", "6"), "xyyaw")
+    told = "of each depth recording and each walk (default: 100 depth images, 24 pairs of panoramas)"
+    _number(parser, "--frames", told)
+    _number(parser, "--processes", "seeds run at a time (default: one for each core)")
+    _folder(parser, "--data", "corridor data (default: data/corridor)")
+    _folder(parser, "--detector", "the network (default: data/detector)")
 
 
 def _finale(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the room (default: 1)")
-    _seeds(parser, "several rooms")
-    parser.add_argument("--places", type=int, default=4, metavar="N", help="random places in each room (default: 4)")
-    parser.add_argument("--detector", type=Path, metavar="FOLDER", help="the network (default: data/detector)")
+    _number(parser, "--seed", "seed of the room (default: 1)", 1)
+    _seeds(parser, "several rooms instead")
+    _number(parser, "--places", "random places in each room (default: 4)", 4)
+    _folder(parser, "--detector", "the network (default: data/detector)")
 
 
 DEMOS = {
