@@ -7,13 +7,11 @@ from __future__ import annotations
 
 import argparse
 import sys
-from functools import partial
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder, require_processes
-from course_lib.commands.detector_options import chosen_detector
 from course_lib.files import staging_dir
-from course_lib.processors import processors
+from course_lib.paths import data_path
 
 FOLDER = Path(__file__).resolve().parents[1] / "data" / "projects"
 
@@ -29,7 +27,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where finished rooms are kept, and looked for (default: results/project_rooms)",
     )
     parser.add_argument("--processes", type=int, metavar="N", help="rooms made at a time (default: one for each core)")
-    parser.set_defaults(detector=None, input_size=None, score_threshold=None)  # the course's own
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -45,9 +42,9 @@ def run(arguments: argparse.Namespace) -> int:
     with staging_dir(out) as new:
         counts = make_project_rooms(
             new,
-            partial(chosen_detector, arguments),
+            data_path("detector"),
             arguments.work,
-            arguments.processes or processors(),
+            arguments.processes,
             progress_bar("rooms", "room"),
         )
         (new / "SHA256SUMS").write_text(checksums(new, [f"rooms_{name}.json" for name in counts]))

@@ -51,11 +51,11 @@ def run(arguments: argparse.Namespace) -> int:
     from itertools import chain
 
     from course_lib.commands.progress import progress_bar
-    from course_lib.experiments.detector_evaluation import labelled_panoramas, score_detector
     from course_lib.files import require_file
     from course_lib.paths import data_path
     from course_lib.simulation.room.training_images import labelled_images, make_room_images, read_image_list
     from course_lib.spherical_stereo.recording import read_stereo_recording
+    from tools.detector_evaluation import labelled_panoramas, score_detector
 
     if arguments.rooms < 1:
         raise ValueError(f"--rooms must be at least 1; got {arguments.rooms}")
@@ -102,9 +102,9 @@ def run(arguments: argparse.Namespace) -> int:
 def _compare_voting(arguments: argparse.Namespace, detector) -> int:
     """Prints what each choice of the voters' constants gives; returns the exit code."""
     from course_lib.commands.progress import progress_bar
-    from course_lib.experiments.detector_evaluation import NO_VOTES, compare_voting
     from course_lib.simulation.room.training_images import labelled_images, make_room_images
     from course_lib.spherical_stereo.detection.suppression import VOTE_IOU, VOTE_SCORE
+    from tools.detector_evaluation import NO_VOTES, compare_voting
 
     with temporary_folder() as temporary:
         images = arguments.images or temporary

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from course_lib.child import python
 from course_lib.child import run as run_child
 from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
 from course_lib.files import run_folder
+from course_lib.paths import REPOSITORY
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -53,35 +55,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, then tells what all runs of a method and a thinning gave together."""
     from course_lib.commands.progress import progress_bar
-    from course_lib.commands.six_degrees_table import row_name, six_degrees_table
     from course_lib.depth_mcl.sequence import read_sequence
-    from course_lib.experiments import sweep
+    from course_lib.experiments import six_degrees
     from course_lib.experiments.results import write_results
-    from course_lib.experiments.six_degrees import pooled, require_methods, thinned_points, thinned_run
-    from course_lib.plots.covariance_figure import covariance_figure
+    from course_lib.experiments.runner import kept_rows
+    from course_lib.plots.experiment_figures import covariance_figure
     from course_lib.rendering.scene_map import SceneMap
 
     seeds = parse_seeds(arguments.seeds)
     everies = parse_numbers("--every", arguments.every)
-    methods = require_methods(arguments.methods)
+    methods = six_degrees.require_methods(arguments.methods)
     require_output_folder(arguments.out)
     SceneMap.load(arguments.map)
     recording = read_sequence(arguments.sequence)
     recording.require_poses()  # told now, not after the first run
     recording.thinned(max(everies), max(everies) - 1)
-    points = thinned_points(arguments.map.absolute(), arguments.sequence.absolute(), methods, everies, seeds)
+    points = six_degrees.thinned_points(
+        arguments.map.absolute(), arguments.sequence.absolute(), methods, everies, seeds
+    )
     bar = progress_bar("comparing", "run")
-    runs = sweep(thinned_run, points, results=arguments.out / "compare.jsonl", progress=bar)
+    runs = kept_rows(six_degrees.thinned_run, points, arguments.out / "compare.jsonl", progress=bar)
     grouped: dict[str, list[dict]] = {}
-    for row in runs:
-        point = row["point"]
+    for point, own in zip(points, runs, strict=True):
         thinned = "" if point["method"] == "floor" or everies == [1] else f", every {point['every']}"
-        grouped.setdefault(row_name(point["method"]) + thinned, []).append(row["result"])
-    rows = {name: pooled(results) for name, results in grouped.items()}
+        name = six_degrees.NAMES.get(point["method"], point["method"]) + thinned
+        grouped.setdefault(name, []).append(own)
+    rows = {name: six_degrees.pooled(results) for name, results in grouped.items()}
     if arguments.icp:
-        rows |= {name: pooled([run]) for name, run in icp_runs(arguments.map, arguments.sequence, everies).items()}
+        found = icp_runs(arguments.map, arguments.sequence, everies)
+        rows |= {name: six_degrees.pooled([own]) for name, own in found.items()}
     result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
-    print(json.dumps(result) if arguments.json else six_degrees_table(rows), flush=True)
+    print(json.dumps(result) if arguments.json else six_degrees.six_degrees_table(rows), flush=True)
     with run_folder(arguments.out, "compare") as out:
         write_results(out / "compare.json", result)
         covariance_figure(grouped).savefig(out / "covariance.png", dpi=110)
@@ -91,20 +95,14 @@ def run(arguments: argparse.Namespace) -> int:
 def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, dict[str, list]]:
     """Errors of every frame by ICP, by variant and thinning, as `run_frames` has them; ICP never says that it is lost.
 
-    Raises `RuntimeError` where Open3D cannot be installed or ends with an error.
+    Raises `RuntimeError` where Open3D is not installed or ends with an error.
     """
-    from tools.bench import ROOT, install_tools, tools_environment
-
-    why = install_tools()
-    if why:
-        raise RuntimeError(f"--icp needs Open3D, which could not be installed: {why}")
+    script, packages = REPOSITORY / "tools" / "benchmarks" / "icp.py", REPOSITORY / ".bench"
+    if not packages.is_dir():
+        raise RuntimeError("--icp needs Open3D: .venv/bin/python -m tools.bench --quick installs it")
     words = ["--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
-    done = run_child(
-        python(ROOT / "tools/benchmarks" / "icp.py", *words),
-        tools_environment(),
-        stdout=subprocess.PIPE,
-        text=True,
-    )
+    environment = {"PYTHONPATH": os.pathsep.join(map(str, (REPOSITORY, packages)))}
+    done = run_child(python(script, *words), environment, stdout=subprocess.PIPE, text=True)
     if done.returncode:
         raise RuntimeError(f"ICP ended with code {done.returncode}; what it said stands above")
     runs = {}

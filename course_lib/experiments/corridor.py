@@ -1,15 +1,41 @@
-"""Table 1 of paper 1, section 4: its methods as plain functions of a recording and a seed, and the paper's errors."""
+"""Run paper 1's experiment on the simulated corridor: estimate x, y and yaw, print table 1, save figures 5 and 6.
+
+Every seed makes a recording of its own: another day in the building of the map (doors, things in the way), another run
+of the wagon, other noise. A second recording of each seed is pushed by hand, with the usual errors of calibration and
+mount; the filter is told the nominal values both times. The map and its planar simplification are those of
+data/corridor. Fallon's scoring runs on the same recordings, with the same motion noise and number of particles.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Iterable, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
-from course_lib.depth_mcl.evaluation import PositionError, nearest_path_error, timed_error
+import numpy as np
+
+from course_lib.depth_mcl.evaluation import PAPER_TABLE_1, PositionError, nearest_path_error, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
 from course_lib.depth_mcl.likelihood import Weighting
-from course_lib.depth_mcl.sequence import DepthSequence
+from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
+from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.experiments import six_degrees
+from course_lib.experiments.intervals import spread
 from course_lib.experiments.recordings import Run, run_sequence
+from course_lib.experiments.runner import Outcome, Runner, no_bar
+from course_lib.files import temporary_folder
+from course_lib.paths import data_path
+from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, Hardship, building_of_data, record_seed
+
+IDEALIZATION_SEEDS = [10001, 10002, 10003]
+IDEALIZATION_SIZE = (44, 36)  # pixels: a quarter of the SR4000's each way, so that 21 runs take minutes
+BY_HAND = "_by_hand"
+"""Ends the names of the rows on the recording that is pushed by hand."""
+BY_HAND_TITLE = "with calibration and mount errors, pushed by hand:"
+# The numbers of a row that are told over seeds.
+TOLD = ("median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "median_effective_sample_size")
 
 
 class Method(NamedTuple):
@@ -28,19 +54,345 @@ METHODS = {
     "fallon_disparity": Method("Fallon-style, disparity, 20 x 15", True, True, fallon_weighting("disparity")),
     "fallon_disparity_full": Method("Fallon-style, disparity, full size", True, False, fallon_weighting("disparity")),
 }
+# Methods that also run on the recording that is pushed by hand: the paper's, and the comparison as it was published.
+METHODS_BY_HAND = ("proposed", "fallon")
+
+
+class Maps(NamedTuple):
+    """All that a method may know of the building."""
+
+    detailed: SceneMap
+    planar: SceneMap
+
+    @classmethod
+    def load(cls, data: Path) -> Maps:
+        """Read the two maps of a folder of corridor data."""
+        return cls(SceneMap.load(data / "map.ply"), SceneMap.load(data / "planar_map.ply"))
+
+
+class Row(NamedTuple):
+    """One row of table 1: a method on a recording."""
+
+    run: Run
+    nearest: PositionError
+    timed: PositionError
+
+
+class Record(NamedTuple):
+    """What one seed gave, for figures."""
+
+    maps: Maps
+    sequence: DepthSequence
+    rows: dict[str, Row]
+    backend: str
+
+
+def run(
+    runner: Runner,
+    *,
+    seed: int,
+    seeds: list[int] | None,
+    recording: str,
+    idealizations: bool,
+    dof: str,
+    methods: str | None,
+    particles: int,
+    frames: int | None,
+    data: Path | None,
+    backend: str,
+    exact: bool,
+) -> Outcome:
+    """Run `demo corridor`: one seed with its figures, several seeds, what idealizations are worth, or `--dof 6`."""
+    data = (data or data_path("corridor")).absolute()
+    if dof == "6":
+        usual = {"recording": recording == "own", "idealizations": not idealizations, "particles": particles == 200}
+        for option in (name for name, fits in {**usual, "backend": backend == "raster"}.items() if not fits):
+            raise ValueError(f"--{option} does not go with --dof 6")
+        return six_degrees.run_corridor(runner, seeds or [seed], data, frames, methods)
+    names = _require_methods(methods, seeds)
+    options = {"particles": particles, "frames": frames, "backend": backend, "exact": exact}
+    if idealizations:
+        return _run_idealizations(runner, seeds or IDEALIZATION_SEEDS, data, **options)
+    settings = {"data": str(data), **options, "recording": recording, "methods": names}
+    if seeds is not None:
+        return _run_seeds(runner, seeds, settings)
+    record = record_of_seed(seed, runner.temporary, **settings, bar=runner.bar)
+    summary = summarize(record.rows, {"seed": seed, **settings})
+    files = {"corridor.json": (summary, rows_of_frames(record.rows))}
+    return Outcome(summary, table_1(summary), files, "corridor", record)
+
+
+def _require_methods(methods: str | None, seeds: list[int] | None) -> list[str]:
+    if methods is None:
+        return list(METHODS)
+    if seeds is None:
+        raise ValueError("--methods goes with --seeds: a single seed runs every row of the table")
+    names = methods.split(",")
+    if not set(METHODS_BY_HAND) <= set(names) <= set(METHODS):
+        raise ValueError(
+            f"--methods must name {' and '.join(METHODS_BY_HAND)}, and besides them only rows of "
+            f"{', '.join(METHODS)}; got {methods}"
+        )
+    return names
+
+
+def _run_seeds(runner: Runner, seeds: list[int], settings: dict) -> Outcome:
+    """Table 1 over the recordings of several seeds."""
+    rows = runner.rows(table_1_of_seed, [{"seed": seed, **settings} for seed in seeds], "corridor")
+    summaries = [row["summary"] for row in rows]
+    result = {
+        "seeds": seeds,
+        **{key: summaries[0][key] for key in ("n_particles", "frames", "sigma_noise", "settings")},
+        "over_recordings": over_recordings(summaries),
+        "recordings": summaries,
+    }
+    each = {f"seed_{one['seed']}.json": (one, row["frames"]) for one, row in zip(summaries, rows, strict=True)}
+    return Outcome(result, table_over_recordings(result), {"recordings.json": (result, None), **each})
+
+
+def _run_idealizations(runner: Runner, seeds: list[int], data: Path, particles: int, **options: object) -> Outcome:
+    """The paper's method on recordings with no hardship, with each alone, and with all."""
+    result = {"seeds": seeds, "image": list(IDEALIZATION_SIZE), "n_particles": particles, **options, "hardships": {}}
+    every = {"none": (), **{name: (name,) for name in HARDSHIPS}, "all": HARDSHIPS}
+    common = {"data": str(data), "n_particles": particles, **options}
+    points = [{"seed": seed, "hardships": list(own), **common} for own in every.values() for seed in seeds]
+    errors = runner.rows(hardship_errors, points, "idealizations", "run")
+    for k, name in enumerate(every):
+        own = errors[k * len(seeds) : (k + 1) * len(seeds)]
+        result["hardships"][name] = {key: spread([one[key] for one in own]) for key in own[0]}
+    return Outcome(result, table_of_idealizations(result), {"idealizations.json": (result, None)})
+
+
+def record_of_seed(
+    seed: int,
+    folder: Path,
+    data: str,
+    particles: int,
+    frames: int | None,
+    recording: str,
+    backend: str,
+    exact: bool,
+    methods: Collection[str],
+    bar: Callable = no_bar,
+) -> Record:
+    """Return every row of table 1 of a seed. Recordings of its own are made below `folder`."""
+    maps = Maps.load(Path(data))
+    if recording == "shipped":
+        even, by_hand = read_sequence(Path(data) / "wagon"), None
+    else:
+        try:
+            even, by_hand = own_recordings(Path(data), folder, seed, frames, bar)
+        except ImportError as error:
+            raise ImportError(f"{error}; --recording shipped makes none") from error
+    options = {"n_particles": particles, "backend": backend, "exact": exact, "frames": frames, "seed": seed}
+    return Record(maps, even, run_rows(maps, even, by_hand, methods, bar, **options), backend)
+
+
+def table_1_of_seed(seed: int, **settings: object) -> dict:
+    """Return table 1 of a seed as JSON holds it: the summary, and a row a frame."""
+    with temporary_folder() as folder:
+        record = record_of_seed(seed, folder, **settings)
+    return {"summary": summarize(record.rows, {"seed": seed, **settings}), "frames": rows_of_frames(record.rows)}
+
+
+def own_recordings(
+    data: Path, folder: Path, seed: int, frames: int | None = None, bar: Callable = no_bar
+) -> tuple[DepthSequence, DepthSequence]:
+    """Make the two recordings of a seed, even and by hand, below `folder`, in the building whose map lies in `data`."""
+    building = building_of_data(data)
+    for name, hardships in (("even", ()), ("by hand", HARDSHIPS)):
+        progress = bar(f"recording seed {seed}, {name}", "frame")
+        record_seed(folder / name, building, seed, hardships, frames=frames, progress=progress)
+    return read_sequence(folder / "even"), read_sequence(folder / "by hand")
+
+
+def run_rows(
+    maps: Maps,
+    even: DepthSequence,
+    by_hand: DepthSequence | None,
+    methods: Collection[str] = tuple(METHODS),
+    bar: Callable = no_bar,
+    **options: object,
+) -> dict[str, Row]:
+    """Return every row of table 1; names of those pushed by hand end in BY_HAND. options: `run_sequence`'s."""
+    rows = {key: _row(key, maps, even, bar(METHODS[key].name, "frame"), **options) for key in METHODS if key in methods}
+    for key in METHODS_BY_HAND if by_hand is not None else ():
+        if key in methods:
+            progress = bar(f"{METHODS[key].name}, by hand", "frame")
+            rows[key + BY_HAND] = _row(key, maps, by_hand, progress, **options)
+    return rows
+
+
+def _row(key: str, maps: Maps, sequence: DepthSequence, progress: Callable = iter, **options: object) -> Row:
+    run = run_method(METHODS[key], *maps, sequence, progress=progress, **options)
+    return Row(run, *path_errors(run, sequence))
 
 
 def run_method(
     method: Method, scene_map: SceneMap, planar_map: SceneMap, sequence: DepthSequence, **options: object
 ) -> Run:
-    """One row of table 1: the recording localized in x, y and yaw by a method."""
+    """Localize a recording in x, y and yaw by the method of one row of table 1."""
     used_map = planar_map if method.planar else scene_map
     return run_sequence(used_map, sequence, weighting=method.weighting, coarse=method.coarse, **options)
 
 
 def path_errors(run: Run, sequence: DepthSequence) -> tuple[PositionError, PositionError]:
-    """The paper's nearest-path error and the timed error of a run; the recording must hold its path on the floor."""
+    """Return the paper's nearest-path error and the timed error; the recording must hold its path on the floor."""
     if sequence.path_on_floor is None:
         raise ValueError(f"{sequence.folder} holds no path_on_floor.txt, which the paper's error needs")
     estimated, true = run.camera_to_world[:, :3, 3], sequence.camera_to_world[: len(run.frames), :3, 3]
     return nearest_path_error(estimated, sequence.path_on_floor), timed_error(estimated, true)
+
+
+def hardship_errors(
+    seed: int, data: str, hardships: Sequence[Hardship], frames: int | None = None, **options: object
+) -> dict[str, float]:
+    """Median errors [m] of the paper's method on a seed's small recording with these hardships and no others."""
+    camera = DepthCamera.sr4000().resized(*IDEALIZATION_SIZE)
+    with temporary_folder() as folder:
+        record_seed(folder / "run", building_of_data(data), seed, tuple(hardships), camera=camera, frames=frames)
+        sequence = read_sequence(folder / "run")
+        row = _row("proposed", Maps.load(Path(data)), sequence, seed=seed, frames=frames, **options)
+    return {"median_m": row.nearest.median, "median_timed_m": row.timed.median}
+
+
+def summarize(rows: dict[str, Row], settings: dict) -> dict:
+    """Return the numbers of table 1: the paper's experiment at the top level, every method below `methods`."""
+    parts = rows_by_part(rows)
+    even = parts["methods"]
+    copied = ("median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "ms_per_frame")
+    return {
+        "seed": settings["seed"],
+        "n_particles": settings["particles"],
+        "frames": len(rows["proposed"].run.frames),
+        "sigma_noise": [float(s) for s in SIGMA_XY_YAW],
+        "settings": settings,
+        **{name: even["proposed"][name] for name in copied},
+        "fallon_median_m": even["fallon"]["median_m"],
+        **parts,
+    }
+
+
+def rows_by_part(rows: dict[str, Row]) -> dict[str, dict[str, dict]]:
+    """Return what table 1 tells of every row: "methods" on the even recording, "methods_by_hand" on the other."""
+    numbers = {
+        key: {
+            "name": METHODS[key.removesuffix(BY_HAND)].name,
+            "median_m": row.nearest.median,
+            "sigma_m": row.nearest.sigma,
+            "within_3sigma_percent": 100 * row.nearest.within_3sigma,
+            "median_timed_m": row.timed.median,
+            "median_effective_sample_size": float(np.median(row.run.ess)),
+            "ms_per_frame": row.run.ms_per_frame,
+        }
+        for key, row in rows.items()
+    }
+    by_hand = {key.removesuffix(BY_HAND): row for key, row in numbers.items() if key.endswith(BY_HAND)}
+    even = {key: row for key, row in numbers.items() if not key.endswith(BY_HAND)}
+    return {"methods": even, **({"methods_by_hand": by_hand} if by_hand else {})}
+
+
+def rows_of_frames(rows: dict[str, Row]) -> list[dict]:
+    """Return a row a frame for a CSV file: errors, positions and scores of every method."""
+    return [
+        {
+            "frame": frame,
+            **{f"{key}_nearest_m": round(float(row.nearest.errors[i]), 5) for key, row in rows.items()},
+            **{f"{key}_timed_m": round(float(row.timed.errors[i]), 5) for key, row in rows.items()},
+            **{
+                f"{key}_{axis}_m": round(float(row.run.camera_to_world[i, j, 3]), 4)
+                for key, row in rows.items()
+                for j, axis in enumerate("xy")
+            },
+            **{f"{key}_score": round(float(row.run.scores[i]), 5) for key, row in rows.items()},
+        }
+        for i, frame in enumerate(rows["proposed"].run.frames)
+    ]
+
+
+def over_recordings(
+    summaries: Iterable[dict], tell: Callable[[Sequence[float]], dict] = spread
+) -> dict[str, dict[str, dict]]:
+    """Return what `tell` makes of every number of every row over seeds, for "methods" and "methods_by_hand"."""
+    summaries = list(summaries)
+    return {
+        part: {
+            key: {
+                "name": row["name"],
+                **{name: tell([summary[part][key][name] for summary in summaries]) for name in TOLD},
+            }
+            for key, row in summaries[0][part].items()
+        }
+        for part in ("methods", "methods_by_hand")
+        if all(part in summary for summary in summaries)
+    }
+
+
+def table_1(summary: dict) -> str:
+    """Return the paper's table 1 with its two rows and ours, the timed error beside the nearest-path error."""
+    lines = [
+        f"Table 1, {summary['frames']} frames, {summary['n_particles']} particles, seed {summary['seed']}",
+        "",
+        f"{'':36} {'nearest point of the path':^33}  {'same frame':>10}  {'particles':>9}",
+        f"{'':36} {'median [m]':>10} {'sigma [m]':>10} {'<= 0.30 m':>11}  {'median [m]':>10}  {'effective':>9}",
+    ]
+    for name, (median, sigma, within) in PAPER_TABLE_1.items():
+        sigma_text = "n/a" if sigma is None else f"{sigma:.2f}"
+        lines.append(f"{'paper: ' + name:36} {median:>10.2f} {sigma_text:>10} {within:>9.0f} %  {'-':>10}  {'-':>9}")
+    lines += [_line(row) for row in summary["methods"].values()]
+    # Only a recording of the seed's own has one by hand beside it.
+    if "methods_by_hand" in summary:
+        lines += ["", BY_HAND_TITLE, *(_line(row) for row in summary["methods_by_hand"].values())]
+    lines += [
+        "",
+        "sigma is the root mean square about zero. Fallon-style rows use a planar simplification of the map. At full",
+        "size their sum over 25,344 pixels collapses onto few particles, at 20 x 15 it hardly tells them apart (last",
+        "column: median effective sample size). Their published system also had visual odometry; here no row has any.",
+        f"{summary['ms_per_frame']:.0f} ms a frame (paper: 125 ms, on a graphics card)",
+    ]
+    return "\n".join(lines)
+
+
+def _line(row: dict) -> str:
+    return (
+        f"{row['name']:36} {row['median_m']:>10.3f} {row['sigma_m']:>10.3f} {row['within_3sigma_percent']:>9.1f} %"
+        f"  {row['median_timed_m']:>10.3f}  {row['median_effective_sample_size']:>9.1f}"
+    )
+
+
+def table_over_recordings(result: dict, told: str = "least to greatest") -> str:
+    """Return table 1 over several seeds: medians and, in brackets, what is `told` of each."""
+    seeds = result["seeds"]
+    lines = [
+        f"Table 1 over {len(seeds)} recordings, seeds {seeds[0]} to {seeds[-1]}, {result['frames']} frames, "
+        f"{result['n_particles']} particles: median ({told})",
+        "",
+        f"{'':36} {'nearest median [m]':>22} {'sigma [m]':>22} {'<= 0.30 m [%]':>22} {'same frame median [m]':>22}",
+    ]
+    columns = (("median_m", 3), ("sigma_m", 3), ("within_3sigma_percent", 1), ("median_timed_m", 3))
+    for part, rows in result["over_recordings"].items():
+        lines += ["", BY_HAND_TITLE] if part == "methods_by_hand" else []
+        for row in rows.values():
+            lines.append(f"{row['name']:36} " + " ".join(_spread(row[name], digits) for name, digits in columns))
+    if any("?" in line for line in lines):
+        lines += ["", "?: so few recordings leave the interval unknown; six are enough."]
+    return "\n".join(lines)
+
+
+def table_of_idealizations(result: dict) -> str:
+    """Return median errors of the paper's method with each hardship alone: median over seeds (least to greatest)."""
+    seeds, size = result["seeds"], result["image"]
+    lines = [
+        f"What idealizations are worth: {len(seeds)} recordings, seeds {seeds[0]} to {seeds[-1]}, "
+        f"{size[0]} x {size[1]} pixels, {result['n_particles']} particles",
+        "",
+        f"{'hardship':18} {'nearest median [m]':>22} {'same frame median [m]':>22}",
+    ]
+    for name, row in result["hardships"].items():
+        lines.append(f"{name:18} {_spread(row['median_m'], 3)} {_spread(row['median_timed_m'], 3)}")
+    return "\n".join(lines)
+
+
+def _spread(spread: dict, digits: int) -> str:
+    middle, least, greatest = ("?" if value is None else f"{value:.{digits}f}" for value in spread.values())
+    return f"{f'{middle} ({least} to {greatest})':>22}"

@@ -1,8 +1,8 @@
-"""How well a detector finds the objects of panoramas: precision and recall at an overlap, the choice of a threshold.
+"""Which detections of a panorama are right: their class is the object's, and their boxes overlap enough.
 
-A detection is right when its class is the object's and their boxes overlap enough; each object is found once. Objects
-that are too much hidden or too small are ignored: who finds one, by the same rule, neither gains nor loses.
-Source: paper 2, section 2.2 (the detector); the scores are those of the PASCAL VOC challenge.
+Each object is found once. Objects that are too much hidden or too small are ignored: a detection that finds one, by the
+same rule, neither gains nor loses. Source: paper 2, section 2.2 (the detector); the rules are those of the PASCAL VOC
+challenge.
 """
 
 from __future__ import annotations
@@ -12,7 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from course_lib.experiments.room import counts_as_object
 from course_lib.spherical_stereo.detection.detected_object import box_iou
+from course_lib.spherical_stereo.recording import TrueObject
 
 IOU_THRESHOLD = 0.5
 
@@ -47,18 +49,6 @@ class Matching:
     """(k,) which detection of those given."""
     n_objects: int
     """Objects to be found."""
-
-
-@dataclass(frozen=True)
-class PrecisionRecall:
-    """Precision and recall over falling thresholds."""
-
-    threshold: np.ndarray
-    """(k,) scores, falling: entry i keeps all detections of at least this score."""
-    precision: np.ndarray
-    """(k,) share of the kept detections that are right."""
-    recall: np.ndarray
-    """(k,) share of the objects that are found."""
 
 
 def match_detections(
@@ -101,57 +91,24 @@ def match_detections(
     return Matching(scores[kept], found >= 0, found, kept, len(objects.labels))
 
 
-def precision_recall_curve(matchings: Sequence[Matching]) -> PrecisionRecall:
-    """Precision and recall of many panoramas together, at every score that occurs.
-
-    precision(t) = right detections with score >= t / all detections with score >= t
-    recall(t)    = right detections with score >= t / objects
-
-    Ignored detections are in neither count. Raises `DetectionScoreError` when there is no object at all.
-    """
-    n_objects = sum(matching.n_objects for matching in matchings)
-    if n_objects == 0:
-        raise DetectionScoreError("there is no object to be found in these panoramas, so recall is not defined")
-    scores = np.concatenate([matching.scores for matching in matchings])
-    correct = np.concatenate([matching.correct for matching in matchings])
-    order = np.argsort(-scores, kind="stable")
-    scores, right = scores[order], np.cumsum(correct[order])
-    # A threshold keeps all detections of equal score: only the last of them is a point of the curve.
-    last = np.ones(len(scores), dtype=bool)
-    last[:-1] = scores[1:] != scores[:-1]
-    kept = np.arange(1, len(scores) + 1)
-    return PrecisionRecall(scores[last], (right / kept)[last], (right / n_objects)[last])
-
-
-def scores_at(curve: PrecisionRecall, threshold: float) -> tuple[float, float]:
-    """(precision, recall) of the detections with at least this score; precision is nan when there are none."""
-    kept = np.flatnonzero(curve.threshold >= threshold)
-    return (float(curve.precision[kept[-1]]), float(curve.recall[kept[-1]])) if len(kept) else (float("nan"), 0.0)
-
-
-def best_threshold(curve: PrecisionRecall) -> float:
-    """The threshold with the largest F1 = 2 precision recall / (precision + recall).
-
-    Raises `DetectionScoreError` when no detection is right, since no threshold is then better than another.
-    """
-    total = curve.precision + curve.recall
-    f1 = np.divide(2 * curve.precision * curve.recall, total, out=np.zeros_like(total), where=total > 0)
-    if not len(f1) or f1.max() == 0.0:
-        raise DetectionScoreError("no detection is right at any threshold: train the detector before choosing one")
-    return float(curve.threshold[f1.argmax()])
-
-
-def average_precision(curve: PrecisionRecall) -> float:
-    """Area under precision over recall, precision made monotone from the right (as PASCAL VOC since 2010)."""
-    if not len(curve.recall):
-        return 0.0
-    envelope = np.maximum.accumulate(curve.precision[::-1])[::-1]
-    return float(np.sum(np.diff(curve.recall, prepend=0.0) * envelope))
-
-
 def _overlaps_in_class(a: Boxes, b: Boxes, width: float) -> np.ndarray:
     """IoU (n, m) of the boxes of both, 0 where the classes differ."""
     if not len(a.labels) or not len(b.labels):
         return np.zeros((len(a.labels), len(b.labels)))
     same = np.asarray(a.labels, object)[:, None] == np.asarray(b.labels, object)[None, :]
     return np.where(same, box_iou(a.boxes, b.boxes, width), 0.0)
+
+
+def match_image(detections: Sequence, objects: Sequence[TrueObject], width: int) -> Matching:
+    """The detections of one panorama against its objects."""
+    wanted = [thing for thing in objects if counts_as_object(thing, width)]
+    ignored = [thing for thing in objects if not counts_as_object(thing, width)]
+    boxes = np.array([one.box for one in detections], float).reshape(-1, 4)
+    scores = np.array([one.score for one in detections], float)
+    return match_detections(
+        Boxes([one.label for one in detections], boxes, scores), *map(_boxes, (wanted, ignored)), width
+    )
+
+
+def _boxes(objects: Sequence[TrueObject]) -> Boxes:
+    return Boxes([thing.label for thing in objects], np.array([thing.visible_box for thing in objects]).reshape(-1, 4))

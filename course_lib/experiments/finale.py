@@ -1,9 +1,9 @@
-"""Both papers in one world: the semantic pose starts the depth filter that paper 1 had to start by hand.
+"""Both papers in one world: panoramas find the robot in a furnished room, the depth camera makes it exact.
 
-A robot stands somewhere in a furnished room that it has a semantic map and a mesh map of. Its two panoramas give x, y
-and heading to centimetres and a degree (paper 2); from there the depth filter, annealed and refined, takes it to
-millimetres (paper 1). Where the panoramas leave several poses, the depth camera judges the best of them. A depth camera
-sees a narrow part of the room; where that is a bare wall, and the filter's own covariance says that the pose is still
+Every seed makes a room of look-alike furniture, its semantic map and its laser-scanned mesh map; the robot stands at
+random places. Its two panoramas give x, y and heading to centimetres and a degree (paper 2); from there the depth
+filter, annealed and refined, takes it to millimetres (paper 1). Where the panoramas leave several poses, the depth
+camera judges the best of them. Where it sees a bare wall, and the filter's own covariance says that the pose is still
 open, the robot turns on the spot and looks again.
 """
 
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -19,8 +20,10 @@ from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocali
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import MAP_MARGIN, NoMeasurementWarning
 from course_lib.depth_mcl.sequence import FAR
+from course_lib.experiments.runner import Outcome, Runner
 from course_lib.files import temporary_folder
 from course_lib.geometry import optical_pose, wrap_angle
+from course_lib.paths import data_path
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
@@ -46,14 +49,25 @@ CAMERA_HEIGHT = 1.0  # metres, of the depth camera on the robot (chosen)
 LEVEL_SIGMA = 0.005, np.deg2rad(0.3)  # metres, radians: how level the robot stands (chosen)
 FRAMES = 3  # depth images of one view, the robot rolling on by a few centimetres
 STEP, TURN = 0.03, 0.02  # metres, radians a frame
-MOST_ALTERNATIVES = 3
+MAX_ALTERNATIVES = 3
 REACHED = 0.03, 1.0  # metres, degrees
+ON_THE_FLOOR = (0, 1, 5)  # of a state: x, y, yaw, what a semantic pose tells
 VIEWS, VIEW_TURN = 12, np.deg2rad(30.0)  # at most so many views, the robot turning so far to the next: once around
 ODOMETRY_SIGMA = 0.05, np.deg2rad(1.0)  # share of a motion; least of a turn (chosen)
 
 
+def run(runner: Runner, *, seed: int, seeds: list[int] | None, places: int, detector: Path | None) -> Outcome:
+    """Run `demo finale`: the rooms that are missing, then all places together."""
+    seeds, network = seeds or [seed], (detector or data_path("detector")).absolute()
+    YoloDetector.load(network)  # what is wrong with it is told now, not after the first room
+    points = [{"seed": one, "places": places, "detector": str(network)} for one in seeds]
+    rooms = runner.rows(finale_room, points, "finale", "room")
+    result = {"seeds": seeds, **summarize([place for room in rooms for place in room])}
+    return Outcome(result, finale_text(result), {"finale.json": (result, None)})
+
+
 def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[dict]:
-    """A point of a sweep: from so many random places of a seed's room, both methods one after the other.
+    """Run both methods one after the other from so many random places of a seed's room.
 
     detector: folder of the network. camera: 1 or 2, the paper's heights of the stereo rig.
     """
@@ -177,7 +191,7 @@ def starts_of(found: Localization, scene_map: SceneMap) -> list[Pose2D]:
     """Where the depth filter starts: the semantic pose; without one, the best of those weighed that lie on the map."""
     if found.pose is not None:
         return [found.pose]
-    poses = [one.pose for one in found.alternatives[:MOST_ALTERNATIVES]]
+    poses = [one.pose for one in found.alternatives[:MAX_ALTERNATIVES]]
     return [pose for pose in poses if scene_map.contains(start_state(pose)[:3], MAP_MARGIN)]
 
 
@@ -212,6 +226,36 @@ def robot_states(pose: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return np.column_stack([x + ahead * np.cos(headings), y + ahead * np.sin(headings), z, tilt, headings])
 
 
+def start_covariance(covariance: np.ndarray) -> np.ndarray:
+    """Covariance `(6, 6)` of `start_state`: a semantic pose's own `(3, 3)`, and how high and level a robot stands.
+
+    Metres and radians, squared, in the order of the state.
+    """
+    height, level = LEVEL_SIGMA
+    known = np.diag([0.0, 0.0, height**2, level**2, level**2, 0.0])
+    known[np.ix_(ON_THE_FLOOR, ON_THE_FLOOR)] = covariance
+    return known
+
+
+def joined(
+    start: np.ndarray, covariance: np.ndarray, state: np.ndarray, state_covariance: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """State `(6,)` and covariance `(6, 6)` of two answers, each weighed by its covariance: a Kalman filter's update.
+
+        K = P_0 (P_0 + P_1)^-1        x = x_0 + K (x_1 - x_0)        P = (1 - K) P_0
+
+    start, covariance: what was known before the image. state, state_covariance: what the depth filter makes of the
+    first image (its `error_covariance`). Differences of angles are taken on the circle; a robot stands nearly level,
+    so they are rotations about its axes.
+    """
+    difference = state - start
+    difference[3:] = wrap_angle(difference[3:])
+    gain = covariance @ np.linalg.inv(covariance + state_covariance)
+    found = start + gain @ difference
+    found[3:] = wrap_angle(found[3:])
+    return found, (np.eye(6) - gain) @ covariance
+
+
 def summarize(places: Sequence[dict]) -> dict[str, float | None]:
     """The numbers of the table; a median of nothing is None."""
     return {
@@ -229,3 +273,20 @@ def summarize(places: Sequence[dict]) -> dict[str, float | None]:
             for name in ("semantic_m", "position_m", "rotation_deg")
         },
     }
+
+
+def finale_text(result: dict) -> str:
+    """Return the numbers of `summarize` in words."""
+
+    def told(value: float | None, digits: int) -> str:
+        return "-" if value is None else f"{value:.{digits}f}"
+
+    return (
+        f"{result['reached']} of {result['places']} places reached within {REACHED[0]:g} m and {REACHED[1]:g} degree\n"
+        f"panoramas: {result['semantic_ok']} answered, median {told(result['median_semantic_m'], 3)} m; "
+        f"{result['started_from_several']} left several poses to the depth camera\n"
+        f"then the depth camera: median {told(result['median_position_m'], 4)} m, "
+        f"{told(result['median_rotation_deg'], 2)} degrees; at {result['looked_again']} places only after the robot "
+        "had turned and looked again\n"
+        f"not reached: {result['wrong_called_tracked']} called tracked, {result['left_open']} left open"
+    )

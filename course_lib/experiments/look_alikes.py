@@ -1,13 +1,13 @@
 """Rooms that look alike: answers within half a metre and 10 degrees, wrong ones given out, and none given.
 
 Table 2 of the paper calls a pose correct when every match is right and the errors are below 2 m. Here a pose is judged
-by where it is: within `LARGEST_ERROR_M` and `LARGEST_TURN_DEG` it is correct, given out and not correct it is wrong,
+by where it is: within `MAX_ERROR_M` and `MAX_TURN_DEG` it is correct, given out and not correct it is wrong,
 and not given out it is unanswered. The paper's measure, all matches right, stands beside it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -19,11 +19,10 @@ from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import rotations
 from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS, matcher
 from course_lib.beyond.several_views import Motion, SemanticTracker
+from course_lib.experiments.intervals import bootstrap_percent, wilson_percent
+from course_lib.experiments.observed_rooms import stored_map, stored_observations, stored_sequences
 from course_lib.experiments.room import PairResult
 from course_lib.experiments.room_evaluation import NO_OBJECT
-from course_lib.experiments.room_views import stored_sequences
-from course_lib.experiments.rooms import stored_map, stored_observations
-from course_lib.experiments.rooms_summary import bootstrap_percent, wilson_percent
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
@@ -32,10 +31,14 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 CORRECT, WRONG, UNANSWERED = "correct", "wrong", "unanswered"
 KINDS = (CORRECT, WRONG, UNANSWERED)
-LARGEST_ERROR_M, LARGEST_TURN_DEG = 0.5, 10.0
+MAX_ERROR_M, MAX_TURN_DEG = 0.5, 10.0
 ODOMETRY_STREAM = 0x0D0  # joins a room's seed
 THINNING_STREAM = 0x7117  # likewise
 LEFT_OUT = 0.5  # share of the observations, drawn one by one; chosen
+HEAD = (
+    f"  {'':24}{'n':>5}{'correct':>20}{'wrong':>18}{'unanswered':>20}{'all matches right':>22}"
+    f"{'dx [m]':>9}{'dy [m]':>9}{'dtheta [deg]':>14}"
+)
 SAME_PLACE = 0.05  # m, within which two poses of a recording are one place
 # Without each part in turn: what it is worth.
 ABLATION: dict[str, Evidence] = {
@@ -54,14 +57,10 @@ ABLATION: dict[str, Evidence] = {
 class OdometryModel(NamedTuple):
     """How well a rig on wheels knows its steps: standard deviations."""
 
-    distance: float = 0.01
-    """Metres, however short the step; chosen."""
-    distance_share: float = 0.05
-    """Of the step; chosen: wheels slip."""
-    turn: float = float(np.deg2rad(1.0))
-    """Radians, however small the turn; chosen."""
-    turn_share: float = 0.05
-    """Of the turn; chosen."""
+    distance: float = 0.01  # metres, however short the step; chosen
+    distance_share: float = 0.05  # of the step; chosen: wheels slip
+    turn: float = float(np.deg2rad(1.0))  # radians, however small the turn; chosen
+    turn_share: float = 0.05  # of the turn; chosen
 
 
 class Answer(NamedTuple):
@@ -95,7 +94,7 @@ def pose_errors(pose: Pose2D | None, true_pose: Sequence[float]) -> tuple[float,
 
 def is_right(errors: tuple[float, float, float]) -> bool:
     """Whether an error is within half a metre and 10 degrees; False for NaN."""
-    return bool(np.hypot(*errors[:2]) <= LARGEST_ERROR_M and errors[2] <= LARGEST_TURN_DEG)
+    return bool(np.hypot(*errors[:2]) <= MAX_ERROR_M and errors[2] <= MAX_TURN_DEG)
 
 
 def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None, confidence, true_pose, pairs_right):
@@ -110,8 +109,7 @@ def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None,
 def answers_of_rooms(
     rooms: Sequence[dict],
     methods: Sequence[str] = tuple(ASSOCIATIONS),
-    source: str = "images",
-    progress: Callable[[Iterable], Iterable] = iter,
+    progress: Callable = iter,
 ) -> list[Answer]:
     """Every pose of every room by every matcher, one view each; none is rejected by its residuals."""
     answers = []
@@ -123,8 +121,8 @@ def answers_of_rooms(
             for name in methods
         }
         for pose in room["poses"]:
-            observations = stored_observations(pose["sources"][source])
-            truth = pose["sources"][source]["true_landmarks"]
+            observations = stored_observations(pose["sources"]["images"])
+            truth = pose["sources"]["images"]["true_landmarks"]
             where = (room["seed"], pose["experiment"], pose["name"])
             for name, localizer in localizers.items():
                 found = localizer.localize_observations(observations)
@@ -139,12 +137,11 @@ def answers_of_evidence(
     rooms: Sequence[dict],
     variants: dict[str, Evidence] = ABLATION,
     wrong_map: bool = False,
-    progress: Callable[[Iterable], Iterable] = iter,
+    progress: Callable = iter,
 ) -> list[Answer]:
-    """Every pose of every room by the consistent matcher, its evidence switched off in parts.
+    """Localize every pose of every room by the consistent matcher, its evidence switched off in parts.
 
-    wrong_map: every room is looked for on the map of the next one, where no answer is right: what tells an absolute fit
-    from a gap to the runner-up.
+    wrong_map: look for every room on the map of the next one, where no answer is right.
     """
     answers = []
     for number, room in enumerate(progress(rooms)):
@@ -182,40 +179,41 @@ def measured_motion(
     return Motion(*(np.array([forward, left, turn]) + sigma * rng.standard_normal(3)), np.diag(sigma**2))
 
 
-def answers_of_sequences(
-    rooms: Sequence[dict], views: Sequence[dict], progress: Callable[[Iterable], Iterable] = iter
-) -> list[Answer]:
-    """Every sequence of views, followed with odometry and without; the answer after the last view is judged.
+def answers_of_sequences(rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable = iter) -> list[Answer]:
+    """Follow every sequence of views with odometry and without; the answer after the last view is judged.
 
-    views: records of `room_views.observe_views`, in the order of the rooms.
+    views: records of `observe_views`, in the order of the rooms.
     """
-    answers = []
-    for room, further in progress(list(zip(rooms, views, strict=True))):
-        semantic_map = stored_map(room)
-        for number, sequence in enumerate(stored_sequences(room, further)):
-            where = (room["seed"], sequence.experiment, sequence.name)
-            answers += followed(where, semantic_map, sequence.poses, sequence.observations, number)
-    return answers
+    return [
+        answer
+        for where, semantic_map, sequence, number in _sequences(rooms, views, progress)
+        for answer in followed(where, semantic_map, sequence.poses, sequence.observations, number)
+    ]
 
 
 def answers_of_thinned_sequences(
-    rooms: Sequence[dict], views: Sequence[dict], progress: Callable[[Iterable], Iterable] = iter
+    rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable = iter
 ) -> list[Answer]:
-    """The same sequences with `LEFT_OUT` of all observations, after one view, after two, and so on.
+    """Follow the same sequences with `LEFT_OUT` of all observations, after one view, after two, and so on.
 
     Where one view tells nearly everything, more cannot tell more: this is what they are worth where it does not.
     """
     answers = []
+    for where, semantic_map, sequence, number in _sequences(rooms, views, progress):
+        rng = np.random.default_rng([THINNING_STREAM, where[0], number])
+        seen = [[one for one in view if rng.random() >= LEFT_OUT] for view in sequence.observations]
+        for n in range(1, len(seen) + 1):
+            for one in followed(where, semantic_map, sequence.poses[:n], seen[:n], number):
+                answers.append(one._replace(method=f"{n}_views_{one.method}"))
+    return answers
+
+
+def _sequences(rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable) -> Iterator[tuple]:
+    """(seed, experiment, name), map, sequence, and its number in the room, of every sequence of every room."""
     for room, further in progress(list(zip(rooms, views, strict=True))):
         semantic_map = stored_map(room)
         for number, sequence in enumerate(stored_sequences(room, further)):
-            rng = np.random.default_rng([THINNING_STREAM, room["seed"], number])
-            seen = [[one for one in view if rng.random() >= LEFT_OUT] for view in sequence.observations]
-            where = (room["seed"], sequence.experiment, sequence.name)
-            for n in range(1, len(seen) + 1):
-                for one in followed(where, semantic_map, sequence.poses[:n], seen[:n], number):
-                    answers.append(one._replace(method=f"{n}_views_{one.method}"))
-    return answers
+            yield (room["seed"], sequence.experiment, sequence.name), semantic_map, sequence, number
 
 
 def answers_of_places(results: Sequence[PairResult], semantic_map: SemanticMap, experiment: int = 1) -> list[Answer]:
@@ -231,10 +229,9 @@ def answers_of_places(results: Sequence[PairResult], semantic_map: SemanticMap, 
 
 
 def followed(where: tuple, semantic_map: SemanticMap, poses: np.ndarray, views: Sequence, number: int) -> list[Answer]:
-    """One sequence of views, followed with odometry and without, and judged after the last.
+    """Follow one sequence of views with odometry and without, and judge after the last.
 
-    poses: `(n, 3)` where the rig really stood. views: the observations from each. number: of the sequence in its room,
-    for the odometry's noise.
+    poses: `(n, 3)` where the rig really stood. views: the observations from each. number: of the sequence in its room.
     """
     answers = []
     for method in ("odometry", "no_odometry"):
@@ -280,10 +277,9 @@ def tables_by_method(answers: Sequence[Answer]) -> dict[str, dict]:
 
 
 def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
-    """What a threshold on the confidence buys: share answered, and share of the answered that is wrong, in percent.
+    """Return what a threshold on the confidence buys: share answered, and share of the answered that is wrong, percent.
 
-    One point for every different confidence, from the surest on; the threshold is the least confidence answered. Poses
-    of confidence 0 (too few matches, or none) are never answered.
+    One point for every different confidence above 0, from the surest on; the threshold is the least one answered.
     """
     confidence = np.array([one.confidence for one in answers])
     wrong = ~np.array([one.best_is_right for one in answers], dtype=bool)
@@ -296,10 +292,8 @@ def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
     }
 
 
-def why_not_answered(
-    rooms: Sequence[dict], answers: Sequence[Answer], source: str = "images"
-) -> dict[str, float | None]:
-    """Observations of landmarks a pose, of answered poses and of the others: too few of them, or enough and alike?"""
+def why_not_answered(rooms: Sequence[dict], answers: Sequence[Answer]) -> dict[str, float | None]:
+    """Return observations of landmarks a pose, of answered poses and of the others: too few, or enough and alike?"""
     seen = {
         (room["seed"], pose["experiment"], pose["name"]): sum(
             landmark != NO_OBJECT for landmark in pose["sources"]["images"]["true_landmarks"]
@@ -316,9 +310,9 @@ def why_not_answered(
 def answers_summary(
     rooms: Sequence[dict],
     methods: Sequence[str] = tuple(ASSOCIATIONS),
-    views: Sequence[dict] | None = None,
+    views: Sequence[list[dict]] | None = None,
     ablation: bool = False,
-    progress: Callable[[Iterable], Iterable] = iter,
+    progress: Callable = iter,
 ) -> dict:
     """All of it: one view, several views where there are any, risk over coverage, and the ablation on either map."""
     one_view = answers_of_rooms(rooms, methods, progress=progress)
@@ -328,7 +322,7 @@ def answers_summary(
         found["risk_coverage"] = risk_coverage(consistent)
         found["why_unanswered"] = why_not_answered(rooms, consistent)
     if views is not None:
-        found["n_views"] = views[0]["options"]["views"]
+        found["n_views"] = 1 + len(views[0][0]["views"])
         found["several_views"] = tables_by_method(answers_of_sequences(rooms, views, progress))
         found["thinned_views"] = tables_by_method(answers_of_thinned_sequences(rooms, views, progress))
     if ablation:
@@ -337,3 +331,51 @@ def answers_summary(
             for name, wrong_map in (("right_map", False), ("wrong_map", True))
         }
     return found
+
+
+def answer_tables(answers: dict) -> str:
+    """Shares in percent with Wilson's 95 % intervals; mean errors of the correct ones."""
+    lines = [*_what_is_counted("both heights, from images"), *_group("One view", answers["one_view"])]
+    if "several_views" in answers:
+        lines += _several(answers)
+        lines += _group("Half of all observations left out", answers["thinned_views"])
+    for which, tables in answers.get("ablation", {}).items():
+        lines += _group(f"Evidence switched off, {which.replace('_', ' ')}", tables)
+    return "\n".join(lines)
+
+
+def views_table(found: dict) -> str:
+    """Several views alone: n_views and several_views of a summary."""
+    return "\n".join([*_what_is_counted("both experiments, from images"), *_several(found)])
+
+
+def _what_is_counted(of: str) -> list[str]:
+    return [
+        f"Answers [%]: correct within {MAX_ERROR_M:g} m and {MAX_TURN_DEG:g} degrees, wrong when given out and "
+        f"not; {of};",
+        "95 % intervals as if poses were independent; mean errors when correct",
+    ]
+
+
+def _several(found: dict) -> list[str]:
+    return _group(f"{found['n_views']} views, consistent", found["several_views"])
+
+
+def _group(title: str, tables: dict) -> list[str]:
+    return ["", title, HEAD, *(_row(name, table) for name, table in tables.items())]
+
+
+def _row(name: str, table: dict) -> str:
+    shares = [_share(table, kind) for kind in KINDS]
+    right = _share(table, "all_matches_right") if table["all_matches_right_percent"] is not None else "-"
+    errors = [table[f"mean_{error}"] for error in ("dx_m", "dy_m", "dtheta_deg")]
+    texts = ["-" if error is None else f"{error:.3f}" for error in errors]
+    return (
+        f"  {name.replace('_', ' '):24}{table['n']:5d}{shares[0]:>20}{shares[1]:>18}{shares[2]:>20}{right:>22}"
+        f"{texts[0]:>9}{texts[1]:>9}{texts[2]:>14}"
+    )
+
+
+def _share(table: dict, kind: str) -> str:
+    low, high = table[f"{kind}_wilson_percent"]
+    return f"{table[f'{kind}_percent']:.1f} ({low:.1f}-{high:.1f})"

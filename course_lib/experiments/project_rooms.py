@@ -15,18 +15,13 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from course_lib.experiments.observed_rooms import record_of_observations, stored_map, stored_observations
 from course_lib.experiments.room import localize_pair
-from course_lib.experiments.rooms import (
-    LoadDetector,
-    RoomsOptions,
-    observe_rooms,
-    record_of_observations,
-    stored_map,
-    stored_observations,
-)
+from course_lib.experiments.runner import kept_rows
 from course_lib.files import atomic_write, temporary_folder
-from course_lib.simulation.room.look_alike_recording import photograph_room, surveyed_room
+from course_lib.simulation.room.look_alike_recording import RecordingModels, photograph_room, surveyed_room
 from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.recording import read_stereo_recording
@@ -66,15 +61,20 @@ class ProjectRoom(NamedTuple):
     views: tuple[ProjectView, ...]
 
 
-def record_room(seed: int, options: RoomsOptions, detector) -> dict:
+def made_room(seed: int, detector: str) -> dict:
+    """Return `record_room` of the reported models. detector: folder of the network."""
+    return record_room(seed, POSES, RecordingModels(), YoloDetector.load(detector))
+
+
+def record_room(seed: int, poses: int, models: RecordingModels, detector) -> dict:
     """Make a room, photograph and survey it, and note what the method sees from each pose; for JSON.
 
     detector: anything with `detect(image_bgr)`. Source: paper 2, sections 2.2 to 2.4 and 3.
     """
-    room, semantic_map = surveyed_room(seed, options.models)
+    room, semantic_map = surveyed_room(seed, models)
     views = []
     with temporary_folder() as temporary:
-        for folder in photograph_room(temporary, room, seed, options.poses, options.models):
+        for folder in photograph_room(temporary, room, seed, poses, models):
             recording = read_stereo_recording(folder)
             size = (recording.width, recording.height)
             localizer = SemanticLocalizer(
@@ -97,7 +97,6 @@ def record_room(seed: int, options: RoomsOptions, detector) -> dict:
     landmarks = [[one.label, one.x, one.y, _or_none(one.hue), one.saturation] for one in semantic_map.landmarks]
     return {
         "seed": seed,
-        "options": options.as_dict(),
         "look_alike": room.objects[0].label,
         "map": _rounded(landmarks),
         "walls": semantic_map.walls.tolist(),
@@ -107,20 +106,20 @@ def record_room(seed: int, options: RoomsOptions, detector) -> dict:
 
 def make_project_rooms(
     out: str | Path,
-    load_detector: LoadDetector,
-    work: str | Path,
-    processes: int = 1,
+    detector: Path,
+    work: Path,
+    processes: int | None = None,
     progress: Callable[[Iterable], Iterable] = iter,
 ) -> dict[str, int]:
-    """Writes `rooms_practice.json` and `rooms_hidden.json` into a folder; returns how many views each holds.
+    """Write `rooms_practice.json` and `rooms_hidden.json` into a folder; return how many views each holds.
 
-    work: folder of finished rooms, from which a run that was stopped goes on.
+    detector: folder of the network. work: folder of finished rooms, from which a run that was stopped goes on.
     """
-    options, counts = RoomsOptions(POSES), {}
+    counts = {}
     for name, seeds in SEEDS.items():
-        rooms = observe_rooms(seeds, options, load_detector, work, processes, progress, record_room)
-        kept = [{key: value for key, value in room.items() if key != "options"} for room in rooms]
-        text = json.dumps({"version": 1, "rooms": kept}, separators=(",", ":"))
+        points = [{"seed": seed, "detector": str(detector.absolute())} for seed in seeds]
+        rooms = kept_rows(made_room, points, Path(work) / f"rooms_{name}.jsonl", processes, progress)
+        text = json.dumps({"version": 1, "rooms": rooms}, separators=(",", ":"))
         atomic_write(Path(out) / f"rooms_{name}.json", text.replace('{"seed"', '\n{"seed"') + "\n")
         counts[name] = sum(len(room["views"]) for room in rooms)
     return counts

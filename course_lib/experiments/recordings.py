@@ -1,7 +1,4 @@
-"""Any recording through the filter, as plain functions of a recording, a map and a seed.
-
-Every run gives plain arrays and numbers, so that a sweep over seeds can hand it to any executor.
-"""
+"""Any recording through the filter, as plain functions of a recording, a map and a seed."""
 
 from __future__ import annotations
 
@@ -10,7 +7,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
 from types import MappingProxyType
-from typing import Literal, NamedTuple, Protocol
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -54,10 +51,9 @@ class Run(NamedTuple):
     statuses: list[TrackStatus]
     """Whether the filter believes itself on the track, frame by frame."""
     normalized_errors: np.ndarray
-    """`(T,)` squared error in units of the covariance (uncertainty.py); NaN where particles were too few to have one;
-    empty where the truth is not known."""
+    """`(T,)` squared error in units of the covariance; NaN with too few particles; empty where no truth is known."""
     deviations: np.ndarray
-    """`(T, 6)` the true states from the estimates, as the motion measures them; empty where the truth is not known."""
+    """`(T, 6)` the true states from the estimates, as the motion measures them; empty where no truth is known."""
     error_sigmas: np.ndarray
     """`(T, 6)` how far off the filter expects to be in each, one sigma."""
     renders: np.ndarray
@@ -70,7 +66,7 @@ class Run(NamedTuple):
 
 
 def system_noise(dof: Literal["6", "xyyaw"], position: float, rotation_deg: float) -> dict:
-    """What `run_sequence` is told of the motion: standard deviations a frame in metres and degrees, for what moves."""
+    """Return `run_sequence`'s motion and its noise: standard deviations a frame, metres and degrees, of what moves."""
     rotation = np.deg2rad(rotation_deg)
     if dof == "6":
         return {"sigma": [position] * 3 + [rotation] * 3, "motion": TANGENT_SPACE}
@@ -80,7 +76,7 @@ def system_noise(dof: Literal["6", "xyyaw"], position: float, rotation_deg: floa
 def run_recovering(
     scene_map: SceneMap, sequence: DepthSequence, *, n_particles: int = 200, seed: int = 0, **options: object
 ) -> Run:
-    """As `run_annealed`, and where it is lost, a global search (`RecoveringLocalizer`)."""
+    """Localize a recording as `run_annealed` does, and where it is lost, search globally (`RecoveringLocalizer`)."""
     make = partial(_Recovering, gravity=sequence.gravity, n_particles=n_particles, seed=seed)
     run, estimates = run_localizer(make, scene_map, sequence, **options)
     return run._replace(statuses=_own_statuses(estimates))
@@ -114,10 +110,10 @@ def find_start(
     frames: int = 20,
     progress: Callable = iter,
 ) -> tuple[int, PoseCandidates, np.ndarray]:
-    """Where a recording begins whose start nobody knows: the frame in which it was clear, what was found there, and the
-    first place's camera-to-world matrix `(4, 4)` in the recording's own world (all NaN where none was found).
+    """Search where a recording begins: the frame in which it was clear, what was found, and the first place's pose.
 
-    Without gravity.txt the camera is taken to be held upright, to within `UNKNOWN_TILT_SIGMA`.
+    The pose is a camera-to-world matrix `(4, 4)` in the recording's own world, all NaN where none was found. Without
+    gravity.txt the camera is taken to be held upright, to within `UNKNOWN_TILT_SIGMA`.
     """
     to_z_up = rotation_to_z_up(up or sequence.up or "z")
     upright, tilt_sigma = np.array([0.0, 1.0, 0.0]), UNKNOWN_TILT_SIGMA
@@ -135,16 +131,6 @@ def find_start(
     return index, candidates, np.linalg.inv(to_z_up) @ optical_pose(candidates.poses[0].state)
 
 
-class Localizer(Protocol):
-    """What a filter must have to be run on a recording."""
-
-    motion: Motion
-
-    def initialize(self, state0: np.ndarray) -> None: ...
-
-    def step(self, depth: np.ndarray) -> Estimate | AnnealedEstimate: ...
-
-
 def run_sequence(
     scene_map: SceneMap,
     sequence: DepthSequence,
@@ -156,9 +142,9 @@ def run_sequence(
     weighting: Weighting | None = None,
     **options: object,
 ) -> Run:
-    """Localizes a recording by the paper's filter: arguments of `MonteCarloLocalizer`; options: `run_localizer`'s."""
-    filter_options = {"sigma": sigma, "seed": seed, "motion": motion, "weighting": weighting}
-    make = partial(MonteCarloLocalizer, n_particles=n_particles, **filter_options)
+    """Localize a recording by the paper's filter: arguments of `MonteCarloLocalizer`; options: `run_localizer`'s."""
+    filter_options = {"n_particles": n_particles, "seed": seed, "motion": motion, "weighting": weighting}
+    make = partial(MonteCarloLocalizer, sigma=sigma, **filter_options)
     return run_localizer(make, scene_map, sequence, **options)[0]
 
 
@@ -171,8 +157,10 @@ def run_annealed(
     parts: Mapping[str, object] = MappingProxyType({}),
     **options: object,
 ) -> Run:
-    """Localizes a recording in six degrees of freedom, annealed and refined. parts: other arguments of
-    `AnnealedLocalizer`; options: `run_localizer`'s."""
+    """Localize a recording in six degrees of freedom, annealed and refined.
+
+    parts: other arguments of `AnnealedLocalizer`. options: `run_localizer`'s.
+    """
     make = partial(AnnealedLocalizer, n_particles=n_particles, seed=seed, **parts)
     run, estimates = run_localizer(make, scene_map, sequence, **options)
     return run._replace(statuses=_own_statuses(estimates))
@@ -183,7 +171,7 @@ def _own_statuses(estimates: list[AnnealedEstimate]) -> list[TrackStatus]:
 
 
 def run_localizer(
-    make: Callable[[DepthRenderer], Localizer],
+    make: Callable[[DepthRenderer], object],
     scene_map: SceneMap,
     sequence: DepthSequence,
     *,
@@ -198,14 +186,13 @@ def run_localizer(
     watched: bool = False,
     progress: Callable = iter,
 ) -> tuple[Run, list[Estimate] | list[AnnealedEstimate]]:
-    """Localizes a recording; every frame's estimate, and all of them as plain arrays, judged as `judge_track` does.
+    """Localize a recording: every frame's estimate as plain arrays, judged as `judge_track` does, and the estimates.
 
-    make: the filter, from a renderer of the map.
-    start: camera-to-world matrix `(4, 4)` in the recording's own world, optical convention (None: the recording's first
-    true pose; `SequenceError` where it has none).
-    up: the axis of map and recording that points up (None: what the recording says, else z); the filter works in a
-    world turned to z up. coarse: compare 20 x 15 pixels instead of all. frames: only so many from the start.
-    watched: look at each frame before it is used, and let the filter take one at fault as without measurement.
+    make: gives the filter, with `motion`, `initialize` and `step`, from a renderer of the map.
+    start: camera-to-world matrix `(4, 4)` in the recording's own world, optical convention (None: the first true pose).
+    up: the axis of map and recording that points up (None: what the recording says, else z).
+    coarse: compare 20 x 15 pixels instead of all. frames: only so many from the start.
+    watched: look at each frame before it is used, and treat one at fault as a frame without measurement.
     progress: wraps the frame indices (tqdm). Other arguments as in `DepthRenderer`.
     """
     to_z_up = rotation_to_z_up(up or sequence.up or "z")
@@ -267,9 +254,11 @@ def run_localizer(
 
 
 def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float | None]:
-    """Median and 90th percentile of position (m) and rotation (degrees) errors; share within 5 cm, 5 degrees; and the
-    mean normalized error, which is near 1 where the covariance says rightly how large errors are (None where a frame's
-    particles were too few for one)."""
+    """Return median and 90th percentile of position (m) and rotation (degrees) errors, the share within 5 cm, 5 deg.
+
+    The mean normalized error is near 1 where the covariance says rightly how large errors are; None where a frame had
+    too few particles for a covariance.
+    """
     position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
     rotation_deg = np.rad2deg(rotation)
     return {

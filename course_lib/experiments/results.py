@@ -14,7 +14,7 @@ from course_lib.files import atomic_write
 
 
 def versions() -> dict[str, str]:
-    """Versions that a result depends on: Python, this library, and the packages that compute."""
+    """Return the versions that a result depends on: Python, this library, and the packages that compute."""
     packages = ("numpy", "scipy", "numba", "vtk", "trimesh", "opencv-python-headless")
     return {"python": platform.python_version(), "course_lib": course_lib.__version__} | {
         name: version(name) for name in packages
@@ -22,10 +22,9 @@ def versions() -> dict[str, str]:
 
 
 def write_results(path: str | Path, results: dict, rows: list[dict] | None = None) -> None:
-    """Writes results as JSON, with the versions inside, and per-frame rows beside it as CSV of the same name.
+    """Write results as JSON, with the versions inside, and rows beside it as a CSV file of the same name.
 
-    A file is complete or not there. Raises `ValueError` for NaN or infinite numbers, which JSON has not, `OSError`
-    where it cannot be written.
+    Raises `ValueError` for NaN or infinite numbers, which JSON has not, `OSError` where it cannot be written.
     """
     path = Path(path)
     text = json.dumps(results | {"versions": versions()}, indent=2, allow_nan=False) + "\n"

@@ -1,18 +1,25 @@
-"""The room experiment of paper 2 (section 3) as plain functions of a recording: from images, or from exact boxes.
+"""Run paper 2's room experiment: 20 poses at each of two heights, from images to poses; print tables 1 to 5.
 
-"images" is the whole method: detector, stereo matching, triangulation, map matching, fit. "exact boxes" starts after a
-perfect detector and a perfect stereo matching: it tells how much of the error is the method's own.
+The stereo panoramas are those of data/room. Another seed renders the same room again with other rig tilts, exposures
+and noise, which takes some minutes more. "images" is the whole method: detector, stereo matching, triangulation, map
+matching, fit. "exact boxes" starts after a perfect detector and a perfect stereo matching: it tells how much of the
+error is the method's own.
 """
 
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
 from course_lib.experiments.room_evaluation import (
+    INCORRECT,
     NO_OBJECT,
     PoseOutcome,
     identify_detections,
@@ -21,6 +28,9 @@ from course_lib.experiments.room_evaluation import (
     true_landmarks_of,
     wrong_pairs,
 )
+from course_lib.experiments.runner import Outcome, Runner
+from course_lib.paths import data_path
+from course_lib.simulation.room import data as room_data
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -28,13 +38,14 @@ from course_lib.spherical_stereo.panorama import pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.triangulation import OK, object_position, triangulation_outcome
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
-from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject
+from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
+SHIPPED_SEED = 4  # of data/room
 SOURCES = ("images", "exact_boxes")
 LEAST_VISIBLE = 0.5  # share of an object's pixels that must be seen for it to count; chosen
 LEAST_HEIGHT = 30.0  # pixels at a width of 1280 that its visible box must be high to count; chosen
-LARGEST_RANGE = 4.0  # m, horizontal: distances are judged below it; chosen
+MAX_RANGE = 4.0  # m, horizontal: distances are judged below it; chosen
 
 
 class PairResult(NamedTuple):
@@ -55,17 +66,143 @@ class PairResult(NamedTuple):
     """From two images in memory to the pose."""
 
 
-class MatchingCounts(NamedTuple):
-    """Stereo matching over many pairs."""
+class Record(NamedTuple):
+    """Both experiments, for figures."""
 
-    matched: int
-    """Pairs of detections of which at least one shows an object that was detected in both images."""
-    right: int
-    """Of them, those whose two detections show one object."""
-    seen_in_both: int
-    """Objects detected in both images."""
-    unmatched: int
-    """Of them, those that no match was found for."""
+    semantic_map: SemanticMap
+    results: dict[str, dict[str, list[PairResult]]]
+    """By experiment ("experiment_1") and source."""
+
+
+def run(
+    runner: Runner,
+    *,
+    seed: int | None,
+    poses: int | None,
+    data: Path | None,
+    detector: object,
+    association: str,
+    views: int,
+    roll: list[int],
+) -> Outcome:
+    """Run `demo room`: both experiments, from images and from exact boxes. detector: `YoloDetector`."""
+    from course_lib.experiments import look_alikes, room_tables, turned_rig  # they import this module
+
+    if seed is not None and data is not None:
+        raise ValueError(
+            f"--seed {seed} takes new photographs, and --data {data} holds some that were taken already, with a seed "
+            "of their own: give one of the two"
+        )
+    if 0 in roll:
+        raise ValueError("--roll must not be 0: images that are not rolled are the experiment itself")
+    if association not in ASSOCIATIONS:
+        raise ValueError(f"--association must be one of {', '.join(ASSOCIATIONS)}; got {association!r}")
+    if views > 1 and association != "consistent":
+        raise ValueError(f"--views {views} needs --association consistent; got {association}")
+    folder = data or data_path("room")
+    if seed not in (None, SHIPPED_SEED):
+        folder = runner.temporary
+        room_data.make_room_data(folder, seed, progress=runner.bar("photographs", "pair"))
+    semantic_map = SemanticMap.load(folder / "semantic_map.json")
+    record, summaries, rolled = Record(semantic_map, {}), {}, {"alike": [], "by_covariance": []}
+    for number in (1, 2):
+        recording = read_stereo_recording(folder / f"experiment_{number}")
+        if poses is not None and poses > len(recording.pairs):
+            told = f"--poses {poses}: experiment {number} has {len(recording.pairs)}, and all are taken"
+            warnings.warn(told, stacklevel=2)
+        recording = replace(recording, pairs=recording.pairs[:poses])
+        localizer = SemanticLocalizer(
+            recording.rig,
+            semantic_map,
+            detector,
+            association=association,
+            image_size=(recording.width, recording.height),
+            reject_implausible=False,  # the paper's method
+        )
+        results = {
+            source: run_experiment(
+                recording, localizer, source, runner.bar(f"experiment {number}, {source.replace('_', ' ')}", "pose")
+            )
+            for source in SOURCES
+        }
+        if roll:
+            bar = runner.bar(f"experiment {number}, rolled images", "pose")
+            pairs = turned_rig.turn_the_rig(results["images"], localizer, roll, bar)
+            rolled["alike"] += pairs
+            rolled["by_covariance"] += turned_rig.weigh_by_covariance(pairs, localizer)
+        record.results[f"experiment_{number}"] = results
+        summaries[f"experiment_{number}"] = {
+            association: experiment_summary(results["images"]),
+            f"{association}_weighted": weighted_summary(results["images"], localizer),
+            f"{association}_exact_boxes": experiment_summary(results["exact_boxes"]),
+            f"{association}_weighted_exact_boxes": weighted_summary(results["exact_boxes"], localizer),
+        }
+    summary = {"seed": recording.seed, **_summarize(record, summaries, recording.rig.baseline)}
+    if roll:
+        summary["rolled_images"] = {name: turned_rig.turn_summary(pairs) for name, pairs in rolled.items()}
+    if views > 1:
+        answers = []
+        for number, results in enumerate(record.results.values(), start=1):
+            answers += look_alikes.answers_of_places(results["images"], semantic_map, number)
+        summary |= {"n_views": views, "several_views": look_alikes.tables_by_method(answers)}
+    text = room_tables.tables(summary) + ("\n\n" + look_alikes.views_table(summary) if views > 1 else "")
+    return Outcome(summary, text, {"room.json": (summary, _rows(record))}, "room", record)
+
+
+def _summarize(record: Record, summaries: dict, baseline: float) -> dict:
+    """Tables 3 to 5 by experiment and association method, stereo matching and distances over all poses."""
+    from_images, from_boxes = ([one for by in record.results.values() for one in by[source]] for source in SOURCES)
+    ranges = {
+        "exact_boxes": range_errors(from_boxes, record.semantic_map, baseline, "box_centre"),
+        "detected_box_centres": range_errors(from_images, record.semantic_map, baseline, "box_centre"),
+        "akaze_disparities": range_errors(from_images, record.semantic_map, baseline, "disparity"),
+    }
+    incorrect = [result for result in from_images if result.outcome.kind == INCORRECT]
+    wrong = [len(wrong_pairs(result.localization, result.true_landmarks)) for result in incorrect]
+    used = [len(result.localization.used_pairs) for result in incorrect]
+    return {
+        "poses": len(from_images) // 2,
+        **summaries,
+        "stereo_matching": matching_rates(from_images),
+        "median_relative_range_error_percent": {
+            key: 100.0 * float(np.median(errors)) if len(errors) else None for key, errors in ranges.items()
+        },
+        "objects_below_4_m": {key: len(errors) for key, errors in ranges.items()},
+        "incorrect_poses": {
+            "median_wrong_pairs": float(np.median(wrong)) if wrong else None,
+            "median_used_pairs": float(np.median(used)) if used else None,
+        },
+        "seconds_per_pose": float(np.median([result.seconds for result in from_images])),
+    }
+
+
+def _rows(record: Record) -> list[dict]:
+    """A row a pose for a CSV file."""
+    return [
+        {
+            "experiment": experiment,
+            "source": source,
+            "place": result.pair.name,
+            **pose_columns(result.pair.pose, result.localization, result.outcome),
+            "seconds": round(result.seconds, 3),
+        }
+        for experiment, by_source in record.results.items()
+        for source, many in by_source.items()
+        for result in many
+    ]
+
+
+def pose_columns(true_pose: Sequence[float], found: Localization, judged: PoseOutcome) -> dict:
+    """Columns of a CSV file: the true pose, the estimated one, and what became of it."""
+    names, digits = ("x", "y", "theta"), (4, 4, 5)
+    pose = found.pose
+    return {
+        **{f"true_{name}": round(float(v), d) for name, v, d in zip(names, true_pose, digits, strict=True)},
+        **{name: "" if pose is None else round(float(getattr(pose, name)), 4) for name in names},
+        "outcome": judged.kind,
+        "reason": found.reason or "",
+        "used_pairs": len(found.used_pairs),
+    }
 
 
 def counts_as_object(thing: TrueObject, width: int) -> bool:
@@ -75,10 +212,7 @@ def counts_as_object(thing: TrueObject, width: int) -> bool:
 
 
 def exact_detections(objects: Sequence[TrueObject], image: np.ndarray) -> tuple[list[Detection], list[int]]:
-    """What a perfect detector would report of an image `(H, W, 3)` BGR, and which object each detection shows.
-
-    The boxes are those around the visible pixels; hue and saturation are measured on the image as always.
-    """
+    """Return what a perfect detector would report of an image `(H, W, 3)` BGR, and the object each detection shows."""
     chosen = [thing for thing in objects if counts_as_object(thing, image.shape[1])]
     detections = [
         Detection(thing.label, 1.0, thing.visible_box, *mean_hue_saturation(image, thing.visible_box))
@@ -88,13 +222,10 @@ def exact_detections(objects: Sequence[TrueObject], image: np.ndarray) -> tuple[
 
 
 def localize_pair(pair: StereoPair, localizer: SemanticLocalizer, source: str = "images") -> PairResult:
-    """Localize one pair and judge the result by table 2. Landmark k of the map is object k of the recording.
+    """Localize one pair from a source ("images" or "exact_boxes") and judge the result by table 2.
 
-    source: "images" or "exact_boxes". Raises `ValueError` for another source, `PanoramaError` for images that cannot
-    be used. Source: paper 2, section 3.
+    Landmark k of the map is object k of the recording. Source: paper 2, section 3.
     """
-    if source not in SOURCES:
-        raise ValueError(f"the source must be one of {SOURCES}; got {source!r}")
     upper_image, lower_image = pair.images()
     width, height = upper_image.shape[1], upper_image.shape[0]
     start = time.perf_counter()
@@ -102,11 +233,8 @@ def localize_pair(pair: StereoPair, localizer: SemanticLocalizer, source: str = 
         found = localizer.localize(upper_image, lower_image)
         seconds = time.perf_counter() - start
         identities = [
-            _identities(detections, objects, width)
-            for detections, objects in (
-                (found.upper_detections, pair.upper_objects),
-                (found.lower_detections, pair.lower_objects),
-            )
+            _identities(found.upper_detections, pair.upper_objects, width),
+            _identities(found.lower_detections, pair.lower_objects, width),
         ]
     else:
         upper, upper_numbers = exact_detections(pair.upper_objects, upper_image)
@@ -127,7 +255,7 @@ def run_experiment(
     source: str = "images",
     progress: Callable = iter,
 ) -> list[PairResult]:
-    """Localize every pair of a recording. progress: wraps the pairs (tqdm). Source: paper 2, section 3."""
+    """Localize every pair of a recording. Source: paper 2, section 3."""
     return [localize_pair(pair, localizer, source) for pair in progress(recording.pairs)]
 
 
@@ -137,10 +265,7 @@ def experiment_summary(results: Sequence[PairResult]) -> dict:
 
 
 def fitted_by_covariance(found: Localization, localizer: SemanticLocalizer) -> Localization:
-    """A localization fitted anew (2.6): each observation weighted by its covariance, not counted alike.
-
-    localizer: the one that found it; its map and its association stay. What has no observations stays as it is.
-    """
+    """Return a localization fitted anew (2.6): each observation weighted by its covariance, not counted alike."""
     if not found.observations:
         return found
     weighted = SemanticLocalizer(
@@ -165,8 +290,8 @@ def weighted_summary(results: Sequence[PairResult], localizer: SemanticLocalizer
     )
 
 
-def matching_counts(results: Sequence[PairResult]) -> MatchingCounts:
-    """How often stereo matching was right about the objects detected in both images, over all pairs.
+def matching_rates(results: Sequence[PairResult]) -> dict[str, float]:
+    """Return how often stereo matching was right about the objects detected in both images, over all pairs.
 
     A detection that shows no object has no right partner, and is not counted. Source: paper 2, section 2.3.
     """
@@ -179,17 +304,21 @@ def matching_counts(results: Sequence[PairResult]) -> MatchingCounts:
         right += sum(a == b for a, b in judged)
         both += len(seen)
         unmatched += len(seen - {a for a, _ in judged})
-    return MatchingCounts(matched, right, both, unmatched)
+    return {
+        "matched": matched,
+        "right_percent": 100.0 * right / max(1, matched),
+        "seen_in_both": both,
+        "unmatched_percent": 100.0 * unmatched / max(1, both),
+    }
 
 
 def range_errors(
     results: Sequence[PairResult], semantic_map: SemanticMap, baseline: float, distance: str
 ) -> np.ndarray:
-    """Relative errors of the horizontal distances to the objects' centroids on the map, below 4 m.
+    """Return relative errors `(n,)` of the horizontal distances to the objects' centroids on the map, below 4 m.
 
-    |rho - rho_true| / rho_true for every match that joins two views of one object; a match without a distance counts
-    as infinite. distance: "box_centre" or "disparity" (which needs matches with features). Returns `(n,)`.
-    Source: paper 2, section 2.4.
+    |rho - rho_true| / rho_true for every match that joins two views of one object; one without a distance counts
+    as infinite. distance: "box_centre" or "disparity" (of matches with features). Source: paper 2, section 2.4.
     """
     errors = []
     for result in results:
@@ -199,7 +328,7 @@ def range_errors(
             if number == NO_OBJECT or result.lower_identity[placed.lower] != number:
                 continue
             true = float(np.linalg.norm(semantic_map.positions[number] - result.pair.pose[:2]))
-            if true < LARGEST_RANGE:
+            if true < MAX_RANGE:
                 errors.append(abs(_range(result, match, placed, baseline, distance) - true) / true)
     return np.array(errors)
 

@@ -17,19 +17,11 @@ from course_lib.spherical_stereo.detection.detected_object import box_iou, canon
 from course_lib.spherical_stereo.pose.localization import OK, Localization
 
 CORRECT, INCORRECT, UNABLE = "correct", "incorrect", "unable"
-LARGEST_ERROR = 2.0
-"""Metres, in x and in y, of a correct pose. Table 2 gives "within 2 m" to correct and "2 m or more" to incorrect, so
-that exactly 2 m is both; here it is correct."""
-LEAST_PAIRS = 2
-"""Pairs of a pose; table 2: "one set or fewer used" is unable to calculate."""
-IDENTITY_IOU = 0.5
-"""Overlap from which on a detection shows an object."""
+MAX_ERROR = 2.0  # m in x and in y; by table 2 exactly 2 m is correct and incorrect, here it is correct
+MIN_PAIRS = 2  # table 2: "one set or fewer used" is unable to calculate
+IDENTITY_IOU = 0.5  # overlap from which on a detection shows an object
 NO_OBJECT = -1
 """In place of an index: the detection shows no object, or the object is on no map."""
-
-
-class EvaluationError(ValueError):
-    """A result and a truth that do not belong together."""
 
 
 class PoseOutcome(NamedTuple):
@@ -46,38 +38,30 @@ class PoseOutcome(NamedTuple):
 
 
 def outcome(localization: Localization, true_pose: Sequence[float], true_landmarks: Sequence[int]) -> PoseOutcome:
-    """Judges one localization.
+    """Judge one localization by table 2; its errors are absolute differences.
 
     unable: no pose, or fewer than two pairs used. correct: every used pair joins an observation to the landmark it
-    really shows, and the errors in x and in y are at most 2 m each. incorrect: everything else. Its errors are absolute
-    differences.
-
-    Table 2 calls unable only "one set or fewer used". A fit that fails with more pairs (mirrored, coincident,
-    undetermined) is unable here as well: there is no pose, so no error by which to call it incorrect.
+    really shows, and the errors in x and in y are at most 2 m each. incorrect: everything else. Table 2 calls unable
+    only "one set or fewer used"; a fit that fails with more pairs is unable here as well, since it has no error.
 
     true_pose: [x, y, theta], metres and radians. true_landmarks: for every observation the index of its landmark, or
-    `NO_OBJECT` (`true_landmarks_of` makes it); a pair with such an observation is wrong.
-    Raises `EvaluationError` for a pose that is none or a list of another length. Source: paper 2, table 2.
+    `NO_OBJECT` (`true_landmarks_of` makes it). Source: paper 2, table 2.
     """
-    true_pose = np.asarray(true_pose, dtype=np.float64)
-    if true_pose.shape != (3,) or not np.isfinite(true_pose).all():
-        raise EvaluationError(f"the true pose must be three finite numbers [x, y, theta]; got {true_pose}")
     wrong = wrong_pairs(localization, true_landmarks)
-    if localization.status != OK or len(localization.used_pairs) < LEAST_PAIRS:
+    if localization.status != OK or len(localization.used_pairs) < MIN_PAIRS:
         return PoseOutcome(UNABLE, math.nan, math.nan, math.nan)
-    dx, dy = (abs(float(value)) for value in np.array(localization.pose[:2]) - true_pose[:2])
+    dx, dy = abs(float(localization.pose.x - true_pose[0])), abs(float(localization.pose.y - true_pose[1]))
     dtheta = abs(math.degrees(wrap_angle(localization.pose.theta - true_pose[2])))
-    correct = not wrong and max(dx, dy) <= LARGEST_ERROR
-    return PoseOutcome(CORRECT if correct else INCORRECT, dx, dy, dtheta)
+    return PoseOutcome(CORRECT if not wrong and max(dx, dy) <= MAX_ERROR else INCORRECT, dx, dy, dtheta)
 
 
 def wrong_pairs(localization: Localization, true_landmarks: Sequence[int]) -> tuple[tuple[int, int, int], ...]:
-    """The used pairs that are wrong: (observation, landmark it was given, landmark it shows or `NO_OBJECT`).
+    """Return the used pairs that are wrong: (observation, landmark it was given, landmark it shows or `NO_OBJECT`).
 
-    Raises `EvaluationError` for a list that is not one index an observation.
+    Raises `ValueError` for a list that is not one index an observation.
     """
     if len(true_landmarks) != len(localization.observations):
-        raise EvaluationError(
+        raise ValueError(
             f"one true landmark an observation is needed; got {len(true_landmarks)} for "
             f"{len(localization.observations)} observations"
         )
@@ -87,14 +71,12 @@ def wrong_pairs(localization: Localization, true_landmarks: Sequence[int]) -> tu
 def identify_detections(
     detections: Sequence, true_objects: Sequence[tuple[str, Sequence[float], Sequence[float]]], width: float
 ) -> tuple[int, ...]:
-    """Which true object each detection shows: its index, or `NO_OBJECT`.
+    """Return which true object each detection shows: its index, or `NO_OBJECT`.
 
     A detection shows an object of its class whose box it overlaps with IoU >= 0.5, on the circle of columns; each
     object is shown once, by the detection that overlaps it most. An object half hidden has two boxes, around what is
-    seen of it and around all of it, and a detector may give either: the greater overlap counts. detections: anything
-    with `label` and `box`. true_objects: (label, visible box, unoccluded box) of everything that can be seen. width: of
-    the panorama, pixels. Raises `DetectionError` for a box that is none.
-    Source: paper 2, section 3 (whose truth was told by eye).
+    seen of it and around all of it, and a detector may give either: the greater overlap counts. true_objects: (label,
+    visible box, unoccluded box). width: of the panorama, pixels. Source: paper 2, section 3 (where people judged it).
     """
     found = [NO_OBJECT] * len(detections)
     if not len(detections) or not len(true_objects):
@@ -117,19 +99,12 @@ def true_landmarks_of(
     landmark_of_object: Mapping[int, int] | Sequence[int],
     lower_identity: Sequence[int] | None = None,
 ) -> tuple[int, ...]:
-    """For every observation the landmark it really shows, or `NO_OBJECT`.
+    """Return for every observation the landmark it really shows, or `NO_OBJECT`.
 
-    upper_identity: true object of each detection of the upper image (`identify_detections`). landmark_of_object: index
-    on the map of each true object; an object that is missing there is on no map. lower_identity: the same as
-    upper_identity for the lower image; with it, an observation made from two different objects shows neither.
-    Raises `EvaluationError` for identities that do not fit the detections.
+    upper_identity, lower_identity: true object of each detection of an image (`identify_detections`); an observation
+    made from two different objects shows neither. landmark_of_object: index on the map of each true object; an object
+    that is missing there is on no map.
     """
-    for side, identity, detections in (
-        ("upper", upper_identity, localization.upper_detections),
-        ("lower", lower_identity, localization.lower_detections),
-    ):
-        if identity is not None and len(identity) != len(detections):
-            raise EvaluationError(f"{len(identity)} identities for {len(detections)} detections of the {side} image")
     landmarks = landmark_of_object if isinstance(landmark_of_object, Mapping) else dict(enumerate(landmark_of_object))
     true = [NO_OBJECT] * len(localization.observations)
     for one in localization.objects:
@@ -142,16 +117,14 @@ def true_landmarks_of(
 
 
 def summary(outcomes: Sequence[PoseOutcome]) -> dict:
-    """Tables 3 to 5 of one experiment: rates, and means, standard deviations and medians of the errors.
+    """Return tables 3 to 5 of one experiment: rates, and means, standard deviations and medians of the errors.
 
     Keys: n, correct_percent, incorrect_percent, unable_percent, and for "all" (everything but unable), "correct" and
     "incorrect": n, mean_dx_m, mean_dy_m, mean_dtheta_deg, the same with std_ and median_; None where there is nothing
     to average. The standard deviation is that of the *absolute* differences about their mean, with divisor n:
     so reckoned, the paper's rows "correct" (13 poses) and "incorrect" (5) give its row "All" (18).
-    Raises `EvaluationError` for no outcomes. Source: paper 2, tables 3 to 5.
+    Source: paper 2, tables 3 to 5.
     """
-    if not outcomes:
-        raise EvaluationError("there are no outcomes to summarize")
     kinds = [one.kind for one in outcomes]
     result: dict = {"n": len(kinds)}
     result |= {f"{kind}_percent": 100.0 * kinds.count(kind) / len(kinds) for kind in (CORRECT, INCORRECT, UNABLE)}

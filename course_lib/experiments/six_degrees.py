@@ -1,7 +1,6 @@
 """Six degrees of freedom side by side: the annealed filter, the paper's, and how well the truth itself fits.
 
-A run gives plain lists, one entry a frame, so that runs of several seeds, recordings and offsets can be pooled before
-anything is told of them.
+A run gives plain lists, one entry a frame, so that runs of several seeds, recordings and offsets can be pooled.
 """
 
 from __future__ import annotations
@@ -19,12 +18,19 @@ from course_lib.beyond.six_dof.schedule import LAYERS, STEPS, pyramid
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
 from course_lib.experiments.recordings import SIGMA, Run, run_annealed, run_sequence, system_noise
+from course_lib.experiments.runner import Outcome, Runner
 from course_lib.files import temporary_folder
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
 
 METHODS = ("annealed", "paper", "floor")
+NAMES = {
+    "annealed": "annealed and refined",
+    "paper": "the paper's filter",
+    "floor": "floor: refined from the truth",
+}
+"""How the table calls them; other methods are called as they are."""
 
 
 class StandingStill(MotionPrediction):
@@ -57,10 +63,9 @@ WRONG_POSITION, WRONG_ROTATION_DEG = 0.20, 20.0  # beyond either a pose is wrong
 HAND_HARDSHIPS = tuple(h for h in HARDSHIPS if h != "pushed by hand")
 
 
-def require_methods(text: str) -> list[str]:
-    """The methods that "annealed,paper" names; "all": every one. Raises `ValueError` for one that does not exist."""
-    known = [*METHODS, *ABLATIONS]
-    methods = known if text == "all" else text.split(",")
+def require_methods(text: str, known: Sequence[str] = (*METHODS, *ABLATIONS)) -> list[str]:
+    """Return the methods that "annealed,paper" names; "all": every one. Raises `ValueError` for an unknown one."""
+    methods = list(known) if text == "all" else text.split(",")
     if not set(methods) <= set(known):
         raise ValueError(f"--methods must name {', '.join(known)}, with commas, or be all; got {text!r}")
     return methods
@@ -142,8 +147,32 @@ def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:
     return row
 
 
+def six_degrees_table(rows: dict[str, dict]) -> str:
+    """Return a line a row of `pooled`; the keys of `rows` are what stands at the beginning."""
+    lines = [
+        f"{'':44} {'frames':>7} {'median':>9} {'median':>8} {'within 5 cm':>12} {'within':>8} {'wrong':>7} "
+        f"{'called lost':>16} {'renders':>9}",
+        f"{'':44} {'':>7} {'[m]':>9} {'[deg]':>8} {'and 5 deg [%]':>12} {'10 cm':>7} {'':>7} "
+        f"{'wrong':>8} {'good':>7} {'most':>9}",
+    ]
+    for name, row in rows.items():
+        lines.append(
+            f"{name:44} {row['frames']:>7} {row['median_position_m']:>9.4f} {row['median_rotation_deg']:>8.2f} "
+            f"{row['within_5cm_5deg_percent']:>12.1f} {row['within_10cm_percent']:>8.1f} {row['wrong']:>7} "
+            f"{row['wrong_called_lost']:>8} {row['good_called_lost']:>7} {row['most_renders']:>9}"
+        )
+    lines += ["", "wrong: by more than 0.20 m or 20 degrees; good: within 5 cm and 5 degrees."]
+    for name, row in rows.items():
+        if "mean_normalized_error" in row:
+            lines.append(
+                f"{name}: squared error in units of its covariance {row['mean_normalized_error']:.2f} in the mean; "
+                f"{row['within_3_sigma_percent']:.1f} % of errors within three sigma"
+            )
+    return "\n".join(lines)
+
+
 def thinned_run(map_file: str, sequence: str, method: str, every: int, offset: int, seed: int) -> dict[str, list]:
-    """A point of a sweep: every so many frames of a recording from an offset on, by one method."""
+    """Run one method on every so many frames of a recording from an offset on."""
     recording = read_sequence(sequence).thinned(every, offset)
     return run_frames(method, SceneMap.load(map_file), recording, seed)
 
@@ -151,7 +180,7 @@ def thinned_run(map_file: str, sequence: str, method: str, every: int, offset: i
 def thinned_points(
     map_file: Path, sequence: Path, methods: Iterable[str], everies: Iterable[int], seeds: Sequence[int]
 ) -> list[dict]:
-    """Points of `thinned_run`: every method, thinning, offset and seed; the floor has neither thinning nor seeds."""
+    """Return points of `thinned_run`, every offset of each thinning; the floor has neither thinning nor seeds."""
     points = []
     for method in methods:
         for every in (1,) if method == "floor" else everies:
@@ -163,9 +192,9 @@ def thinned_points(
 
 
 def corridor_hand(data: str, seed: int, frames: int | None, methods: list[str]) -> dict[str, dict[str, dict]]:
-    """A point of a sweep: a seed's recording carried by hand through the corridor, even and less kind, by each method.
+    """Run each method on a seed's recording carried by hand through the corridor, and on one with calibration errors.
 
-    Less kind: focal length, lens, and mount are wrong by what is usual; the filter is told the nominal values.
+    In the second, focal length, lens, and mount are wrong by what is usual; the filter is told the nominal values.
     """
     scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
     result = {}
@@ -176,3 +205,19 @@ def corridor_hand(data: str, seed: int, frames: int | None, methods: list[str]) 
             recording = read_sequence(folder)
             result[part] = {method: run_frames(method, scene_map, recording, seed) for method in methods}
     return result
+
+
+def run_corridor(runner: Runner, seeds: list[int], data: Path, frames: int | None, methods: str | None) -> Outcome:
+    """Run `demo corridor --dof 6`: recordings carried by hand, made anew from each seed."""
+    names = require_methods(methods or "all", METHODS)
+    points = [{"data": str(data), "frames": frames, "methods": names, "seed": seed} for seed in seeds]
+    runs = runner.rows(corridor_hand, points, "hand")
+    by_row = {
+        NAMES[method] + told: [run[part][method] for run in runs]
+        for part, told in (("methods", ""), ("methods_less_kind", ", less kind"))
+        for method in names
+    }
+    rows = {name: pooled(own) for name, own in by_row.items()}
+    each = {name: [pooled([run]) for run in own] for name, own in by_row.items()}
+    files = {"hand.json": ({"seeds": seeds, "rows": rows, "recordings": each}, None)}
+    return Outcome({"seeds": seeds, "rows": rows}, six_degrees_table(rows), files, "covariance", by_row)

@@ -10,7 +10,7 @@ weights, far ones count for little.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -34,31 +34,16 @@ class RolledPair(NamedTuple):
     rolled: Localization
 
 
-class Turn(NamedTuple):
-    """How far a pose was moved by rolling the images."""
-
-    columns: int
-    """by which both images were rolled, to the right"""
-    agree: bool
-    """whether the same objects, told by their directions, were taken for the same landmarks"""
-    moved: float
-    """how far the position moved, metres; NaN without both poses"""
-    turned: float
-    """how much more or less than 2 pi k / W the heading changed, radians, 0 to pi; NaN without both poses"""
-
-
 def turn_the_rig(
     results: Sequence[PairResult],
     localizer: SemanticLocalizer,
-    columns: Iterable[int],
+    columns: Sequence[int],
     progress: Callable = iter,
 ) -> list[RolledPair]:
-    """Every pair of an experiment localized again with its images rolled by each number of columns.
+    """Localize every pair of an experiment again, with its images rolled by each number of columns.
 
-    results: from images (`run_experiment`). progress: wraps the results (tqdm). Source: paper 2, section 3, whose rig
-    was turned at every place.
+    results: from images (`run_experiment`). Source: paper 2, section 3, whose rig was turned at every place.
     """
-    columns = [int(k) for k in columns]
     pairs = []
     for result in progress(results):
         images = result.pair.images()
@@ -69,10 +54,7 @@ def turn_the_rig(
 
 
 def weigh_by_covariance(pairs: Sequence[RolledPair], localizer: SemanticLocalizer) -> list[RolledPair]:
-    """The same pairs with poses fitted anew: each observation weighted by its covariance, not counted alike.
-
-    localizer: the one that localized them; its map and its association stay.
-    """
+    """Return the same pairs with poses fitted anew: each observation weighted by its covariance, not counted alike."""
     return [
         pair._replace(
             straight=fitted_by_covariance(pair.straight, localizer), rolled=fitted_by_covariance(pair.rolled, localizer)
@@ -81,31 +63,33 @@ def weigh_by_covariance(pairs: Sequence[RolledPair], localizer: SemanticLocalize
     ]
 
 
-def compare(pair: RolledPair) -> Turn:
-    """How far rolling the images moved the pose, and whether the associations agree."""
+def compare(pair: RolledPair) -> tuple[bool, float, float]:
+    """Return how far rolling the images moved the pose: (agree, metres, radians), NaN without both poses.
+
+    agree: the same objects, told by their directions, were taken for the same landmarks. radians: how much more or less
+    than 2 pi k / W the heading changed.
+    """
     columns, width, straight, rolled = pair
     angle = 2 * np.pi * columns / width
     if straight.pose is None or rolled.pose is None:
-        return Turn(columns, False, np.nan, np.nan)
+        return False, np.nan, np.nan
     before, after = _directions(straight), _directions(rolled)
     agree = before.keys() == after.keys() and all(
         abs(wrap_angle(after[landmark] - before[landmark] + angle)) < SAME_DIRECTION for landmark in before
     )
     moved = float(np.hypot(rolled.pose.x - straight.pose.x, rolled.pose.y - straight.pose.y))
-    turned = float(abs(wrap_angle(rolled.pose.theta - straight.pose.theta - angle)))
-    return Turn(columns, agree, moved, turned)
+    return agree, moved, float(abs(wrap_angle(rolled.pose.theta - straight.pose.theta - angle)))
 
 
 def turn_summary(pairs: Sequence[RolledPair]) -> dict:
-    """Numbers over many pairs: how many agree, and how far the pose of those moved and turned."""
+    """Return how many of many pairs agree, and how far the pose of those moved and turned."""
     turns = [compare(pair) for pair in pairs]
-    agreeing = [turn for turn in turns if turn.agree]
-    moved = np.array([turn.moved for turn in agreeing])
-    turned = np.rad2deg([turn.turned for turn in agreeing])
+    moved = np.array([metres for agree, metres, _ in turns if agree])
+    turned = np.rad2deg([radians for agree, _, radians in turns if agree])
     return {
-        "columns": sorted({turn.columns for turn in turns}),
+        "columns": sorted({pair.columns for pair in pairs}),
         "n": len(turns),
-        "associations_agree": len(agreeing),
+        "associations_agree": len(moved),
         "median_moved_m": float(np.median(moved)) if len(moved) else None,
         "greatest_moved_m": float(moved.max()) if len(moved) else None,
         "within_0.10_m": int((moved <= 0.10).sum()),

@@ -1,4 +1,4 @@
-"""Figures like the paper's 5 and 6: the path with its estimates, and the error of every frame."""
+"""Figures of the corridor: like the paper's 5 and 6, the whole idea in one picture, and cuts through the map."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ import trimesh
 from matplotlib.figure import Figure
 
 from course_lib.depth_mcl.evaluation import PAPER_SIGMA
-from course_lib.plots.figures import line_style, new_figure
+from course_lib.depth_mcl.likelihood import likelihood, valid_pixels
+from course_lib.depth_mcl.sequence import DepthSequence
+from course_lib.experiments.recordings import Run
+from course_lib.plots.figures import depth_images, line_style, new_figure
+from course_lib.rendering.renderer import Backend, DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
+
+BESIDE = np.array([-0.5, 0.0, 0.0, 0.0, 0.0, np.deg2rad(4.0)])  # from the estimate: half a metre back, four degrees
 
 
 def figure_5(path: np.ndarray, estimates: dict[str, np.ndarray], walls: np.ndarray | None = None) -> Figure:
@@ -51,6 +58,25 @@ def figure_6(frames: np.ndarray, errors: dict[str, np.ndarray], title: str | Non
     top = max(float(np.max(v)) for v in errors.values())
     axes.set_ylim(1e-3, max(2.0, 6 * top))
     return figure
+
+
+def overview_figure(scene_map: SceneMap, sequence: DepthSequence, run: Run, backend: Backend = "raster") -> Figure:
+    """The middle frame of a run in x, y, yaw: the measured image, the map from the estimate, the map from beside it.
+
+    Agreement is eq. (8) divided by the number of measured pixels, 0 to 1.
+    """
+    index = len(run.frames) // 2
+    camera = sequence.camera()
+    with DepthRenderer(scene_map, camera, backend) as renderer:
+        measured = renderer.render_points(camera.points(sequence.depth(index)))
+        simulated = renderer.render(np.stack([run.states[index], run.states[index] + BESIDE]))
+    agreement = likelihood(measured, simulated) / max(1, valid_pixels(measured).sum())
+    titles = (
+        "Measured by the depth camera",
+        f"Map from the estimate: agreement {agreement[0]:.2f}",
+        f"Map from 0.5 m, 4 degrees beside it: {agreement[1]:.2f}",
+    )
+    return depth_images((measured, *simulated), titles, (0.0, 10.0), size=(10.5, 3.2))
 
 
 def floor_plan(vertices: np.ndarray, height: float, thickness: float = 0.05) -> np.ndarray:

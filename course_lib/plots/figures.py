@@ -12,14 +12,12 @@ import io
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib import colormaps, rcParams
+from matplotlib import colormaps, font_manager, rcParams
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from PIL import Image
-
-from course_lib.plots.letters import LetteredFigure
 
 BLACK, ORANGE, SKY_BLUE, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
@@ -30,7 +28,17 @@ _DOTS_PER_INCH = 100
 _COLOURS_IN_PNG = 128  # smooth enough for a colour bar, a third of the bytes of full colour
 _WEBP_QUALITY = 85  # lines and letters of a figure stay clean; two thirds of the bytes of JPEG (chosen)
 
+# Fonts that have the letters that matplotlib's own lacks, such as Japanese ones: object names are the reader's.
+_OTHER_SCRIPTS = (
+    "Noto Sans CJK JP", "Noto Sans JP", "IPAexGothic", "Hiragino Sans", "Yu Gothic", "PingFang SC", "Microsoft YaHei",
+    "Malgun Gothic", "Noto Sans", "Arial Unicode MS",
+)  # fmt: skip
+_INSTALLED = {font.name for font in font_manager.fontManager.ttflist}
+OTHER_FONTS = [name for name in _OTHER_SCRIPTS if name in _INSTALLED]
+"""Those that this machine has: matplotlib takes letters from them that the first font of a text lacks."""
+
 rcParams.update({"font.size": 9, "axes.titlesize": 10, "axes.titlelocation": "left"})
+rcParams["font.family"] = ["DejaVu Sans", *OTHER_FONTS]
 
 
 def line_style(index: int) -> dict:
@@ -41,7 +49,7 @@ def line_style(index: int) -> dict:
 
 def new_figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4, 3.6)) -> tuple[Figure, np.ndarray]:
     """A figure of `size` inches and its axes: one `Axes` for 1 x 1, else an array of them."""
-    figure = LetteredFigure(figsize=size, dpi=_DOTS_PER_INCH, layout="constrained")
+    figure = Figure(figsize=size, dpi=_DOTS_PER_INCH, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns)
     for a in np.atleast_1d(axes).flat:

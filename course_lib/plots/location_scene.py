@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import unicodedata
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from course_lib.plots.figures import BLACK, BLUE, ORANGE, VERMILION
-from course_lib.plots.letters import plain_labels
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.scenes import body_axes, ellipsoid, new_plotter, path, post, text
 from course_lib.spherical_stereo.pose.localization import Localization
@@ -26,7 +26,7 @@ _AXES = 0.6
 def location_scene(
     semantic_map: SemanticMap, found: Localization, true_pose: np.ndarray | None = None
 ) -> tuple[pyvista.Plotter, str]:
-    """The scene, and in a sentence what is to be seen in it; heights are measured from the upper camera.
+    """Return the scene, and in a sentence what it shows; heights are measured from the upper camera.
 
     Landmarks are posts, since the map says nothing of heights. From the pose, or the one that was rejected, a ray goes
     to every object that was placed, an ellipse tells how sure its place is, and a line joins it to the landmark that
@@ -41,7 +41,7 @@ def location_scene(
     if semantic_map.walls is not None:
         corners = np.column_stack([semantic_map.walls, np.full(len(semantic_map.walls), floor)])
         plotter.add_mesh(path(np.vstack([corners, corners[:1]])), color="grey", line_width=2)
-    labels = plain_labels(landmark.label for landmark in semantic_map.landmarks)
+    labels = {label: _in_ascii(label, number) for number, label in enumerate(dict.fromkeys(semantic_map.labels), 1)}
     for landmark in semantic_map.landmarks:
         colour = class_style(landmark.label)[0]
         foot = np.array([landmark.x, landmark.y, floor])
@@ -62,6 +62,11 @@ def location_scene(
         plotter.add_mesh(_disc([pose.x, pose.y, 0.0], found.covariance[:2, :2]), color=ORANGE, opacity=0.5)
     words += f"; {'pose' if found.pose else 'rejected pose'}: coloured axes; rays to the measured places, discs of "
     return plotter, f"{words}{_SIGMAS} standard deviations, blue lines to the landmarks they were taken for"
+
+
+def _in_ascii(label: str, number: int) -> str:
+    """A label in the letters that a scene's text has, without accents; a number in brackets for another script."""
+    return unicodedata.normalize("NFKD", label).encode("ascii", "ignore").decode().strip() or f"[{number}]"
 
 
 def _add_places(plotter: pyvista.Plotter, semantic_map: SemanticMap, found: Localization, pose: Pose2D) -> None:

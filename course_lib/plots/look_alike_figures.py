@@ -1,21 +1,19 @@
-"""Figures of rooms that look alike: from where which objects are confused, and what a threshold on confidence buys."""
+"""From where which objects of a room are confused, drawn on its map."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
 
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
 from course_lib.experiments.ambiguity import AmbiguityMap
-from course_lib.plots.figures import VERMILION, line_style, new_figure
+from course_lib.plots.figures import VERMILION, new_figure
 from course_lib.plots.room_figures import map_axes
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 CONFUSIONS_DRAWN = 6
 LABEL_AT = 0.38  # of the line's length: at the middle two labels would cover each other where lines cross
-LEAST_SHARE = 0.01  # of the belief, below which a confusion is not drawn
+MIN_SHARE = 0.01  # of the belief, below which a confusion is not drawn
 
 
 def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str = "Ambiguity") -> Figure:
@@ -41,7 +39,7 @@ def draw_ambiguity(axes: Axes, semantic_map: SemanticMap, found: AmbiguityMap, t
         zorder=0,
     )
     for i, j, share in found.most_confused(CONFUSIONS_DRAWN):
-        if share >= LEAST_SHARE:
+        if share >= MIN_SHARE:
             (x1, y1), (x2, y2) = semantic_map.positions[[i, j]]
             axes.plot([x1, x2], [y1, y2], "--", color=VERMILION, linewidth=0.8 + 5.0 * min(share, 0.6))
             axes.text(
@@ -55,17 +53,3 @@ def draw_ambiguity(axes: Axes, semantic_map: SemanticMap, found: AmbiguityMap, t
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},  # readable on dark squares
             )
     return squares
-
-
-def risk_coverage_figure(
-    curves: Mapping[str, Mapping[str, list[float]]], title: str = "What a threshold buys"
-) -> Figure:
-    """Share of the answers that are wrong over the share of poses answered, as the threshold falls; a line a name."""
-    figure, axes = new_figure()
-    for index, (name, curve) in enumerate(curves.items()):
-        style = line_style(index) | {"marker": ""}
-        axes.step(curve["coverage_percent"], curve["risk_percent"], where="post", label=name, **style)
-    axes.set(title=title, xlabel="poses answered [%]", ylabel="of them wrong [%]", xlim=(0, 101))
-    axes.set_ylim(0, max(0.5, 1.05 * max(max(curve["risk_percent"]) for curve in curves.values())))
-    axes.legend()
-    return figure

@@ -11,6 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
+from course_lib.plots.figures import OTHER_FONTS
+
 # Okabe and Ito's colours and a marker each, so that no class is told by colour alone.
 CLASS_STYLES = {
     "sofa": ("#D55E00", "s"),
@@ -88,7 +90,7 @@ def add_list(
         loc="outside lower center",
         ncols=columns,
         title=title,
-        prop={"family": "monospace", "size": 7.5},
+        prop={"family": ["DejaVu Sans Mono", *OTHER_FONTS], "size": 7.5},
         title_fontsize=8,
         handletextpad=0.2,
         handlelength=None if labels is not None else 0,

@@ -14,17 +14,6 @@ from course_lib.plots.figures import BLACK, BLUE, GREEN, VERMILION, new_figure
 from course_lib.plots.panorama_drawing import add_list, class_style, draw_box, draw_numbers, panorama
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-__all__ = [
-    "detections_figure",
-    "draw_box",
-    "draw_pose",
-    "experiment_figure",
-    "map_axes",
-    "matches_figure",
-    "panorama",
-    "pose_figure",
-]
-
 ESTIMATE = "#7B2D8E"
 """Colour of an estimated pose: a dark violet, which no class of objects has (`class_style`)."""
 

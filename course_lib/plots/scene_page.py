@@ -1,10 +1,9 @@
 """One offline HTML page of a PyVista scene: to be turned with the mouse, without a kernel, a network or a program.
 
-The same as PyVista's `plotter.export_html`: the viewer vtk.js and the scene in one file, both from trame-vtk, which
-PyVista uses. But PyVista starts a web server for it, which reaches for the network; trame-vtk's part that writes down a
-scene needs neither. And the page gets a title, words for those who cannot see it and a line that says how to turn it;
-its viewer, a megabyte of script, is packed, and the browser unpacks it. The same scene gives the same bytes: its parts
-are numbered, not named by their addresses in memory, and no hour is written down. The page forbids itself the network.
+The same as PyVista's `plotter.export_html`: the viewer vtk.js and the scene in one file, both from trame-vtk. But
+PyVista starts a web server for it, which trame-vtk's part that writes down a scene does not need. The page gets a
+title, words for those who cannot see it and a line that says how to turn it; its viewer is packed, and the browser
+unpacks it. The same scene gives the same bytes, and the page forbids itself the network.
 """
 
 from __future__ import annotations
@@ -80,7 +79,7 @@ class ScenePageError(RuntimeError):
 
 
 def write_page(plotter: pyvista.Plotter, path: str | Path, title: str, alt: str, legend: str = "") -> Path:
-    """Write the scene as one HTML page and return its path; parameters and errors as of `page_html`."""
+    """Write the scene as one HTML page and return its path (`page_html`)."""
     path = Path(path)
     text = page_html(plotter, title, alt, legend)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -89,12 +88,10 @@ def write_page(plotter: pyvista.Plotter, path: str | Path, title: str, alt: str,
 
 
 def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") -> str:
-    """The scene of a plotter as the text of one HTML page; the same text for the same scene.
+    """Return the scene of a plotter as the text of one HTML page; the same text for the same scene.
 
-    title: of the page. alt: what the scene shows, in a sentence, for those who cannot see it. legend: what is
-    what, written below the scene beside the title.
-    Raises `SceneError` for a scene without objects, without title or alternative text, `ScenePageError` where PyVista
-    lacks what writes pages (the message says what to install).
+    alt: what the scene shows, in a sentence, for those who cannot see it. legend: what is what, written below the
+    scene. Raises `SceneError` for a scene without objects or words, `ScenePageError` where PyVista cannot write pages.
     """
     title, alt, legend = (" ".join(text.split()) for text in (title, alt, legend))
     if not title or len(alt.split()) < 4:

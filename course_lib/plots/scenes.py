@@ -9,7 +9,8 @@ Every function returns a `pyvista.PolyData` in the world frame (metres, z up), t
 
 `scene_page.write_page` makes one HTML file of a plotter, a lesson's `show_scene` shows it. What the page's viewer
 (vtk.js) does not draw is not used here: labels on the screen, scalar bars and lines with a width that follows the zoom.
-PyVista and VTK are imported when a scene is made: that takes a second, and most commands draw none.
+PyVista is imported when a scene is made: that takes a second, and most commands draw none. `SceneError` is raised for
+wrong shapes, for values that are not finite, and for lengths that are not positive.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ def new_plotter(
 
     viewpoint: from where it is seen, `(3,)` metres; focus: the point in its middle, `(3,)` metres. Without them the
     whole scene is seen from a corner above. size: pixels (width, height) of its picture.
-    Raises `SceneError` for one without the other or for one that is no point, `OpenGLError` where nothing can be drawn.
+    Raises `OpenGLError` where nothing can be drawn.
     """
     if (viewpoint is None) != (focus is None):
         raise SceneError("new_plotter needs both viewpoint and focus, or neither of them")
@@ -70,7 +71,6 @@ def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = 
     """The map's triangles, at most `faces` of them, cut off at the height `below` (metres) so that one looks inside.
 
     Where the map has more, surfaces are merged (quadric decimation): fit to be looked at, not to be measured in.
-    Raises `SceneError` for less than 100 faces, or where nothing of the map lies below that height.
     """
     if faces < 100:
         raise SceneError(f"faces must be at least 100, or no map is left; got {faces}")
@@ -96,7 +96,6 @@ def frustum(camera: DepthCamera, state: np.ndarray, far: float | None = None) ->
 
     state: `(6,)` of the camera's body, metres and radians. far: where it is cut off, metres (None: the camera's own).
     Edges are those of the image, half a pixel outside the outermost pixel centres.
-    Raises `SceneError` for a state of another shape or a far plane that is not beyond `camera.near`.
     """
     far = camera.far if far is None else float(far)
     if not (np.isfinite(far) and far > camera.near):
@@ -114,7 +113,6 @@ def body_axes(state: np.ndarray, length: float = 0.5) -> pyvista.PolyData:
     """The axes of a pose: x red (forward), y green (left), z blue (up), each with its letter at the end.
 
     state: `(6,)`, metres and radians; length: metres. Colours are point data: draw with `add_mesh(axes, rgb=True)`.
-    Raises `SceneError` for a state of another shape or a length that is not positive.
     """
     matrix, length = pose_matrix(_one_state(state)), _positive(length, "length")
     points, edges, colours = [], [], []
@@ -138,7 +136,6 @@ def arrows(states: np.ndarray, length: float = 0.3, weights: np.ndarray | None =
 
     states: `(N, 6)`, metres and radians, the position at the arrow's middle; length: metres. weights: `(N,)`, they
     become the point data "weight" (with `add_mesh(..., cmap="cividis")` the colour).
-    Raises `SceneError` for no states, another shape, or weights that do not fit or are not finite.
     """
     states = np.atleast_2d(_states(states))
     if states.ndim != 2 or len(states) == 0:
@@ -160,7 +157,6 @@ def ellipsoid(mean: np.ndarray, covariance: np.ndarray, sigmas: float = 3.0) -> 
     """The surface (p - mean)' C^-1 (p - mean) = sigmas^2 of a covariance: half axes of sigmas standard deviations.
 
     mean: `(..., 3)` metres. covariance: `(..., 3, 3)` square metres; of rank two (nothing said of height) it is a disc.
-    Raises `SceneError` for shapes that do not fit or a matrix that is no covariance (symmetric, no negative variance).
     """
     covariance = _finite(covariance, "covariance")
     if covariance.shape[-2:] != (3, 3):
@@ -196,7 +192,6 @@ def depth_surface(
     depth: `(H, W)` metres, NaN or infinite where nothing was hit. state: `(6,)` of the camera. every: takes each
     so-many-th row and column. jump: pixels are not joined where their depths differ by more than this share of the
     smaller one: there a near thing stands before a far one. With `add_mesh(..., style="points")` it is a cloud.
-    Raises `SceneError` where shapes do not fit or no pixel has a neighbour.
     """
     depth = np.asarray(depth, dtype=np.float64)
     if depth.shape != camera.shape:
@@ -226,10 +221,7 @@ _HALVES = ((0, 1, 2), (0, 2, 3))  # of a square of four pixels
 
 
 def path(points: np.ndarray, dashed: bool = False) -> pyvista.PolyData:
-    """A trajectory as a line through positions `(N, 3)`, metres; dashed: every other piece of it is left out.
-
-    Raises `SceneError` for fewer than two positions or another shape.
-    """
+    """A trajectory as a line through positions `(N, 3)`, metres; dashed: every other piece of it is left out."""
     points = _finite(points, "points")
     if points.ndim != 2 or points.shape[1] != 3 or len(points) < 2:
         raise SceneError(f"points must have shape (N, 3), N at least 2; got {points.shape}. Of states: states[:, :3]")
@@ -237,21 +229,14 @@ def path(points: np.ndarray, dashed: bool = False) -> pyvista.PolyData:
 
 
 def post(foot: np.ndarray, height: float, radius: float = 0.03) -> pyvista.PolyData:
-    """A thin upright post on a point `(3,)`: something of which the place is known, but not the shape. Metres.
-
-    Raises `SceneError` for a foot that is no point or a height or radius that is not positive.
-    """
+    """A thin upright post on a point `(3,)`: something of which the place is known, but not the shape. Metres."""
     foot = _finite(foot, "foot", (3,))
     top = foot + np.array([0.0, 0.0, _positive(height, "height")])
     return _tubes(np.stack([foot, top]), [(0, 1)], _positive(radius, "radius"))
 
 
 def text(words: str, at: np.ndarray, height: float = 0.2) -> pyvista.PolyData:
-    """Words as letters that lie flat, their foot towards -y, from the point `(3,)` on; capitals so high, in metres.
-
-    Labels on the screen are not shown by a page; these turn with the scene. Raises `SceneError` for no words or no
-    such point.
-    """
+    """Words in ASCII as letters that lie flat, their foot towards -y, from the point `(3,)` on; capital height [m]."""
     at = _finite(at, "at", (3,))
     if not words.strip():
         raise SceneError("text needs words; got none")

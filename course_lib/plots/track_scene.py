@@ -31,13 +31,12 @@ _FAR_FROM_ZERO = 1000.0  # metres from which on single precision would show
 def track_scene(
     scene_map: SceneMap, result: Run, sequence: DepthSequence, up: str | None, near: float, far: float
 ) -> tuple[pyvista.Plotter, str]:
-    """The scene, and in a sentence what is to be seen in it.
+    """Return the scene, and in a sentence what it shows.
 
-    up: the axis of map and poses that points up, "z" and the like; the scene is turned so that it points up there, and
-    the map is cut open above the camera. None where nothing is known: up is then what the camera's images say in the
-    mean, which is less sure, and the map is not cut but drawn clear. near, far: metres
-    between which pixels are measured. The worst frames are those farthest from the truth, where it is known, else
-    those of the lowest score. Source of the points: depth images, at the estimated poses.
+    up: the axis of map and poses that points up, "z" and the like; the map is cut open above the camera. None where
+    nothing is known: up is then what the camera's images say in the mean, and the map is not cut but drawn clear.
+    near, far: metres between which pixels are measured. The worst frames are those farthest from the truth, where it is
+    known, else those of the lowest score; their points are drawn from the estimated poses.
     """
     to_scene = _to_scene(scene_map, up, result.camera_to_world)
     estimated = to_scene @ result.camera_to_world
@@ -58,7 +57,9 @@ def track_scene(
     for index, points in zip(worst, measured, strict=True):
         if len(points):
             plotter.add_mesh(points, color=PURPLE, point_size=3)
-        plotter.add_mesh(frustum(camera, state_from_optical_pose(estimated[index]), _frustum(camera)), color=PURPLE)
+        plotter.add_mesh(
+            frustum(camera, state_from_optical_pose(estimated[index]), max(_FRUSTUM, 1.1 * camera.near)), color=PURPLE
+        )
     words = "Estimate: blue line" + (", truth: black, dashed" if true is not None else "")
     words += ", orange where doubtful, red where lost" if set(result.statuses) != {"tracked"} else ""
     frames = ", ".join(str(result.frames[index]) for index in worst)
@@ -124,7 +125,3 @@ def _measured(depth: np.ndarray, camera: DepthCamera, camera_to_world: np.ndarra
     points = camera.points(depth)[(depth >= camera.nearest) & (depth <= camera.farthest)]
     points = points[:: max(1, len(points) // _POINTS_A_FRAME)]
     return (points @ camera_to_world[:3, :3].T + camera_to_world[:3, 3]).astype(np.float32)
-
-
-def _frustum(camera: DepthCamera) -> float:
-    return max(_FRUSTUM, 1.1 * camera.near)

@@ -1,16 +1,85 @@
-"""`demo rooms`: its seeds, its tables, its one JSON object; rooms themselves are made in tests of experiments."""
+"""`demo room`, `demo rooms` and `demo trouble`: what they print and write of a few poses, or of rows that are kept."""
 
 import csv
 import json
+import re
 
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands.arguments import parse_seeds
-from course_lib.commands.demo_rooms import detector_identity
-from course_lib.experiments import rooms as rooms_module
-from course_lib.experiments.rooms_summary import METHODS
+from course_lib.experiments import observed_rooms
+from course_lib.experiments.depth_trouble import LENGTHS
+from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
+from course_lib.experiments.room_tables import remarks
+from course_lib.experiments.rooms import METHODS
+from course_lib.experiments.trouble import FRAMES, PAIRS, told, trouble_table
+from course_lib.paths import data_path
+from course_lib.plots.experiment_figures import trouble_figure
 from tests.experiments.test_rooms import entry, record
+
+
+@pytest.fixture(scope="module")
+def demo_room(tmp_path_factory):
+    """`demo room` on the first two poses of each experiment: its folder."""
+    folder = tmp_path_factory.mktemp("demo")
+    assert main(["demo", "room", "--poses", "2", "--roll", "640", "--out", str(folder)]) == 0
+    return folder
+
+
+@pytest.mark.slow
+def test_the_room_has_rates_and_errors_by_experiment_and_method_a_row_a_pose_and_figures(demo_room):
+    summary = json.loads((demo_room / "room.json").read_text())
+    for experiment in ("experiment_1", "experiment_2"):
+        for method in ("greedy", "greedy_weighted", "greedy_exact_boxes", "greedy_weighted_exact_boxes"):
+            row = summary[experiment][method]
+            assert row["correct_percent"] + row["incorrect_percent"] + row["unable_percent"] == pytest.approx(100)
+    for source in ("", "_exact_boxes"):
+        alike, weighted = (summary["experiment_2"][f"greedy{kind}{source}"] for kind in ("", "_weighted"))
+        assert weighted["correct_percent"] == alike["correct_percent"], "the same associations"
+        assert weighted["all"]["mean_dx_m"] != alike["all"]["mean_dx_m"]
+    assert summary["poses"] == 2
+    assert summary["rolled_images"]["alike"]["n"] == 4, "two poses of two experiments, one number of columns"
+    assert summary["stereo_matching"]["seen_in_both"] > 20
+    assert 0 < summary["median_relative_range_error_percent"]["exact_boxes"] < 15
+    rows = list(csv.DictReader((demo_room / "room.csv").open()))
+    assert [row["source"] for row in rows] == ["images", "images", "exact_boxes", "exact_boxes"] * 2
+    for name in ("experiment_1.png", "experiment_2.png", "detections.png", "matched_pairs.png"):
+        assert (demo_room / name).read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.slow
+def test_the_tables_hold_the_papers_numbers_beside_ours(demo_room, capsys, tmp_path):
+    assert main(["demo", "room", "--poses", "1", "--roll", "640", "--out", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    for part in (
+        *(f"Table {number}" for number in range(1, 6)),
+        "paper: correct                                     0.23     0.44         11.94",
+        "ours, images, greedy, weighted_fit: correct",
+        "experiment 2, ours, exact boxes, weighted_fit",
+        "Images rolled by 640 columns",
+        "pairs weighted by their covariance",
+    ):
+        assert part in text
+
+
+def numbers(unable=(0.0, 0.0), share=0.4, wrong=2.0, used=12.0, n=(6, 4)):
+    """A summary with these rates; mean errors of the incorrect poses are `share` of the paper's."""
+    exact = {"unable_percent": 90.0, "incorrect": {"n": 0}}
+    papers = [{key: share * value for key, value in one["incorrect"].items()} for one in (PAPER_TABLE_3, PAPER_TABLE_4)]
+    ours = [{"unable_percent": unable[k], "incorrect": {"n": n[k], **paper}} for k, paper in enumerate(papers)]
+    return {
+        "incorrect_poses": {"median_wrong_pairs": wrong, "median_used_pairs": used},
+        **{f"experiment_{k + 1}": {"greedy": one, "greedy_exact_boxes": exact} for k, one in enumerate(ours)},
+    }
+
+
+def test_remarks_say_what_the_numbers_show():
+    hardly, swapped = remarks(numbers(unable=(5.0, 0.0)))
+    assert hardly.startswith("Hardly any pose is unable")
+    assert swapped.startswith("One swapped pair among a dozen barely moves the fit: of an incorrect pose's 12 pairs 2")
+    for change in ({"share": 0.6}, {"wrong": 4.0}, {"used": 4.0}, {"n": (0, 0), "wrong": None, "used": None}):
+        assert [sentence.split()[0] for sentence in remarks(numbers(**change))] == ["Hardly"]
+    assert remarks(numbers(unable=(0.0, 10.0), share=0.6)) == []
 
 
 @pytest.fixture
@@ -18,138 +87,109 @@ def made(monkeypatch):
     """Rooms are not photographed: the record of every asked room, one pose in four wrong; and what was asked."""
     asked = []
 
-    def note(seed, options, detector):
-        asked.append((seed, options))
+    def note(seed, poses, models, detector):
+        asked.append((seed, poses, models.tilt_deg))
         assert hasattr(detector, "detect")
-        poses = [entry(shown=(1, 0, 2) if k == 3 else (0, 1, 2)) | {"experiment": 1 + k % 2} for k in range(4)]
-        return record(seed, poses) | {"options": options.as_dict()}
+        seen = [entry(shown=(1, 0, 2) if k == 3 else (0, 1, 2)) | {"experiment": 1 + k % 2} for k in range(4)]
+        return record(seed, seen)
 
-    monkeypatch.setattr(rooms_module, "observe_room", note)
+    def follow(seed, poses, views, models, detector):
+        asked.append((seed, poses, f"{views} views"))
+        seen = [{"pose": entry()["pose"], "observations": entry()["sources"]["images"]["observations"]}]
+        return [{"experiment": 1, "name": "00", "views": seen}]
+
+    monkeypatch.setattr(observed_rooms, "observe_room", note)
+    monkeypatch.setattr(observed_rooms, "observe_views", follow)
     return asked
 
 
-@pytest.mark.parametrize(
-    ("text", "seeds"),
-    [("4", [4]), ("1-3", [1, 2, 3]), ("1-3,10000", [1, 2, 3, 10000]), ("2-3, 1-2", [2, 3, 1]), ("0", [0])],
-)
-def test_seeds_are_numbers_and_ranges(text, seeds):
-    assert parse_seeds(text) == seeds
-
-
-@pytest.mark.parametrize("text", ["", "3-1", "a", "1-", "-1", "1..3"])
-def test_other_seeds_are_refused(text):
-    with pytest.raises(ValueError, match="numbers or ranges"):
-        parse_seeds(text)
-
-
-def test_so_many_seeds_that_no_memory_holds_them_are_refused():
-    assert len(parse_seeds("1-100000")) == 100_000
-    with pytest.raises(ValueError, match=r"--seeds must be at most 100,000 seeds; got '1-100001'"):
-        parse_seeds("1-100001")
-
-
-def test_the_table_has_the_papers_row_ours_and_their_intervals(made, tmp_path, capsys):
-    assert main(["demo", "rooms", "--seeds", "10001-10002", "--processes", "1", "--out", str(tmp_path)]) == 0
+def test_the_rooms_table_has_the_papers_row_ours_and_their_intervals(made, tmp_path, capsys):
+    words = ["demo", "rooms", "--seeds", "10001-10002", "--processes", "1", "--out", str(tmp_path)]
+    assert main([*words, "--tilts", "0.3"]) == 0
     text = capsys.readouterr().out
     for part in (
         "2 rooms (seeds 10001-10002), 2 poses at each height",
         "Cameras at 1.32 and 1.02 m",
-        "Cameras at 1.44 and 1.14 m",
         "65.0 (43 to 82)",
         "exact boxes, weighted_fit",
         "75.0 (41 to 93; 75 to 75)",
         "4 between look-alikes",
+        "Lower camera tilted against the upper one",
     ):
         assert part in text
-    assert [seed for seed, _ in made] == [10001, 10002]
-    assert all(options.poses == 20 for _, options in made)
+    assert text.count("\n0.3 degrees\n") == 3, "shares, errors of correct poses, errors of all"
+    assert made == [(seed, 20, tilt) for tilt in (None, 0.3) for seed in (10001, 10002)]
     rows = list(csv.DictReader((tmp_path / "rooms.csv").open()))
     assert len(rows) == 2 * 4 * 2 * len(METHODS), "rooms, poses, sources, methods"
 
 
-def test_one_json_object_is_printed_and_finished_rooms_are_not_made_again(made, tmp_path, capsys):
+def test_finished_rooms_are_not_made_again_whatever_is_asked_of_them(made, tmp_path, capsys):
     words = ["demo", "rooms", "--seeds", "10001", "--poses", "2", "--processes", "1", "--out", str(tmp_path), "--json"]
-    for _ in range(2):
-        assert main(words) == 0
-        summary = json.loads(capsys.readouterr().out)
-        assert summary["both"]["images"]["paper"]["correct_percent"] == 75.0
-        assert "versions" in json.loads((tmp_path / "rooms.json").read_text())
-    assert len(made) == 1
-
-
-def test_every_tilt_is_a_set_of_rooms_of_its_own(made, tmp_path, capsys):
-    words = ["--seeds", "10001", "--processes", "1", "--tilts", "0", "0.3", "--out", str(tmp_path)]
-    assert main(["demo", "rooms", *words]) == 0
-    assert [options.models.tilt_deg for _, options in made] == [None, 0.0, 0.3]
-    text = capsys.readouterr().out
-    assert "Lower camera tilted against the upper one" in text
-    assert text.count("\n0.3 degrees\n") == 3, "shares, errors of correct poses, errors of all"
-
-
-def test_the_three_matchers_are_counted_beside_each_other_or_the_named_one_alone(made, tmp_path, capsys):
-    words = ["demo", "rooms", "--seeds", "10001", "--poses", "2", "--processes", "1", "--out", str(tmp_path), "--json"]
-    assert main(words) == 0
-    found = json.loads(capsys.readouterr().out)["answers"]
-    assert list(found["one_view"]) == ["greedy", "hungarian", "consistent"]
-    assert found["one_view"]["consistent"]["n"] == 4
+    found = []
+    for more in ([], ["--association", "greedy"], ["--views", "2", "--view-poses", "1", "--ablation"]):
+        assert main([*words, *more]) == 0
+        found.append(json.loads(capsys.readouterr().out))
+        assert found[-1]["both"]["images"]["paper"]["correct_percent"] == 75.0
+    assert made == [(10001, 2, None), (10001, 1, "2 views")]
+    assert [list(one["answers"]["one_view"]) for one in found[:2]] == [
+        ["greedy", "hungarian", "consistent"],
+        ["greedy"],
+    ]
+    assert found[2]["answers"]["n_views"] == 2
+    assert set(found[2]["answers"]["ablation"]) == {"right_map", "wrong_map"}
     assert (tmp_path / "risk_coverage.png").stat().st_size > 1000
-    assert main([*words, "--association", "greedy"]) == 0
-    assert list(json.loads(capsys.readouterr().out)["answers"]["one_view"]) == ["greedy"]
 
 
-def test_further_views_are_made_once_and_followed(made, tmp_path, capsys, monkeypatch):
-    asked = []
+SHARES = [0.01, 0.2]
+TROUBLE = ["demo", "trouble", "--seeds", "10001-10002", "--share", "1,20", "--processes", "1"]
 
-    def walk(seed, options, detector):
-        asked.append((seed, options.views, options.rooms.poses))
-        views = [{"pose": entry()["pose"], "observations": entry()["sources"]["images"]["observations"]}]
-        return {
-            "seed": seed,
-            "options": options.as_dict(),
-            "sequences": [{"experiment": 1, "name": "00", "views": views}],
-        }
 
-    monkeypatch.setattr("course_lib.experiments.room_views.observe_views", walk)
-    words = ["demo", "rooms", "--seeds", "10001", "--processes", "1", "--out", str(tmp_path)]
-    words += ["--poses", "2", "--views", "2", "--view-poses", "1", "--ablation"]
-    for _ in range(2):
-        assert main(words) == 0
+def trouble_rows(troubles, good, bad, n):
+    """Rows of a run: one frame troubled, the tenth good one after it off by two metres, and said to be."""
+    calm = [{"outcome": good, "confident": True, "position_m": 0.01 * (k % 7), "rotation_deg": 0.1} for k in range(n)]
+    frames = [dict(one) for one in calm]
+    frames[5] = {"outcome": bad, "confident": False, "position_m": None, "rotation_deg": None}
+    frames[15] = {"outcome": "lost", "confident": False, "position_m": 2.0, "rotation_deg": 0.1}
+    rows = [
+        {"trouble": one, "share": share, "runs": [[5, 6]], "frames": frames} for one in troubles for share in SHARES
+    ]
+    return {"undisturbed": calm, "troubles": rows}
+
+
+@pytest.fixture
+def finished(tmp_path):
+    """The folder of a run of which all rows are kept, so that nothing is run."""
+    depth = {"data": str(data_path("corridor").absolute()), "frames": FRAMES, "dof": "xyyaw"}
+    stereo = {"detector": str(data_path("detector").absolute()), "frames": PAIRS}
+    for name, point, result in (
+        ("depth_xyyaw", depth, trouble_rows(LENGTHS, "tracked", "repeated", 30)),
+        ("stereo", stereo, trouble_rows(["dropped"], "ok", "no image", 24)),
+    ):
+        points = [{**point, "shares": SHARES, "seed": seed} for seed in (10001, 10002)]
+        lines = [json.dumps({"point": one, "result": result}) for one in points]
+        (tmp_path / f"{name}.jsonl").write_text("\n".join(lines) + "\n")
+    return tmp_path
+
+
+def test_trouble_has_a_row_for_each_trouble_and_share_of_both_methods(finished, capsys):
+    assert main([*TROUBLE, "--out", str(finished)]) == 0
     text = capsys.readouterr().out
-    assert asked == [(10001, 2, 1)]
-    for part in ("2 views, consistent", "no odometry", "Evidence switched off, wrong map", "all matches right"):
-        assert part in text
+    for trouble in LENGTHS:
+        assert len(re.findall(rf"^{trouble} +(1|20) +60 +2 +0 +100 +0   repeated 2$", text, re.M)) == 2, trouble
+    assert "seeds 10001, 10002, 100 frames each" in text
+    assert "undisturbed: tracked 60; 0 confident and wrong; 0 of 60 called troubled" in text
+    assert len(re.findall(r"^dropped +(1|20) +48 +2 +0 +100 +0   no image 2$", text, re.M)) == 2
+    assert {"depth_xyyaw.json", "stereo.json", "trouble.png"} <= {path.name for path in finished.iterdir()}
+    assert told({"a": 1, "b": 3, "c": 1}) == "b 3, a 1, c 1"
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--seeds", "3-1"], "--seeds must be"),
-        (["--views", "0"], "--views must be at least 1"),
-        (["--view-poses", "21"], "--view-poses between 1 and --poses (20)"),
-        (["--views", "2", "--association", "greedy"], "--views above 1 and --ablation are of the consistent matcher"),
-        (["--poses", "0"], "--poses must be at least 1"),
-        (["--processes", "0"], "--processes must be at least 1"),
-        (["--tilts", "0", "11"], "--tilts must be between 0 and 10 degrees; got 11"),
-        (["--detector", "nowhere"], "no detector folder nowhere"),
-    ],
-)
-def test_bad_arguments_are_named_in_one_line(words, message, tmp_path, made, capsys):
-    assert main(["demo", "rooms", *words, "--out", str(tmp_path)]) == 2
-    error = capsys.readouterr().err
-    assert message in error
-    assert "Traceback" not in error
-    assert made == []
-
-
-def test_another_network_is_another_detector(tmp_path):
-    from argparse import Namespace
-
-    for name in ("a.cfg", "a.weights", "README.md"):
-        (tmp_path / name).write_text("one")
-    options = Namespace(detector=tmp_path, input_size=None, score_threshold=None)
-    before = detector_identity(options)
-    (tmp_path / "README.md").write_text("two")
-    assert detector_identity(options) == before
-    (tmp_path / "a.weights").write_text("two")
-    assert detector_identity(options) != before
-    assert detector_identity(Namespace(**vars(options) | {"score_threshold": 0.2})) != detector_identity(options)
+def test_of_one_method_alone_a_row_without_a_frame_to_judge_has_no_percentage_and_no_bar(finished, capsys):
+    assert main([*TROUBLE, "--method", "stereo", "--out", str(finished), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert list(printed) == ["stereo"]
+    result = printed["stereo"]
+    assert result["rows"][0]["outcomes"] == {"no image": 2}
+    for row in result["rows"]:
+        row["judged"] = row["recovered"] = row["undisturbed"] = 0
+    assert re.search(r"^dropped +1 +48 +0 +- +- +0 ", trouble_table(result), re.M)
+    assert [len(axes.patches) for axes in trouble_figure({"stereo": result}).axes] == [0]

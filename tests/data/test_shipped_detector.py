@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.detector_evaluation import labelled_panoramas, score_detector
 from course_lib.experiments.room import localize_pair
 from course_lib.experiments.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
 from course_lib.simulation.room.training_images import labelled_images, make_room_images
@@ -16,6 +15,7 @@ from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from tools.detector_evaluation import labelled_panoramas, score_detector
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "detector"
 ROOM = FOLDER.parent / "room"

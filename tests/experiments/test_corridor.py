@@ -1,13 +1,26 @@
-"""The paper's experiment on a stretch of the shipped recording, and the rows of table 1."""
+"""The paper's experiment on a stretch of the shipped recording and on a seed's own; the rows of table 1."""
 
 import json
+import shutil
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.corridor import METHODS, path_errors, run_method
+from course_lib.experiments import corridor as corridor_module
+from course_lib.experiments.corridor import (
+    BY_HAND,
+    METHODS,
+    TOLD,
+    Maps,
+    over_recordings,
+    own_recordings,
+    path_errors,
+    run_method,
+    run_rows,
+)
 from course_lib.experiments.recordings import SIGMA, run_sequence
 from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.scene_map import SceneMap
@@ -81,24 +94,80 @@ def test_a_recording_without_a_path_on_the_floor_is_named(corridor, monkeypatch)
         path_errors(run_sequence(corridor[0], corridor[2], frames=1, n_particles=5), corridor[2])
 
 
-@pytest.mark.parametrize("seed", REPORTING_SEEDS)
-def test_the_reported_results_meet_the_targets(corridor_folder, seed):
-    """What `demo corridor --seed N --recording shipped` wrote, as the README and lesson 08 quote it."""
-    summary = json.loads((corridor_folder / "results" / f"seed_{seed}.json").read_text())
-    assert (summary["seed"], summary["n_particles"]) == (seed, 200)
-    assert summary["frames"] >= 300
-    assert summary["median_m"] <= 0.05
-    assert summary["sigma_m"] <= 0.10
-    assert summary["within_3sigma_percent"] >= 99
-    assert summary["median_timed_m"] <= 0.08
+@pytest.fixture(scope="module")
+def shipped_maps(corridor_folder):
+    return Maps.load(corridor_folder)
 
 
-def test_the_reported_recordings_meet_the_targets_too(corridor_folder):
-    """What `demo corridor --seeds 1-5` wrote: recordings of their own, the kind part and the less kind one."""
-    stored = json.loads((corridor_folder / "results" / "recordings_1-5.json").read_text())
-    for summary in stored["recordings"]:
-        for rows in (summary["methods"], summary["methods_by_hand"]):
-            assert rows["proposed"]["median_m"] <= 0.05
-            assert rows["proposed"]["sigma_m"] <= 0.10
-            assert rows["proposed"]["within_3sigma_percent"] >= 99
-            assert rows["proposed"]["median_timed_m"] <= 0.08
+@pytest.fixture(scope="module")
+def recordings(corridor_folder, tmp_path_factory):
+    return own_recordings(corridor_folder, tmp_path_factory.mktemp("seed"), 10_030, frames=8)
+
+
+def test_the_filter_needs_the_maps_and_never_the_true_world(corridor_folder, shipped_maps, tmp_path):
+    for name in ("map.ply", "planar_map.ply"):
+        shutil.copy(corridor_folder / name, tmp_path)
+    alone = Maps.load(tmp_path)
+    for part, name in (("detailed", "map.ply"), ("planar", "planar_map.ply")):
+        stored = SceneMap.load(corridor_folder / name)
+        for maps in (alone, shipped_maps):
+            assert np.array_equal(getattr(maps, part).vertices, stored.vertices)
+
+
+def test_every_row_is_given_the_maps_and_its_own_recording(shipped_maps, recordings, monkeypatch):
+    given = []
+
+    def run(method, scene_map, planar_map, sequence, **options):
+        given.append((method.name, scene_map, planar_map, sequence))
+        truth = sequence.camera_to_world
+        return SimpleNamespace(frames=sequence.frames, camera_to_world=truth)
+
+    monkeypatch.setattr(corridor_module, "run_method", run)
+    rows = run_rows(shipped_maps, *recordings)
+    assert list(rows) == [*METHODS, "proposed" + BY_HAND, "fallon" + BY_HAND]
+    assert all(maps == tuple(shipped_maps) for maps in (one[1:3] for one in given))
+    assert [one[3] for one in given] == [recordings[0]] * 5 + [recordings[1]] * 2
+    assert all(row.timed.median == 0.0 for row in rows.values())
+
+
+def test_the_papers_method_follows_a_seeds_recording_in_the_shipped_map(shipped_maps, recordings):
+    """Eight frames are 0.7 m: a filter that stays where it was put is that much off at the end."""
+    path = recordings[0].camera_to_world[:, :3, 3]
+    assert np.linalg.norm(path[-1] - path[0]) > 0.6
+    rows = run_rows(shipped_maps, *recordings, methods=("proposed",), seed=1, n_particles=80)
+    assert set(rows) == {"proposed", "proposed" + BY_HAND}
+    for row in rows.values():
+        assert row.timed.median < 0.15
+        assert row.timed.errors[-1] < 0.25
+
+
+def test_the_less_kind_recording_is_of_the_same_day(recordings):
+    even, by_hand = recordings
+    assert even.camera_to_world[0, :2, 3] == pytest.approx(by_hand.camera_to_world[0, :2, 3], abs=0.02)
+    # The sway alone turns the view by up to 1.5 degrees.
+    assert np.nanmedian(np.abs(even.depth(0) / by_hand.depth(0) - 1)) < 0.1
+    steps = [np.linalg.norm(np.diff(s.camera_to_world[:, :3, 3], axis=0), axis=1) for s in recordings]
+    assert np.std(steps[1]) > 3 * np.std(steps[0])
+
+
+def test_over_recordings_tells_median_least_and_greatest():
+    def summary(value):
+        row = {"name": "n", **dict.fromkeys(TOLD, value)}
+        return {"methods": {"proposed": row}, "methods_by_hand": {"proposed": {**row, "median_m": 2 * value}}}
+
+    told = over_recordings([summary(v) for v in (3.0, 1.0, 8.0)])
+    assert told["methods"]["proposed"]["median_m"] == {"median": 3.0, "least": 1.0, "greatest": 8.0}
+    assert told["methods_by_hand"]["proposed"]["median_m"] == {"median": 6.0, "least": 2.0, "greatest": 16.0}
+
+
+def test_the_reported_results_meet_the_targets(corridor_folder):
+    """What `demo corridor` wrote: five seeds of the filter, and five recordings of their own, even and by hand."""
+    stored = [json.loads((corridor_folder / "results" / f"seed_{n}.json").read_text()) for n in REPORTING_SEEDS]
+    assert all(one["n_particles"] == 200 and one["frames"] >= 300 for one in stored)
+    recordings = json.loads((corridor_folder / "results" / "recordings_1-5.json").read_text())["recordings"]
+    rows = [one[part]["proposed"] for one in recordings for part in ("methods", "methods_by_hand")]
+    for row in [*stored, *rows]:
+        assert row["median_m"] <= 0.05
+        assert row["sigma_m"] <= 0.10
+        assert row["within_3sigma_percent"] >= 99
+        assert row["median_timed_m"] <= 0.08

@@ -1,18 +1,9 @@
-"""Precision and recall of detections on a panorama: who is right, who is ignored, and which threshold is chosen."""
+"""Which detections on a panorama are right, which are false alarms, and which are ignored."""
 
 import numpy as np
 import pytest
 
-from course_lib.experiments.detection_scores import (
-    Boxes,
-    DetectionScoreError,
-    Matching,
-    average_precision,
-    best_threshold,
-    match_detections,
-    precision_recall_curve,
-    scores_at,
-)
+from course_lib.experiments.detection_scores import Boxes, DetectionScoreError, match_detections
 
 WIDTH = 1280.0
 NONE = Boxes([], np.zeros((0, 4)))
@@ -26,120 +17,41 @@ def found(*boxes, scores, label="chair"):
     return Boxes([label] * len(boxes), np.array(boxes, float), np.array(scores, float))
 
 
-def test_a_detection_that_overlaps_enough_is_right():
-    matching = match_detections(found([100, 300, 150, 400], scores=[0.9]), objects([105, 300, 155, 400]), NONE, WIDTH)
-    assert matching.correct.tolist() == [True]
-    assert matching.object_index.tolist() == [0]
+BOX = [100, 0, 175, 100]
+HALF, LESS = [125, 0, 200, 100], [126, 0, 201, 100]  # IoU 50 / 100 and 49 / 101
 
 
-def test_an_overlap_of_exactly_the_threshold_is_enough_and_a_little_less_is_not():
-    # IoU = 50 / 100 for the first, 49 / 101 for the second.
-    target = objects([100, 0, 175, 100])
-    assert match_detections(found([125, 0, 200, 100], scores=[1]), target, NONE, WIDTH).correct.tolist() == [True]
-    assert match_detections(found([126, 0, 201, 100], scores=[1]), target, NONE, WIDTH).correct.tolist() == [False]
+@pytest.mark.parametrize(
+    ("box", "label", "target", "ignored", "told"),
+    [
+        (HALF, "chair", objects(BOX), NONE, [True]),
+        (LESS, "chair", objects(BOX), NONE, [False]),
+        (BOX, "table", objects(BOX), NONE, [False]),
+        ([1270, 300, 1320, 400], "chair", objects([1272, 300, 1322, 400]), NONE, [True]),
+        ([1270, 300, 1320, 400], "chair", objects([-8, 300, 42, 400]), NONE, [True]),
+        (HALF, "chair", NONE, objects(BOX), []),
+        (LESS, "chair", NONE, objects(BOX), [False]),
+        (BOX, "television", NONE, objects(BOX), [False]),
+        ([110, 10, 140, 40], "chair", NONE, objects(BOX), [False]),
+        ([1270, 300, 1320, 400], "chair", NONE, objects([-8, 300, 42, 400]), []),
+        (BOX, "chair", objects(BOX), objects(BOX, label="table"), [True]),
+    ],
+    ids=["half", "less than half", "another class", "the seam", "the seam, from the other side", "ignored",
+         "less than half of an ignored one", "another class than the ignored one", "small inside an ignored one",
+         "ignored across the seam", "found where an ignored one lies"],
+)  # fmt: skip
+def test_a_detection_is_right_a_false_alarm_or_ignored(box, label, target, ignored, told):
+    assert match_detections(found(box, scores=[0.9], label=label), target, ignored, WIDTH).correct.tolist() == told
 
 
-def test_another_class_is_a_false_alarm():
-    detections = found([100, 300, 150, 400], scores=[0.9], label="table")
-    assert match_detections(detections, objects([100, 300, 150, 400]), NONE, WIDTH).correct.tolist() == [False]
-
-
-def test_the_second_detection_of_one_object_is_a_false_alarm_even_if_it_fits_better():
+def test_the_best_score_takes_the_free_object_that_it_overlaps_most_and_a_second_one_is_a_false_alarm():
     detections = found([100, 300, 150, 400], [105, 300, 155, 400], scores=[0.5, 0.9])
     matching = match_detections(detections, objects([100, 300, 150, 400]), NONE, WIDTH)
     assert matching.scores.tolist() == [0.9, 0.5]
     assert matching.correct.tolist() == [True, False]
-
-
-def test_a_detection_takes_the_free_object_that_it_overlaps_most():
     detections = found([100, 0, 200, 100], [100, 0, 200, 100], scores=[0.9, 0.8])
     matching = match_detections(detections, objects([110, 0, 210, 100], [102, 0, 202, 100]), NONE, WIDTH)
     assert matching.object_index.tolist() == [1, 0]
-
-
-def test_boxes_meet_across_the_seam():
-    detections = found([1270, 300, 1320, 400], scores=[0.9])
-    # The same place, one turn to the left, as a detector without wrapping would give it.
-    for box in ([1272, 300, 1322, 400], [-8, 300, 42, 400]):
-        assert match_detections(detections, objects(box), NONE, WIDTH).correct.tolist() == [True]
-
-
-def test_finding_an_ignored_object_neither_gains_nor_loses():
-    detections = found([100, 300, 150, 400], [600, 300, 650, 400], scores=[0.9, 0.8])
-    matching = match_detections(detections, NONE, objects([100, 300, 150, 400]), WIDTH)
-    assert matching.detection_index.tolist() == [1]
-    assert matching.n_objects == 0
-
-
-def test_a_small_box_inside_a_large_ignored_object_is_a_false_alarm():
-    detections = found([110, 310, 140, 340], scores=[0.9])
-    assert match_detections(detections, NONE, objects([100, 300, 300, 400]), WIDTH).correct.tolist() == [False]
-
-
-def test_a_detection_of_another_class_than_the_ignored_object_is_a_false_alarm():
-    detections = found([100, 300, 150, 400], scores=[0.9], label="television")
-    assert match_detections(detections, NONE, objects([100, 300, 150, 400]), WIDTH).correct.tolist() == [False]
-
-
-def test_an_ignored_object_is_found_at_the_same_overlap_as_any_other():
-    # IoU = 50 / 100 for the first, 49 / 101 for the second.
-    ignored = objects([100, 0, 175, 100])
-    assert len(match_detections(found([125, 0, 200, 100], scores=[1]), NONE, ignored, WIDTH).scores) == 0
-    assert len(match_detections(found([126, 0, 201, 100], scores=[1]), NONE, ignored, WIDTH).scores) == 1
-
-
-def test_an_ignored_object_is_found_across_the_seam():
-    detections = found([1270, 300, 1320, 400], scores=[0.9])
-    assert len(match_detections(detections, NONE, objects([-8, 300, 42, 400]), WIDTH).scores) == 0
-
-
-def test_an_object_is_found_even_where_an_ignored_one_lies():
-    box = [100, 300, 150, 400]
-    matching = match_detections(found(box, scores=[0.9]), objects(box), objects(box, label="table"), WIDTH)
-    assert matching.correct.tolist() == [True]
-
-
-def matching(scores, correct, n_objects):
-    nothing = np.zeros(len(scores), int)
-    return Matching(np.array(scores, float), np.array(correct, bool), nothing, nothing, n_objects)
-
-
-def test_the_curve_counts_all_panoramas_together():
-    curve = precision_recall_curve([matching([0.9, 0.6], [True, False], 2), matching([0.8], [True], 2)])
-    assert curve.threshold.tolist() == [0.9, 0.8, 0.6]
-    assert curve.precision == pytest.approx([1.0, 1.0, 2 / 3])
-    assert curve.recall == pytest.approx([0.25, 0.5, 0.5])
-
-
-def test_detections_of_equal_score_enter_the_curve_together():
-    curve = precision_recall_curve([matching([0.7, 0.7], [True, False], 1)])
-    assert curve.threshold.tolist() == [0.7]
-    assert curve.precision.tolist() == [0.5]
-
-
-def test_scores_at_a_threshold_keep_detections_of_that_score():
-    curve = precision_recall_curve([matching([0.9, 0.6], [True, False], 2)])
-    assert scores_at(curve, 0.9) == (1.0, 0.5)
-    assert scores_at(curve, 0.61) == (1.0, 0.5)
-    assert scores_at(curve, 0.6) == (0.5, 0.5)
-
-
-def test_above_all_scores_nothing_is_found_and_precision_is_undefined():
-    precision, recall = scores_at(precision_recall_curve([matching([0.9], [True], 2)]), 0.95)
-    assert np.isnan(precision)
-    assert recall == 0.0
-
-
-def test_the_best_threshold_has_the_largest_f1():
-    # F1: 0.9 -> 0.5, 0.8 -> 0.8, 0.5 -> 6/7, 0.4 -> 6/8.
-    curve = precision_recall_curve([matching([0.9, 0.8, 0.5, 0.4], [True, True, True, False], 3)])
-    assert best_threshold(curve) == 0.5
-
-
-def test_a_perfect_detector_has_average_precision_one_and_a_half_blind_one_a_half():
-    assert average_precision(precision_recall_curve([matching([0.9, 0.8], [True, True], 2)])) == pytest.approx(1.0)
-    assert average_precision(precision_recall_curve([matching([0.9], [True], 2)])) == pytest.approx(0.5)
-    assert average_precision(precision_recall_curve([matching([], [], 2)])) == 0.0
 
 
 def test_matching_does_not_depend_on_the_order_of_detections():
@@ -164,7 +76,3 @@ def test_bad_input_is_named():
         match_detections(found([0, 0, 10, 10], scores=[np.nan]), target, NONE, WIDTH)
     with pytest.raises(DetectionScoreError, match="2 labels and 1 boxes"):
         match_detections(Boxes(["a", "b"], np.zeros((1, 4)), np.ones(2)), target, NONE, WIDTH)
-    with pytest.raises(DetectionScoreError, match="no object"):
-        precision_recall_curve([matching([0.5], [False], 0)])
-    with pytest.raises(DetectionScoreError, match="no detection is right"):
-        best_threshold(precision_recall_curve([matching([0.5], [False], 1)]))

@@ -22,8 +22,7 @@ from course_lib.experiments.look_alikes import (
     risk_coverage,
     why_not_answered,
 )
-from course_lib.experiments.room_views import ViewsOptions, stored_sequences
-from course_lib.experiments.rooms import record_of_observations
+from course_lib.experiments.observed_rooms import record_of_observations, stored_sequences
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed, scattered
 
@@ -46,13 +45,12 @@ def record_of(semantic_map, seed=7, which=None):
     }
 
 
-def views_of(semantic_map, seed=7, which=None):
+def views_of(semantic_map, which=None):
     views = [
         {"pose": list(map(float, pose)), "observations": record_of_observations(observed(semantic_map, pose, which))}
         for pose in STEPS[1:]
     ]
-    options = ViewsOptions().as_dict()
-    return {"seed": seed, "options": options, "sequences": [{"experiment": 2, "name": "00", "views": views}]}
+    return [{"experiment": 2, "name": "00", "views": views}]
 
 
 def answer(kind="correct", confidence=0.9, right=True, seed=1, errors=(0.1, 0.2, 3.0), all_right=True):

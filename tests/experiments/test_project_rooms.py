@@ -9,7 +9,6 @@ import pytest
 from course_lib.experiments import project_rooms
 from course_lib.experiments.project_rooms import SEEDS, make_project_rooms, record_room
 from course_lib.experiments.project_rooms import project_rooms as read_rooms
-from course_lib.experiments.rooms import RoomsOptions
 from course_lib.simulation.room.look_alike_recording import RecordingModels
 from course_lib.spherical_stereo.detection.detected_object import Detection
 
@@ -26,8 +25,7 @@ class SameEverywhere:
 
 @pytest.fixture(scope="module")
 def record():
-    options = RoomsOptions(1, replace(RecordingModels(), width=256))
-    return record_room(10_690, options, SameEverywhere())
+    return record_room(10_690, 1, replace(RecordingModels(), width=256), SameEverywhere())
 
 
 def test_practice_rooms_are_for_tuning_and_hidden_ones_for_nothing_else():
@@ -56,13 +54,13 @@ def test_a_room_is_seen_from_both_heights_and_reads_back(record, tmp_path):
 def test_a_run_writes_both_files_and_goes_on_where_it_was(monkeypatch, tmp_path):
     made = []
 
-    def tell(seeds, options, load_detector, work, processes, progress, observe):
-        made.append((tuple(seeds), options.poses, observe))
-        return [{"seed": seed, "options": {}, "views": [{}, {}]} for seed in seeds]
+    def tell(function, points, path, processes, progress):
+        made.append([point["seed"] for point in points])
+        return [{"seed": point["seed"], "views": [{}, {}]} for point in points]
 
-    monkeypatch.setattr(project_rooms, "observe_rooms", tell)
-    counts = make_project_rooms(tmp_path, None, tmp_path / "work")
+    monkeypatch.setattr(project_rooms, "kept_rows", tell)
+    counts = make_project_rooms(tmp_path, tmp_path / "detector", tmp_path / "work")
     assert counts == {"practice": 2 * len(SEEDS["practice"]), "hidden": 2 * len(SEEDS["hidden"])}
-    assert made == [(seeds, project_rooms.POSES, record_room) for seeds in SEEDS.values()]
+    assert made == [list(seeds) for seeds in SEEDS.values()]
     stored = json.loads((tmp_path / "rooms_hidden.json").read_text())
     assert stored["rooms"][0] == {"seed": SEEDS["hidden"][0], "views": [{}, {}]}

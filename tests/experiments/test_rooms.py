@@ -1,27 +1,16 @@
-"""Rooms that nobody shaped: what is kept of a room, what is used again, how many poses are judged and how surely."""
+"""Generated rooms: what is kept of a room, how many poses are judged by what truth, and how surely."""
 
 import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import norm
 
-from course_lib.experiments import rooms as rooms_module
+from course_lib.experiments import observed_rooms
+from course_lib.experiments.observed_rooms import observe_room, observe_views, stored_map, stored_observations
 from course_lib.experiments.room import localize_pair
 from course_lib.experiments.room_evaluation import NO_OBJECT, PoseOutcome
-from course_lib.experiments.room_views import ViewsOptions, observe_views
-from course_lib.experiments.rooms import RoomsOptions, observe_room, observe_rooms, stored_map, stored_observations
-from course_lib.experiments.rooms_summary import (
-    METHODS,
-    JudgedPose,
-    bootstrap_percent,
-    judge_rooms,
-    pose_rows,
-    rates_and_errors,
-    rooms_summary,
-    wilson_percent,
-)
+from course_lib.experiments.rooms import METHODS, JudgedPose, judge_rooms, pose_rows, rates_and_errors, rooms_summary
 from course_lib.geometry import wrap_angle
 from course_lib.paths import data_path
 from course_lib.simulation.room.look_alike_recording import RecordingModels, measurement_poses, surveyed_room
@@ -53,7 +42,6 @@ def entry(pose=(1.0, 1.0, 0.0), shown=(0, 1, 2), order=(0, 1, 2), seen=MAP):
 def record(seed=7, poses=None):
     return {
         "seed": seed,
-        "options": RoomsOptions().as_dict(),
         "look_alike": {"label": "sofa", "n": 2},
         "map": MAP,
         "poses": poses or [entry(), entry() | {"experiment": 2}],
@@ -124,16 +112,6 @@ def test_a_row_a_pose_has_no_number_without_a_pose():
     assert (row["x"], row["outcome"], row["reason"], row["used_pairs"]) == ("", "unable", "why", 0)
 
 
-@pytest.mark.parametrize(("hits", "n"), [(13, 20), (0, 20), (20, 20), (200, 400)])
-def test_wilsons_interval_holds_the_shares_that_the_count_does_not_contradict(hits, n):
-    """p is inside if and only if |hits / n - p| <= z sqrt(p (1 - p) / n)."""
-    low, high = (value / 100 for value in wilson_percent(hits, n))
-    z = norm.ppf(0.975)
-    for bound in {low, high} - {0.0, 1.0}:
-        assert abs(hits / n - bound) == pytest.approx(z * np.sqrt(bound * (1 - bound) / n), abs=1e-9)
-    assert low <= hits / n <= high
-
-
 def test_rooms_that_differ_widen_the_interval_and_rooms_that_agree_do_not():
     judged = [
         JudgedPose(seed, 1, str(k), "images", "paper", (0, 0, 0), None, PoseOutcome(kind, 0.1, 0.1, 1.0), ())
@@ -143,8 +121,6 @@ def test_rooms_that_differ_widen_the_interval_and_rooms_that_agree_do_not():
     found = rates_and_errors(judged)
     over_poses, over_rooms = (np.ptp(found[f"correct_{which}_percent"]) for which in ("wilson", "rooms"))
     assert over_rooms > 3 * over_poses
-    assert bootstrap_percent(np.full(10, 0.5)) == [50.0, 50.0]
-    assert bootstrap_percent(np.array([0.5])) is None
 
 
 class Nothing:
@@ -159,16 +135,13 @@ PERFECT = RecordingModels(
     survey=RoomSurveyModel(places=4, width=640, fewest_pixels=40),
 )
 
-TINY = RoomsOptions(
-    poses=1,
-    models=replace(PERFECT, width=320, survey=RoomSurveyModel(places=3, width=320, fewest_pixels=10)),
-)
+TINY = replace(PERFECT, width=320, survey=RoomSurveyModel(places=3, width=320, fewest_pixels=10))
 
 
 @pytest.fixture(scope="module")
 def room():
     """A room that is really made: one pose at each height, a perfect rig, the course's detector."""
-    return observe_room(10_210, RoomsOptions(poses=1, models=PERFECT), YoloDetector.load(data_path("detector")))
+    return observe_room(10_210, 1, PERFECT, YoloDetector.load(data_path("detector")))
 
 
 @pytest.fixture(scope="module")
@@ -234,8 +207,8 @@ def test_judged_from_its_record_a_pose_is_what_the_localizer_said(room, monkeypa
         direct[pair.pose[0], localizer.rig.upper_height, source] = result = localize_pair(pair, localizer, source)
         return result
 
-    monkeypatch.setattr(rooms_module, "localize_pair", note)
-    small = observe_room(10_211, TINY, Nothing())
+    monkeypatch.setattr(observed_rooms, "localize_pair", note)
+    small = observe_room(10_211, 1, TINY, Nothing())
     judged = [one for one in judge_rooms([json.loads(json.dumps(small))]) if one.method == "paper"]
     assert len(judged) == len(direct) == 4
     for one, said in zip(judged, direct.values(), strict=True):
@@ -247,62 +220,12 @@ def test_judged_from_its_record_a_pose_is_what_the_localizer_said(room, monkeypa
     assert any(one.localization.pose is not None for one in judged if one.source == "exact_boxes")
 
 
-@pytest.fixture
-def made(monkeypatch):
-    """Rooms are not photographed; the list of seeds that would have been."""
-    seeds = []
-
-    def note(seed, options, detector):
-        seeds.append(seed)
-        return record(seed) | {"options": options.as_dict()}
-
-    monkeypatch.setattr(rooms_module, "observe_room", note)
-    return seeds
-
-
-def test_finished_rooms_are_used_again_when_the_options_agree(made, tmp_path):
-    observe_rooms([3, 5], RoomsOptions(), Nothing, tmp_path)
-    again = observe_rooms([5, 4, 3], RoomsOptions(), Nothing, tmp_path)
-    assert made == [3, 5, 4]
-    assert [room["seed"] for room in again] == [5, 4, 3]
-    observe_rooms([3], RoomsOptions(poses=2), Nothing, tmp_path)
-    observe_rooms([3], RoomsOptions(poses=2, detector="another"), Nothing, tmp_path)
-    assert made == [3, 5, 4, 3, 3]
-
-
-def test_a_torn_file_is_no_finished_room(made, tmp_path):
-    observe_rooms([3], RoomsOptions(), Nothing, tmp_path)
-    (file,) = tmp_path.iterdir()
-    file.write_text(file.read_text()[:100])
-    observe_rooms([3], RoomsOptions(), Nothing, tmp_path)
-    assert made == [3, 3]
-
-
-@pytest.mark.parametrize(("seeds", "processes"), [([-1], 1), ([1], 0)])
-def test_bad_seeds_and_processes_are_named(seeds, processes, tmp_path):
-    with pytest.raises(ValueError, match="expected one or more, and no negative seed"):
-        observe_rooms(seeds, RoomsOptions(), Nothing, tmp_path, processes)
-
-
 @pytest.mark.slow
-def test_rooms_made_by_two_processes_are_the_rooms_that_one_makes(tmp_path):
-    seeds = (10_213, 10_211)
-    made = observe_rooms(seeds, TINY, Nothing, tmp_path, processes=2)
-    assert [room["seed"] for room in made] == list(seeds)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["room_10211.json", "room_10213.json"]
-    alone = observe_room(10_211, TINY, Nothing())
-    for one, other in zip(made[1]["poses"], alone["poses"], strict=True):
-        assert one | {"seconds": 0} == other | {"seconds": 0}
-    assert made[1]["map"] == alone["map"]
-
-
-@pytest.mark.slow
-def test_the_views_that_follow_are_of_the_same_room_a_few_steps_on(tmp_path):
+def test_the_views_that_follow_are_of_the_same_room_a_few_steps_on():
     """Made for real, by the course's detector: what is seen of the room lies where its landmarks are."""
-    options = ViewsOptions(RoomsOptions(poses=1, models=PERFECT), views=2)
-    record_ = observe_views(10_210, options, YoloDetector.load(data_path("detector")))
-    assert json.loads(json.dumps(record_)) == record_
-    (sequence,) = record_["sequences"]
+    sequences = observe_views(10_210, 1, 2, PERFECT, YoloDetector.load(data_path("detector")))
+    assert json.loads(json.dumps(sequences)) == sequences
+    (sequence,) = sequences
     (view,) = sequence["views"]
     x, y, heading = view["pose"]
     room, semantic_map = surveyed_room(10_210, PERFECT)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from course_lib.experiments.ambiguity import AmbiguityMap
-from course_lib.plots.look_alike_figures import ambiguity_figure, risk_coverage_figure
+from course_lib.plots.look_alike_figures import ambiguity_figure
 from tests.beyond.look_alikes.look_alike_scene import SYMMETRIC
 
 
@@ -17,10 +17,3 @@ def test_doubt_is_dark_and_only_real_confusions_are_drawn():
     assert [text.get_text() for text in axes.texts] == ["40 %"]
     dashed = [line for line in axes.lines if line.get_linestyle() == "--"]
     np.testing.assert_allclose(dashed[0].get_xydata(), SYMMETRIC.positions[[0, 1]])
-
-
-def test_every_curve_has_a_line_and_a_name():
-    curve = {"threshold": [0.9, 0.5], "coverage_percent": [50.0, 100.0], "risk_percent": [0.0, 10.0]}
-    axes = risk_coverage_figure({"one view": curve, "three views": curve}).axes[0]
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["one view", "three views"]
-    np.testing.assert_allclose(axes.lines[0].get_xydata(), [[50.0, 0.0], [100.0, 10.0]])

@@ -5,8 +5,8 @@ import json
 import pytest
 
 from course_lib.cli import main
-from course_lib.experiments import detector_evaluation
-from course_lib.experiments.detector_evaluation import DetectorScore, VotingScore
+from tools import detector_evaluation
+from tools.detector_evaluation import DetectorScore, VotingScore
 
 
 @pytest.fixture

@@ -8,16 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from course_lib.experiments.detection_scores import (
-    Boxes,
-    Matching,
-    average_precision,
-    best_threshold,
-    match_detections,
-    precision_recall_curve,
-    scores_at,
-)
+from course_lib.experiments.detection_scores import Boxes, Matching, match_detections
 from course_lib.spherical_stereo.detection.seam import appended_columns, select_on_circle
+from tools.detector_evaluation import average_precision, best_threshold, precision_recall_curve, scores_at
 from tools.detector_training.augmentation import panorama_window
 from tools.detector_training.batches import images_to_tensor
 from tools.detector_training.images import LabelledPanorama, PanoramaFolders

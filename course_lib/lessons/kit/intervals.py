@@ -1,6 +1,6 @@
 """Error bars of medians over few values, as lessons print them: the bootstrap, which lesson 08 explains.
 
-Shares have Wilson's interval: `course_lib.experiments.rooms_summary.wilson_percent`.
+Shares have Wilson's interval: `course_lib.experiments.intervals.wilson_percent`.
 """
 
 from __future__ import annotations

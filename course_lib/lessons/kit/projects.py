@@ -28,7 +28,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.corridor_seeds import median_interval
+from course_lib.experiments.intervals import median_interval
 from course_lib.experiments.results import write_results
 from course_lib.lessons.kit.attempt import Attempt, attempt
 from course_lib.lessons.kit.exercises import SHOWN, is_stub

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from course_lib.experiments.rooms_summary import wilson_percent
+from course_lib.experiments.intervals import wilson_percent
 
 
 def share_text(hits: int, n: int, digits: int = 0) -> str:

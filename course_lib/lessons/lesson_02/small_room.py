@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import trimesh
 
-from course_lib.experiments.rooms_summary import wilson_percent
+from course_lib.experiments.intervals import wilson_percent
 from course_lib.lessons.kit.box_world import Box, BoxWorld
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.mesh_building import to_polydata

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from course_lib.experiments.rooms_summary import wilson_percent
+from course_lib.experiments.intervals import wilson_percent
 from course_lib.paths import data_path
 
 _ROWS = (("kidnapped, recovered", "kidnapped_recovered"), ("started anywhere, right", "started_right"))

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from course_lib.experiments.rooms_summary import wilson_percent
+from course_lib.experiments.intervals import wilson_percent
 from course_lib.lessons.lesson_12.scores import ThresholdScore
 from course_lib.plots import figures
 from course_lib.plots.figures import BLACK, VERMILION

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.detector_evaluation import match_image
+from course_lib.experiments.detection_scores import match_image
 from course_lib.experiments.room import counts_as_object
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.kit.room_photographs import room_map, room_recording

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from course_lib.experiments.rooms_summary import bootstrap_percent
+from course_lib.experiments.intervals import bootstrap_percent
 from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_rigid_2d

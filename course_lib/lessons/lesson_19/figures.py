@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from course_lib.experiments.finale import mean_score
-from course_lib.experiments.rooms_summary import wilson_percent
+from course_lib.experiments.intervals import wilson_percent
 from course_lib.lessons.lesson_19.stages import Journey, state_error
 from course_lib.lessons.lesson_19.world import world
 from course_lib.plots import figures

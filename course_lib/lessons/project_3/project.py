@@ -9,7 +9,7 @@ import numpy as np
 from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
 from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.matchers import associate_hungarian
-from course_lib.experiments.look_alikes import LARGEST_ERROR_M, is_right, pose_errors
+from course_lib.experiments.look_alikes import MAX_ERROR_M, is_right, pose_errors
 from course_lib.experiments.project_rooms import ProjectView
 from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
 from course_lib.lessons.project_2.project import room_of
@@ -75,7 +75,7 @@ def pose_of(
 def points_of(pose: Pose2D | None, true_pose: np.ndarray) -> float:
     """100 for the true pose, falling to 50 at half a metre; `WRONG_POINTS` beyond that, beyond 10 degrees, for None."""
     errors = pose_errors(pose, true_pose)
-    return 100.0 - 50.0 * float(np.hypot(*errors[:2])) / LARGEST_ERROR_M if is_right(errors) else WRONG_POINTS
+    return 100.0 - 50.0 * float(np.hypot(*errors[:2])) / MAX_ERROR_M if is_right(errors) else WRONG_POINTS
 
 
 def measure(task: Task, answers: list) -> Result:

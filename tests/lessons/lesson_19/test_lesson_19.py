@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.being_lost import judge_refined
-from course_lib.experiments.finale import is_known, mean_score, start_state
-from course_lib.experiments.joined_answer import joined, start_covariance
+from course_lib.experiments.finale import is_known, joined, mean_score, start_covariance, start_state
 from course_lib.lessons.kit.display import require_labels
 from course_lib.lessons.lesson_19 import panel as panels
 from course_lib.lessons.lesson_19 import stages

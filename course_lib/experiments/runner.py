@@ -1,0 +1,121 @@
+"""Run an experiment for many seeds: on every processor, each result kept as a line of a file and used again.
+
+    rows = kept_rows(room_walk, [{"seed": seed, "everies": [1]} for seed in range(1, 101)], Path("walk.jsonl"))
+
+An experiment is a module with a function of a seed and a few parameters, a table, and a `run` that puts both together
+for the command `demo`. A file of rows holds one JSON object a line, {"point": parameters, "result": what came out}.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from filelock import FileLock, Timeout
+from joblib import Parallel, delayed
+
+from course_lib.processors import processors
+
+
+class Outcome(NamedTuple):
+    """What an experiment gives to the command that runs it."""
+
+    summary: dict
+    """The numbers, for JSON."""
+    text: str
+    """The table."""
+    files: dict[str, tuple[dict, list[dict] | None]]
+    """Results to be written, by the JSON file's name: numbers, and rows for a CSV file beside it."""
+    figures: str = ""
+    """Which function of `commands.demo_figures` draws the figures; none where it is empty."""
+    drawn: object = None
+    """What they are drawn from."""
+
+
+def no_bar(text: str, unit: str = "") -> Callable[[Iterable], Iterable]:
+    """Return a wrapper of a loop that draws no progress bar."""
+    return iter
+
+
+class Runner(NamedTuple):
+    """Where an experiment runs."""
+
+    folder: Path
+    """Of the files of rows."""
+    temporary: Path
+    """An empty folder, which is removed when the figures are drawn."""
+    processes: int | None = None
+    """At a time; None: one for each processor."""
+    bar: Callable[..., Callable[[Iterable], Iterable]] = no_bar
+    """Makes a wrapper of a loop that draws a progress bar, from words and the unit that is counted."""
+
+    def rows(self, function: Callable, points: Sequence[dict], name: str, unit: str = "seed") -> list:
+        """`kept_rows` in the file `name`.jsonl."""
+        return kept_rows(function, points, self.folder / f"{name}.jsonl", self.processes, self.bar(name, unit))
+
+
+def kept_rows(
+    function: Callable,
+    points: Sequence[dict],
+    path: Path,
+    processes: int | None = None,
+    progress: Callable[[Iterable], Iterable] = iter,
+) -> list:
+    """Return `function(**point)` of every point, in their order; points that the file at `path` holds are not run.
+
+    function: of a module, so that other processes find it; its result is what JSON can hold. A result is written to
+    the file as soon as it is there, so that a run that was stopped goes on where it was. processes: calls at a time
+    (None: one for each processor); within `joblib.parallel_config` its backend runs them. progress: wraps the loop over
+    the points that are still to be run. Raises `RuntimeError` where another process writes the file, or a call fails.
+    """
+    keys = [_key(point) for point in points]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        with FileLock(path.with_name(f".{path.name}.lock"), timeout=0):
+            results = _read(path)
+            missing = [point for point, key in zip(points, keys, strict=True) if key not in results]
+            workers = max(1, min(processes or processors(), len(missing)))
+            computed = _computed(function, missing, workers)
+            with path.open("ab") as file:
+                for _ in progress(missing):
+                    row = next(computed)
+                    file.write(json.dumps(row, allow_nan=False).encode() + b"\n")
+                    file.flush()
+                    results[_key(row["point"])] = json.loads(json.dumps(row["result"]))
+    except Timeout:
+        raise RuntimeError(f"{path} is being written by another run: wait for it, or give another --out") from None
+    return [results[key] for key in keys]
+
+
+def _key(point: dict) -> str:
+    return json.dumps(point, sort_keys=True)
+
+
+def _computed(function: Callable, points: Sequence[dict], workers: int) -> Iterator[dict]:
+    """Rows in the order in which they are finished."""
+    parallel = Parallel(workers, batch_size=1, return_as="generator_unordered")
+    return parallel(delayed(_call)(function, point, workers > 1) for point in points)
+
+
+def _call(function: Callable, point: dict, beside_others: bool) -> dict:
+    if beside_others:  # what draws must not start threads for every processor again
+        os.environ["LP_NUM_THREADS"] = "1"
+    try:
+        return {"point": point, "result": function(**point)}
+    except Exception as error:
+        raise RuntimeError(f"seed {point['seed']}: {error}; finished seeds are kept") from error
+
+
+def _read(path: Path) -> dict[str, object]:
+    """Results by point; a last line that a stopped run left half-written is removed."""
+    if not path.exists():
+        return {}
+    text = path.read_bytes()
+    whole = text[: text.rfind(b"\n") + 1]
+    if whole != text:
+        os.truncate(path, len(whole))
+    rows = [json.loads(line) for line in whole.splitlines()]
+    return {_key(row["point"]): row["result"] for row in rows if "point" in row}

@@ -1,0 +1,149 @@
+"""What goes wrong with pairs of panoramas, and what paper 2's method, with the library's own matcher, makes of it.
+
+Each trouble makes, of a good walk through a generated room, what arrives instead. The method has no memory: a pair that
+is as it was undisturbed has the very answer that it had undisturbed, which is looked up and not computed again. So it
+has recovered with the first good pair, by construction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from course_lib.beyond.guarded_stereo import NO_IMAGE, GuardedRig
+from course_lib.experiments.look_alikes import MAX_ERROR_M, MAX_TURN_DEG, pose_errors
+from course_lib.experiments.troubled_frames import Arrival, Gate, Spoil, troubles_of
+from course_lib.files import temporary_folder
+from course_lib.simulation.room.look_alike_recording import (
+    RecordingModels,
+    WalkModel,
+    experiment_of,
+    photograph_walks,
+    surveyed_room,
+)
+from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
+from course_lib.spherical_stereo.detection.detector import YoloDetector
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.panorama import StereoRig
+from course_lib.spherical_stereo.pose.localization import OK
+
+GATE = Gate(MAX_ERROR_M, MAX_TURN_DEG)
+PERIOD = 1.0  # s between pairs; chosen: a few decimetres of a slow walk
+DARK_NOISE = 2.0  # of 255, one sigma, of a camera that sees nothing; chosen
+HOT_PIXELS = 2e-5  # share of a dark image's pixels that shine all the same; chosen
+STOPS = 2.0  # by which an exposure jumps, up or down; chosen
+
+Pair = tuple[np.ndarray, np.ndarray]
+
+
+def one_dark(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
+    """Upper or lower, drawn, shows the noise of a covered lens and a few hot pixels."""
+    images = list(pair)
+    which = int(rng.integers(2))
+    noise = np.abs(rng.normal(0.0, DARK_NOISE, images[which].shape))
+    dark = np.minimum(noise, 255).astype(np.uint8)
+    dark[rng.random(dark.shape[:2]) < HOT_PIXELS] = 255
+    images[which] = dark
+    return images[0], images[1]
+
+
+def exchanged(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
+    """The upper camera's image as the lower one's, and the other way round."""
+    return pair[1], pair[0]
+
+
+def different_moments(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
+    """The lower image is that of the pair before: the rig has moved between the two."""
+    return pair[0], earlier[1]
+
+
+def repeated(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
+    """The pair that arrived before, once more."""
+    return before[0].copy(), before[1].copy()
+
+
+def exposure_jump(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
+    """One camera, drawn, `STOPS` stops brighter or darker, drawn: values are multiplied, and clipped at white."""
+    images = list(pair)
+    which, factor = int(rng.integers(2)), 2.0 ** (STOPS * rng.choice((-1.0, 1.0)))
+    images[which] = np.clip(np.rint(images[which] * factor), 0, 255).astype(np.uint8)
+    return images[0], images[1]
+
+
+SPOILS: dict[str, Spoil] = {
+    "one camera dark": one_dark,
+    "cameras exchanged": exchanged,
+    "different moments": different_moments,
+    "repeated": repeated,
+    "exposure jump": exposure_jump,
+}
+LENGTHS = dict.fromkeys(("dropped", *SPOILS), 1)
+"""How many pairs one after the other each trouble lasts."""
+
+
+class RememberedAnswers:
+    """A `SemanticLocalizer` that is asked once for each pair of images: arrays that are the same objects."""
+
+    def __init__(self, localizer: SemanticLocalizer) -> None:
+        self._localizer = localizer
+        self._answers: dict[tuple[int, int], tuple] = {}
+
+    def localize(self, upper: np.ndarray, lower: np.ndarray):
+        """The localizer's answer."""
+        key = id(upper), id(lower)
+        if key not in self._answers:
+            # The images are kept with the answer, so that no other array can come to have their identity.
+            self._answers[key] = upper, lower, self._localizer.localize(upper, lower)
+        return self._answers[key][2]
+
+
+def watched_pairs(localizer, arrivals: Sequence[Arrival], true_poses: np.ndarray) -> list[dict]:
+    """What became of every pair that was due: outcome, whether a pose was given, its errors (None without one).
+
+    localizer: `SemanticLocalizer`, or one that remembers. true_poses: `(T, 3)` [x, y, heading].
+    """
+    rig = GuardedRig(localizer, PERIOD)
+    frames = []
+    for arrival, true in zip(arrivals, true_poses, strict=True):
+        if arrival.image is None:
+            frames.append({"outcome": NO_IMAGE, "confident": False, "position_m": None, "rotation_deg": None})
+            continue
+        watched = rig.localize(*arrival.image, arrival.time)
+        pose = None if watched.localization is None else watched.localization.pose
+        dx, dy, turn = pose_errors(pose, true)
+        frames.append(
+            {
+                "outcome": watched.outcome,
+                "confident": watched.outcome == OK,
+                "position_m": None if pose is None else float(np.hypot(dx, dy)),
+                "rotation_deg": None if pose is None else turn,
+            }
+        )
+    return frames
+
+
+def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float]) -> dict:
+    """Return `troubles_of` the localizer on a walk through a seed's room. detector: folder of the network."""
+    models = RecordingModels()
+    room, semantic_map = surveyed_room(seed, models)
+    with temporary_folder() as folder:
+        walk = next(photograph_walks(folder, room, seed, 1, frames, models, WalkModel()))
+    upper, lower = CAMERA_HEIGHTS[experiment_of(0)]
+    localizer = SemanticLocalizer(
+        StereoRig(round(upper - lower, 6), upper), semantic_map, YoloDetector.load(detector), association="consistent"
+    )
+    pairs = [(view.upper_image, view.lower_image) for view in walk]
+    return walk_trouble(localizer, pairs, np.array([view.pose for view in walk]), seed, shares)
+
+
+def walk_trouble(
+    localizer: SemanticLocalizer, pairs: Sequence[Pair], true_poses: np.ndarray, seed: int, shares: Sequence[float]
+) -> dict:
+    """`room_trouble` of a walk that was photographed."""
+    remembering, times = RememberedAnswers(localizer), PERIOD * np.arange(len(pairs))
+
+    def run(arrivals: Sequence[Arrival]) -> list[dict]:
+        return watched_pairs(remembering, arrivals, true_poses)
+
+    return troubles_of(run, LENGTHS, SPOILS, pairs, times, seed, shares)

@@ -1,0 +1,222 @@
+"""`demo`: each experiment's table, its JSON and its files; finished seeds are used again; what does not fit is told."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from course_lib.cli import main
+from course_lib.commands import demo
+from course_lib.commands.arguments import parse_seeds
+from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.experiments import corridor, walk
+from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
+from course_lib.simulation.room import data as room_data
+
+THREE_FRAMES = ["--seed", "6", "--frames", "3", "--particles", "15"]
+TWO_SEEDS = ["--seeds", "10040-10041", "--frames", "2", "--particles", "6", "--methods", "proposed,fallon"]
+
+
+def printed(capsys, *words):
+    """What a demo with --json printed."""
+    capsys.readouterr()
+    assert main(["demo", *map(str, words), "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_the_corridor_has_table_1_a_row_a_frame_figures_and_a_scene(tmp_path, capsys):
+    summary = printed(capsys, "corridor", *THREE_FRAMES, "--out", tmp_path)
+    assert (summary["frames"], summary["n_particles"], summary["seed"]) == (3, 15, 6)
+    assert list(summary["methods"]) == list(corridor.METHODS)
+    assert list(summary["methods_by_hand"]) == ["proposed", "fallon"]
+    assert summary["fallon_median_m"] == summary["methods"]["fallon"]["median_m"]
+    assert corridor.BY_HAND_TITLE in corridor.table_1(summary)
+    stored = json.loads((tmp_path / "corridor.json").read_text())
+    assert {key: stored[key] for key in summary} == summary
+    errors = [float(row["proposed_nearest_m"]) for row in csv.DictReader((tmp_path / "corridor.csv").open())]
+    assert np.median(errors) == pytest.approx(summary["median_m"], abs=1e-5)
+    for name in ("figure_5.png", "figure_6.png", "overview.png"):
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
+    assert len((tmp_path / "corridor.html").read_text()) < 1_300_000
+    assert len(read_tum(tmp_path)) == 3
+    assert set(json.loads((tmp_path / "run.json").read_text())["files"]) >= {"corridor.json", "figure_5.png"}
+
+
+def read_tum(folder):
+    return (folder / "trajectory.txt").read_text().strip().splitlines()[-3:]
+
+
+@pytest.mark.slow
+def test_another_process_without_opengl_writes_the_same_bytes_to_the_last_figure(tmp_path):
+    done = []
+    for name, hidden in (("with", {}), ("without", {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "DISPLAY": ""})):
+        words = ["demo", "corridor", *THREE_FRAMES, "--out", str(tmp_path / name)]
+        code = f"from course_lib.cli import main; raise SystemExit(main({words!r}))"
+        environment = os.environ | hidden
+        done.append(subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True))
+        assert done[-1].returncode == 0, done[-1].stderr
+    for name in ("corridor.csv", "trajectory.txt", "overview.png"):
+        assert (tmp_path / "with" / name).read_bytes() == (tmp_path / "without" / name).read_bytes()
+    assert "no corridor.html (OpenGL cannot start" in done[1].stdout
+
+
+def test_the_shipped_recordings_table_holds_the_papers_rows_beside_ours(tmp_path, corridor_folder, capsys):
+    words = ["demo", "corridor", "--recording", "shipped", "--frames", "3", "--particles", "20", "--out", str(tmp_path)]
+    assert main(words) == 0
+    table = capsys.readouterr().out
+    for row in ("paper: proposed method", "paper: Fallon", "proposed method, ours", "Fallon-style, depth, 20 x 15"):
+        assert row in table
+    assert corridor.BY_HAND_TITLE not in table
+    assert "Written: corridor.json, corridor.csv, figure_5.png" in table
+    x, y = (float(next(csv.DictReader((tmp_path / "corridor.csv").open()))[f"proposed_{axis}_m"]) for axis in "xy")
+    start = read_sequence(corridor_folder / "wagon").camera_to_world[0, :2, 3]
+    assert np.hypot(x - start[0], y - start[1]) < 0.2
+
+
+@pytest.mark.slow
+def test_several_seeds_give_a_table_over_recordings_and_are_not_run_again(tmp_path, capsys):
+    result = printed(capsys, "corridor", *TWO_SEEDS, "--out", tmp_path)
+    assert [one["seed"] for one in result["recordings"]] == result["seeds"] == [10040, 10041]
+    medians = [one["median_timed_m"] for one in result["recordings"]]
+    told = result["over_recordings"]["methods"]["proposed"]["median_timed_m"]
+    assert told == {"median": pytest.approx(sum(medians) / 2), "least": min(medians), "greatest": max(medians)}
+    table = corridor.table_over_recordings(result)
+    assert "Table 1 over 2 recordings, seeds 10040 to 10041" in table
+    assert f"({min(medians):.3f} to {max(medians):.3f})" in table
+    assert {"recordings.json", "seed_10040.json", "seed_10041.csv"} <= {path.name for path in tmp_path.iterdir()}
+    kept = (tmp_path / "corridor.jsonl").read_text()
+    assert printed(capsys, "corridor", *TWO_SEEDS, "--out", tmp_path) == result
+    assert (tmp_path / "corridor.jsonl").read_text() == kept
+    words = [word.replace("10040-10041", "10040").replace("6", "5") for word in TWO_SEEDS]
+    printed(capsys, "corridor", *words, "--out", tmp_path)
+    assert (tmp_path / "corridor.jsonl").read_text().startswith(kept)
+    assert len((tmp_path / "corridor.jsonl").read_text().splitlines()) == 3, "other particles are another result"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("option", ["--idealizations", "--kindnesses"])
+def test_the_idealizations_are_measured_one_by_one(option, tmp_path, capsys):
+    words = ["--seeds", "10042", "--frames", "3", "--particles", "30", "--backend", "ray", "--out", tmp_path]
+    result = printed(capsys, "corridor", option, *words)
+    assert list(result["hardships"]) == ["none", *HARDSHIPS, "all"]
+    assert len({row["median_timed_m"]["median"] for row in result["hardships"].values()}) > 4
+    table = corridor.table_of_idealizations(result)
+    assert all(name in table for name in result["hardships"])
+
+
+@pytest.mark.slow
+def test_a_seeds_recording_by_hand_and_the_one_with_calibration_errors(tmp_path, capsys):
+    words = ["corridor", "--dof", "6", "--seed", "10001", "--frames", "3", "--out", tmp_path]
+    rows = printed(capsys, *words)["rows"]
+    assert len(rows) == 6
+    assert all(row["frames"] == 3 for row in rows.values())
+    assert max(row["median_position_m"] for name, row in rows.items() if not name.startswith("the paper's")) < 0.05
+    less, kind = (rows[f"annealed and refined{part}"]["median_rotation_deg"] for part in (", less kind", ""))
+    assert less > kind, "a mount that is off by 0.3 degrees an axis"
+    stored = json.loads((tmp_path / "hand.json").read_text())
+    assert stored["recordings"] == {name: [row] for name, row in stored["rows"].items()}, "one seed, one recording"
+    assert (tmp_path / "covariance.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "seeds"), [("4", [4]), ("1-3,10000", [1, 2, 3, 10000]), ("2-3, 1-2", [2, 3, 1]), ("0", [0])]
+)
+def test_seeds_are_numbers_and_ranges(text, seeds):
+    assert parse_seeds(text) == seeds
+
+
+@pytest.mark.parametrize("text", ["", "3-1", "a", "1-", "-1", "1..3", "1-100001"])
+def test_other_seeds_are_refused(text):
+    with pytest.raises(ValueError, match=r"numbers or ranges|at most 100,000 seeds"):
+        parse_seeds(text)
+
+
+def test_where_no_recording_can_be_made_the_shipped_one_is_named(monkeypatch, tmp_path, capsys):
+    def fail(*_, **__):
+        raise ImportError("the simulated world needs embreex")
+
+    monkeypatch.setattr(corridor, "record_seed", fail)
+    assert main(["demo", "corridor", "--frames", "2", "--out", str(tmp_path)]) == 1
+    assert "needs embreex; --recording shipped makes none" in capsys.readouterr().err
+
+
+def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypatch, tmp_path, capsys):
+    def walked(seed, methods, everies):
+        run = {"position_m": [0.01], "rotation_deg": [0.1], "status": ["tracked"], "renders": [5], "score": [0.9]}
+        return [{"method": method, "every": 1, "run": run} for method in methods]
+
+    monkeypatch.setattr(walk, "room_walk", walked)
+    for module in ("course_lib.files", "course_lib.commands.demo"):
+        monkeypatch.setattr(f"{module}.REPOSITORY", tmp_path)
+    assert main(["demo", "walk", "--methods", "floor"]) == 0
+    kept = tmp_path / "results" / "demo_walk"
+    (folder,) = (path for path in kept.iterdir() if path.is_dir())
+    assert {path.name for path in folder.iterdir()} == {"walk.json", "covariance.png", "run.json"}
+    assert len((kept / "walk.jsonl").read_text().splitlines()) == 1
+    assert f"results: {folder}" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("corridor --seeds 5-1", "--seeds must be"),
+        ("corridor --seed -1", "--seed must be 0 or more"),
+        ("corridor --frames 0", "--frames must be at least 1"),
+        ("corridor --particles 0", "--particles must be at least 1; got 0"),
+        ("corridor --particles 1000000000", "--particles must be at most 1,000,000; got 1,000,000,000"),
+        ("corridor --methods proposed", "--methods goes with --seeds"),
+        ("corridor --seeds 1 --methods proposed,miracle", "--methods must name proposed and fallon"),
+        ("corridor --data nowhere", "map.ply"),
+        ("corridor --dof 6 --idealizations", "--idealizations does not go with --dof 6"),
+        ("corridor --dof 6 --recording shipped", "--recording does not go with --dof 6"),
+        ("corridor --dof 6 --methods fallon", "--methods must name annealed"),
+        ("room --poses 0", "--poses must be at least 1"),
+        ("room --roll 97 0", "--roll must not be 0"),
+        ("room --views 2", "--views 2 needs --association consistent"),
+        ("room --data nowhere", "nowhere"),
+        ("room --data elsewhere --seed 7", "give one of the two"),
+        ("room --seed 7 --detector nowhere", "no detector folder nowhere"),
+        ("room --seed 7 --association psychic", "--association must be one of"),
+        ("room --seed 7 --score-threshold 2", "--score-threshold"),
+        ("rooms --views 0", "--views must be at least 1"),
+        ("rooms --view-poses 21", "--view-poses between 1 and --poses (20)"),
+        ("rooms --views 2 --association greedy", "--views above 1 and --ablation are of the consistent matcher"),
+        ("rooms --processes 0", "--processes must be at least 1"),
+        ("rooms --tilts 0 11", "--tilts must be between 0 and 10 degrees; got 11"),
+        ("rooms --detector nowhere", "no detector folder nowhere"),
+        ("walk --every 1,,2", "--every must be whole numbers"),
+        ("walk --methods magic", "--methods must name annealed, paper, floor"),
+        ("lost --recording nowhere", "nowhere"),
+        ("trouble --share 21", "--share must be at most 20 percent; got 21"),
+        ("trouble --share 0", "--share must be whole numbers"),
+        ("trouble --processes 10000", "--processes must be at most "),
+        ("trouble --method depth --frames 20", "take a longer recording or a smaller share"),
+        ("trouble --method stereo --frames 14", "take a longer recording or a smaller share"),
+        ("trouble --method stereo --detector nowhere", "nowhere"),
+        ("finale --places 0", "--places must be at least 1"),
+        ("finale --detector nowhere", "nowhere"),
+    ],
+)
+def test_options_that_do_not_fit_are_told_before_the_work(words, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(room_data, "make_room_data", lambda *_, **__: pytest.fail("40 pairs were photographed first"))
+    monkeypatch.chdir(tmp_path)
+    assert main(["demo", *words.split(), "--out", "out"]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert "Traceback" not in error
+    assert not list(tmp_path.rglob("*.json*"))
+
+
+def test_another_network_is_another_detector(tmp_path):
+    for name in ("a.cfg", "a.weights", "README.md"):
+        (tmp_path / name).write_text("one")
+    before = demo._network(tmp_path, None, None)
+    (tmp_path / "README.md").write_text("two")
+    assert demo._network(tmp_path, None, None) == before
+    assert demo._network(tmp_path, None, 0.2) != before
+    (tmp_path / "a.weights").write_text("two")
+    assert demo._network(tmp_path, None, None) != before

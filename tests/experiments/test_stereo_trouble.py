@@ -1,0 +1,136 @@
+"""Each trouble of a pair of panoramas does what its name says; the method names every pair."""
+
+import numpy as np
+import pytest
+
+from course_lib.experiments.stereo_trouble import GATE, LENGTHS, PERIOD, SPOILS, STOPS, walk_trouble
+from course_lib.experiments.troubled_frames import summary, troubled_frames, troubled_recording
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.panorama import StereoRig
+from tests.spherical_stereo.moved_rig import KnowingDetector, pair_from
+from tests.spherical_stereo.stereo_scene import TRUE_POSE, mapped_scene
+from tests.spherical_stereo.vertical_pair import BASELINE
+
+SEED = 10_008  # for tuning: the tests' own
+N = 40
+
+
+@pytest.fixture(scope="module")
+def pairs():
+    images = np.random.default_rng(1).integers(20, 250, (N, 2, 8, 16, 3), dtype=np.uint8)
+    return [(upper, lower) for upper, lower in images]
+
+
+def arrivals(trouble, pairs, seed):
+    return troubled_recording(trouble, SPOILS, pairs, PERIOD * np.arange(N), 0.2, np.random.default_rng(seed))
+
+
+def bad_pairs(trouble, pairs):
+    came, runs = arrivals(trouble, pairs, 2)
+    return [(k, came[k].image, came[k - 1].image) for k in np.flatnonzero(troubled_frames(runs, N))]
+
+
+@pytest.mark.parametrize("trouble", LENGTHS)
+def test_pairs_that_were_not_drawn_are_the_same_arrays_and_a_seed_makes_the_same_bytes(pairs, trouble):
+    def made(seed):
+        return arrivals(trouble, pairs, seed)
+
+    came, runs = made(2)
+    for k in np.flatnonzero(~troubled_frames(runs, N)):
+        assert came[k].image is pairs[k]
+        assert came[k].time == k
+
+    def told(made):
+        return made[1], [
+            None if one.image is None else (one.image[0].tobytes(), one.image[1].tobytes()) for one in made[0]
+        ]
+
+    assert told(made(2)) == told((came, runs))
+    assert told(made(3)) != told((came, runs))
+
+
+def test_a_dark_camera_shows_noise_and_the_other_what_it_saw(pairs):
+    which = set()
+    for k, (upper, lower), _ in bad_pairs("one camera dark", pairs):
+        dark, other, at = (upper, lower, 0) if upper.mean() < 10 else (lower, upper, 1)
+        assert np.median(dark) <= 4
+        assert other is pairs[k][1 - at]
+        which.add(at)
+    assert which == {0, 1}
+
+
+def test_exchanged_cameras_are_exchanged(pairs):
+    assert all(u is pairs[k][1] and lo is pairs[k][0] for k, (u, lo), _ in bad_pairs("cameras exchanged", pairs))
+
+
+def test_the_lower_image_is_of_the_moment_before(pairs):
+    assert all(u is pairs[k][0] and lo is pairs[k - 1][1] for k, (u, lo), _ in bad_pairs("different moments", pairs))
+
+
+def test_a_repeated_pair_is_the_pair_before(pairs):
+    for _, came, before in bad_pairs("repeated", pairs):
+        assert np.array_equal(came[0], before[0])
+        assert np.array_equal(came[1], before[1])
+
+
+def test_a_dropped_pair_does_not_come(pairs):
+    assert all(came is None for _, came, _ in bad_pairs("dropped", pairs))
+
+
+def test_an_exposure_that_jumps_multiplies_one_image_and_clips_it(pairs):
+    factors = set()
+    for k, came, _ in bad_pairs("exposure jump", pairs):
+        changed = [i for i in (0, 1) if came[i] is not pairs[k][i]]
+        assert len(changed) == 1
+        image, good = came[changed[0]], pairs[k][changed[0]].astype(float)
+        factor = 2**STOPS if image.mean() > good.mean() else 2**-STOPS
+        assert np.array_equal(image, np.clip(np.rint(good * factor), 0, 255))
+        factors.add((changed[0], factor))
+    assert len(factors) >= 3
+
+
+@pytest.fixture(scope="module")
+def troubled_walk():
+    """A rig that goes to and fro between four places; what it moved is in its own axes, turned on the map."""
+    places = [(0.0, 0.0), (0.35, 0.1), (0.1, -0.3), (-0.3, 0.1)]
+    pairs = [pair_from(*place) for place in places]
+    semantic_map = mapped_scene()[2]
+    localizer = SemanticLocalizer(StereoRig(BASELINE), semantic_map, KnowingDetector(*pairs), association="consistent")
+    poses = []
+    for x, y in places:
+        moved = TRUE_POSE.apply([[x, y]])[0]
+        poses.append([*moved, TRUE_POSE.theta])
+    order = [k % 4 for k in range(20)]
+    walk = [pairs[k][:2] for k in order]
+    return walk_trouble(localizer, walk, np.array([poses[k] for k in order]), SEED, [0.1])
+
+
+def test_the_stereo_method_names_every_pair(troubled_walk):
+    told = summary([troubled_walk], GATE)
+    assert told["undisturbed"] == {
+        "frames": 20,
+        "good_frames": {"ok": 20},
+        "false_alarms": 0,
+        "confident_wrong": 0,
+    }
+    names = {row["trouble"]: row["outcomes"] for row in told["rows"]}
+    assert names["dropped"] == {"no image": 2}
+    assert names["repeated"] == {"repeated": 2}
+    assert names["one camera dark"] == {"blank image": 2}
+    assert names["cameras exchanged"] == {"images seem swapped": 2}
+    assert names["different moments"] == {"images of different moments": 2}
+    assert sum(names["exposure jump"].values()) == 2
+    assert all(row["confident_wrong"] == 0 for row in told["rows"])
+    assert all(row["recovered"] == row["undisturbed"] for row in told["rows"])
+
+
+def test_pairs_without_trouble_have_the_answers_that_they_had(troubled_walk):
+    for one in troubled_walk["troubles"]:
+        bad = {k for first, end in one["runs"] for k in range(first, end)}
+        for k, (frame, calm) in enumerate(zip(one["frames"], troubled_walk["undisturbed"], strict=True)):
+            assert (frame == calm) or k in bad
+
+
+def test_poses_of_the_walk_are_right(troubled_walk):
+    errors = [frame["position_m"] for frame in troubled_walk["undisturbed"]]
+    assert max(errors) < 0.2

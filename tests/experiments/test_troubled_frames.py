@@ -1,0 +1,127 @@
+"""Which frames are troubled, as many as asked and never touching; and what is counted of troubled runs."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from course_lib.experiments.troubled_frames import (
+    LEFT_AT_THE_END,
+    Gate,
+    frames_to_judge,
+    generator,
+    is_confident_wrong,
+    summary,
+    troubled_frames,
+    troubled_runs,
+    within,
+)
+
+GATE = Gate(0.3, 15.0)
+
+
+@pytest.mark.parametrize("share", [0.01, 0.05, 0.2])
+@pytest.mark.parametrize(("n", "length"), [(100, 1), (100, 10), (304, 1), (304, 10)])
+def test_stretches_make_up_the_share_and_do_not_touch(share, n, length):
+    for seed in range(20):
+        runs = troubled_runs(n, share, length, np.random.default_rng(seed))
+        assert len(runs) == max(1, round(share * n / length))
+        assert all(end - first == length for first, end in runs)
+        assert all(first > before_end for (_, before_end), (first, _) in pairwise(runs))
+        assert runs[0][0] >= 1
+        assert runs[-1][1] <= n - LEFT_AT_THE_END
+        assert troubled_frames(runs, n).sum() == len(runs) * length
+
+
+def test_every_frame_between_first_and_last_is_troubled_sometimes():
+    hits = sum(troubled_frames(troubled_runs(24, 0.1, 1, np.random.default_rng(s)), 24).astype(int) for s in range(400))
+    assert (hits[1 : 24 - LEFT_AT_THE_END] > 10).all()
+    assert hits[0] == 0
+    assert hits[24 - LEFT_AT_THE_END :].sum() == 0
+
+
+def test_the_same_seed_has_the_same_places_and_each_trouble_its_own():
+    def places(seed, name):
+        return troubled_runs(304, 0.05, 1, generator(seed, name, 0.05))
+
+    assert places(3, "black") == places(3, "black")
+    assert places(3, "black") != places(3, "dropped")
+    assert places(3, "black") != places(4, "black")
+
+
+@pytest.mark.parametrize(("n", "share", "length"), [(20, 0.2, 10), (10, 0.2, 1), (100, 0.0, 1), (100, 0.2, 0)])
+def test_what_does_not_fit_is_told_before_anything_is_run(n, share, length):
+    with pytest.raises((ValueError, ZeroDivisionError)):
+        troubled_runs(n, share, length, np.random.default_rng(0))
+
+
+def frame(outcome="tracked", metres=0.01, degrees=0.1):
+    return {
+        "outcome": outcome,
+        "confident": outcome == "tracked",
+        "position_m": metres,
+        "rotation_deg": None if metres is None else degrees,
+    }
+
+
+def test_the_tenth_good_frame_after_each_trouble_is_judged():
+    assert frames_to_judge([(5, 6)], 30) == [15]
+    assert frames_to_judge([(5, 8)], 30) == [17]
+    assert frames_to_judge([(5, 6), (10, 12)], 30) == [17, 21], "good frames are counted, whatever comes between"
+    assert frames_to_judge([(25, 26)], 30) == [], "the recording ends before"
+
+
+def test_wrong_is_what_was_given_out_and_lies_beyond_either_gate():
+    assert not is_confident_wrong(frame(), GATE)
+    assert is_confident_wrong(frame(metres=0.31), GATE)
+    assert is_confident_wrong(frame(degrees=15.1), GATE)
+    assert not is_confident_wrong(frame("lost", metres=3.0), GATE)
+    assert not is_confident_wrong(frame("no image", metres=None), GATE)
+
+
+def test_within_the_usual_needs_a_pose_and_both_errors():
+    usual = Gate(0.1, 1.0)
+    assert within(frame(), usual)
+    assert not within(frame(metres=0.2), usual)
+    assert not within(frame(degrees=1.1), usual)
+    assert not within(frame("blank image", metres=None), usual)
+
+
+def test_a_row_counts_outcomes_recovery_and_wrong_poses():
+    calm = [frame(metres=0.01 * (k % 10)) for k in range(40)]
+    bad = [dict(one) for one in calm]
+    bad[5] = frame("repeated", metres=0.9)
+    bad[20] = frame("tracked", metres=0.9)
+    bad[15] = frame("doubtful", metres=0.5)
+    result = {
+        "undisturbed": calm,
+        "troubles": [{"trouble": "repeated", "share": 0.05, "runs": [(5, 6), (20, 21)], "frames": bad}],
+    }
+    told = summary([result, result], GATE)
+    assert told["usual"]["metres"] == pytest.approx(0.09)
+    assert told["undisturbed"] == {
+        "frames": 80,
+        "good_frames": {"tracked": 80},
+        "false_alarms": 0,
+        "confident_wrong": 0,
+    }
+    assert told["rows"] == [
+        {
+            "trouble": "repeated",
+            "share": 0.05,
+            "frames": 80,
+            "troubled": 4,
+            "outcomes": {"repeated": 2, "tracked": 2},
+            "good_frames": {"doubtful": 2, "tracked": 74},
+            "judged": 4,
+            "recovered": 2,
+            "undisturbed": 4,
+            "confident_wrong": 2,
+        }
+    ]
+
+
+def test_a_good_frame_that_is_blamed_is_a_false_alarm():
+    calm = [frame(), frame("half covered"), frame("doubtful"), frame("images of different moments", None)] * 10
+    told = summary([{"undisturbed": calm, "troubles": []}], GATE)
+    assert told["undisturbed"]["false_alarms"] == 20

@@ -1,0 +1,44 @@
+"""Walks through generated rooms: every thinning from every offset, the floor once."""
+
+import numpy as np
+import pytest
+
+from course_lib.depth_mcl.sequence import read_sequence, write_sequence
+from course_lib.experiments import walk
+from course_lib.experiments.six_degrees import ABLATIONS, METHODS, require_methods
+
+
+@pytest.fixture
+def recorded(corridor_folder, monkeypatch):
+    """Every recording is five frames of the shipped one; returns the seeds that were asked for."""
+    seeds = []
+
+    def record(folder, seed):
+        hand = read_sequence(corridor_folder / "hand")
+        depths = [hand.depth(i) for i in range(5)]
+        write_sequence(folder, hand.intrinsics, list(range(5)), depths, hand.camera_to_world[:5], up="z")
+        (folder / "map.ply").write_bytes((corridor_folder / "map.ply").read_bytes())
+        seeds.append(seed)
+
+    monkeypatch.setattr(walk, "record_walk", record)
+    return seeds
+
+
+def test_each_offset_of_each_thinning_is_run_and_the_floor_once(recorded):
+    rows = walk.room_walk(10_001, ["annealed", "floor"], [1, 2])
+    assert recorded == [10_001]
+    assert [(row["method"], row["every"], len(row["run"]["status"])) for row in rows] == [
+        ("annealed", 1, 5),
+        ("annealed", 2, 3),
+        ("annealed", 2, 2),
+        ("floor", 1, 5),
+    ]
+    assert np.median(rows[0]["run"]["position_m"]) < 0.05
+    assert rows == walk.room_walk(10_001, ["annealed", "floor"], [1, 2])
+
+
+def test_methods_are_named_or_all_of_them():
+    assert require_methods("all") == [*METHODS, *ABLATIONS]
+    assert require_methods("floor,without refinement") == ["floor", "without refinement"]
+    with pytest.raises(ValueError, match=r"--methods must name annealed, paper, floor.*got 'magic'"):
+        require_methods("magic")

@@ -1,0 +1,192 @@
+"""Precision and recall of detectors on panoramas whose objects are known; the choice of a threshold, and of votes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from course_lib.experiments.detection_scores import DetectionScoreError, Matching, match_image
+from course_lib.experiments.room import counts_as_object
+from course_lib.spherical_stereo.detection import detector as detector_module
+from course_lib.spherical_stereo.detection import suppression
+from course_lib.spherical_stereo.detection.detected_object import box_centre
+from course_lib.spherical_stereo.recording import StereoRecording, TrueObject
+
+VOTE_IOUS, VOTE_SCORES = (0.5, 0.6, 0.7, 0.8), (0.05, 0.1, 0.3)
+"""What is tried for the two constants of `suppression.vote_on_boxes`."""
+NO_VOTES = (1.0, 1.0)
+"""As constants: no box votes but the one that stays."""
+
+
+class DetectorScore(NamedTuple):
+    """How well a detector did, at IoU 0.5."""
+
+    images: int
+    objects: int
+    """To be found: half visible, 30 pixels high at a width of 1280."""
+    found: int
+    false_alarms: int
+
+    @property
+    def precision(self) -> float:
+        """Right detections over all detections that count; nan without any."""
+        return self.found / (self.found + self.false_alarms) if self.found + self.false_alarms else float("nan")
+
+    @property
+    def recall(self) -> float:
+        """Objects found over objects to be found."""
+        return self.found / self.objects
+
+
+def score_detector(detector, labelled: Iterable[tuple[np.ndarray, Sequence[TrueObject]]]) -> DetectorScore:
+    """Run a detector over images and count.
+
+    detector: anything with `detect(image_bgr)`. labelled: (panorama, all that can be seen on it); objects that do
+    not count are ignored, neither hit nor false alarm. Raises `DetectionScoreError` when there is no object to find.
+    Source: paper 2, section 2.2.
+    """
+    return _count(match_image(detector.detect(image), things, image.shape[1]) for image, things in labelled)
+
+
+class VotingScore(NamedTuple):
+    """A detector with one choice of the voters' constants."""
+
+    vote_iou: float
+    vote_score: float
+    score: DetectorScore
+    jitter_u: float
+    """Root mean square of the columns by which centres of found boxes miss those of the exact ones, pixels."""
+    jitter_v: float
+    """The same for rows, which distances depend on."""
+
+
+def compare_voting(detector, labelled: Iterable[tuple[np.ndarray, Sequence[TrueObject]]]) -> list[VotingScore]:
+    """Jitter of box centres, precision and recall for every choice of `VOTE_IOU` and `VOTE_SCORE`, and without votes.
+
+    labelled: panoramas of validation rooms, with all that can be seen on them. An exact box is the visible one; the
+    jitter is over the objects that count and were found. Source: paper 2, section 2.2 (silent about it).
+    """
+    labelled = list(labelled)
+    choices = [NO_VOTES, *((iou, score) for iou in VOTE_IOUS for score in VOTE_SCORES)]
+    found = []
+    for iou, score in choices:
+        with _voting(iou, score):
+            detections = [detector.detect(image) for image, _ in labelled]
+        pairs = list(zip(detections, labelled, strict=True))
+        matchings = [match_image(many, things, image.shape[1]) for many, (image, things) in pairs]
+        missed = np.concatenate(
+            [
+                centre_errors(matching, many, things, image.shape[1])
+                for matching, (many, (image, things)) in zip(matchings, pairs, strict=True)
+            ]
+        )
+        jitter = np.sqrt((missed**2).mean(axis=0)) if len(missed) else (np.nan, np.nan)
+        found.append(VotingScore(iou, score, _count(matchings), *map(float, jitter)))
+    return found
+
+
+def centre_errors(matching: Matching, detections: Sequence, objects: Sequence[TrueObject], width: int) -> np.ndarray:
+    """By how much the boxes of found objects miss the exact ones: `(n, 2)` columns and rows, centre to centre."""
+    wanted = [thing for thing in objects if counts_as_object(thing, width)]
+    errors = [
+        np.subtract(box_centre(detections[i].box), box_centre(wanted[k].visible_box))
+        for i, k in zip(matching.detection_index, matching.object_index, strict=True)
+        if k >= 0
+    ]
+    errors = np.array(errors).reshape(-1, 2)
+    errors[:, 0] = (errors[:, 0] + width / 2) % width - width / 2
+    return errors
+
+
+@contextmanager
+def _voting(iou: float, score: float) -> Iterator[None]:
+    """The detector's constants replaced for a while: they are no options, for nobody but this table changes them."""
+    before = suppression.VOTE_IOU, suppression.VOTE_SCORE
+    suppression.VOTE_IOU = iou
+    suppression.VOTE_SCORE = detector_module.VOTE_SCORE = score
+    try:
+        yield
+    finally:
+        suppression.VOTE_IOU, suppression.VOTE_SCORE = before
+        detector_module.VOTE_SCORE = before[1]
+
+
+def labelled_panoramas(recording: StereoRecording) -> Iterable[tuple[np.ndarray, Sequence[TrueObject]]]:
+    """Every image of a recording with its objects."""
+    for pair in recording.pairs:
+        upper, lower = pair.images()
+        yield upper, pair.upper_objects
+        yield lower, pair.lower_objects
+
+
+def _count(matchings: Iterable[Matching]) -> DetectorScore:
+    matchings = list(matchings)
+    n_objects = sum(matching.n_objects for matching in matchings)
+    if n_objects == 0:
+        raise DetectionScoreError("there is no object to be found in these panoramas, so recall is not defined")
+    found = sum(int(matching.correct.sum()) for matching in matchings)
+    return DetectorScore(len(matchings), n_objects, found, sum(len(m.correct) for m in matchings) - found)
+
+
+@dataclass(frozen=True)
+class PrecisionRecall:
+    """Precision and recall over falling thresholds."""
+
+    threshold: np.ndarray
+    """(k,) scores, falling: entry i keeps all detections of at least this score."""
+    precision: np.ndarray
+    """(k,) share of the kept detections that are right."""
+    recall: np.ndarray
+    """(k,) share of the objects that are found."""
+
+
+def precision_recall_curve(matchings: Sequence[Matching]) -> PrecisionRecall:
+    """Precision and recall of many panoramas together, at every score that occurs.
+
+    precision(t) = right detections with score >= t / all detections with score >= t
+    recall(t)    = right detections with score >= t / objects
+
+    Ignored detections are in neither count. Raises `DetectionScoreError` when there is no object at all.
+    """
+    n_objects = sum(matching.n_objects for matching in matchings)
+    if n_objects == 0:
+        raise DetectionScoreError("there is no object to be found in these panoramas, so recall is not defined")
+    scores = np.concatenate([matching.scores for matching in matchings])
+    correct = np.concatenate([matching.correct for matching in matchings])
+    order = np.argsort(-scores, kind="stable")
+    scores, right = scores[order], np.cumsum(correct[order])
+    # A threshold keeps all detections of equal score: only the last of them is a point of the curve.
+    last = np.ones(len(scores), dtype=bool)
+    last[:-1] = scores[1:] != scores[:-1]
+    kept = np.arange(1, len(scores) + 1)
+    return PrecisionRecall(scores[last], (right / kept)[last], (right / n_objects)[last])
+
+
+def scores_at(curve: PrecisionRecall, threshold: float) -> tuple[float, float]:
+    """(precision, recall) of the detections with at least this score; precision is nan when there are none."""
+    kept = np.flatnonzero(curve.threshold >= threshold)
+    return (float(curve.precision[kept[-1]]), float(curve.recall[kept[-1]])) if len(kept) else (float("nan"), 0.0)
+
+
+def best_threshold(curve: PrecisionRecall) -> float:
+    """The threshold with the largest F1 = 2 precision recall / (precision + recall).
+
+    Raises `DetectionScoreError` when no detection is right, since no threshold is then better than another.
+    """
+    total = curve.precision + curve.recall
+    f1 = np.divide(2 * curve.precision * curve.recall, total, out=np.zeros_like(total), where=total > 0)
+    if not len(f1) or f1.max() == 0.0:
+        raise DetectionScoreError("no detection is right at any threshold: train the detector before choosing one")
+    return float(curve.threshold[f1.argmax()])
+
+
+def average_precision(curve: PrecisionRecall) -> float:
+    """Area under precision over recall, precision made monotone from the right (as PASCAL VOC since 2010)."""
+    if not len(curve.recall):
+        return 0.0
+    envelope = np.maximum.accumulate(curve.precision[::-1])[::-1]
+    return float(np.sum(np.diff(curve.recall, prepend=0.0) * envelope))
