@@ -14,12 +14,12 @@ import sys
 from contextlib import ExitStack
 from pathlib import Path
 
-from course_lib.commands.arguments import MOST_PARTICLES, parse_seeds, require_count, require_output_folder
+from course_lib.commands.arguments import MAX_PARTICLES, parse_seeds, require_count, require_output_folder
 from course_lib.files import temporary_folder
 
 EXPERIMENTS = ("corridor",)
 CONNECT_S = 30
-MOST_SEEDS = 10_000  # by their number alone; who wants more, or meant one seed, says so: A-B
+MAX_SEEDS = 10_000  # by their number alone; who wants more, or meant one seed, says so: A-B
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments.results import write_results
 
     seeds = seeds_of(arguments.seeds)
-    require_count("--particles", arguments.particles, MOST_PARTICLES)
+    require_count("--particles", arguments.particles, MAX_PARTICLES)
     require_count("--frames", arguments.frames)
     require_output_folder(arguments.out)
     points = [{"seed": seed, "frames": arguments.frames, "n_particles": arguments.particles} for seed in seeds]
@@ -79,8 +79,8 @@ def seeds_of(text: str) -> list[int]:
     """The seeds that `--seeds` names: a number alone is how many, from 1 on; else ranges, as everywhere."""
     if not re.fullmatch(r"\s*\d+\s*", text):
         return parse_seeds(text)
-    if not 1 <= int(text) <= MOST_SEEDS:
-        raise ValueError(f"--seeds {text} asks for so many seeds (1 to {MOST_SEEDS}); for one alone: {text}-{text}")
+    if not 1 <= int(text) <= MAX_SEEDS:
+        raise ValueError(f"--seeds {text} asks for so many seeds (1 to {MAX_SEEDS}); for one alone: {text}-{text}")
     return list(range(1, int(text) + 1))
 
 

@@ -78,7 +78,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Runs all rows of the table; 0 when every one reached the last frame."""
     from course_lib.commands.arguments import (
-        MOST_PARTICLES,
+        MAX_PARTICLES,
         parse_seeds,
         require_count,
         require_output_folder,
@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     require_seed(arguments.seed)
     seeds = None if arguments.seeds is None else parse_seeds(arguments.seeds)
-    require_count("--particles", arguments.particles, MOST_PARTICLES)  # before the recording, which takes a minute
+    require_count("--particles", arguments.particles, MAX_PARTICLES)  # before the recording, which takes a minute
     require_count("--frames", arguments.frames)
     require_output_folder(arguments.out)
     if arguments.dof == "6":

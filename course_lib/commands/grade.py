@@ -11,7 +11,6 @@ from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder, require_processes
 from course_lib.files import run_folder
-from course_lib.processors import processors
 
 TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"
 
@@ -55,6 +54,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     if sys.platform == "win32":
         raise RuntimeError("grading needs Linux; on Windows use the Windows Subsystem for Linux (WSL 2)")
+    from joblib import cpu_count
+
     # Only here: they bring the lessons with them.
     from course_lib.classroom.confinement import Limits
     from course_lib.classroom.grade_page import grade_page
@@ -72,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
     seed = secrets.randbelow(2**48) if arguments.seed is None else arguments.seed
     limits = Limits(arguments.call_seconds, arguments.seconds, arguments.memory)
     started = time.monotonic()
-    jobs, trusted, scores = arguments.jobs or processors(), arguments.trusted, arguments.scores
+    jobs, trusted, scores = arguments.jobs or cpu_count(), arguments.trusted, arguments.scores
     results = grade_folder(arguments.folder, seed, jobs, limits, trusted, scores, progress_bar)
     pages = {TABLE: answers_table(results), TOTALS: totals_table(results), PAGE: grade_page(results)}
     print(summary(results, time.monotonic() - started), flush=True)  # before the disk can be full
