@@ -40,6 +40,7 @@ def test_what_is_confused_is_told_with_its_places(map_file, tmp_path, capsys):
         "ambiguity.json",
         "ambiguity_consistent.png",
         "ambiguity_greedy.png",
+        "run.json",
     ]
 
 
@@ -55,7 +56,7 @@ def test_one_unlike_object_makes_the_room_sure(map_file, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--association", "best"], "--association must name greedy, hungarian, consistent"),
+        (["--association", "best"], "greedy, hungarian, consistent"),
         (["--step", "0"], "--step must be a positive number of metres"),
         (["--step", "500"], "give a smaller --step"),
         (["--draws", "0"], "--draws must be at least 1; got 0"),

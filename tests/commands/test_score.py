@@ -69,6 +69,8 @@ def test_a_missing_file_and_an_unknown_project_are_named(capsys):
     assert find_project("P1").function in capsys.readouterr().err
 
 
-def test_the_command_runs_it_in_a_process_of_its_own(tmp_path, capfd):
-    assert main(["score", "P1", "nowhere.py", "--seeds", "10001"]) == 2
-    assert "nowhere.py is no Python file" in capfd.readouterr().err
+def test_the_command_runs_it_in_a_process_of_its_own(monkeypatch):
+    ran = []
+    monkeypatch.setattr("subprocess.call", lambda words: ran.append(words) or 7)
+    assert main(["score", "P1", "a.py", "--seeds", "10001"]) == 7
+    assert ran[0][1:] == ["-P", "-m", "course_lib.lessons.kit.score", "P1", "a.py", "--seeds", "10001"]
