@@ -59,7 +59,7 @@ def test_what_is_no_text_is_named_with_its_line(tmp_path, data, said):
         ('{"a": NaN}', "holds NaN"),
         ('{"a": 1e999}', "1e999, which is too large"),
         ('{"a": 1, "a": 2}', "'a' twice"),
-        ('{"a": ' + "9" * 5000 + "}", "not JSON that can be read"),
+        ('{"a": ' + "9" * 401 + "}", "not JSON that can be read: a number of 401 digits"),
     ],
 )
 def test_json_that_cannot_be_meant_is_named(tmp_path, text, said):
@@ -143,13 +143,6 @@ def test_headers_say_the_size_that_is_then_unpacked(tmp_path, rng, size, ending)
     assert read_image(tmp_path / "a", "image", AskedError).shape == image.shape
 
 
-def test_a_progressive_jpeg_with_a_comment_has_its_size():
-    image = np.zeros((30, 60, 3), np.uint8)
-    data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_PROGRESSIVE, 1])[1].tobytes()
-    commented = data[:2] + b"\xff\xfe" + struct.pack(">H", 9) + b"comment" + data[2:]
-    assert image_header(commented) == ("JPEG", 60, 30, 1, 3)
-
-
 @pytest.mark.parametrize("progressive", [0, 1])
 def test_a_jpeg_without_its_end_is_not_complete(tmp_path, rng, progressive):
     """OpenCV fills in what is missing, without a word."""
@@ -182,12 +175,6 @@ def test_json_of_nothing_but_open_strings_is_read_in_one_go(tmp_path):
         read_json(path, "map", AskedError)
     path.write_text('{"a[": "]\\"[[", "b": [[1]]}')
     assert read_json(path, "map", AskedError) == {"a[": ']"[[', "b": [[1]]}
-
-
-def test_a_whole_number_that_no_float_holds_is_named(tmp_path):
-    (tmp_path / "a.json").write_text('{"x": 1' + 400 * "0" + "}")
-    with pytest.raises(AskedError, match=r"a\.json is not JSON that can be read: a number of 401 digits"):
-        read_json(tmp_path / "a.json", "map", AskedError)
 
 
 @pytest.mark.parametrize(("bits", "colour", "taken"), [(8, 2, 3), (16, 6, 8), (16, 0, 2), (8, 3, 4), (1, 0, 1)])
