@@ -1,4 +1,4 @@
-"""What a user hands over is bounded before memory is taken, and every fault of it is named."""
+"""Input is bounded before memory is taken, and its faults are named; output is never half-written."""
 
 import json
 import os
@@ -10,7 +10,17 @@ import numpy as np
 import pytest
 
 from course_lib import files
-from course_lib.files import image_header, is_given, read_bytes, read_image, read_json, read_text
+from course_lib.files import (
+    atomic_write,
+    image_header,
+    is_given,
+    read_bytes,
+    read_image,
+    read_json,
+    read_text,
+    run_folder,
+    staging_dir,
+)
 
 
 class AskedError(ValueError):
@@ -208,3 +218,44 @@ def test_a_part_of_a_png_longer_than_the_file_is_refused_before_memory_is_taken(
 
     with pytest.raises(AskedError, match="its part b'IDAT' at byte 33 has"):
         read_image(path, "image", AskedError)
+
+
+def test_a_file_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch):
+    path = tmp_path / "results.json"
+    atomic_write(path, "old")
+    monkeypatch.setattr(files.os, "fsync", lambda handle: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+    with pytest.raises(OSError, match=r"No space left on device.*results\.json"):
+        atomic_write(path, "new")
+    assert path.read_text() == "old"
+    monkeypatch.undo()
+    atomic_write(path, "new")
+    assert path.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_takes_its_files_at_the_end_and_keeps_what_is_not_the_callers(tmp_path):
+    before = {"mine.txt": "old", "a.csv": "old", "b.csv": "old"}
+    for name, text in before.items():
+        (tmp_path / name).write_text(text)
+
+    def found():
+        return {path.name: path.read_text() for path in tmp_path.iterdir()}
+
+    def write(fails):
+        with staging_dir(tmp_path, ["a.csv", "b.csv"]) as new:
+            (new / "a.csv").write_text("new")
+            if fails:
+                raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        write(fails=True)
+    assert found() == before
+    write(fails=False)
+    assert found() == {"mine.txt": "old", "a.csv": "new"}
+
+
+def test_the_record_of_a_run_is_written_last(tmp_path):
+    with run_folder(tmp_path / "out", "try it") as new:
+        (new / "a.csv").write_text("1")
+        assert not (tmp_path / "out").exists()
+    assert json.loads((tmp_path / "out" / "run.json").read_text()) == {"command": "try it", "files": ["a.csv"]}
