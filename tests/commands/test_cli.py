@@ -1,7 +1,5 @@
 """The command line: which command is meant, what is imported for it, and one line for every error."""
 
-import os
-import signal
 import subprocess
 import sys
 import types
@@ -54,13 +52,6 @@ def test_every_command_has_a_module_that_declares_its_arguments(capsys):
         assert f"course.py {name}" in capsys.readouterr().out
 
 
-def test_a_command_gets_its_arguments_and_its_code_is_returned(command):
-    seen = []
-    command(lambda arguments: seen.append(arguments.seed) or 7, lambda parser: parser.add_argument("--seed", type=int))
-    assert cli.main(["try", "it", "--seed", "3"]) == 7
-    assert seen == [3]
-
-
 def test_unknown_arguments_are_refused_unless_the_command_passes_them_on(command, capsys):
     command(lambda arguments: 0)
     with pytest.raises(SystemExit) as ended:
@@ -91,16 +82,6 @@ def test_an_error_is_one_line_and_a_code(command, capsys, error, code):
     assert len(errors.strip().splitlines()) == 1
     assert str(error) in errors
     assert "Traceback" not in errors
-
-
-@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-def test_what_nohup_ignores_stays_ignored(command):
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
-        command(lambda arguments: signal.raise_signal(signal.SIGHUP) or 0)
-        assert cli.main(["try", "it"]) == 0
-    finally:
-        signal.signal(signal.SIGHUP, before)
 
 
 @pytest.mark.parametrize("way", ["option", "variable"])
@@ -135,14 +116,11 @@ def with_options(parser):
     ("words", "told"),
     [
         (["--map", "m", "--particle", "5"], "--particle 5: there is no option '--particle'; did you mean --particles?"),
-        (["--map", "m", "--Particles=5"], "--Particles=5: there is no option '--Particles'; did you mean --particles?"),
         (["--map", "m", "--zzzzzzzz"], "--zzzzzzzz: there is no option '--zzzzzzzz'."),
         (["--map", "m", "walk"], "walk: there is no place for the word 'walk'."),
         (["--map", "m", "--particles", "ten"], "--particles must be a whole number; got 'ten'."),
-        (["--map", "m", "--particles", "1e9"], "--particles must be a whole number; got '1e9'."),
         (["--map", "m", "--far", "near"], "--far must be a number; got 'near'."),
         (["--map", "m", "--particles"], "--particles needs a value."),
-        (["--map", ""], "an empty word stands where a value is expected"),
         (["--map="], "an empty word stands where a value is expected"),
         ([], "--map must be given."),
         (["--map", "m", "--dof", "7"], "--dof must be one of "),

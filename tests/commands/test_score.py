@@ -8,7 +8,6 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from course_lib.cli import main
 from course_lib.lessons.kit import score as scoring
-from course_lib.lessons.kit.projects import find_project
 
 
 @pytest.fixture
@@ -58,15 +57,6 @@ def test_a_file_that_does_not_fit_is_named(scored, tmp_path, capsys, text, words
     assert scoring.main(["P1", handed_in(tmp_path, text)]) == 2
     assert words in capsys.readouterr().err
     assert not scored
-
-
-def test_a_missing_file_and_an_unknown_project_are_named(capsys):
-    assert scoring.main(["P1", "nowhere.py"]) == 2
-    assert "nowhere.py is no Python file and no notebook" in capsys.readouterr().err
-    assert scoring.main(["P9", "nowhere.py"]) == 2
-    assert "no project 'P9'" in capsys.readouterr().err
-    assert scoring.main(["P1"]) == 2
-    assert find_project("P1").function in capsys.readouterr().err
 
 
 def test_the_command_runs_it_in_a_process_of_its_own(monkeypatch):
