@@ -168,10 +168,11 @@ def _objects(found: Localization, semantic_map: SemanticMap) -> list[dict]:
 
 def _text(s: dict) -> str:
     if s["status"] == "ok":
-        lines = [
-            f"pose: x {_with_sigma(s['x_m'], s['sigma_x_m'], 2)} m, y {_with_sigma(s['y_m'], s['sigma_y_m'], 2)} m, "
-            f"heading {_with_sigma(s['heading_deg'], s['sigma_heading_deg'], 1)} degrees (± one standard deviation)"
-        ]
+        x, y, heading = (
+            f"{s[name]:.{digits}f}" + ("" if s[f"sigma_{name}"] is None else f" ± {s[f'sigma_{name}']:.{digits}f}")
+            for name, digits in (("x_m", 2), ("y_m", 2), ("heading_deg", 1))
+        )
+        lines = [f"pose: x {x} m, y {y} m, heading {heading} degrees (± one standard deviation)"]
     else:
         lines = [f"no pose, {s['reason']}: {s['explanation']}"]
     if s["confidence"] is not None:
@@ -194,17 +195,13 @@ def _text(s: dict) -> str:
     return "\n".join(lines)
 
 
-def _with_sigma(value: float, sigma: float | None, digits: int) -> str:
-    return f"{value:.{digits}f}" + ("" if sigma is None else f" ± {sigma:.{digits}f}")
-
-
 def _row(row: dict) -> str:
     start = f"{row['label']:14} {row['matched_features']:8d} "
     if row["range_m"] is None or row["outcome"] != "ok":
         return start + row["outcome"]
     start += f"{row['azimuth_deg']:7.0f}° {row['range_m']:10.2f}   "
     if row["landmark"] is None:
-        return start + "none of its class is left"
+        return start + "no landmark of its class is left"
     at = f"({row['landmark_x_m']:.2f}, {row['landmark_y_m']:.2f})"
     return start + f"{at:16} " + (f"{row['residual_m']:10.2f}" if row["residual_m"] is not None else "")
 
