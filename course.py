@@ -27,8 +27,7 @@ import time
 ROOT = os.path.dirname(os.path.realpath(__file__))
 VENV = os.path.join(ROOT, ".venv")
 PYTHON = os.path.join(VENV, "Scripts", "python.exe") if os.name == "nt" else os.path.join(VENV, "bin", "python")
-MADE = os.path.join(VENV, "course-made")
-READY = os.path.join(VENV, "course-ready.json")
+MADE, READY = os.path.join(VENV, "course-made"), os.path.join(VENV, "course-ready.json")
 APT = "apt-get install -y --no-install-recommends "
 OPENGL = "libegl1 libgl1-mesa-dri libgl1"
 # Python's variables that say how it runs. The others (PYTHONPATH, PYTHONHOME ...) say which code, and are dropped.
@@ -157,14 +156,15 @@ def make_venv():
 def install():
     """Install the pinned packages and course_lib itself. Meanwhile the stamp is away: `.venv` is half-made."""
     say("Installing the environment into .venv, a minute or a few ...")
-    # pip's settings say where packages come from, and uv does not read them.
-    uv = None if any(name.startswith("PIP_") for name in os.environ) else shutil.which("uv")
-    pip = [uv, "pip", "install", "--python", PYTHON] if uv else [PYTHON, "-P", "-m", "pip", "install"]
     if os.path.exists(READY):
         os.replace(READY, READY + ".earlier")
-    code, output = run([*pip, "--no-deps", "-r", os.path.join(ROOT, "environment.txt")], counted=True)
-    if not code:
-        code, output = run([*pip, "--no-deps", "--no-build-isolation", "-e", ROOT])
+    # uv is faster, but does not read pip's settings, which may say where packages come from.
+    installers = [["uv", "pip", "install", "--python", PYTHON]] if shutil.which("uv") else []
+    for pip in [*installers, [PYTHON, "-P", "-m", "pip", "install"]]:
+        code, output = run([*pip, "--no-deps", "-r", os.path.join(ROOT, "environment.txt")], counted=True)
+        if not code:
+            code, output = run([*pip, "--no-deps", "--no-build-isolation", "-e", ROOT])
+            break
     if code:
         if os.path.exists(READY + ".earlier"):  # those packages are still there, and the next call tries again
             os.replace(READY + ".earlier", READY)
