@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Localize and print. 0 also where there is no pose, which is an answer."""
+    """Localizes and prints; 0 also where there is no pose, which is an answer."""
     from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
     from course_lib.commands.arguments import require_output_folder
     from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
