@@ -1,9 +1,10 @@
 """The course's command line: a table of commands, each a module of `course_lib.commands`.
 
-A command module has `add_arguments(parser)` and `run(arguments) -> int` (the exit code), and its first docstring line
-is the description that `--help` shows. It is imported only when it is called: the list of commands never waits for VTK.
+A command module has `add_arguments(parser)` and `run(arguments) -> int` (the exit code). The first line of its
+docstring is the description that `--help` shows. It is imported only when it is called: the list of commands never
+waits for VTK.
 A module with `join_words(words)` may mend what argparse would misread (`--up -y`).
-A module that sets `PASSES_ARGUMENTS_ON = True` gets what its parser does not know as `arguments.passed_on`, a list.
+A module with `PASSES_ARGUMENTS_ON = True` gets what its parser does not know as the list `arguments.passed_on`.
 """
 
 from __future__ import annotations
@@ -11,15 +12,16 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import re
 import signal
 import sys
 import threading
 import traceback
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from difflib import get_close_matches
 from types import ModuleType
-
-from course_lib.command_parser import VERY_LIKE, CommandParser, meant
+from typing import NoReturn
 
 # For whom -> name as typed -> (module of course_lib.commands, one line for the list of commands).
 GROUPS: dict[str, dict[str, tuple[str, str]]] = {
@@ -51,23 +53,25 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 }
 COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items()}
 
-# Commands of version 0.1 that are maintainers' tools now.
-MOVED = {
-    "sweep": "sweep",
-    "bench": "bench",
-    "make-data corridor": "make_corridor",
-    "make-data room": "make_room",
-    "make-data finale": "make_finale",
-    "make-data projects": "make_projects",
-    "make-data training-rooms": "make_training_rooms",
-    "train-detector": "train_detector",
-    "score-detector": "score_detector",
-    "refresh": "refresh",
-}
+# Commands of version 0.1 that are maintainers' tools now, and those that are no more.
+TOOLS = ("sweep", "bench", "refresh", "train-detector", "score-detector")
+TOOLS += tuple(f"make-data {what}" for what in ("corridor", "room", "finale", "projects", "training-rooms"))
+LEFT = ("fuzz", "interrupt")
 
 EXIT_BAD_INPUT = 2
 EXIT_FAULT = 1
 EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
+
+
+# argparse's words -> ours. What is not among them (another Python's words) is told as it is.
+_SAID = (
+    (r"argument (\S+): invalid int value: (.*)", r"\1 must be a whole number; got \2"),
+    (r"argument (\S+): invalid float value: (.*)", r"\1 must be a number; got \2"),
+    (r"argument (\S+): invalid choice: (.*?) \(choose from (.*)\)", r"\1 must be one of \3; got \2"),
+    (r"argument (\S+): expected one argument", r"\1 needs a value"),
+    (r"argument (\S+): expected (.*)", r"\1 needs \2"),
+    (r"the following arguments are required: (.*)", r"\1 must be given"),
+)
 
 
 def usage() -> str:
@@ -75,11 +79,13 @@ def usage() -> str:
     lines = ["usage: python3 course.py COMMAND [options]"]
     for group, commands in GROUPS.items():
         lines += ["", f"{group}:", *(f"  {name:<13}  {line}" for name, (_, line) in commands.items())]
+    lines += ["", "Options of one command: python3 course.py COMMAND --help"]
+    lines += ["The first call sets up .venv: a download of about 450 MB, 1.9 GB on disk, one or a few minutes."]
     return "\n".join(lines) + "\n"
 
 
 def find_command(words: list[str]) -> tuple[str, list[str]] | None:
-    """The command that `words` begin with (the longest name wins) and the words after it; None when there is none."""
+    """Return the command that `words` begin with (the longest name wins) and the words after it, or None."""
     for length in (2, 1):
         name = " ".join(words[:length])
         if len(words) >= length and name in COMMANDS:
@@ -88,8 +94,8 @@ def find_command(words: list[str]) -> tuple[str, list[str]] | None:
 
 
 def main(words: list[str]) -> int:
-    """Runs the command named by `words`; returns its exit code."""
-    if not words or words[0] in ("-h", "--help"):
+    """Run the command that `words` name, and return its exit code."""
+    if not words or words[0] in ("-h", "--help", "help"):
         print(usage(), end="")
         return 0 if words else EXIT_BAD_INPUT
     found = find_command(words)
@@ -102,13 +108,47 @@ def main(words: list[str]) -> int:
 
 def what_instead(words: list[str]) -> str:
     """Return how to go on where the words name no command: the tool it has become, a similar name, or all names."""
-    for old, tool in MOVED.items():
+    for old in TOOLS:
         if words[: len(old.split())] == old.split():
-            return f" any more; it is a tool now: .venv/bin/python -m tools.{tool} --help"
+            module = old.replace("make-data ", "make_").replace("-", "_")
+            return f" any more; it is a tool now: .venv/bin/python -m tools.{module} --help"
+    if words[0] in LEFT:
+        return " any more; the tests try damaged files and stopped writers instead: python3 course.py test"
     longer = [name for name in COMMANDS if name.split()[0] == words[0]]
-    like = meant(" ".join(words[:2]), COMMANDS, VERY_LIKE) if len(words) > 1 else ""
+    # A higher bar for two words: the first alone makes demo corridor and demo room alike.
+    like = meant(" ".join(words[:2]), COMMANDS, 0.8) if len(words) > 1 else ""
     like = like or (f"; did you mean: {', '.join(longer)}?" if longer else meant(words[0], COMMANDS))
     return like or f"; the commands are: {', '.join(COMMANDS)}"
+
+
+def meant(word: str, names: Iterable[str], cutoff: float = 0.6) -> str:
+    """Return "; did you mean ...?" with the names that are most like a word, or nothing."""
+    lower = {name.lower(): name for name in names}
+    found = [lower[name] for name in get_close_matches(word.lower(), lower, cutoff=cutoff)]
+    return f"; did you mean {' or '.join(found)}?" if found else ""
+
+
+class CommandParser(argparse.ArgumentParser):
+    """Ends with code 2 and one sentence, with the nearest name, where the words do not fit."""
+
+    def parse_args(self, args: Sequence[str], namespace: None = None) -> argparse.Namespace:
+        """Parse the words of a command that takes no others than its own."""
+        if any(word == "" or re.fullmatch(r"--[\w-]+=", word) for word in args):
+            self.error("an empty word stands where a value is expected (a variable that is not set?): give one")
+        found, others = self.parse_known_args(args, namespace)
+        if others:
+            name = others[0].partition("=")[0]
+            options = [option for action in self._actions for option in action.option_strings]
+            like = f"option {name!r}{meant(name, options)}" if name.startswith("-") else f"place for the word {name!r}"
+            self.error(f"{' '.join(others)}: there is no {like}")
+        return found
+
+    def error(self, message: str) -> NoReturn:
+        """Print one sentence on standard error, and end with code 2."""
+        for said, ours in _SAID:
+            message = re.sub(f"^{said}$", ours, message)
+        stop = "" if message.endswith("?") else "."
+        self.exit(2, f"error: {message}{stop} All options: python3 {self.prog} --help\n")
 
 
 def tool(module_name: str) -> int:
@@ -159,7 +199,7 @@ def raise_on_sigterm() -> None:
 
 
 def parse(program: str, module: ModuleType, words: list[str]) -> argparse.Namespace:
-    """The arguments of one command; the parser itself exits, with code 2 and a sentence, on those that do not fit."""
+    """Parse the arguments of one command. The parser itself exits where they do not fit."""
     description = (module.__doc__ or "").strip().split("\n")[0]
     parser = CommandParser(prog=program, description=description, allow_abbrev=False)
     module.add_arguments(parser)
@@ -172,12 +212,12 @@ def parse(program: str, module: ModuleType, words: list[str]) -> argparse.Namesp
 
 
 def one_line(message: Warning | str, *place: object, **told: object) -> str:
-    """What is doubtful, in one line, and not where in the library that was noticed."""
+    """Format a warning as one line, without the place in the library where it was noticed."""
     return f"warning: {message}\n"
 
 
 def report(error: Exception) -> int:
-    """Prints one line about `error` and returns the exit code: 2 for what the user can mend, 1 for a fault of ours."""
+    """Print one line about `error`, and return the exit code: 2 for what the user can mend, 1 for a fault of ours."""
     if isinstance(error, ImportError):
         print(f"error: {error}. See what is missing: python3 course.py check", file=sys.stderr)
         return EXIT_FAULT

@@ -25,15 +25,21 @@ matplotlib.use("Agg")  # not by MPLBACKEND, which the lessons' kernels would inh
 
 ROOT = Path(__file__).parents[1]
 
+# The one walk through JupyterLab in a browser that every run takes: the panel with the most controls.
+EVERYDAY_WALK = "test_browser.py::test_a_lesson_runs_and_its_first_panel_answers[07_"
+
 
 def pytest_collection_modifyitems(items):
-    """Marks what drives a browser, so that a quick run can leave it out, and puts the files that take long first.
+    """Mark what drives a browser, and what only `course.py test --all` runs, and put the files that take long first.
 
     A file stays on one processor: a long one that began last would keep one busy while the others have nothing to do.
     """
     for item in items:
         if {"page", "browser"} & set(getattr(item, "fixturenames", ())):
             item.add_marker("browser")
+        walk = item.get_closest_marker("browser") and EVERYDAY_WALK not in item.nodeid
+        if walk or (item.path.name == "test_nbgrader.py" and item.get_closest_marker("slow")):
+            item.add_marker("release")
     long = {item.path for item in items if item.path.suffix == ".ipynb"}
     long |= {item.path for item in items if any(item.get_closest_marker(name) for name in ("browser", "slow"))}
     items.sort(key=lambda item: (item.path not in long, item.path.suffix != ".ipynb"))

@@ -24,6 +24,7 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernel
 
 from course_lib.child import KERNEL_PATH, clean_environment
 from course_lib.commands.saved_panels import drop_widgets
+from course_lib.commands.test import OFFLINE_STARTUP
 from course_lib.files import atomic_write, temporary_folder
 from course_lib.paths import STORE_SCENES, notebook_paths, project_paths
 
@@ -34,19 +35,6 @@ METADATA = {
     "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
 }
 KEPT_CELL_METADATA = ("exercise", "tags", "jupyter")
-# Runs in the kernel before the first cell: a lesson that reaches for the network fails here, not at a student's.
-OFFLINE_STARTUP = """
-def _stay_on_this_computer():
-    import socket
-    connect = socket.socket.connect
-    def connect_here_only(self, address):
-        if self.family != getattr(socket, "AF_UNIX", None) and address[0] not in ("127.0.0.1", "::1", "localhost"):
-            raise OSError(f"lessons run offline: no connection to {address[0]}")
-        return connect(self, address)
-    socket.socket.connect = connect_here_only
-_stay_on_this_computer()
-del _stay_on_this_computer
-"""
 
 
 class RefreshError(RuntimeError):

@@ -13,7 +13,7 @@ import re
 import sys
 from pathlib import Path
 
-from course_lib.commands.arguments import MOST_PARTICLES, parse_seeds, require_count, require_output_folder
+from course_lib.commands.arguments import MAX_PARTICLES, parse_seeds, require_count, require_output_folder
 
 CONNECT_S = 30
 MAX_SEEDS = 10_000  # by their number alone; who wants more, or meant one seed, says so: A-B
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments.runner import kept_rows
 
     seeds = seeds_of(arguments.seeds)
-    require_count("--particles", arguments.particles, MOST_PARTICLES)
+    require_count("--particles", arguments.particles, MAX_PARTICLES)
     require_count("--frames", arguments.frames)
     require_output_folder(arguments.out)
     points = [{"seed": seed, "frames": arguments.frames, "n_particles": arguments.particles} for seed in seeds]

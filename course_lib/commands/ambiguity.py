@@ -1,7 +1,7 @@
-"""Tell of a semantic map, before any run, from where a stereo rig would confuse which of its objects.
+"""Show where in a semantic map a stereo rig would confuse which of its objects, before any run.
 
-Only the map is needed: at every place of a grid, what would be seen is drawn anew several times, and a matcher says
-where it believes to be.
+Only the map is needed. At every place of a grid the command draws several times what the rig would see there, and a
+matcher says where it believes the rig to be.
 """
 
 from __future__ import annotations
@@ -11,29 +11,30 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course_lib.commands.arguments import require_output_folder, require_positive, require_seed
+from course_lib.commands.arguments import require_count, require_output_folder, require_positive, require_seed
 from course_lib.files import run_folder
 
 if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
     from course_lib.experiments.ambiguity import AmbiguityMap
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-SURE = 0.8  # the least confidence of an answer, as in `SemanticLocalizer`
-LEAST_SHARE = 0.001  # of the belief, below which a pair is not listed
+SURE = 0.8  # the lowest confidence of an answer, as in `SemanticLocalizer`
+MIN_SHARE = 0.001  # of the belief, below which a pair is not listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options of `ambiguity`."""
     parser.add_argument("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
     parser.add_argument(
         "--association",
         default="greedy,consistent",
         metavar="NAMES",
-        help="the matchers asked, with commas (default: greedy,consistent)",
+        help="the matchers to ask, with commas (default: greedy,consistent)",
     )
-    parser.add_argument("--step", type=float, default=0.5, metavar="METRES", help="between places (default: 0.5)")
-    parser.add_argument("--draws", type=int, default=4, metavar="N", help="views imagined at each place (default: 4)")
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="of what is imagined (default: 1)")
+    parser.add_argument(
+        "--step", type=float, default=0.5, metavar="METRES", help="distance between places (default: 0.5)"
+    )
+    parser.add_argument("--draws", type=int, default=4, metavar="N", help="views drawn at each place (default: 4)")
+    parser.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the views (default: 1)")
     parser.add_argument(
         "--out", type=Path, default=Path("results/ambiguity"), metavar="FOLDER", help="for the pictures and numbers"
     )
@@ -41,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Imagines, draws a picture for each matcher, prints."""
+    """Draw the views, print the table, and make a picture for each matcher."""
     import numpy as np
 
     from course_lib.beyond.look_alikes.matchers import matcher
@@ -55,8 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name in names:
         matcher(name)  # raises an error for a name that does not exist
     require_positive("--step", arguments.step, "metres")
-    if arguments.draws < 1:
-        raise ValueError(f"--draws must be at least 1; got {arguments.draws}")
+    require_count("--draws", arguments.draws)
     require_seed(arguments.seed)
     require_output_folder(arguments.out)
     semantic_map = SemanticMap.load(arguments.map)
@@ -102,7 +102,7 @@ def ambiguity_numbers(found: AmbiguityMap, semantic_map: SemanticMap) -> dict:
                 "share": share,
             }
             for i, j, share in found.most_confused()
-            if share >= LEAST_SHARE
+            if share >= MIN_SHARE
         ],
     }
 
@@ -114,7 +114,7 @@ def ambiguity_text(name: str, numbers: dict) -> str:
         f"more); mean confidence of the right pose {numbers['mean_confidence']:.2f}"
     ]
     if not numbers["confused"]:
-        lines.append(f"  no two objects are confused in more than {100 * LEAST_SHARE:g} %")
+        lines.append(f"  no two objects are confused in more than {100 * MIN_SHARE:g} %")
     for one in numbers["confused"]:
         (a, b), ((ax, ay), (bx, by)) = one["labels"], one["places_m"]
         lines.append(

@@ -7,31 +7,24 @@ its own and becomes a FAIL like any other. Exit code 0 only if every line is OK.
 from __future__ import annotations
 
 import argparse
-import base64
-import hashlib
 import importlib.metadata
+import json
 import platform
 import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from course_lib.child import course_module, python
-from course_lib.child import run as run_child
-from course_lib.commands.depth_image_probe import LARGEST_ERROR_MM, read_result
-from course_lib.processors import processors
-
 DISTRIBUTION = "course-lib"
 EXTRAS = ("", "lessons", "test")  # what environment.txt pins
-MAKE_ANEW = "delete the folder .venv and run: python3 course.py check"
-NOT_BY_A_NEW_ENVIRONMENT = (
-    "its files are as pip installed them, so a new .venv would be the same: mend what the message names (a library of "
-    "the system?), or send this line to whoever gave you the course"
+MAKE_ANEW = (
+    "delete the folder .venv and run: python3 course.py check (if it stays, mend what the message names, such as a "
+    "library of the system, or send this line to whoever gave you the course)"
 )
 INSTALL_OPENGL = "as root: apt-get install -y --no-install-recommends libegl1 libgl1-mesa-dri libgl1"
-IMPORT_TIMEOUT_S = 600  # only what hangs takes so long
-RENDER_TIMEOUT_S = 600
-LEAST_FREE_MEMORY_GB = 1.0  # chosen: a kernel with the corridor's map and one batch of tiles, with room to spare
+HANGS_S = 600  # only what hangs takes so long
+MIN_FREE_MEMORY_GB = 1.0  # chosen: a kernel with the corridor's map and one batch of tiles, with room to spare
+MAX_ERROR_MM = 0.5  # from the closed form; the z-buffer's own steps are below 0.3 mm up to 15 m
 
 IMPORT_SCRIPT = """
 import importlib, sys
@@ -62,95 +55,56 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     findings = []
-    for finding in look():
-        print(finding, flush=True)
-        findings.append(finding)
+    for look in (check_packages, check_depth_images, check_machine):
+        for finding in look():
+            print(finding, flush=True)
+            findings.append(finding)
     failed = sum(not finding.ok for finding in findings)
     print(f"\n{failed} of {len(findings)} FAILED." if failed else f"\nAll {len(findings)} OK.", flush=True)
     return 1 if failed else 0
 
 
-def look() -> Iterator[Finding]:
-    """All findings, as they come."""
-    yield check_python()
-    yield from check_packages()
-    yield from check_depth_images()
-    yield check_machine()
-
-
-def check_python() -> Finding:
-    version = platform.python_version()
-    return Finding(sys.version_info >= (3, 11), f"Python {version} (wanted >=3.11)", "install Python 3.11 or newer")
-
-
 def check_packages() -> Iterator[Finding]:
-    """A finding for each dependency in the package's metadata: is it there, in the wanted range, importable?"""
-    try:
-        from packaging.requirements import Requirement
+    """A finding for Python and for each dependency: is it there, in the wanted range, importable?"""
+    from packaging.requirements import Requirement
 
-        requirements = [Requirement(text) for text in importlib.metadata.requires(DISTRIBUTION) or []]
-    except (ImportError, importlib.metadata.PackageNotFoundError) as error:
-        yield Finding(False, f"the list of dependencies cannot be read ({type(error).__name__}: {error})", MAKE_ANEW)
-        return
+    yield Finding(True, f"Python {platform.python_version()} (wanted >=3.11)")  # course.py has refused an older one
+    requirements = [Requirement(text) for text in importlib.metadata.requires(DISTRIBUTION) or []]
     here = [r for r in requirements if r.marker is None or any(r.marker.evaluate({"extra": e}) for e in EXTRAS)]
-    modules = {requirement.name: import_names(requirement.name) for requirement in here}
-    broken = find_broken_imports([name for names in modules.values() for name in names])
+    modules = import_names()
+    broken = find_broken_imports([name for r in here for name in modules.get(plain(r.name), [])])
     for requirement in here:
-        errors = [f"{name}: {broken[name]}" for name in modules[requirement.name] if name in broken]
-        yield check_package(requirement, errors[0] if errors else None)
-
-
-def check_package(requirement, import_error: str | None) -> Finding:
-    """The finding for one `packaging` Requirement, given what its import said (None: it imports)."""
-    wanted = f"(wanted {requirement.specifier or 'any version'})"
-    try:
-        version = importlib.metadata.version(requirement.name)
-    except importlib.metadata.PackageNotFoundError:
-        return Finding(False, f"{requirement.name} is not installed {wanted}", MAKE_ANEW)
-    text = f"{requirement.name} {version} {wanted}"
-    if version is None or not requirement.specifier.contains(version, prereleases=True):
-        return Finding(False, text, MAKE_ANEW)
-    if import_error is not None:
-        cure = NOT_BY_A_NEW_ENVIRONMENT if is_as_installed(requirement.name) else MAKE_ANEW
-        return Finding(False, f"{text} cannot be imported ({import_error})", cure)
-    return Finding(True, text)
-
-
-def import_names(distribution: str) -> list[str]:
-    """The modules that a distribution brings, by its own metadata: `skimage` of scikit-image; none where it is missing.
-
-    Of several modules, the one named as the distribution stands for all of them, since what lies beside it are parts
-    and helpers (`mpl_toolkits`); without such a one all that are not private count, and where all are, all.
-    """
-    try:
-        found = importlib.metadata.distribution(distribution)
-    except importlib.metadata.PackageNotFoundError:
-        return []
-    declared = (found.read_text("top_level.txt") or "").split()
-    listed = declared or [file.parts[0].split(".")[0] for file in found.files or [] if is_python_module(file)]
-    names = sorted({name for name in listed if name.isidentifier()})
-    own = [name for name in names if name.lower() == distribution.lower().replace("-", "_").replace(".", "_")]
-    return own or [name for name in names if not name.startswith("_")] or names
-
-
-def is_python_module(file: importlib.metadata.PackagePath) -> bool:
-    """Whether a file of a distribution is a module, or a part of a package, that can be imported from site-packages."""
-    return file.suffix in (".py", ".so", ".pyd") and file.parts[0] != ".."
-
-
-def is_as_installed(distribution: str) -> bool:
-    """Whether every file of a distribution has the size and checksum that its RECORD states."""
-    for file in importlib.metadata.files(distribution) or []:
-        if file.hash is None:  # RECORD itself
-            continue
+        wanted = f"(wanted {requirement.specifier or 'any version'})"
         try:
-            content = file.locate().read_bytes()
-        except OSError:
-            return False
-        digest = hashlib.new(file.hash.mode, content).digest()
-        if base64.urlsafe_b64encode(digest).rstrip(b"=").decode() != file.hash.value:
-            return False
-    return True
+            version = importlib.metadata.version(requirement.name)
+        except importlib.metadata.PackageNotFoundError:
+            yield Finding(False, f"{requirement.name} is not installed {wanted}", MAKE_ANEW)
+            continue
+        text = f"{requirement.name} {version} {wanted}"
+        errors = [f"{name}: {broken[name]}" for name in modules.get(plain(requirement.name), []) if name in broken]
+        if errors:
+            text += f" cannot be imported ({errors[0]})"
+        yield Finding(not errors and requirement.specifier.contains(version, prereleases=True), text, MAKE_ANEW)
+
+
+def plain(name: str) -> str:
+    return name.lower().replace("-", "_").replace(".", "_")
+
+
+def import_names() -> dict[str, list[str]]:
+    """Return distribution -> modules that it brings, such as scikit_image -> skimage.
+
+    Of several modules, the one named as the distribution stands for all: beside it lie parts, such as `mpl_toolkits`.
+    """
+    found: dict[str, list[str]] = {}
+    for module, distributions in importlib.metadata.packages_distributions().items():
+        for distribution in distributions:
+            if module.isidentifier():
+                found.setdefault(plain(distribution), []).append(module)
+    for name, modules in found.items():
+        own = [module for module in modules if module.lower() == name]
+        found[name] = own or [module for module in modules if not module.startswith("_")]
+    return found
 
 
 def find_broken_imports(modules: list[str]) -> dict[str, str]:
@@ -158,69 +112,82 @@ def find_broken_imports(modules: list[str]) -> dict[str, str]:
     broken: dict[str, str] = {}
     rest = list(modules)
     while rest:
-        code, output = run_apart(python("-c", IMPORT_SCRIPT, *rest), IMPORT_TIMEOUT_S)
-        begun = [line.split()[1] for line in output.splitlines() if line.startswith("importing ")]
+        code, output = run_apart("-c", IMPORT_SCRIPT, *rest)
         for line in output.splitlines():
             if line.startswith("broken "):
                 _, name, message = line.split(" ", 2)
                 broken[name] = message
         if code == 0:
-            return broken
-        culprit = begun[-1] if begun else rest[0]
+            break
+        culprit = [line.split()[1] for line in output.splitlines() if line.startswith("importing ")][-1]
         broken[culprit] = describe_exit(code)
         rest = rest[rest.index(culprit) + 1 :]
     return broken
 
 
 def check_depth_images() -> Iterator[Finding]:
-    """OpenGL's renderer, and one depth image of a tilted plane by each backend beside its closed form."""
+    """One depth image of a tilted plane by each backend, beside its closed form."""
     for backend, name in (("raster", "z-buffer"), ("vtk", "OpenGL's z-buffer"), ("ray", "ray casting")):
-        command = course_module("course_lib.commands.depth_image_probe", backend)
-        code, output = run_apart(command, RENDER_TIMEOUT_S)
-        result = read_result(output) if code == 0 else None
+        code, output = run_apart("-m", "course_lib.commands.check", backend)
+        lines = output.strip().splitlines() or [""]
+        results = [line for line in lines if line.startswith('["')]  # libraries' own messages may stand around it
         cure = INSTALL_OPENGL if backend == "vtk" else MAKE_ANEW
-        if result is None:
-            # The first sentence of its last line: the cure that errors name as well follows here anyway.
-            last = (output.strip().splitlines() or [""])[-1].split(". ")[0]
-            why = f"{describe_exit(code)}{': ' if last else ''}{last[:300]}"
+        if code != 0 or not results:
+            why = f"{describe_exit(code)}: {lines[-1].split('. ')[0][:300]}"
             yield Finding(False, f"no depth image by {name}: {why}", cure)
             continue
+        renderer, error_mm, n_pixels = json.loads(results[0])
         if backend == "vtk":
-            yield Finding(True, f"OpenGL renderer: {result['renderer']}")
+            yield Finding(True, f"OpenGL renderer: {renderer}")
         yield Finding(
-            result["largest_error_mm"] <= LARGEST_ERROR_MM,
-            f"depth image by {name}: largest error {result['largest_error_mm']:.4f} mm in {result['pixels']:,} pixels "
-            f"of a tilted plane (at most {LARGEST_ERROR_MM} mm)",
-            f"the driver draws wrongly; install Mesa's, {cure}" if backend == "vtk" else cure,
+            error_mm <= MAX_ERROR_MM,
+            f"depth image by {name}: largest error {error_mm:.4f} mm in {n_pixels:,} pixels of a tilted plane (at most "
+            f"{MAX_ERROR_MM} mm)",
+            cure,
         )
 
 
-def check_machine() -> Finding:
-    """Cores this process may use and memory that is free; too little memory stops kernels without a word."""
-    cores = processors()
-    free = free_memory_gb()
-    if free is None:
-        return Finding(True, f"{cores} cores; this system does not tell its free memory")
-    text = f"{cores} cores, {free:.1f} GB of memory free (wanted at least {LEAST_FREE_MEMORY_GB:g} GB)"
-    return Finding(free >= LEAST_FREE_MEMORY_GB, text, "close other programs, or take a machine with more memory")
+def render_plane(backend: str) -> tuple[str, float, int]:
+    """Render a tilted plane: the renderer's name, the largest error in millimetres, the number of pixels.
+
+    The plane n . X = d, seen along the pixel ray r (forward component one), has depth d / (n . r). A pixel that hit
+    nothing has an infinite error. Raises what `DepthRenderer` raises.
+    """
+    import numpy as np
+
+    from course_lib.geometry import optical_pose
+    from course_lib.rendering.camera import DepthCamera
+    from course_lib.rendering.renderer import DepthRenderer
+    from course_lib.rendering.scene_map import SceneMap
+
+    camera, state = DepthCamera.sr4000(), np.array([4.0, -2.0, 1.2, 0.1, -0.2, 2.5])  # no component is zero
+    normal, point = np.array([0.35, 0.25, 1.0]), np.array([0.0, 0.0, 3.0])  # in the optical frame
+    across = np.cross(normal, [0.0, 1.0, 0.0]) / np.linalg.norm(np.cross(normal, [0.0, 1.0, 0.0]))
+    along = np.cross(normal, across) / np.linalg.norm(normal)
+    corners = point + 12.0 * np.array([-across - along, across - along, across + along, -across + along])
+    pose = optical_pose(state)
+    scene_map = SceneMap(corners @ pose[:3, :3].T + pose[:3, 3], np.array([[0, 1, 2], [0, 2, 3]]))
+    with DepthRenderer(scene_map, camera, backend=backend) as renderer:
+        image = renderer.render(state[np.newaxis])[0]
+        error = np.abs(image.astype(np.float64) - normal @ point / (camera.rays() @ normal)).max()
+        return renderer.describe(), 1000 * float(error), image.size
 
 
-def free_memory_gb() -> float | None:
-    """Memory that programs can still get, in 10^9 bytes; None where the system does not tell (only Linux does)."""
+def check_machine() -> Iterator[Finding]:
+    """Processors that this process may use, and free memory: too little memory stops kernels without a word."""
+    import psutil
+    from joblib import cpu_count
+
+    free = psutil.virtual_memory().available / 1e9
+    text = f"{cpu_count()} cores, {free:.1f} GB of memory free (wanted at least {MIN_FREE_MEMORY_GB:g} GB)"
+    yield Finding(free >= MIN_FREE_MEMORY_GB, text, "close other programs, or take a machine with more memory")
+
+
+def run_apart(*words: str, timeout_s: float = HANGS_S) -> tuple[int | None, str]:
+    """Exit code and output of a Python of its own; the code is None when it ran out of time."""
+    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
     try:
-        with open("/proc/meminfo", encoding="ascii") as file:
-            kibibytes = next(int(line.split()[1]) for line in file if line.startswith("MemAvailable:"))
-        return kibibytes * 1024 / 1e9
-    except (OSError, StopIteration, ValueError):
-        return None
-
-
-def run_apart(command: list[str], timeout_s: float) -> tuple[int | None, str]:
-    """Exit code and output of a command in a process of its own; the code is None when it ran out of time."""
-    try:
-        done = run_child(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=timeout_s
-        )
+        done = subprocess.run([sys.executable, "-P", *words], timeout=timeout_s, **pipes)
     except subprocess.TimeoutExpired as expired:
         return None, (expired.stdout or b"").decode("utf-8", "replace")
     return done.returncode, done.stdout.decode("utf-8", "replace")
@@ -231,3 +198,10 @@ def describe_exit(code: int | None) -> str:
     if code is None:
         return "no answer in time"
     return f"crashed with signal {-code}" if code < 0 else f"stopped with code {code}"
+
+
+if __name__ == "__main__":
+    try:
+        print(json.dumps(render_plane(sys.argv[1])), flush=True)
+    except Exception as error:
+        sys.exit(f"{type(error).__name__}: {error}")

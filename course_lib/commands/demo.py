@@ -9,7 +9,7 @@ import json
 from pathlib import Path
 
 from course_lib.commands.arguments import (
-    MOST_PARTICLES,
+    MAX_PARTICLES,
     add_backend_argument,
     parse_numbers,
     parse_seeds,
@@ -223,7 +223,7 @@ def _check(parameters: dict) -> None:
             parameters[option] = parse_numbers(f"--{option}", parameters[option])
     for option in ("frames", "poses", "places"):
         require_count(f"--{option}", parameters.get(option))
-    require_count("--particles", parameters.get("particles"), MOST_PARTICLES)
+    require_count("--particles", parameters.get("particles"), MAX_PARTICLES)
 
 
 def _network(detector: Path | None, input_size: list[int] | None, score_threshold: float | None):

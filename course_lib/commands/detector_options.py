@@ -1,4 +1,4 @@
-"""The options that say which detector a command uses, and that detector."""
+"""The options that choose a command's detector, and the detector that they choose."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ STRIDE = 32  # pixels of the input that one cell of a YOLOv4's coarsest grid cov
 
 
 def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares --detector, --input-size and --score-threshold."""
+    """Declare --detector, --input-size and --score-threshold."""
     parser.add_argument(
         "--detector",
         type=Path,
@@ -38,10 +38,7 @@ def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def chosen_detector(arguments: argparse.Namespace) -> YoloDetector:
-    """The detector that the options name, loaded.
-
-    Raises `ValueError` for an input size or a threshold that no network can have, and what `YoloDetector.load` raises.
-    """
+    """Load the detector that the options name. Raises `ValueError`, and what `YoloDetector.load` raises."""
     from course_lib.paths import data_path
     from course_lib.spherical_stereo.detection.detector import YoloDetector
 

@@ -6,12 +6,11 @@ import argparse
 import secrets
 import sys
 import time
-from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder, require_processes
+from course_lib.commands.progress import progress_bar
 from course_lib.files import run_folder
-from course_lib.processors import processors
 
 TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"
 
@@ -55,6 +54,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     if sys.platform == "win32":
         raise RuntimeError("grading needs Linux; on Windows use the Windows Subsystem for Linux (WSL 2)")
+    from joblib import cpu_count
+
     # Only here: they bring the lessons with them.
     from course_lib.classroom.confinement import Limits
     from course_lib.classroom.grade_page import grade_page
@@ -72,8 +73,9 @@ def run(arguments: argparse.Namespace) -> int:
     seed = secrets.randbelow(2**48) if arguments.seed is None else arguments.seed
     limits = Limits(arguments.call_seconds, arguments.seconds, arguments.memory)
     started = time.monotonic()
-    jobs, trusted, scores = arguments.jobs or processors(), arguments.trusted, arguments.scores
-    results = grade_folder(arguments.folder, seed, jobs, limits, trusted, scores, progress_bar)
+    jobs, trusted, scores = arguments.jobs or cpu_count(), arguments.trusted, arguments.scores
+    bar = progress_bar("grading", "answer")
+    results = grade_folder(arguments.folder, seed, jobs, limits, trusted, scores, bar)
     pages = {TABLE: answers_table(results), TOTALS: totals_table(results), PAGE: grade_page(results)}
     print(summary(results, time.monotonic() - started), flush=True)  # before the disk can be full
     write(out, pages)
@@ -89,15 +91,8 @@ def results_folder(folder: Path, out: Path | None) -> Path:
     return found
 
 
-def progress_bar(graded: Iterable, total: int) -> Iterator:
-    from tqdm import tqdm
-
-    interval = 0.1 if sys.stderr.isatty() else 10.0
-    return tqdm(graded, desc="grading", unit="answer", total=total, mininterval=interval, file=sys.stderr)
-
-
 def write(out: Path, pages: dict[str, str]) -> None:
-    """All the files in the place of an earlier grading's, at once: the table and the page are of one grading."""
+    """Put all the files in the place of an earlier grading's: the table and the page are of one grading."""
     with run_folder(out, "grade") as new:
         for name, text in pages.items():
             (new / name).write_bytes(text.encode("utf-8"))

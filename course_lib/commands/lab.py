@@ -1,8 +1,8 @@
 """Open the lessons in JupyterLab, on this computer only.
 
-What opens are the student's own copies, in `work/` (course_lib/commands/working_copies.py). The server listens on
-127.0.0.1 with its token on. Its settings, the student's own included, live in a folder of the environment
-(`.venv/course-lab`), so that nothing in the user's home is read or changed.
+The student's own copies open, from `work/` (course_lib/commands/working_copies.py). The server listens on 127.0.0.1
+with its token on. Its settings, the student's own included, live in a folder of the environment (`.venv/course-lab`),
+so that nothing in the user's home is read or changed.
 """
 
 from __future__ import annotations
@@ -15,43 +15,26 @@ import subprocess
 import sys
 from pathlib import Path
 
-from course_lib.child import KERNEL_PATH, clean_environment, course_module
-from course_lib.child import run as run_child
-from course_lib.commands.lab_port import FIRST, reserve_port
-from course_lib.commands.lesson_versions import NOTEBOOKS, lessons
 from course_lib.commands.saved_panels import HOOK
-from course_lib.commands.working_copies import WORK, copy_of, make_copies
+from course_lib.commands.working_copies import NOTEBOOKS, WORK, copy_of, lessons, make_copies
 from course_lib.files import atomic_write
+from course_lib.paths import REPOSITORY
 
-ROOT = Path(__file__).resolve().parents[2]
 EXTENSION = Path(__file__).with_name("lab_extension")
 FIRST_LESSON = "work/00_start_here.ipynb"
 
 # Parts of JupyterLab that a student does not need: what other packages bring along, and what would ask or load things.
-DISABLED_SERVER_EXTENSIONS = (
-    "jupyter_lsp",
-    "jupyter_server_proxy",
-    "jupyter_server_terminals",
-    "nbgrader.server_extensions.assignment_list",
-    "nbgrader.server_extensions.course_list",
-    "nbgrader.server_extensions.formgrader",
-    "nbgrader.server_extensions.validate_assignment",
-    "notebook",
-    "trame_jupyter_extension",
-)
-DISABLED_LAB_EXTENSIONS = (
-    "@jupyter/nbgrader",
-    "@jupyter-notebook/lab-extension",
-    "@jupyterhub/jupyter-server-proxy",
-    "@jupyterlab/apputils-extension:announcements",
-    "@jupyterlab/extensionmanager-extension",
-    "@jupyterlab/fileeditor-extension:language-server",
-    "@jupyterlab/hub-extension",
-    "@jupyterlab/lsp-extension",
-    "@jupyterlab/notebook-extension:language-server",
-    "@jupyterlab/terminal-extension",
-    "trame_jupyter_extension",
-)
+DISABLED_SERVER_EXTENSIONS = """
+jupyter_lsp jupyter_server_proxy jupyter_server_terminals notebook trame_jupyter_extension
+nbgrader.server_extensions.assignment_list nbgrader.server_extensions.course_list
+nbgrader.server_extensions.formgrader nbgrader.server_extensions.validate_assignment
+""".split()
+DISABLED_LAB_EXTENSIONS = """
+@jupyter/nbgrader @jupyter-notebook/lab-extension @jupyterhub/jupyter-server-proxy trame_jupyter_extension
+@jupyterlab/apputils-extension:announcements @jupyterlab/extensionmanager-extension @jupyterlab/hub-extension
+@jupyterlab/fileeditor-extension:language-server @jupyterlab/notebook-extension:language-server
+@jupyterlab/lsp-extension @jupyterlab/terminal-extension
+""".split()
 SETTINGS = {
     "@jupyterlab/apputils-extension:notification": {"fetchNews": "false", "checkForUpdates": False},
     # Lessons bring their kernel; cells outside the view are drawn too, so that links and searches find them.
@@ -84,27 +67,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     if arguments.port is not None and not 1 <= arguments.port <= 65535:
         raise ValueError(f"--port must lie between 1 and 65535; got {arguments.port}")
-    notebook = copy_of(arguments.notebook or "00", ROOT)
-    for sentence in make_copies(ROOT, arguments.fresh):
+    notebook = copy_of(arguments.notebook or "00", REPOSITORY)
+    for sentence in make_copies(REPOSITORY, arguments.fresh):
         print(sentence, flush=True)
     if arguments.fresh and not arguments.notebook:
-        notebook = copy_of(arguments.fresh[0], ROOT)
-    make_progress_page(ROOT)
-    near, _ = (arguments.port, None) if arguments.port else reserve_port()  # its lock is the server's to keep
-    command, environment = lab_command(arguments.port, not arguments.no_browser, notebook, root=ROOT, near=near)
+        notebook = copy_of(arguments.fresh[0], REPOSITORY)
+    command, environment = lab_command(arguments.port, not arguments.no_browser, notebook, root=REPOSITORY)
+    make_progress_page(REPOSITORY, environment)
     print("Starting JupyterLab. Keep this window open; Ctrl-C ends it. Its address:", flush=True)
     if os.name == "nt":  # execve does not wait there
-        return subprocess.call(command, env=environment, cwd=ROOT)
+        return subprocess.call(command, env=environment, cwd=REPOSITORY)
     os.execve(command[0], command, environment)
 
 
-def make_progress_page(root: Path) -> None:
-    """Writes work/progress.html where there is none yet; `check` and `predict` bring it up to date."""
+def make_progress_page(root: Path, environment: dict[str, str]) -> None:
+    """Write work/progress.html if there is none yet. A lesson's checks and predictions bring it up to date."""
     page = root / WORK / "progress.html"
     if not page.exists():
-        command = course_module("course_lib.lessons.kit.show_progress", "--out", page)
-        record = {"COURSE_RECORD": str(root / WORK / "record")}
-        run_child(command, record, capture_output=True)  # lessons run without a page as well
+        command = [sys.executable, "-P", "-m", "course_lib.lessons.kit.show_progress", "--out", str(page)]
+        subprocess.run(command, env=environment, capture_output=True, check=False)  # lessons run without it as well
 
 
 def lab_command(
@@ -112,25 +93,23 @@ def lab_command(
     browser: bool = False,
     notebook: str = FIRST_LESSON,
     state_folder: str | os.PathLike | None = None,
-    root: Path = ROOT,
-    near: int = FIRST,
+    root: Path = REPOSITORY,
 ) -> tuple[list[str], dict[str, str]]:
-    """Command and environment variables that start the lessons' JupyterLab; writes its settings into `state_folder`.
+    """Write the settings of the lessons' JupyterLab, and return its command and environment variables.
 
-    port: None takes `near` or the next free one; a given port is taken or the start fails. notebook: path below `root`.
+    port: None takes 8888 or the next free one; a given port is taken or the start fails. notebook: path below `root`.
     state_folder: where settings, workspaces and the kernel's history are kept (None: `.venv/course-lab`). root: the
     folder that JupyterLab shows, with notebooks/ and work/ in it; predictions and checks are recorded in its
     work/record. JUPYTER_TOKEN in the environment, where it is set, is the token; else a random one is printed.
     """
     state = Path(state_folder) if state_folder is not None else Path(sys.prefix) / "course-lab"
     write_settings(state)
-    install_extension(state)
     trust_lessons(state, root)
-    command = [
-        *course_module("jupyterlab"),
+    command = [sys.executable, "-P", "-m", "jupyterlab"]
+    command += [
         "--ServerApp.ip=127.0.0.1",
-        f"--ServerApp.port={near if port is None else port}",
-        f"--ServerApp.port_retries={50 if port is None else 0}",
+        f"--ServerApp.port={port or 8888}",
+        f"--ServerApp.port_retries={0 if port else 50}",
         f"--ServerApp.open_browser={browser}",
         f"--ServerApp.root_dir={root}",
         f"--LabApp.default_url=/lab/tree/{notebook}",
@@ -139,7 +118,8 @@ def lab_command(
     ]
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         command.append("--ServerApp.allow_root=True")  # containers run as root; the server still listens here only
-    environment = clean_environment()
+    others = ("JUPYTER_PATH", "JUPYTER_CONFIG_PATH")  # from which the server would take foreign settings
+    environment = {name: value for name, value in os.environ.items() if name not in others}
     if not environment.get("JUPYTER_TOKEN"):
         environment.pop("JUPYTER_TOKEN", None)  # set but empty, it would switch the token off
     environment.update(
@@ -155,7 +135,7 @@ def lab_command(
 
 
 def write_settings(state: Path) -> None:
-    """Writes the settings files of the server, of JupyterLab and of the kernel below the folder `state`."""
+    """Write the settings of the server, of JupyterLab and of the kernel, and the course's extension, below `state`."""
     files = {
         "config/jupyter_server_config.json": {
             "ServerApp": {"jpserver_extensions": dict.fromkeys(DISABLED_SERVER_EXTENSIONS, False)},
@@ -173,39 +153,27 @@ def write_settings(state: Path) -> None:
         },
         "config/labconfig/default_setting_overrides.json": SETTINGS,
         # Every kernel would warn that it talks to the server unencrypted; both are on this computer.
-        "ipython/profile_default/ipython_kernel_config.json": {
-            "IPKernelApp": {"log_level": "ERROR", "exec_lines": [KERNEL_PATH]}
-        },
+        "ipython/profile_default/ipython_kernel_config.json": {"IPKernelApp": {"log_level": "ERROR"}},
     }
+    files = {name: json.dumps(content, indent=1) for name, content in files.items()}
+    for path in (path for path in EXTENSION.rglob("*") if path.is_file()):
+        files[f"data/labextensions/course-lab/{path.relative_to(EXTENSION).as_posix()}"] = path.read_bytes()
     for name, content in files.items():
-        path = state / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        atomic_write(path, json.dumps(content, indent=1))  # another lab may be reading it
+        (state / name).parent.mkdir(parents=True, exist_ok=True)
+        atomic_write(state / name, content)  # another lab may be reading it
 
 
-def install_extension(state: Path) -> None:
-    """Puts the course's extension where JupyterLab finds it: the names of a panel's controls, and its look."""
-    name = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))["name"]
-    for path in sorted(EXTENSION.rglob("*")):
-        if path.is_file():
-            target = state / "data" / "labextensions" / name / path.relative_to(EXTENSION)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            atomic_write(target, path.read_bytes())
+def trust_lessons(state: Path, root: Path) -> None:
+    """Sign the lessons, so that their stored 3D scenes show before a cell is run: they come with the course's code.
 
-
-def trust_lessons(state: Path, root: Path = ROOT) -> None:
-    """Signs the lessons, so that their stored 3D scenes show before a cell is run: they come with the course's code.
-
-    What is signed is the content: a copy in work/ is trusted for as long as it is the lesson's, and what a student runs
-    and saves is signed by JupyterLab. A file that somebody put into work/ is not.
+    The content is signed. A copy in work/ is trusted for as long as it is the lesson's, and JupyterLab signs what a
+    student runs and saves. A file that somebody put into work/ is not trusted.
     """
     from nbformat import read
     from nbformat.reader import NotJSONError
     from nbformat.sign import NotebookNotary
 
-    data = state / "data"
-    data.mkdir(parents=True, exist_ok=True)
-    notary = NotebookNotary(data_dir=str(data))
+    notary = NotebookNotary(data_dir=str(state / "data"))
     for name in lessons(root).values():
-        with contextlib.suppress(NotJSONError):  # a merge that stopped half-way; `make_copies` has said so
+        with contextlib.suppress(NotJSONError):  # a merge that stopped half-way
             notary.sign(read(root / NOTEBOOKS / name, as_version=4))

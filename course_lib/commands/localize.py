@@ -8,18 +8,28 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from collections import Counter
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.commands.arguments import add_backend_argument
-from course_lib.commands.localize_report import believed, localize_table, write_localized
-from course_lib.commands.localize_start import found_start, given_start, join_words
+from course_lib.commands.arguments import (
+    MAX_PARTICLES,
+    add_backend_argument,
+    require_count,
+    require_output_folder,
+    require_positive,
+    require_seed,
+    warn_of_fewer,
+)
 from course_lib.files import run_folder
 
-__all__ = ["add_arguments", "join_words", "run"]
+if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
+    from course_lib.depth_mcl.sequence import DepthSequence
+    from course_lib.rendering.scene_map import SceneMap
 
 EPILOG = """\
 the folder of the recording:
@@ -41,15 +51,15 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options of `localize`."""
     from course_lib.depth_mcl.sequence import FAR, NEAR
     from course_lib.depth_mcl.sequence_files import UNITS_PER_METRE
 
     parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the examples
     parser.epilog = EPILOG
-    parser.add_argument("--map", required=True, type=Path, metavar="MESH", help="mesh in metres (PLY, OBJ, STL, GLB)")
-    parser.add_argument("--sequence", required=True, type=Path, metavar="FOLDER", help="folder of the recording")
-    parser.add_argument(
+    add = parser.add_argument
+    add("--map", required=True, type=Path, metavar="MESH", help="mesh in metres (PLY, OBJ, STL, GLB)")
+    add("--sequence", required=True, type=Path, metavar="FOLDER", help="folder of the recording")
+    add(
         "--start",
         metavar="POSE",
         help="pose of the camera's body (x forward, y left, z up) in the first frame: six numbers, X Y Z in metres in "
@@ -57,72 +67,48 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "which --up turns another one); or a file with a 4 x 4 camera-to-world matrix, or whose first row is one of "
         "poses.txt; or unknown: it is searched for in the whole map, which needs --up (default: that of the recording)",
     )
-    parser.add_argument(
-        "--depth-scale",
-        type=float,
-        default=UNITS_PER_METRE,
-        metavar="N",
-        help="units of the depth images in a metre (default: 1000, millimetres; TUM RGB-D files: 5000)",
-    )
-    parser.add_argument(
-        "--near", type=float, default=NEAR, metavar="M", help=f"what is nearer is not seen, metres (default: {NEAR:g})"
-    )
-    parser.add_argument(
-        "--far", type=float, default=FAR, metavar="M", help=f"what is farther is not seen, metres (default: {FAR:g})"
-    )
-    parser.add_argument("--dof", choices=["xyyaw", "6"], default="6", help="what to estimate (default: 6)")
-    parser.add_argument(
+    per_metre = "units of the depth images in a metre (default: 1000, millimetres; TUM RGB-D files: 5000)"
+    add("--depth-scale", type=float, default=UNITS_PER_METRE, metavar="N", help=per_metre)
+    add("--near", type=float, default=NEAR, metavar="M", help=f"nothing nearer is seen, metres (default: {NEAR:g})")
+    add("--far", type=float, default=FAR, metavar="M", help=f"nothing farther is seen, metres (default: {FAR:g})")
+    add("--dof", choices=["xyyaw", "6"], default="6", help="what to estimate (default: 6)")
+    add(
         "--up",
         choices=["x", "-x", "y", "-y", "z", "-z", "unknown"],
         help="the axis of map and poses that points up (default: what up.txt in the folder says, else unknown)",
     )
-    parser.add_argument(
+    add(
         "--method",
         choices=["annealed", "paper"],
         help="the filter: annealed and refined, which adapts to the camera's motion (default with --dof 6, six degrees "
         "of freedom only), or the paper's (default with --dof xyyaw), whose particles and noise are set by hand",
     )
-    parser.add_argument(
+    add(
         "--recover",
         action="store_true",
         help="search the whole map when the annealed filter is lost: seconds a frame until it is found again",
     )
-    parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
-    parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames")
-    parser.add_argument(
-        "--sigma-position",
-        type=float,
-        metavar="M",
-        help="system noise a frame of the paper's, metres (default: 0.05; xyyaw: 0.15)",
-    )
-    parser.add_argument(
-        "--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (default: 2; xyyaw: 1.5)"
-    )
-    parser.add_argument(
-        "--drop-far", action="store_true", help="leave out triangles more than 5 km from the middle of the map"
-    )
+    add("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
+    add("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
+    add("--frames", type=int, metavar="N", help="only the first N frames")
+    noise = "system noise a frame of the paper's filter, metres (default: 0.05; xyyaw: 0.15)"
+    add("--sigma-position", type=float, metavar="M", help=noise)
+    add("--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (default: 2; xyyaw: 1.5)")
+    add("--drop-far", action="store_true", help="leave out triangles more than 5 km from the middle of the map")
     add_backend_argument(parser)
-    parser.add_argument(
+    add(
         "--out",
         type=Path,
         metavar="FOLDER",
         help="write results, trajectory, figure and scene here (track.html: map, path and the worst frames' points, to "
         "be turned in a browser)",
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+    add("--json", action="store_true", help="print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Runs the filter; 0 when it reached the last frame, whatever it believes of the track."""
-    from course_lib.commands.arguments import (
-        MOST_PARTICLES,
-        require_count,
-        require_output_folder,
-        require_positive,
-        require_seed,
-        warn_of_fewer,
-    )
+    """Run the filter. 0 when it reached the last frame, whatever it believes of the track."""
+    from course_lib.commands.localize_report import believed, localize_table, write_localized
     from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments.recordings import (
@@ -134,17 +120,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     from course_lib.rendering.scene_map import SceneMap
 
-    method = _method(arguments)
-    require_seed(arguments.seed)
-    require_count("--particles", arguments.particles, MOST_PARTICLES)
-    require_count("--frames", arguments.frames)
-    require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
-    require_positive("--near", arguments.near, "metres")
-    require_positive("--far", arguments.far, "metres")
-    if arguments.near >= arguments.far:
-        raise ValueError(f"--near must be below --far; got {arguments.near:g} and {arguments.far:g} m")
-    if arguments.out:
-        require_output_folder(arguments.out)
+    method, sigma = _checked(arguments)
     sequence = read_sequence(arguments.sequence, arguments.depth_scale)
     warn_of_fewer("--frames", arguments.frames, len(sequence.frames), f"{arguments.sequence} has")
     up = arguments.up or sequence.up or "unknown"
@@ -156,12 +132,11 @@ def run(arguments: argparse.Namespace) -> int:
     scene_map = SceneMap.load(arguments.map, drop_far=arguments.drop_far)
     searched = {}
     if arguments.start == "unknown":
-        sequence, start, searched = found_start(arguments, scene_map, sequence, up)
+        sequence, start, searched = _found_start(arguments, scene_map, sequence, up)
     else:
-        start = given_start(arguments.start, sequence, "z" if up == "unknown" else up)
+        start = _given_start(arguments.start, sequence, "z" if up == "unknown" else up)
     if method == "paper":
-        noise = system_noise(arguments.dof, *_sigma(arguments))
-        localized = partial(run_sequence, **noise)
+        localized = partial(run_sequence, **system_noise(arguments.dof, *sigma))
     else:
         localized = run_recovering if arguments.recover else run_annealed
     result = localized(
@@ -180,7 +155,21 @@ def run(arguments: argparse.Namespace) -> int:
         progress=progress_bar("localizing"),
     )
     summary = {
-        **_options(arguments, up),
+        "method": method,
+        **({"sigma_position_m": sigma[0], "sigma_rotation_deg": sigma[1]} if method == "paper" else {}),
+        "recover": arguments.recover,
+        "n_particles": arguments.particles,
+        "map": str(arguments.map),
+        "sequence": str(arguments.sequence),
+        "start": arguments.start or "first row of poses.txt",
+        "dof": arguments.dof,
+        "up": up,
+        "seed": arguments.seed,
+        "depth_units_per_metre": arguments.depth_scale,
+        "near_m": arguments.near,
+        "far_m": arguments.far,
+        "backend": arguments.backend,
+        "exact": arguments.exact,
         **searched,
         "frames": len(result.frames),
         "frames_without_measurement": result.frames_without_measurement,
@@ -203,57 +192,113 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _method(arguments: argparse.Namespace) -> str:
-    """The filter to use; `ValueError` for options that it does not have."""
+def _checked(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
+    """Return the filter to use and its system noise a frame (metres, degrees); `ValueError` for what does not fit."""
+    from course_lib.experiments.recordings import SIGMA
+
     method = arguments.method or ("annealed" if arguments.dof == "6" else "paper")
     if arguments.recover and method == "paper":
         raise ValueError("--recover goes with the annealed filter: --dof 6, and not --method paper")
-    if method == "paper":
-        return method
-    if arguments.dof != "6":
+    if method == "annealed" and arguments.dof != "6":
         raise ValueError("--method annealed estimates six degrees of freedom: leave out --dof xyyaw, or --method")
-    for option in ("sigma_position", "sigma_rotation"):
-        if getattr(arguments, option) is not None:
+    sigma = list(SIGMA[arguments.dof])
+    for index, (name, limit, unit) in enumerate((("position", 10, "m"), ("rotation", 180, "degrees"))):
+        given = getattr(arguments, f"sigma_{name}")
+        if given is None:
+            continue
+        if method == "annealed":
             raise ValueError(
-                f"--{option.replace('_', '-')} goes with --method paper: the annealed filter takes its noise from how "
-                "far the camera has been moving"
+                f"--sigma-{name} goes with --method paper: the annealed filter takes its noise from how far the camera "
+                "has been moving"
             )
-    return method
+        if not 0 <= given <= limit:
+            raise ValueError(f"--sigma-{name} must be between 0 and {limit} {unit} a frame; got {given:g}")
+        sigma[index] = given
+    require_seed(arguments.seed)
+    require_count("--particles", arguments.particles, MAX_PARTICLES)
+    require_count("--frames", arguments.frames)
+    require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
+    require_positive("--near", arguments.near, "metres")
+    require_positive("--far", arguments.far, "metres")
+    if arguments.near >= arguments.far:
+        raise ValueError(f"--near must be below --far; got {arguments.near:g} and {arguments.far:g} m")
+    if arguments.out:
+        require_output_folder(arguments.out)
+    return method, tuple(sigma)
 
 
-def _sigma(arguments: argparse.Namespace) -> tuple[float, float]:
-    """System noise a frame: metres, degrees."""
-    from course_lib.experiments.recordings import SIGMA
+def join_words(words: list[str]) -> list[str]:
+    """Make `--up -y` and `--start 2 -0.5 1e-3 ...` one word each: argparse would take -y for an option."""
+    joined = list(words)
+    for index in range(len(words) - 2, -1, -1):
+        if words[index] == "--up" and words[index + 1] in ("-x", "-y", "-z"):
+            joined[index : index + 2] = [f"--up={words[index + 1]}"]
+        if words[index] == "--start":
+            end = index + 1
+            while end < len(words) and _numbers(words[end]):
+                end += 1
+            if end > index + 1:
+                joined[index:end] = ["--start=" + " ".join(words[index + 1 : end])]
+    return joined
 
-    position, rotation_deg = SIGMA[arguments.dof]
-    position = position if arguments.sigma_position is None else arguments.sigma_position
-    rotation_deg = rotation_deg if arguments.sigma_rotation is None else arguments.sigma_rotation
-    for name, value, most, unit in (("position", position, 10, "m"), ("rotation", rotation_deg, 180, "degrees")):
-        if not 0 <= value <= most:
-            raise ValueError(f"--sigma-{name} must be between 0 and {most} {unit} a frame; got {value:g}")
-    return position, rotation_deg
+
+def _numbers(text: str) -> list[float]:
+    """Return the numbers that a word, or a quoted list of words, is made of; none where anything else is among them."""
+    try:
+        return [float(word) for word in text.replace(",", " ").split()]
+    except ValueError:
+        return []
 
 
-def _options(arguments: argparse.Namespace, up: str) -> dict:
-    """What was asked for, as the results keep it."""
-    method = _method(arguments)
-    own = {"method": method}
-    if method == "paper":
-        position, rotation_deg = _sigma(arguments)
-        own |= {"sigma_position_m": position, "sigma_rotation_deg": rotation_deg}
-    return {
-        **own,
-        "recover": arguments.recover,
-        "n_particles": arguments.particles,
-        "map": str(arguments.map),
-        "sequence": str(arguments.sequence),
-        "start": arguments.start or "first row of poses.txt",
-        "dof": arguments.dof,
-        "up": up,
-        "seed": arguments.seed,
-        "depth_units_per_metre": arguments.depth_scale,
-        "near_m": arguments.near,
-        "far_m": arguments.far,
-        "backend": arguments.backend,
-        "exact": arguments.exact,
-    }
+def _found_start(
+    arguments: argparse.Namespace, scene_map: SceneMap, sequence: DepthSequence, up: str
+) -> tuple[DepthSequence, np.ndarray, dict]:
+    """Return the recording from the frame in which its place was found, the pose there, and what the results tell.
+
+    Raises `ValueError` where no place was found, or several that nobody can tell apart.
+    """
+    from course_lib.commands.progress import progress_bar
+    from course_lib.experiments.recordings import find_start
+
+    if up == "unknown":
+        raise ValueError("--start unknown needs --up AXIS: only with gravity known can the whole map be searched")
+    bar = progress_bar("searching")
+    options = {"seed": arguments.seed, "up": up, "near": arguments.near, "far": arguments.far, "progress": bar}
+    index, candidates, start = find_start(scene_map, sequence, **options)
+    if candidates.status != "found":
+        where = "; ".join(
+            f"({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.rad2deg(yaw):.0f} degrees (evidence {place.evidence:.2f})"
+            for place in candidates.poses
+            for x, y, z, yaw in [(*place.state[:3], place.state[5])]
+        )
+        raise ValueError(
+            f"the start was not found in {index + 1} frames: "
+            + (f"it may be at {where}; in a world whose z is up" if where else "no place agrees with the images")
+            + ". Give --start, or a recording that begins where the building looks like no other place"
+        )
+    return sequence.thinned(1, index), start, {"found_in_frame": sequence.frames[index]}
+
+
+def _given_start(given: str | None, sequence: DepthSequence, up: str) -> np.ndarray:
+    """Camera-to-world matrix `(4, 4)` of the first frame in the map's own world, optical convention."""
+    from course_lib.depth_mcl.sequence_files import read_pose
+    from course_lib.geometry import optical_pose, rotation_to_z_up
+
+    if given is None:
+        if not sequence.has_poses:
+            raise ValueError(
+                f"where does the camera start? {sequence.folder} holds no poses.txt; give --start X Y Z ROLL PITCH YAW "
+                "(metres, degrees) or --start FILE with a 4 x 4 camera-to-world matrix"
+            )
+        return sequence.camera_to_world[0]
+    numbers = _numbers(given)
+    if not numbers:
+        return read_pose(given)
+    if len(numbers) != 6 or not all(map(math.isfinite, numbers)):
+        raise ValueError(
+            f"--start needs six finite numbers, X Y Z in metres and ROLL PITCH YAW in degrees, or a file; got {given!r}"
+        )
+    state = np.concatenate([np.zeros(3), np.deg2rad(numbers[3:])])
+    start = np.linalg.inv(rotation_to_z_up(up)) @ optical_pose(state)
+    start[:3, 3] = numbers[:3]
+    return start

@@ -41,13 +41,16 @@ def localize_table(s: dict) -> str:
     by = f"{s['n_particles']} particles" if s["method"] == "paper" else "the annealed filter"
     lines = [f"{s['frames']} frames, {estimated} estimated with {by}", ""]
     if "median_position_m" in s:
+        error = s["mean_normalized_error"]
+        unknown = "unknown (too few particles to span the motion)"
+        honest = unknown if error is None else f"{error:.2f} in the mean (1 is honest)"
         lines += [
             "                      median   90th percentile",
             f"position error [m]    {s['median_position_m']:6.3f}   {s['p90_position_m']:6.3f}",
             f"rotation error [deg]  {s['median_rotation_deg']:6.2f}   {s['p90_rotation_deg']:6.2f}",
             "",
             f"within 5 cm and 5 degrees: {s['within_5cm_5deg_percent']:.1f} %",
-            f"squared error in units of its covariance: {_in_the_mean(s['mean_normalized_error'])}",
+            f"squared error in units of its covariance: {honest}",
         ]
     else:
         lines += ["no poses.txt: errors are not known", ""]
@@ -60,16 +63,10 @@ def localize_table(s: dict) -> str:
     return "\n".join(lines)
 
 
-def _in_the_mean(normalized: float | None) -> str:
-    if normalized is None:
-        return "unknown (too few particles to span the motion)"
-    return f"{normalized:.2f} in the mean (1 is honest)"
-
-
 def write_localized(
     folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap
 ) -> list[str]:
-    """Writes options and numbers (JSON), a row a frame (CSV), the trajectory (TUM), figure and scene; says what."""
+    """Write numbers (JSON), a row a frame (CSV), trajectory (TUM), figure and scene; return the names."""
     from course_lib.commands.scene_output import write_scene
     from course_lib.depth_mcl.evaluation import pose_errors
     from course_lib.depth_mcl.sequence_files import write_tum
@@ -80,16 +77,14 @@ def write_localized(
     count, positions = len(result.frames), result.camera_to_world[:, :3, 3]
     rows = [
         {
-            "frame": frame,
-            "status": status,
-            "fault": fault or "",
-            "score": round(float(score), 5),
-            **{f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", position, strict=True)},
-            **{name: round(value, 4) for name, value in agreement._asdict().items()},
+            "frame": result.frames[k],
+            "status": result.statuses[k],
+            "fault": result.faults[k] or "",
+            "score": round(float(result.scores[k]), 5),
+            **{f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", positions[k], strict=True)},
+            **{name: round(value, 4) for name, value in result.agreements[k]._asdict().items()},
         }
-        for frame, status, fault, score, position, agreement in zip(
-            result.frames, result.statuses, result.faults, result.scores, positions, result.agreements, strict=True
-        )
+        for k in range(count)
     ]
     true = sequence.camera_to_world[:count] if sequence.has_poses else None
     if true is not None:
@@ -99,15 +94,8 @@ def write_localized(
     times = np.asarray(result.frames, float) if sequence.times is None else sequence.times[:count]
     write_tum(folder / "trajectory.txt", times, result.camera_to_world)
     up = None if summary["up"] == "unknown" else summary["up"]
-    figure = track_figure(
-        scene_map,
-        result.frames,
-        positions,
-        result.scores,
-        result.statuses,
-        up,
-        None if true is None else true[:, :3, 3],
-    )
+    truth = None if true is None else true[:, :3, 3]
+    figure = track_figure(scene_map, result.frames, positions, result.scores, result.statuses, up, truth)
     figure.savefig(folder / "track.png", dpi=130)
     scene = write_scene(
         folder / "track.html",

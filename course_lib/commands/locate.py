@@ -23,7 +23,6 @@ if TYPE_CHECKING:  # imported where they are used, so that --help does not wait 
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options of `locate`."""
     add_pair_arguments(parser)
     parser.add_argument("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
     parser.add_argument(
@@ -39,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--paper",
         action="store_true",
-        help="the paper's method as it is: a pose that its own residuals contradict is given, too (default: not)",
+        help="the paper's method as it is: it also gives a pose that its own residuals contradict (default: not)",
     )
     parser.add_argument(
         "--out",
@@ -105,27 +104,24 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def localization_summary(found: Localization, semantic_map: SemanticMap) -> dict:
-    """A localization as plain values, for JSON: angles in degrees, and null where there is nothing to say."""
+    """Return a localization as plain values, for JSON: angles in degrees, and null where there is nothing to say."""
     x, y, heading = [None] * 3 if found.pose is None else found.pose
     sigma = [None] * 3 if found.covariance is None else np.sqrt(np.diag(found.covariance)).tolist()
-    statistics = found.statistics
-    rejected = found.rejected_pose
+    statistics, rejected = found.statistics, found.rejected_pose
     return {
         "status": found.status,
         "reason": found.reason,
         "explanation": found.explanation,
         "x_m": x,
         "y_m": y,
-        "heading_deg": None if heading is None else float(np.degrees(heading)),
+        "heading_deg": _degrees(heading),
         "sigma_x_m": sigma[0],
         "sigma_y_m": sigma[1],
-        "sigma_heading_deg": None if sigma[2] is None else float(np.degrees(sigma[2])),
+        "sigma_heading_deg": _degrees(sigma[2]),
         "covariance": None if found.covariance is None else found.covariance.tolist(),
-        "rejected_pose": None if rejected is None else [rejected.x, rejected.y, float(np.degrees(rejected.theta))],
+        "rejected_pose": None if rejected is None else [rejected.x, rejected.y, _degrees(rejected.theta)],
         "confidence": found.confidence,
-        "alternatives": [
-            [one.pose.x, one.pose.y, float(np.degrees(one.pose.theta)), one.share] for one in found.alternatives
-        ],
+        "alternatives": [[one.pose.x, one.pose.y, _degrees(one.pose.theta), one.share] for one in found.alternatives],
         "rms_residual_m": found.rms_residual,
         "expected_rms_residual_m": None if statistics is None else statistics.expected_rms,
         "normalized_residual": None if statistics is None else statistics.normalized,
@@ -140,14 +136,19 @@ def localization_summary(found: Localization, semantic_map: SemanticMap) -> dict
     }
 
 
+def _degrees(radians: float | None) -> float | None:
+    return None if radians is None else float(np.degrees(radians))
+
+
 def _objects(found: Localization, semantic_map: SemanticMap) -> list[dict]:
-    """One row for every object seen in both images: where it is, and which landmark it was taken for."""
+    """Return a row for every object seen in both images: where it is, and which landmark it was taken for."""
     landmark_of = dict(found.used_pairs)
     order = [i for i, _ in found.used_pairs]
     rows = []
     for one, match in zip(found.objects, found.matches, strict=True):
         landmark = landmark_of.get(one.observation)
-        placed = bool(np.isfinite(one.position).all())
+        placed, paired = bool(np.isfinite(one.position).all()), landmark is not None
+        residual = found.residuals[order.index(one.observation)] if paired and found.residuals is not None else None
         rows.append(
             {
                 "label": one.label,
@@ -156,11 +157,9 @@ def _objects(found: Localization, semantic_map: SemanticMap) -> list[dict]:
                 "azimuth_deg": float(np.degrees(np.arctan2(one.position[1], one.position[0]))) if placed else None,
                 "range_m": float(np.hypot(*one.position[:2])) if placed else None,
                 "landmark": landmark,
-                "landmark_x_m": None if landmark is None else float(semantic_map.positions[landmark][0]),
-                "landmark_y_m": None if landmark is None else float(semantic_map.positions[landmark][1]),
-                "residual_m": None
-                if landmark is None or found.residuals is None
-                else float(np.linalg.norm(found.residuals[order.index(one.observation)])),
+                "landmark_x_m": float(semantic_map.positions[landmark][0]) if paired else None,
+                "landmark_y_m": float(semantic_map.positions[landmark][1]) if paired else None,
+                "residual_m": None if residual is None else float(np.linalg.norm(residual)),
             }
         )
     return rows
@@ -168,10 +167,11 @@ def _objects(found: Localization, semantic_map: SemanticMap) -> list[dict]:
 
 def _text(s: dict) -> str:
     if s["status"] == "ok":
-        lines = [
-            f"pose: x {_with_sigma(s['x_m'], s['sigma_x_m'], 2)} m, y {_with_sigma(s['y_m'], s['sigma_y_m'], 2)} m, "
-            f"heading {_with_sigma(s['heading_deg'], s['sigma_heading_deg'], 1)} degrees (± one standard deviation)"
-        ]
+        x, y, heading = (
+            f"{s[name]:.{digits}f}" + ("" if s[f"sigma_{name}"] is None else f" ± {s[f'sigma_{name}']:.{digits}f}")
+            for name, digits in (("x_m", 2), ("y_m", 2), ("heading_deg", 1))
+        )
+        lines = [f"pose: x {x} m, y {y} m, heading {heading} degrees (± one standard deviation)"]
     else:
         lines = [f"no pose, {s['reason']}: {s['explanation']}"]
     if s["confidence"] is not None:
@@ -194,17 +194,13 @@ def _text(s: dict) -> str:
     return "\n".join(lines)
 
 
-def _with_sigma(value: float, sigma: float | None, digits: int) -> str:
-    return f"{value:.{digits}f}" + ("" if sigma is None else f" ± {sigma:.{digits}f}")
-
-
 def _row(row: dict) -> str:
     start = f"{row['label']:14} {row['matched_features']:8d} "
     if row["range_m"] is None or row["outcome"] != "ok":
         return start + row["outcome"]
     start += f"{row['azimuth_deg']:7.0f}° {row['range_m']:10.2f}   "
     if row["landmark"] is None:
-        return start + "none of its class is left"
+        return start + "no landmark of its class is left"
     at = f"({row['landmark_x_m']:.2f}, {row['landmark_y_m']:.2f})"
     return start + f"{at:16} " + (f"{row['residual_m']:10.2f}" if row["residual_m"] is not None else "")
 
@@ -212,7 +208,7 @@ def _row(row: dict) -> str:
 def _write(
     folder: Path, summary: dict, views: tuple[View, View], found: Localization, semantic_map: SemanticMap
 ) -> list[str]:
-    """Writes numbers, figure and scene; says what."""
+    """Write numbers, figure and scene, and return their names."""
     from course_lib.commands.scene_output import write_scene
     from course_lib.experiments.results import write_results
     from course_lib.plots.location_figure import location_figure

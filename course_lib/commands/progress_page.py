@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-
-from course_lib.child import course_module
-from course_lib.child import run as run_child
+import subprocess
+import sys
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -13,6 +12,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    # A process of its own: commands import nothing of what only the notebooks use.
+    # A process of its own, because commands import nothing that only the notebooks use.
     words = ["--out", arguments.out] if arguments.out else []
-    return run_child(course_module("course_lib.lessons.kit.show_progress", *words)).returncode
+    return subprocess.call([sys.executable, "-P", "-m", "course_lib.lessons.kit.show_progress", *words])

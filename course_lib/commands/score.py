@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-
-from course_lib.child import course_module
-from course_lib.child import run as run_child
+import subprocess
+import sys
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,6 +18,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    # A process of its own: what a student's file does to it ends with it.
+    # A process of its own, because it runs a student's file.
     words = [arguments.project, arguments.file, *(["--seeds", *arguments.seeds] if arguments.seeds else [])]
-    return run_child(course_module("course_lib.lessons.kit.score", *words)).returncode
+    return subprocess.call([sys.executable, "-P", "-m", "course_lib.lessons.kit.score", *words])

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from course_lib.commands.arguments import require_output_folder, require_positive
 from course_lib.files import run_folder
 
 BOXES_FORMAT = """\
@@ -21,8 +22,12 @@ the boxes file, in pixels (left, top, right, bottom) of images of that size; "na
 """
 
 
+# The two ways of measuring an object's distance, and what each says.
+WAYS, MEASURED = ("box_centre", "disparity"), ("outcome", "distance_m", "horizontal_range_m", "horizontal_sigma_m")
+
+
 def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares what every command on two panoramas is given, and ends its help with the format of boxes."""
+    """Declare the options of every command on two panoramas, and end its help with the format of boxes."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the example
     parser.epilog = BOXES_FORMAT
     parser.add_argument("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
@@ -31,7 +36,6 @@ def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options of `stereo`."""
     add_pair_arguments(parser)
     parser.add_argument(
         "--boxes",
@@ -47,19 +51,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Matches, measures, prints; 0 when the two images could be matched."""
-    from course_lib.commands.arguments import require_output_folder
+    """Match, measure, and print."""
     from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
     from course_lib.spherical_stereo.matching.features import find_features, match_features
     from course_lib.spherical_stereo.matching.object_matching import match_views
     from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
     from course_lib.spherical_stereo.ranging.object_positions import measure_objects
 
-    if not (np.isfinite(arguments.baseline) and arguments.baseline > 0):
-        raise ValueError(f"--baseline must be a positive number of metres; got {arguments.baseline}")
+    require_positive("--baseline", arguments.baseline, "metres")
+    require_positive("--sigma-pixels", arguments.sigma_pixels, "pixels")
     rig = StereoRig(arguments.baseline)
-    if not (np.isfinite(arguments.sigma_pixels) and arguments.sigma_pixels > 0):
-        raise ValueError(f"--sigma-pixels must be a positive number of pixels; got {arguments.sigma_pixels}")
     if arguments.out:
         require_output_folder(arguments.out)
     boxes = read_stereo_boxes(arguments.boxes) if arguments.boxes else None
@@ -102,7 +103,6 @@ def _median(values: np.ndarray) -> float:
 
 
 def _row(measured, boxes) -> dict:
-    """One object as plain values."""
     upper, lower = boxes.upper[measured.upper], boxes.lower[measured.lower]
     names = [name for name in (upper.name, lower.name) if name]
     return {
@@ -112,17 +112,7 @@ def _row(measured, boxes) -> dict:
         "lower": measured.lower,
         "matches": measured.n_matches,
         "azimuth_deg": measured.azimuth_deg,
-        "box_centre": _distance(measured.box_centre),
-        "disparity": _distance(measured.disparity),
-    }
-
-
-def _distance(place) -> dict:
-    return {
-        "outcome": place.outcome,
-        "distance_m": place.distance_m,
-        "horizontal_range_m": place.horizontal_range_m,
-        "horizontal_sigma_m": place.horizontal_sigma_m,
+        **{way: {name: getattr(getattr(measured, way), name) for name in MEASURED} for way in WAYS},
     }
 
 
@@ -140,18 +130,17 @@ def _nan_to_none(value):
 
 
 def _table(s: dict, has_boxes: bool) -> str:
-    if not s["matches"]:
-        lines = ["no features matched between the two images: are they sharp, and of one place?"]
-        return "\n".join(lines + _object_lines(s, has_boxes))
-    lines = [
-        f"{s['matches']} features matched over the two images; {s['epipolar_percent']:.1f} % of them obey the epipolar "
-        f"constraint within {s['epipolar_tolerance_deg']:.2f} degrees",
-    ]
-    if s["epipolar_percent"] > 0:
-        lines += [
+    lines = ["no features matched between the two images: are they sharp, and of one place?"]
+    if s["matches"]:
+        lines = [
+            f"{s['matches']} features matched over the two images; {s['epipolar_percent']:.1f} % of them obey the "
+            f"epipolar constraint within {s['epipolar_tolerance_deg']:.2f} degrees"
+        ]
+    if s["matches"] and s["epipolar_percent"] > 0:
+        lines.append(
             f"median vertical disparity {s['median_disparity_px']:.1f} px, median azimuth difference "
             f"{s['median_azimuth_difference_px']:.2f} px; features and matching took {s['seconds']:.2f} s"
-        ]
+        )
     return "\n".join(lines + _object_lines(s, has_boxes))
 
 
@@ -167,8 +156,8 @@ def _object_lines(s: dict, has_boxes: bool) -> list[str]:
     lines += [f"{'':<28} {'':>8} {'from box centres':^25} {'from disparities':^25}"]
     lines += [f"{'object':<28} {'matches':>8} {'horizontal':>14} {'d':>10} {'horizontal':>14} {'d':>10}"]
     for row in s["objects"]:
-        cells = [_cell(row["box_centre"]), _cell(row["disparity"])]
-        lines.append(f"{(row['name'] or row['label'])[:28]:<28} {row['matches']:>8} {cells[0]} {cells[1]}")
+        cells = " ".join(_cell(row[way]) for way in WAYS)
+        lines.append(f"{(row['name'] or row['label'])[:28]:<28} {row['matches']:>8} {cells}")
     for row in s["unmatched"]:
         lines.append(f"{(row['name'] or row['label'])[:28]:<28} {'':>8} {row['side']} image only: {row['reason']}")
     return lines
@@ -193,7 +182,7 @@ def _write(folder: Path, summary: dict, views, features, objects) -> None:
             "azimuth_deg": round(row["azimuth_deg"], 3),
             **{
                 f"{way}_{name}": value if isinstance(value, str) else round(value, 4)
-                for way in ("box_centre", "disparity")
+                for way in WAYS
                 for name, value in row[way].items()
             },
         }

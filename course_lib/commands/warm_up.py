@@ -12,11 +12,11 @@ def compile_loops() -> None:
     import numpy as np
 
     from course_lib.beyond.six_dof.refinement import compiled_normal_equations
-    from course_lib.commands.depth_image_probe import measure
+    from course_lib.commands.check import render_plane
     from course_lib.depth_mcl.likelihood import compiled_likelihood
     from course_lib.rendering.camera import DepthCamera
 
-    measure("raster")
+    render_plane("raster")
     compiled_likelihood(np.ones((2, 2), dtype=np.float32), np.ones((1, 2, 2), dtype=np.float32))
     small = DepthCamera.from_fov(4, 3, 60.0, 45.0)
     compiled_normal_equations(

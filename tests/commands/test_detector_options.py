@@ -4,7 +4,6 @@ import argparse
 
 import pytest
 
-from course_lib.cli import main
 from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.paths import data_path
 from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -22,20 +21,12 @@ def loaded(monkeypatch):
     monkeypatch.setattr(YoloDetector, "load", lambda folder, **options: (folder, options))
 
 
-def test_what_is_not_given_is_left_to_the_folder(tmp_path):
-    assert chosen_detector(options("--detector", str(tmp_path))) == (tmp_path, {})
-
-
-def test_the_course_s_detector_is_taken_when_none_is_named():
+def test_what_is_given_reaches_the_detector_and_the_rest_is_left_to_its_folder(tmp_path):
     assert chosen_detector(options()) == (data_path("detector"), {})
-
-
-def test_size_and_threshold_reach_the_detector(tmp_path):
     words = ["--detector", str(tmp_path), "--input-size", "1280", "512", "--score-threshold", "0.7"]
     assert chosen_detector(options(*words)) == (tmp_path, {"input_size": (1280, 512), "score_threshold": 0.7})
 
 
-@pytest.mark.parametrize("command", [["demo", "room"], ["score-detector"]])
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -45,7 +36,6 @@ def test_size_and_threshold_reach_the_detector(tmp_path):
         (["--score-threshold", "nan"], "--score-threshold must be between 0 and 1; got nan"),
     ],
 )
-def test_both_commands_name_the_option_that_does_not_fit(command, words, message, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main([*command, *words]) == 2
-    assert message in capsys.readouterr().err
+def test_an_option_that_does_not_fit_is_named(words, message):
+    with pytest.raises(ValueError, match=message):
+        chosen_detector(options(*words))

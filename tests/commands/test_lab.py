@@ -1,13 +1,11 @@
 """`course.py lab`: a server for this computer only, with its token, without news, and without touching the home."""
 
-import argparse
+import asyncio
 import json
-import os
 import shutil
 import signal
 import socket
 import subprocess
-import sys
 import time
 import urllib.error
 import urllib.request
@@ -17,6 +15,7 @@ import nbformat
 import pytest
 from nbformat.sign import NotebookNotary
 
+from course_lib.cli import main
 from course_lib.commands import lab
 from course_lib.commands.saved_panels import WIDGET_VIEW
 from course_lib.paths import REPOSITORY
@@ -24,7 +23,7 @@ from course_lib.paths import REPOSITORY
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
-    """The lessons' server as `lab` starts it: its address, its token, its process, and the (empty) home it ran in."""
+    """The lessons' server as `lab` starts it: its address, its token, and the (empty) home it ran in."""
     home, state = tmp_path_factory.mktemp("home"), tmp_path_factory.mktemp("state")
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
@@ -34,9 +33,9 @@ def server(tmp_path_factory):
         process = subprocess.Popen(command, env=environment, stdout=log, stderr=log, cwd=home)
     address = f"http://127.0.0.1:{port}"
     wait_until_it_answers(address, process)
-    yield address, "a-token-for-the-tests", process, home
-    process.send_signal(signal.SIGTERM)
-    process.wait(timeout=600)
+    yield address, "a-token-for-the-tests", home
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=600) == 0, "Ctrl-C ends it without a question"
 
 
 def wait_until_it_answers(address, process):
@@ -55,8 +54,13 @@ def get(address):
         return answer.read().decode()
 
 
+def page_config(address, token):
+    page = get(f"{address}/lab?token={token}")
+    return json.loads(page.split('id="jupyter-config-data"', 1)[1].split(">", 1)[1].split("</script>", 1)[0])
+
+
 def test_the_token_is_needed(server):
-    address, token, _, _ = server
+    address, token, _ = server
     for path in ("/api/status", "/api/contents", "/api/kernels"):
         with pytest.raises(urllib.error.HTTPError) as refused:
             get(address + path)
@@ -76,34 +80,26 @@ def test_it_listens_on_this_computer_only(server):
     assert listening == {"0100007F"}  # 127.0.0.1, its bytes reversed
 
 
-def test_news_updates_builds_and_needless_extensions_are_off(server):
-    address, token, _, _ = server
-    page = get(f"{address}/lab?token={token}")
-    config = json.loads(page.split('id="jupyter-config-data"', 1)[1].split(">", 1)[1].split("</script>", 1)[0])
+def test_news_updates_builds_and_needless_extensions_are_off_and_nothing_is_written_to_the_home(server):
+    address, token, home = server
+    config = page_config(address, token)
     assert config["news"] == {"disabled": True}
-    assert config["buildAvailable"] is False
-    assert config["buildCheck"] is False
-    assert config["extensionManager"]["can_install"] is False
+    assert config["buildAvailable"] is config["buildCheck"] is config["extensionManager"]["can_install"] is False
     for name in ("jupyter-server-proxy", "announcements", "lsp-extension", "nbgrader", "terminal-extension"):
         assert any(name in disabled for disabled in config["disabledExtensions"]), name
     for needless in ("lsp/status", "server-proxy/servers-info", "api/terminals", "formgrader", "tree"):
         with pytest.raises(urllib.error.HTTPError) as missing:
             get(f"{address}/{needless}?token={token}")
         assert missing.value.code == 404
+    assert list(home.iterdir()) == []
 
 
-@pytest.mark.parametrize("plugin", lab.SETTINGS)
-def test_our_settings_are_the_defaults(server, plugin):
-    address, token, _, _ = server
-    properties = json.loads(get(f"{address}/lab/api/settings/{plugin}?token={token}"))["schema"]["properties"]
-    for name, value in lab.SETTINGS[plugin].items():
-        assert properties[name]["default"] == value
-
-
-def test_the_courses_extension_is_served(server):
-    address, token, _, _ = server
-    page = get(f"{address}/lab?token={token}")
-    config = json.loads(page.split('id="jupyter-config-data"', 1)[1].split(">", 1)[1].split("</script>", 1)[0])
+def test_our_settings_are_the_defaults_and_our_extension_is_served(server):
+    address, token, _ = server
+    for plugin, settings in lab.SETTINGS.items():
+        properties = json.loads(get(f"{address}/lab/api/settings/{plugin}?token={token}"))["schema"]["properties"]
+        assert {name: properties[name]["default"] for name in settings} == settings
+    config = page_config(address, token)
     entry = next(one for one in config["federated_extensions"] if one["name"] == "course-lab")
     folder = f"{address}{config['fullLabextensionsUrl']}/{entry['name']}"
     for name in (entry["load"], "static/style.css"):
@@ -111,8 +107,6 @@ def test_the_courses_extension_is_served(server):
 
 
 def test_a_saved_panel_keeps_its_picture_only(tmp_path):
-    import asyncio
-
     from jupyter_server.services.contents.largefilemanager import AsyncLargeFileManager  # the server's default
     from nbformat.v4 import new_code_cell, new_notebook, new_output
     from traitlets.config.loader import JSONFileConfigLoader
@@ -127,130 +121,84 @@ def test_a_saved_panel_keeps_its_picture_only(tmp_path):
     assert set(saved["cells"][0]["outputs"][0]["data"]) == {"text/plain", "text/html"}
 
 
-def test_nothing_is_written_to_the_home(server):
-    address, token, _, home = server
-    get(f"{address}/lab?token={token}")
-    assert list(home.iterdir()) == []
-
-
-def test_the_first_lesson_is_what_opens(tmp_path):
+def test_port_and_browser_pass_through_and_an_empty_token_does_not_switch_the_token_off(tmp_path, monkeypatch):
+    monkeypatch.setenv("JUPYTER_TOKEN", "")
+    command, environment = lab.lab_command(8899, browser=True, state_folder=tmp_path)
+    assert {"--ServerApp.port=8899", "--ServerApp.port_retries=0", "--ServerApp.open_browser=True"} <= set(command)
+    assert "JUPYTER_TOKEN" not in environment
     command, _ = lab.lab_command(state_folder=tmp_path)
-    assert "--LabApp.default_url=/lab/tree/work/00_start_here.ipynb" in command
-    assert "--ServerApp.ip=127.0.0.1" in command
+    assert {"--ServerApp.port=8888", "--ServerApp.port_retries=50", "--ServerApp.open_browser=False"} <= set(command)
     assert not any("token" in word or "password" in word for word in command)
 
 
-def test_port_and_browser_pass_through(tmp_path):
-    command, _ = lab.lab_command(8899, browser=True, state_folder=tmp_path)
-    assert {"--ServerApp.port=8899", "--ServerApp.port_retries=0", "--ServerApp.open_browser=True"} <= set(command)
-    command, _ = lab.lab_command(state_folder=tmp_path)
-    assert {"--ServerApp.port=8888", "--ServerApp.port_retries=50", "--ServerApp.open_browser=False"} <= set(command)
-
-
-def test_an_empty_token_in_the_environment_does_not_switch_the_token_off(tmp_path, monkeypatch):
-    monkeypatch.setenv("JUPYTER_TOKEN", "")
-    assert "JUPYTER_TOKEN" not in lab.lab_command(state_folder=tmp_path)[1]
-
-
 @pytest.fixture
-def course(tmp_path, monkeypatch):
-    """Two lessons in a repository of their own, which `run` takes for ours; the command it would become is kept."""
-    folder = tmp_path / "course"
+def started(tmp_path, monkeypatch):
+    """Call `lab` in a course of two lessons; what it returns is the course, the command it became, its environment."""
+    course, became = tmp_path / "course", []
+    (course / "notebooks").mkdir(parents=True)
     for name in ("00_start_here.ipynb", "06_likelihood_and_weights.ipynb"):
-        (folder / "notebooks").mkdir(parents=True, exist_ok=True)
-        shutil.copy(lab.ROOT / "notebooks" / name, folder / "notebooks")
-    monkeypatch.setattr(lab, "ROOT", folder)
+        shutil.copy(REPOSITORY / "notebooks" / name, course / "notebooks")
+    monkeypatch.setattr(lab, "REPOSITORY", course)
     monkeypatch.setattr(lab.sys, "prefix", str(tmp_path / "environment"))
-    return folder
-
-
-def started(monkeypatch, port=None, notebook=None, fresh=()):
-    """The words that `lab` becomes, and its environment."""
-    became = []
     monkeypatch.setattr(lab.os, "execve", lambda program, words, environment: became.append((words, environment)))
     monkeypatch.setattr(lab.subprocess, "call", lambda words, env, cwd: became.append((words, env)))  # on Windows
-    lab.run(argparse.Namespace(port=port, no_browser=True, notebook=notebook, fresh=list(fresh)))
-    return became[0]
+
+    def start(*words):
+        code = main(["lab", "--no-browser", *words])
+        return course, *(became.pop() if became else (code, None))
+
+    return start
 
 
-@pytest.mark.parametrize(
-    ("port", "notebook", "fresh", "said"),
-    [
-        (70000, None, (), "between 1 and 65535"),
-        (None, "notebooks/x.ipynb", (), "no notebook"),
-        (None, "/etc/hosts", (), "lies outside"),
-        (None, None, ("44",), "no lesson 44"),
-    ],
-)
-def test_what_cannot_be_opened_is_told(course, monkeypatch, port, notebook, fresh, said):
-    with pytest.raises(ValueError, match=said):
-        started(monkeypatch, port, notebook, fresh)
-    assert not (course / "work").exists()
-
-
-def test_the_copies_are_made_and_lesson_00_opens(course, monkeypatch, capsys):
-    words, environment = started(monkeypatch)
+def test_the_copies_are_made_and_lesson_00_opens(started, capsys):
+    course, words, environment = started()
     assert "--LabApp.default_url=/lab/tree/work/00_start_here.ipynb" in words
     assert f"--ServerApp.root_dir={course}" in words
     assert environment["COURSE_RECORD"] == str(course / "work" / "record")
-    assert sorted(path.name for path in (course / "work").glob("*.ipynb")) == [
-        "00_start_here.ipynb",
-        "06_likelihood_and_weights.ipynb",
-    ]
+    assert (course / "work" / "06_likelihood_and_weights.ipynb").exists()
     assert "Your copies of the lessons are in work/" in capsys.readouterr().out
     assert "Your progress" in (course / "work" / "progress.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
-    ("notebook", "fresh", "opened"),
+    ("words", "opened"),
     [
-        ("notebooks/06_likelihood_and_weights.ipynb", (), "work/06_likelihood_and_weights.ipynb"),
-        (None, ("06",), "work/06_likelihood_and_weights.ipynb"),
-        ("00", ("06",), "work/00_start_here.ipynb"),
+        (["--notebook", "notebooks/06_likelihood_and_weights.ipynb"], "work/06_likelihood_and_weights.ipynb"),
+        (["--fresh", "06"], "work/06_likelihood_and_weights.ipynb"),
+        (["--notebook", "00", "--fresh", "06"], "work/00_start_here.ipynb"),
     ],
 )
-def test_a_lesson_that_is_named_or_begun_anew_is_what_opens(course, monkeypatch, notebook, fresh, opened):
-    monkeypatch.setattr(lab, "make_progress_page", lambda root: None)
-    started(monkeypatch)
-    words, _ = started(monkeypatch, None, notebook, fresh)
-    assert f"--LabApp.default_url=/lab/tree/{opened}" in words
-    assert len(list((course / "work").glob("06*.before-*.ipynb"))) == len(fresh)
+def test_a_lesson_that_is_named_or_begun_anew_is_what_opens(started, monkeypatch, words, opened):
+    monkeypatch.setattr(lab, "make_progress_page", lambda root, environment: None)
+    started()
+    course, command, _ = started(*words)
+    assert f"--LabApp.default_url=/lab/tree/{opened}" in command
+    assert len(list((course / "work").glob("06*.before-*.ipynb"))) == ("--fresh" in words)
 
 
-def test_copies_are_trusted_as_long_as_they_are_the_lessons(course, monkeypatch, tmp_path):
-    monkeypatch.setattr(lab, "make_progress_page", lambda root: None)
-    started(monkeypatch)
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--port", "70000"], "between 1 and 65535"),
+        (["--notebook", "x.ipynb"], "no notebook x.ipynb"),
+        (["--fresh", "44"], "no lesson 44"),
+    ],
+)
+def test_what_cannot_be_opened_is_told(started, capsys, words, said):
+    course, code, _ = started(*words)
+    assert code == 2
+    assert said in capsys.readouterr().err
+    assert not (course / "work").exists()
+
+
+def test_copies_are_trusted_as_long_as_they_are_the_lessons(started, monkeypatch, tmp_path):
+    monkeypatch.setattr(lab, "make_progress_page", lambda root, environment: None)
+    course, _, _ = started()
     notary = NotebookNotary(data_dir=str(tmp_path / "environment" / "course-lab" / "data"))
     path = course / "work" / "06_likelihood_and_weights.ipynb"
     notebook = nbformat.read(path, as_version=4)
     assert notary.check_signature(notebook)
     notebook.cells[0].source += " by a stranger"
     nbformat.write(notebook, path)
-    started(monkeypatch)
+    started()
     assert not notary.check_signature(nbformat.read(path, as_version=4))
-
-
-@pytest.mark.skipif(os.name == "nt", reason="needs a POSIX terminal")
-def test_it_starts_beside_a_module_of_a_known_name_and_control_c_ends_it_without_a_question(tmp_path):
-    import pty
-
-    for name in ("random", "secrets", "tornado"):  # what the server imports
-        (tmp_path / f"{name}.py").write_text("open('ran', 'w')\nraise SystemExit(3)\n")
-
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
-    command, environment = lab.lab_command(port, state_folder=tmp_path)
-    master, terminal = pty.openpty()
-    process = subprocess.Popen(command, env=environment, stdin=terminal, stdout=terminal, stderr=terminal, cwd=tmp_path)
-    wait_until_it_answers(f"http://127.0.0.1:{port}", process)
-    process.send_signal(signal.SIGINT)
-    assert process.wait(timeout=600) == 0
-    assert not (tmp_path / "ran").exists()
-    os.close(terminal)
-    os.close(master)
-
-
-def test_the_command_runs_in_this_environment_and_imports_nothing_of_the_callers_folder(tmp_path):
-    command = lab.lab_command(state_folder=tmp_path)[0]
-    assert command[:2] == [sys.executable, "-P"]
-    assert command[4:6] == [str(REPOSITORY), "jupyterlab"]

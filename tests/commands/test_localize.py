@@ -7,17 +7,12 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
+from course_lib.commands.localize import join_words
 from course_lib.commands.localize_report import believed
-from course_lib.commands.localize_start import join_words
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
-from course_lib.depth_mcl.sequence_files import SequenceError, read_tum
+from course_lib.depth_mcl.sequence_files import read_tum
 from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
-
-KEYS = {
-    "frames", "median_position_m", "p90_position_m", "median_rotation_deg", "p90_rotation_deg",
-    "within_5cm_5deg_percent", "renders_per_frame", "ms_per_frame", "seed", "believes", "frames_lost", "start",
-}  # fmt: skip
 
 
 def arguments(folder, sequence="wagon", **options):
@@ -31,7 +26,7 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, capsys)
     words = arguments(corridor_folder, dof="xyyaw", frames=6, particles=60, seed=1, json=True, out=tmp_path)
     assert main(words) == 0
     summary = json.loads(capsys.readouterr().out)
-    assert summary.keys() >= KEYS
+    assert summary["believes"] == "tracked in all 6 frames"
     assert (summary["frames"], summary["renders_per_frame"], summary["seed"]) == (6, 60, 1)
     assert summary["median_position_m"] < 0.15
     stored = json.loads((tmp_path / "localize.json").read_text())
@@ -44,7 +39,6 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, capsys)
     assert (tmp_path / "track.png").read_bytes().startswith(b"\x89PNG")
     page = (tmp_path / "track.html").read_text()
     assert "<title>Path of wagon in map.ply</title>" in page
-    assert len(page) < 1_300_000
 
 
 def test_frames_at_fault_are_named_and_not_used(corridor_folder, tmp_path, capsys):
@@ -114,106 +108,6 @@ def test_from_an_unknown_start_through_a_kidnapping(corridor_folder, cut, tmp_pa
     assert off[-1] < 0.05
 
 
-def test_an_unknown_start_needs_gravity(kitchen_folder, capsys):
-    assert main([*arguments(kitchen_folder, "."), "--start", "unknown"]) == 2
-    assert "needs --up" in capsys.readouterr().err
-
-
-def test_gravity_is_read_and_thinned_with_the_frames(cut):
-    folder, true = cut
-    sequence = read_sequence(folder)
-    assert sequence.gravity == pytest.approx(-9.81 * true[:, 2, :3], abs=1e-5)
-    assert sequence.thinned(4, 1).gravity == pytest.approx(sequence.gravity[1::4])
-    rows = (folder / "gravity.txt").read_text().splitlines()
-    (folder / "gravity.txt").write_text("\n".join(rows[:-1]))
-    with pytest.raises(SequenceError, match="no row for frame 133"):
-        read_sequence(folder)
-    (folder / "gravity.txt").write_text("40 0 0\n")
-    with pytest.raises(SequenceError, match=r"gravity\.txt must hold"):
-        read_sequence(folder)
-
-
-def test_six_degrees_are_annealed_unless_told_otherwise(corridor_folder, capsys):
-    for dof, method in (("6", "annealed"), ("xyyaw", "paper")):
-        assert main(arguments(corridor_folder, "hand", dof=dof, frames=1, particles=20, json=True)) == 0
-        assert json.loads(capsys.readouterr().out)["method"] == method
-    assert main(arguments(corridor_folder, dof="xyyaw", method="annealed")) == 2
-    assert "six degrees of freedom" in capsys.readouterr().err
-    assert main([*arguments(corridor_folder), "--sigma-position", "0.1"]) == 2
-    assert "--sigma-position goes with --method paper" in capsys.readouterr().err
-    assert main([*arguments(corridor_folder), "--method", "paper", "--recover"]) == 2
-    assert "--recover goes with the annealed filter" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("particles", [1, 3])
-def test_particles_too_few_for_a_covariance_are_said_to_be(corridor_folder, capsys, particles):
-    words = arguments(corridor_folder, dof="xyyaw", frames=2, particles=particles)
-    assert main(words) == 0
-    assert "units of its covariance: unknown (too few particles" in capsys.readouterr().out
-    assert main([*words, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["mean_normalized_error"] is None
-
-
-def test_the_same_seed_gives_the_same_table(corridor_folder, capsys):
-    tables = []
-    for _ in range(2):
-        assert main(arguments(corridor_folder, dof="xyyaw", frames=3, particles=30, seed=5)) == 0
-        tables.append(capsys.readouterr().out.rsplit("renders", 1)[0])
-    assert tables[0] == tables[1]
-    assert "within 5 cm and 5 degrees" in tables[0]
-
-
-def test_the_kitchen_is_localized_in_six_degrees_through_gimbal_lock(kitchen_folder, capsys):
-    assert main(arguments(kitchen_folder, ".", dof="6", frames=5, particles=100, json=True)) == 0
-    summary = json.loads(capsys.readouterr().out)
-    assert summary["up"] == "unknown"
-    assert summary["median_position_m"] < 0.03
-    assert summary["median_rotation_deg"] < 1.5
-
-
-@pytest.mark.slow
-def test_the_kitchens_last_frames_are_read_and_run(kitchen_folder, tmp_path, capsys):
-    """Every fourth frame with few particles, for time: how well it holds to the camera is the table of RESULTS.md."""
-    kitchen = read_sequence(kitchen_folder)
-    kept = range(0, len(kitchen), 4)
-    depths = [kitchen.depth(i) for i in kept]
-    write_sequence(
-        tmp_path, kitchen.intrinsics, [kitchen.frames[i] for i in kept], depths, kitchen.camera_to_world[kept]
-    )
-    (tmp_path / "map.ply").symlink_to(kitchen_folder / "map.ply")
-    assert main(arguments(tmp_path, ".", dof="6", particles=20, method="paper", json=True)) == 0
-    summary = json.loads(capsys.readouterr().out)
-    assert (summary["frames"], summary["renders_per_frame"]) == (42, 20)
-    assert summary["median_position_m"] < 3
-
-
-def test_x_y_yaw_in_a_world_whose_up_is_unknown_is_refused(kitchen_folder, capsys):
-    assert main(arguments(kitchen_folder, ".", dof="xyyaw", frames=2)) == 2
-    error = capsys.readouterr().err
-    assert "--up" in error
-    assert "Traceback" not in error
-
-
-@pytest.mark.parametrize("up", ["-y", "x"])
-def test_a_turned_world_gives_the_same_errors(corridor_folder, tmp_path, capsys, up):
-    """The corridor's map and poses turned so that another axis points up, and told so with --up."""
-    import trimesh
-
-    turn = np.linalg.inv(rotation_to_z_up(up))
-    mesh = trimesh.load(corridor_folder / "map.ply", process=False)
-    mesh.apply_transform(turn)
-    mesh.export(tmp_path / "map.ply")
-    run = read_sequence(corridor_folder / "wagon")
-    depths = [run.depth(i) for i in range(3)]
-    write_sequence(tmp_path / "run", run.intrinsics, run.frames[:3], depths, turn @ run.camera_to_world[:3])
-    words = arguments(tmp_path, "run", dof="xyyaw", particles=80, json=True)
-    assert main([*words, "--up", up]) == 0
-    turned = json.loads(capsys.readouterr().out)
-    assert main(arguments(corridor_folder, dof="xyyaw", particles=80, frames=3, json=True)) == 0
-    upright = json.loads(capsys.readouterr().out)
-    assert turned["median_position_m"] == pytest.approx(upright["median_position_m"], abs=0.02)
-
-
 @pytest.fixture
 def blind(corridor_folder, tmp_path):
     """Four frames of the wagon without their truth, and what the truth is: the folder, the first pose's numbers."""
@@ -228,35 +122,18 @@ def blind(corridor_folder, tmp_path):
 
 
 def test_a_recording_without_truth_is_localized_from_a_pose_that_is_given(corridor_folder, blind, capsys):
-    """As numbers, as one quoted word, from a file, and as with the truth: the same trajectory; and no errors."""
+    """As numbers, from a file, and as with the truth: the same trajectory; without the truth no errors."""
     folder, numbers = blind
-    words = [
-        "localize",
-        "--map",
-        str(corridor_folder / "map.ply"),
-        "--dof",
-        "xyyaw",
-        "--seed",
-        "3",
-        "--particles",
-        "30",
-    ]
-    given = (numbers, [" ".join(numbers)], [str(folder / "truth.txt")])
+    common = {"dof": "xyyaw", "seed": 3, "particles": 30, "frames": 4}
     tracks = []
-    for index, start in enumerate(given):
-        out = folder / f"out{index}"
-        assert main([*words, "--sequence", str(folder / "blind"), "--out", str(out), "--start", *start]) == 0
+    for index, start in enumerate((numbers, [str(folder / "truth.txt")], None)):
+        out, sequence = folder / f"out{index}", folder / "blind" if start else "wagon"
+        words = arguments(corridor_folder, sequence, out=out, **common)
+        assert main(words + (["--start", *start] if start else [])) == 0
         said = capsys.readouterr().out
-        assert "errors are not known" in said
-        assert "position error" not in said
+        assert ("errors are not known" in said) == ("position error" not in said) == (start is not None)
         assert said.splitlines()[-1] == "tracked in all 4 frames"
         tracks.append(read_tum(out / "trajectory.txt")[1])
-        assert (out / "track.png").is_file()
-        assert "position_error_m" not in (out / "localize.csv").read_text()
-        assert "median_position_m" not in json.loads((out / "localize.json").read_text())
-    with_truth = ["--sequence", str(corridor_folder / "wagon"), "--frames", "4", "--out", str(folder / "out")]
-    assert main([*words, *with_truth]) == 0
-    tracks.append(read_tum(folder / "out" / "trajectory.txt")[1])
     assert all(np.allclose(track, tracks[0], atol=1e-5) for track in tracks)
 
 
@@ -275,9 +152,8 @@ def test_a_start_is_meant_in_the_map_s_own_axes_and_its_angles_as_upright(corrid
     assert json.loads(capsys.readouterr().out)["median_position_m"] < 0.15
 
 
-@pytest.mark.parametrize("wrong", [{"start": "20 0 1.4 0 0 120"}, {"depth-scale": "5000"}])
-def test_a_filter_that_is_wrong_from_the_start_says_so_and_ends_well(corridor_folder, tmp_path, capsys, wrong):
-    words = arguments(corridor_folder, dof="xyyaw", frames=5, particles=30, out=tmp_path, **wrong)
+def test_a_filter_that_is_wrong_from_the_start_says_so_and_ends_well(corridor_folder, tmp_path, capsys):
+    words = arguments(corridor_folder, dof="xyyaw", frames=5, particles=30, out=tmp_path, start="20 0 1.4 0 0 120")
     assert main(words) == 0
     assert capsys.readouterr().out.splitlines()[-1].startswith("lost from the first frame on (5 of 5 frames")
     assert {row["status"] for row in csv.DictReader((tmp_path / "localize.csv").open())} == {"lost"}
@@ -312,31 +188,12 @@ def test_negative_numbers_are_no_options(typed, joined):
     assert join_words(typed.split()) == joined
 
 
-def test_without_truth_and_without_a_start_it_asks_for_one(corridor_folder, blind, capsys):
-    assert main(["localize", "--map", str(corridor_folder / "map.ply"), "--sequence", str(blind[0] / "blind")]) == 2
-    error = capsys.readouterr().err
-    assert "where does the camera start" in error
-    assert "--start" in error
-
-
-def test_near_and_far_bound_what_is_seen(corridor_folder, capsys):
-    """Nothing of a corridor lies between 0.1 and 0.3 m from a camera in its middle: stray returns at most."""
-    words = arguments(corridor_folder, dof="xyyaw", frames=2, particles=5, near=0.1, far=0.3, json=True)
-    assert main(words) == 0
-    summary = json.loads(capsys.readouterr().out)
-    assert summary["frames_without_measurement"] >= 1
-    assert summary["frames_doubtful"] == 2
-    assert (summary["near_m"], summary["far_m"]) == (0.1, 0.3)
-
-
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"start": "1 2 3"}, "six finite numbers"),
         ({"start": "1 2 nan 0 0 0"}, "six finite numbers"),
         ({"start": "nowhere.txt"}, "nowhere.txt is missing"),
         ({"start": "500 0 1 0 0 0"}, "outside the map"),
-        ({"depth-scale": "0"}, "--depth-scale"),
         ({"depth-scale": "nan"}, "--depth-scale"),
         ({"near": "-1"}, "--near"),
         ({"far": "inf"}, "--far"),
@@ -344,18 +201,25 @@ def test_near_and_far_bound_what_is_seen(corridor_folder, capsys):
         ({"sigma-rotation": "nan"}, "--sigma-rotation"),
         ({"map": "nowhere.ply"}, "nowhere.ply is missing"),
         ({"sequence": "nowhere"}, "no sequence at"),
-        ({"particles": "0"}, "particles"),
-        ({"frames": "0"}, "frames"),
-        ({"sigma-position": "-1"}, "sigma"),
+        ({"particles": "0"}, "--particles must be at least 1; got 0"),
+        ({"particles": "1000000000"}, "--particles must be at most 1,000,000; got 1,000,000,000"),
+        ({"frames": "-3"}, "--frames must be at least 1; got -3"),
+        ({"sequence": "{blind}"}, "where does the camera start"),
+        ({"up": "unknown"}, "which way is up in this world is unknown"),
+        ({"dof": "6", "start": "unknown", "up": "unknown"}, "--start unknown needs --up"),
+        ({"method": "annealed"}, "six degrees of freedom"),
+        ({"dof": "6", "sigma-position": "0.1"}, "--sigma-position goes with --method paper"),
+        ({"dof": "6", "method": "paper", "recover": True}, "--recover goes with the annealed filter"),
         ({"sigma-position": "1e300"}, "--sigma-position must be between 0 and 10 m a frame; got 1e+300"),
         ({"sigma-rotation": "181"}, "--sigma-rotation must be between 0 and 180 degrees"),
         ({"seed": "-1"}, "--seed"),
     ],
 )
-def test_bad_input_is_one_sentence_and_writes_nothing(corridor_folder, tmp_path, capsys, options, said):
+def test_bad_input_is_one_sentence_and_writes_nothing(corridor_folder, blind, tmp_path, capsys, options, said):
     words = arguments(corridor_folder, dof="xyyaw", frames=2, out=tmp_path / "out")
     for name, value in options.items():
-        words += [f"--{name}={value}"]
+        given = str(value).format(blind=blind[0] / "blind")
+        words += [f"--{name}"] if value is True else [f"--{name}={given}"]
     assert main(words) == 2
     error = capsys.readouterr().err
     assert said in error
@@ -363,21 +227,17 @@ def test_bad_input_is_one_sentence_and_writes_nothing(corridor_folder, tmp_path,
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("command", ["localize", "demo corridor"])
 @pytest.mark.parametrize("bad", ["a_file", "a_file/below", "/proc/nowhere"])
-def test_an_output_folder_that_cannot_be_is_told_before_any_work(corridor_folder, tmp_path, capsys, command, bad):
+def test_an_output_folder_that_cannot_be_is_told_before_any_work(corridor_folder, tmp_path, capsys, bad):
     (tmp_path / "a_file").write_text("mine")
-    out = bad if bad.startswith("/") else str(tmp_path / bad)
-    words = arguments(corridor_folder, dof="xyyaw") if command == "localize" else command.split()
-    assert main([*words, "--out", out]) == 2
+    assert main(arguments(corridor_folder, dof="xyyaw", out=tmp_path / bad)) == 2
     captured = capsys.readouterr()
     assert "--out" in captured.err
     assert "frame/s" not in captured.err  # no progress bar: nothing ran
     assert (tmp_path / "a_file").read_text() == "mine"
 
 
-@pytest.mark.parametrize("command", ["localize", "demo"])
-def test_exact_reaches_the_renderer(command, corridor_folder, tmp_path, monkeypatch):
+def test_exact_reaches_the_renderer(corridor_folder, monkeypatch):
     asked = []
 
     class Watched(DepthRenderer):
@@ -386,33 +246,16 @@ def test_exact_reaches_the_renderer(command, corridor_folder, tmp_path, monkeypa
             super().__init__(*given, **options)
 
     monkeypatch.setattr("course_lib.experiments.recordings.DepthRenderer", Watched)
-    few = ["--frames", "2", "--particles", "8", "--out", str(tmp_path)]
-    words = {
-        "localize": ["--map", str(corridor_folder / "map.ply"), "--sequence", str(corridor_folder / "wagon"), *few],
-        "demo": ["corridor", "--recording", "shipped", *few],
-    }[command]
-    assert main([command, *words]) == 0
-    assert not any(asked)
-    asked.clear()
-    assert main([command, *words, "--exact"]) == 0
-    assert asked
-    assert all(asked)
+    for exact in (False, True):
+        more = {"exact": True} if exact else {}
+        assert main(arguments(corridor_folder, dof="xyyaw", frames=2, particles=8, **more)) == 0
+        assert asked
+        assert set(asked) == {exact}
+        asked.clear()
 
 
-@pytest.mark.parametrize(
-    ("option", "value", "told"),
-    [
-        ("--particles", "0", "--particles must be at least 1; got 0"),
-        ("--particles", "1000000000", "--particles must be at most 1,000,000; got 1,000,000,000"),
-        ("--frames", "-3", "--frames must be at least 1; got -3"),
-    ],
-)
-def test_a_number_that_cannot_be_is_told_by_the_option_that_was_given(corridor_folder, capsys, option, value, told):
-    assert main([*arguments(corridor_folder), option, value]) == 2
-    assert capsys.readouterr().err == f"error: {told}\n"
-
-
-def test_more_frames_than_there_are_are_warned_of(corridor_folder):
-    there = len(read_sequence(corridor_folder / "wagon").frames)
-    with pytest.warns(UserWarning, match=f"--frames 5000: .* has {there}, and all are taken"):
-        assert main(arguments(corridor_folder, dof="xyyaw", frames=5000, particles=5)) == 0
+def test_more_frames_than_there_are_are_warned_of(corridor_folder, blind):
+    folder, numbers = blind
+    words = arguments(corridor_folder, folder / "blind", dof="xyyaw", frames=5000, particles=5, start=" ".join(numbers))
+    with pytest.warns(UserWarning, match=r"--frames 5000: .* has 4, and all are taken"):
+        assert main(words) == 0
