@@ -8,12 +8,17 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import json
+import platform
 import sys
+from dataclasses import asdict
+from hashlib import sha256
 from pathlib import Path
 
 from course_lib.files import atomic_write
 
 DATA = Path(__file__).parents[1] / "data" / "detector"
+RECORDED_WIDTH = 1280
+"""Columns of the recorded panoramas. The finished detector sees them so, not scaled as the training keeps them."""
 
 
 class PyTorchMissing(ValueError):
@@ -72,8 +77,10 @@ def run(arguments: argparse.Namespace) -> int:
         )
     import torch
 
-    from tools.detector_training.report import measure_detector, write_report
+    from course_lib.spherical_stereo.detection.darknet import read_names
+    from tools.detector_training.images import read_panoramas
     from tools.detector_training.train import TrainingPlan, train
+    from tools.detector_training.validation import measure_detector
 
     if arguments.threads:
         torch.set_num_threads(arguments.threads)
@@ -102,12 +109,36 @@ def run(arguments: argparse.Namespace) -> int:
         if path.resolve().parent != arguments.out.resolve():
             atomic_write(arguments.out / path.name, path.read_bytes())
     cfg, names = arguments.out / arguments.cfg.name, arguments.out / arguments.names.name
-    _log("measuring the finished detector (OpenCV) on the validation images")
-    validation = measure_detector(cfg, result.weights, names, arguments.validation)
-    path = write_report(arguments.out / "training.json", plan, result, validation, arguments.weights)
-    print(json.dumps(json.loads(path.read_text(encoding="utf-8")), indent=1))
-    print(f"Written to {arguments.out}: {result.weights.name}, {cfg.name}, {names.name}, {path.name}")
+    panoramas = read_panoramas(arguments.validation, read_names(names), RECORDED_WIDTH)
+    validation = measure_detector(cfg, result.weights, names, panoramas)
+    text = json.dumps(report(plan, result, validation, arguments.weights), indent=1)
+    atomic_write(arguments.out / "training.json", text + "\n")
+    print(text)
+    print(f"Written to {arguments.out}: {result.weights.name}, {cfg.name}, {names.name}, training.json")
     return 0
+
+
+def report(plan, result, validation, initial_weights: Path | None) -> dict:
+    """What training.json holds: the numbers, the seed, the versions, and of which weights the training began."""
+    import cv2
+    import numpy
+    import torch
+
+    return {
+        "version": 1,
+        "score_threshold": round(validation.threshold, 3),
+        "validation": asdict(validation),
+        "plan": asdict(plan),
+        "started_from_sha256": sha256(initial_weights.read_bytes()).hexdigest() if initial_weights else None,
+        "position": asdict(result.position),
+        "images_per_second": round(result.images_per_second, 2),
+        "versions": {
+            "python": platform.python_version(),
+            "torch": torch.__version__,
+            "opencv": cv2.__version__,
+            "numpy": numpy.__version__,
+        },
+    }
 
 
 def _require_positive(arguments: argparse.Namespace) -> None:
