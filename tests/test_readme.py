@@ -15,7 +15,7 @@ from course_lib.commands.six_degrees_table import six_degrees_table
 from course_lib.commands.trouble_table import trouble_table
 from course_lib.experiments.lost_and_found import summarize
 from course_lib.experiments.rooms_summary import wilson_percent
-from tools.bench_table import table
+from tools.bench_tables import bench_table
 
 ROOT = Path(__file__).parents[1]
 README, RESULTS = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "RESULTS.md"))
@@ -150,7 +150,7 @@ def test_damage_and_kills_are_what_the_commands_print_of_their_stored_numbers(fi
 def test_the_speed_is_what_the_benchmark_printed():
     stored = json.loads((CORRIDOR_RESULTS / "bench.json").read_text())
     quoted = [line.removeprefix("    ").rstrip() for line in RESULTS.splitlines()]
-    assert [line for line in table(stored).splitlines() if line not in quoted] == []
+    assert [line for line in bench_table(stored).splitlines() if line not in quoted] == []
     told = re.search(r"(\d+) ms on two cores .* (\d+) times as fast as Embree", README.replace("\n", " "))
     assert (float(told[1]), float(told[2])) == (round(stored["step_ms"]), round(stored["embree_ratio"]))
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import sys
 import threading
 import time
 from contextlib import AbstractContextManager
@@ -20,7 +21,6 @@ from urllib.request import urlopen
 import nbformat
 import psutil
 
-from course_lib.child import start
 from course_lib.commands.lab import lab_command
 from course_lib.files import temporary_folder
 from tools.refresh import HANGS_S, execute
@@ -86,26 +86,16 @@ class ProcessWatch(AbstractContextManager):
                 times, resident_now = process.cpu_times(), process.memory_info().rss
             except psutil.Error:  # ended since the list was made; its parent has its time now
                 continue
+            sizes = status_bytes(process.pid)
             processor_s += times.user + times.system + times.children_user + times.children_system
             resident += resident_now
-            own += own_bytes(process.pid)
-        self._peak = max(self._peak, resident, resident_peak(self._process.pid))
+            own += sizes.get("RssAnon", 0) + sizes.get("RssShmem", 0)
+        self._peak = max(self._peak, resident, status_bytes(self._process.pid).get("VmHWM", 0))
         self._own = max(self._own, own)
         self._processor_s = max(self._processor_s, processor_s)
 
 
-def own_bytes(pid: int) -> int:
-    """Resident bytes of process `pid` that are no file's; 0 where the system does not tell."""
-    sizes = _status(pid)
-    return sizes.get("RssAnon", 0) + sizes.get("RssShmem", 0)
-
-
-def resident_peak(pid: int) -> int:
-    """Most resident bytes that process `pid` ever had; 0 where the system does not tell."""
-    return _status(pid).get("VmHWM", 0)
-
-
-def _status(pid: int) -> dict[str, int]:
+def status_bytes(pid: int) -> dict[str, int]:
     """Sizes in /proc/PID/status [bytes] by name; none where there is no such file."""
     try:
         lines = Path(f"/proc/{pid}/status").read_text(encoding="utf-8").splitlines()
@@ -135,39 +125,38 @@ def server_cost() -> Cost:
     """What the server of `course.py lab` takes once it has shown its first page, without a kernel."""
     with temporary_folder() as folder:
         command, environment = lab_command(port=0, state_folder=folder)
-        server = start(
-            command, environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
-        )
+        silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        server = subprocess.Popen(command, env=environment, start_new_session=True, **silent)
         try:
             with ProcessWatch(server.pid, "server") as watch:
-                _first_page(server, folder / "runtime")
+                _wait_for_first_page(server, folder / "runtime")
         finally:
             server.terminate()
             server.wait()
     return watch.cost
 
 
-def _first_page(server: subprocess.Popen, runtime: Path) -> str:
-    """What the server shows first, once it has written down its address and answers there."""
+def _wait_for_first_page(server: subprocess.Popen, runtime: Path) -> None:
+    """Wait until the server has written down its address, and answers there."""
     until = time.monotonic() + SERVER_STARTS_S
     while time.monotonic() < until and server.poll() is None:
         for path in runtime.glob("jpserver-*.json"):
             try:
                 told = json.loads(path.read_text(encoding="utf-8"))
-                with urlopen(f"{told['url']}lab?token={told['token']}", timeout=SERVER_STARTS_S) as page:
-                    return page.read().decode("utf-8")
+                urlopen(f"{told['url']}lab?token={told['token']}", timeout=SERVER_STARTS_S).read()
+                return
             except (ValueError, URLError):  # half written, or written before anybody listens
                 continue
         time.sleep(EVERY_S)
     raise RuntimeError("JupyterLab did not start; try python3 course.py lab --no-browser to see why")
 
 
-def measure(paths: list[Path], tell=lambda cost: None) -> dict:
+def measure(paths: list[Path]) -> dict:
     """Costs of these notebooks and of the server, and the machine: the object that `bench --lessons --json` prints."""
     costs = []
     for path in paths:
-        costs.append(notebook_cost(path))
-        tell(costs[-1])
-    server = server_cost()
+        cost = notebook_cost(path)
+        print(f"{cost.name}: {cost.peak_mb:.0f} MB, {cost.processor_s:.0f} s", file=sys.stderr)
+        costs.append(asdict(cost))
     machine = {"processors": os.cpu_count(), "date": time.strftime("%Y-%m-%d")}
-    return {"lessons": [asdict(cost) for cost in costs], "server": asdict(server), "machine": machine}
+    return {"lessons": costs, "server": asdict(server_cost()), "machine": machine}
