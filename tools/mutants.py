@@ -1,13 +1,14 @@
 """Break the code in the ways of tools/faults.toml, one at a time, and tell which of them a test notices.
 
-Each fault is made alone, in a copy of the tracked files; the tests named with it run there. What survives is a hole
-in the tests: the exit code is 1 then.
+Each fault is made alone, in a copy of the tracked files; the tests named with it run there, once without the fault and
+once with it. What survives is a hole in the tests: the exit code is 1 then.
 """
 
 from __future__ import annotations
 
 import argparse
 import contextlib
+import functools
 import os
 import shutil
 import signal
@@ -38,15 +39,18 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.list:
         print("\n".join(f"{one['file']}: {one['name']}" for one in faults))
         return 0
-    survived = 0
+    noticed = 0
     with copied_tree() as root:
+        say = functools.cache(lambda tests: tests_say(root, tests, HANGS_S))
         for one in faults:
-            with broken(root, one["file"], edited(root, one)):
-                outcome = tests_say(root, one["tests"], HANGS_S)
-            survived += outcome == "survived"
+            outcome = say(tuple(one["tests"])).replace("killed", "fails as it is")
+            if outcome == "survived":
+                with broken(root, one["file"], edited(root, one)):
+                    outcome = tests_say(root, one["tests"], HANGS_S)
+                noticed += outcome != "survived"
             print(f"{outcome:8} {one['file']}: {one['name']}", flush=True)
-    print(f"{len(faults) - survived} of {len(faults)} noticed")
-    return 1 if survived else 0
+    print(f"{noticed} of {len(faults)} noticed")
+    return 1 if noticed < len(faults) else 0
 
 
 def read_faults() -> list[dict]:

@@ -1,6 +1,6 @@
 """Make random faults in a room of the library, one at a time, and tell which of them the tests notice.
 
-A fault is an operator exchanged, a comparison made strict or not, an absolute value or a minus dropped, a number changed
+A fault is an operator exchanged, a comparison made strict or not, an absolute value or a minus dropped, a number raised
 by a tenth or by one, an index exchanged, a condition negated, a line dropped, or the first argument returned at once.
 Each is made alone, in a copy of the tracked files. First the module's own test file runs (test_MODULE.py of the room),
 then those that import the module; where a module has no file of its own, those of its folder too. Slow tests and

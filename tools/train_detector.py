@@ -26,41 +26,27 @@ class PyTorchMissing(ValueError):
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options of `train-detector`."""
-    folder = {"required": True, "type": Path, "metavar": "FOLDER"}
-    parser.add_argument("--images", **folder, nargs="+", help="panoramas to train on, with boxes.json (no default)")
-    parser.add_argument(
-        "--validation", **folder, nargs="+", help="panoramas of other rooms, which choose the threshold (no default)"
-    )
-    parser.add_argument("--out", **folder, help="checkpoints, weights and results go here (no default)")
-    parser.add_argument("--minutes", type=float, metavar="M", help="training time (default: 60, unless --epochs)")
-    parser.add_argument("--epochs", type=int, metavar="N", help="stop after N epochs, if the time has not run out")
-    parser.add_argument("--batch", type=int, default=8, metavar="N", help="images a step (default: 8)")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
-    parser.add_argument(
-        "--resume",
-        action="store_true",
-        help="go on from the checkpoint in --out (default: start anew, or from --weights)",
-    )
-    parser.add_argument(
-        "--weights", type=Path, metavar="FILE", help="start from these Darknet weights (default: random)"
-    )
-    parser.add_argument(
-        "--learning-rate", type=float, default=1.5e-3, metavar="R", help="the largest (default: 0.0015)"
-    )
+    """Declare the options of `train_detector`."""
+    add = parser.add_argument
+    folder, number = {"required": True, "type": Path, "metavar": "FOLDER"}, {"type": int, "metavar": "N"}
+    add("--images", **folder, nargs="+", help="panoramas to train on, with boxes.json (no default)")
+    what = "panoramas of other rooms, which choose the threshold (no default)"
+    add("--validation", **folder, nargs="+", help=what)
+    add("--out", **folder, help="checkpoints, weights and results go here (no default)")
+    add("--minutes", type=float, metavar="M", help="training time (default: 60, unless --epochs)")
+    add("--epochs", **number, help="stop after N epochs, if the time has not run out")
+    add("--batch", **number, default=8, help="images a step (default: 8)")
+    add("--seed", **number, default=0, help="seed of the random numbers (default: 0)")
+    what = "go on from the checkpoint in --out (default: start anew, or from --weights)"
+    add("--resume", action="store_true", help=what)
+    add("--weights", type=Path, metavar="FILE", help="start from these Darknet weights (default: random)")
+    add("--learning-rate", type=float, default=1.5e-3, metavar="R", help="the largest (default: 0.0015)")
     for option, what in (("cfg", "the network"), ("names", "its classes")):
-        name = f"room_yolo.{option}"
-        parser.add_argument(
-            f"--{option}",
-            type=Path,
-            default=DATA / name,
-            metavar="FILE",
-            help=f"{what} (default: data/detector/{name})",
-        )
-    parser.add_argument(
-        "--processes", type=int, default=1, metavar="N", help="with one thread each (default: 1, with all threads)"
-    )
-    parser.add_argument("--threads", type=int, metavar="N", help="processor threads (default: PyTorch's choice)")
+        path = DATA / f"room_yolo.{option}"
+        what += f" (default: data/detector/{path.name})"
+        add(f"--{option}", type=Path, default=path, metavar="FILE", help=what)
+    add("--processes", **number, default=1, help="with one thread each (default: 1, with all threads)")
+    add("--threads", **number, help="processor threads (default: PyTorch's choice)")
 
 
 def run(arguments: argparse.Namespace) -> int:

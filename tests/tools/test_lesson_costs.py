@@ -13,7 +13,7 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
 from tools import bench_tables, lesson_costs, refresh
-from tools.lesson_costs import Cost, ProcessWatch
+from tools.lesson_costs import Cost
 
 HELD_MB = 300
 LINUX = sys.platform.startswith("linux")
@@ -34,10 +34,10 @@ def watched(program: str) -> Cost:
     """What `program` takes until it prints its first line."""
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
     with subprocess.Popen([sys.executable, "-c", program], **pipes) as process:
-        with ProcessWatch(process.pid) as watch:
+        with lesson_costs.watched(process.pid, "", costs := []):
             assert process.stdout.readline().strip() == "ready"
         process.stdin.close()
-    return watch.cost
+    return costs[0]
 
 
 @pytest.mark.parametrize("taken", PROGRAMS)
