@@ -16,7 +16,7 @@ from course_lib.experiments.lost import lost_table, summarize
 from course_lib.experiments.six_degrees import six_degrees_table
 from course_lib.experiments.trouble import trouble_table
 from tools import sweep
-from tools.bench_table import table
+from tools.bench_tables import bench_table
 
 ROOT = Path(__file__).parents[1]
 README, RESULTS = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "RESULTS.md"))
@@ -141,7 +141,7 @@ def test_sensor_trouble_is_what_the_command_prints_of_its_stored_numbers(path):
 def test_the_speed_is_what_the_benchmark_printed():
     stored = json.loads((CORRIDOR_RESULTS / "bench.json").read_text())
     quoted = [line.removeprefix("    ").rstrip() for line in RESULTS.splitlines()]
-    assert [line for line in table(stored).splitlines() if line not in quoted] == []
+    assert [line for line in bench_table(stored).splitlines() if line not in quoted] == []
     told = re.search(r"(\d+) ms on two cores .* (\d+) times as fast as Embree", README.replace("\n", " "))
     assert (float(told[1]), float(told[2])) == (round(stored["step_ms"]), round(stored["embree_ratio"]))
 

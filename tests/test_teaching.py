@@ -16,7 +16,7 @@ from course_lib.cli import COMMANDS, find_command, parse
 from course_lib.lessons.kit import exercises as kit
 from course_lib.lessons.kit.exercises import Exercise, Mistake, find_exercise, judge, lesson_exercises
 from course_lib.paths import REPOSITORY, notebook_paths, project_paths
-from tools.lesson_costs_table import capacity_sentence, table
+from tools.bench_tables import capacity_sentence, lessons_rows
 
 TEACHING = (REPOSITORY / "TEACHING.md").read_text(encoding="utf-8")
 PATHS = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
@@ -157,7 +157,7 @@ def test_the_costs_have_a_row_for_every_lesson_and_project_and_say_where_from():
     assert [float(cell) for cell in together[1:]] == pytest.approx(numbers.sum(axis=0), abs=len(rows) / 2)
     keys = ("peak_mb", "own_mb", "processor_s")
     named = [dict(zip(keys, map(float, row[1:]), strict=True)) | {"name": row[0]} for row in [*rows, server]]
-    printed = table({"lessons": named[:-1], "server": named[-1]})
+    printed = lessons_rows({"lessons": named[:-1], "server": named[-1]})
     assert printed[:2] == lines[:2], "the heading is the command's"
     sentences = re.findall(r"^One server of (\d+) GiB and (\d+) processors.*$", COSTS[2], re.M)
     assert len(sentences) >= 1

@@ -9,10 +9,13 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import sys
 import threading
 import time
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from urllib.error import URLError
 from urllib.request import urlopen
@@ -20,7 +23,6 @@ from urllib.request import urlopen
 import nbformat
 import psutil
 
-from course_lib.child import start
 from course_lib.commands.lab import lab_command
 from course_lib.files import temporary_folder
 from tools.refresh import HANGS_S, execute
@@ -45,67 +47,51 @@ class Cost:
     processor_s: float
 
 
-class ProcessWatch(AbstractContextManager):
-    """Looks at process `pid` and all its descendants, every `EVERY_S` and once more at the end; then has `.cost`.
+@contextmanager
+def watched(pid: int, name: str, costs: list[Cost]) -> Iterator[None]:
+    """Look at process `pid` and all its descendants, every `EVERY_S` and once more at the end; `costs` gets their cost.
 
     A child's peak that lasts less than `EVERY_S` may be missed; the time of children that ended is in their parent's.
     """
+    ended, looks = threading.Event(), [(0.0, 0.0, 0.0)]
 
-    def __init__(self, pid: int, name: str = "") -> None:
-        self._process, self._name = psutil.Process(pid), name
-        self._peak = self._own = self._processor_s = 0.0
-        self._ended = threading.Event()
-        self._thread = threading.Thread(target=self._sample, daemon=True)
+    def look_often() -> None:
+        while not ended.wait(EVERY_S):
+            looks.append(look(pid))
 
-    def __enter__(self) -> ProcessWatch:
-        self._thread.start()
-        return self
+    thread = threading.Thread(target=look_often, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+        looks.append(look(pid))
+        peak, own, processor_s = map(max, zip(*looks, strict=True))
+        costs.append(Cost(name, peak / 1e6, own / 1e6 if own else None, processor_s))
 
-    def __exit__(self, *_: object) -> None:
-        self._ended.set()
-        self._thread.join()
-        self._look()
 
-    @property
-    def cost(self) -> Cost:
-        own = self._own / 1e6 if self._own else None
-        return Cost(self._name, self._peak / 1e6, own, self._processor_s)
-
-    def _sample(self) -> None:
-        while not self._ended.wait(EVERY_S):
-            self._look()
-
-    def _look(self) -> None:
-        resident = own = processor_s = 0.0
+def look(pid: int) -> tuple[float, float, float]:
+    """Bytes resident now, or at the process's own peak; bytes that are no file's; processor seconds of the tree."""
+    resident = own = processor_s = 0.0
+    try:
+        process = psutil.Process(pid)
+        tree = [process, *process.children(recursive=True)]
+    except psutil.Error:  # it ended by itself: what was seen before stands
+        return 0.0, 0.0, 0.0
+    for one in tree:
         try:
-            tree = [self._process, *self._process.children(recursive=True)]
-        except psutil.Error:  # it ended by itself: what was seen before stands
-            return
-        for process in tree:
-            try:
-                times, resident_now = process.cpu_times(), process.memory_info().rss
-            except psutil.Error:  # ended since the list was made; its parent has its time now
-                continue
-            processor_s += times.user + times.system + times.children_user + times.children_system
-            resident += resident_now
-            own += own_bytes(process.pid)
-        self._peak = max(self._peak, resident, resident_peak(self._process.pid))
-        self._own = max(self._own, own)
-        self._processor_s = max(self._processor_s, processor_s)
+            times, resident_now = one.cpu_times(), one.memory_info().rss
+        except psutil.Error:  # ended since the list was made; its parent has its time now
+            continue
+        sizes = status_bytes(one.pid)
+        processor_s += times.user + times.system + times.children_user + times.children_system
+        resident += resident_now
+        own += sizes.get("RssAnon", 0) + sizes.get("RssShmem", 0)
+    return max(resident, status_bytes(pid).get("VmHWM", 0)), own, processor_s
 
 
-def own_bytes(pid: int) -> int:
-    """Resident bytes of process `pid` that are no file's; 0 where the system does not tell."""
-    sizes = _status(pid)
-    return sizes.get("RssAnon", 0) + sizes.get("RssShmem", 0)
-
-
-def resident_peak(pid: int) -> int:
-    """Most resident bytes that process `pid` ever had; 0 where the system does not tell."""
-    return _status(pid).get("VmHWM", 0)
-
-
-def _status(pid: int) -> dict[str, int]:
+def status_bytes(pid: int) -> dict[str, int]:
     """Sizes in /proc/PID/status [bytes] by name; none where there is no such file."""
     try:
         lines = Path(f"/proc/{pid}/status").read_text(encoding="utf-8").splitlines()
@@ -120,54 +106,50 @@ def notebook_cost(path: Path) -> Cost:
 
     Raises `refresh.RefreshError` where a cell fails.
     """
-    watches = []
-
-    def watch(pid: int) -> ProcessWatch:
-        watches.append(ProcessWatch(pid, path.name.partition("_")[0]))
-        return watches[0]
-
+    costs: list[Cost] = []
     with temporary_folder() as folder:
+        watch = partial(watched, name=path.name.partition("_")[0], costs=costs)
         execute(nbformat.read(path, as_version=4), folder, HANGS_S, watch)
-    return watches[0].cost
+    return costs[0]
 
 
 def server_cost() -> Cost:
     """What the server of `course.py lab` takes once it has shown its first page, without a kernel."""
+    costs: list[Cost] = []
     with temporary_folder() as folder:
         command, environment = lab_command(port=0, state_folder=folder)
-        server = start(
-            command, environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
-        )
+        silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        server = subprocess.Popen(command, env=environment, start_new_session=True, **silent)
         try:
-            with ProcessWatch(server.pid, "server") as watch:
-                _first_page(server, folder / "runtime")
+            with watched(server.pid, "server", costs):
+                _wait_for_first_page(server, folder / "runtime")
         finally:
             server.terminate()
             server.wait()
-    return watch.cost
+    return costs[0]
 
 
-def _first_page(server: subprocess.Popen, runtime: Path) -> str:
-    """What the server shows first, once it has written down its address and answers there."""
+def _wait_for_first_page(server: subprocess.Popen, runtime: Path) -> None:
+    """Wait until the server has written down its address, and answers there."""
     until = time.monotonic() + SERVER_STARTS_S
     while time.monotonic() < until and server.poll() is None:
         for path in runtime.glob("jpserver-*.json"):
             try:
                 told = json.loads(path.read_text(encoding="utf-8"))
-                with urlopen(f"{told['url']}lab?token={told['token']}", timeout=SERVER_STARTS_S) as page:
-                    return page.read().decode("utf-8")
+                urlopen(f"{told['url']}lab?token={told['token']}", timeout=SERVER_STARTS_S).read()
+                return
             except (ValueError, URLError):  # half written, or written before anybody listens
                 continue
         time.sleep(EVERY_S)
     raise RuntimeError("JupyterLab did not start; try python3 course.py lab --no-browser to see why")
 
 
-def measure(paths: list[Path], tell=lambda cost: None) -> dict:
+def measure(paths: list[Path]) -> dict:
     """Costs of these notebooks and of the server, and the machine: the object that `bench --lessons --json` prints."""
     costs = []
     for path in paths:
-        costs.append(notebook_cost(path))
-        tell(costs[-1])
-    server = server_cost()
+        cost = notebook_cost(path)
+        print(f"{cost.name}: {cost.peak_mb:.0f} MB, {cost.processor_s:.0f} s", file=sys.stderr)
+        costs.append(asdict(cost))
     machine = {"processors": os.cpu_count(), "date": time.strftime("%Y-%m-%d")}
-    return {"lessons": [asdict(cost) for cost in costs], "server": asdict(server), "machine": machine}
+    return {"lessons": costs, "server": asdict(server_cost()), "machine": machine}

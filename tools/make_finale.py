@@ -1,40 +1,23 @@
-"""Make data/finale from its seed: the semantic map and the mesh map of the room in which both methods meet.
-
-Old data are replaced at the end, all at once: a run that is stopped leaves them as they were.
-"""
+"""Make data/finale from its seed: the semantic map and the mesh map of the room in which both methods meet."""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 
-from course_lib.commands.arguments import require_output_folder, require_seed
+from tools.shipped_data import add_seed_and_out, output_folder
 
-SEED = 10_001  # the shipped data's
-FOLDER = Path(__file__).resolve().parents[1] / "data" / "finale"
+NAME, SEED = "finale", 10_001  # the shipped data's: of the room
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Adds this command's options to its parser."""
-    parser.add_argument(
-        "--seed", type=int, default=SEED, metavar="N", help=f"of the room (default: {SEED}, the shipped data's)"
-    )
-    parser.add_argument(
-        "--out", type=Path, metavar="FOLDER", help="where the data go; another seed needs it (default: data/finale)"
-    )
+    """Add this tool's options to its parser."""
+    add_seed_and_out(parser, NAME, SEED)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Makes the data; returns the exit code."""
-    require_seed(arguments.seed)
-    if arguments.out is None and arguments.seed != SEED:
-        raise ValueError(
-            f"--seed {arguments.seed} makes other data than the shipped ones (seed {SEED}): "
-            "give --out FOLDER, or data/finale would be replaced"
-        )
-    out = arguments.out or FOLDER
-    require_output_folder(out)
+    """Make the data; return the exit code."""
+    out = output_folder(arguments, NAME, SEED)
     from course_lib.simulation.room.finale_data import make_finale_data
 
     summary = make_finale_data(out, arguments.seed)

@@ -19,27 +19,14 @@ FIRST_TEST_ROOM, N_TEST_ROOMS = 200, 20
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Adds this command's options to its parser."""
-    parser.add_argument(
-        "--out", type=Path, required=True, metavar="FOLDER", help="where pictures and boxes.json go (no default)"
-    )
-    parser.add_argument(
-        "--first-room",
-        type=int,
-        default=FIRST_TRAINING_ROOM,
-        metavar="N",
-        help=f"seed of the first room, the others count up from it (default: {FIRST_TRAINING_ROOM})",
-    )
-    parser.add_argument(
-        "--rooms", type=int, default=N_TRAINING_ROOMS, metavar="N", help=f"how many (default: {N_TRAINING_ROOMS})"
-    )
-    parser.add_argument(
-        "--images-per-room",
-        type=int,
-        default=IMAGES_PER_ROOM,
-        metavar="N",
-        help=f"pictures of each; other numbers are other pictures of the same rooms (default: {IMAGES_PER_ROOM})",
-    )
+    """Add this tool's options to its parser."""
+    add, number = parser.add_argument, {"type": int, "metavar": "N"}
+    add("--out", type=Path, required=True, metavar="FOLDER", help="where pictures and boxes.json go (no default)")
+    what = f"seed of the first room, the others count up from it (default: {FIRST_TRAINING_ROOM})"
+    add("--first-room", **number, default=FIRST_TRAINING_ROOM, help=what)
+    add("--rooms", **number, default=N_TRAINING_ROOMS, help=f"how many (default: {N_TRAINING_ROOMS})")
+    what = f"pictures of each; other numbers are other pictures of the same rooms (default: {IMAGES_PER_ROOM})"
+    add("--images-per-room", **number, default=IMAGES_PER_ROOM, help=what)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -8,8 +8,8 @@ Its scenes, pages in notebooks/scenes, are written as their cells run.
 from __future__ import annotations
 
 import argparse
-import json
 import math
+import os
 import re
 import sys
 import time
@@ -22,11 +22,10 @@ from jupyter_client.kernelspec import KernelSpecManager
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
-from course_lib.child import KERNEL_PATH, clean_environment
 from course_lib.commands.saved_panels import drop_widgets
 from course_lib.commands.test import OFFLINE_STARTUP
 from course_lib.files import atomic_write, temporary_folder
-from course_lib.paths import STORE_SCENES, notebook_paths, project_paths
+from course_lib.paths import REPOSITORY, STORE_SCENES, notebook_paths, project_paths
 
 MAX_BYTES = 400_000
 HANGS_S = 1800.0  # only what hangs takes so long
@@ -42,19 +41,15 @@ class RefreshError(RuntimeError):
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "lessons", nargs="*", metavar="NN", help="lessons and projects, such as 03 or P1 (default: all)"
-    )
-    parser.add_argument(
-        "--cell-timeout",
-        type=float,
-        default=HANGS_S,
-        metavar="S",
-        help="seconds a cell may take (default: %(default)g)",
-    )
+    """Declare the options of `refresh`."""
+    what = "lessons and projects, such as 03 or P1 (default: all)"
+    parser.add_argument("lessons", nargs="*", metavar="NN", help=what)
+    what = "seconds a cell may take (default: %(default)g)"
+    parser.add_argument("--cell-timeout", type=float, default=HANGS_S, metavar="S", help=what)
 
 
 def run(arguments: argparse.Namespace) -> int:
+    """Refresh what was asked for; 1 where a notebook failed."""
     if not 0 < arguments.cell_timeout < math.inf:
         raise ValueError(f"--cell-timeout must be a positive number of seconds; got {arguments.cell_timeout:g}")
     failed = 0
@@ -89,10 +84,7 @@ def refresh(path: Path, cell_timeout: float = HANGS_S) -> tuple[float, int]:
     text = nbformat.writes(notebook) + "\n"
     size = len(text.encode("utf-8"))
     if size > MAX_BYTES:
-        raise RefreshError(
-            f"{size / 1000:.0f} kB with its outputs, at most {MAX_BYTES / 1000:.0f}: use smaller pictures"
-        )
-    json.loads(text)
+        raise RefreshError(f"{size / 1000:.0f} kB with its outputs, at most {MAX_BYTES / 1000:.0f}: smaller pictures?")
     atomic_write(path, text)
     return seconds, size
 
@@ -106,13 +98,14 @@ def execute(
     """Run all cells of `notebook` in place, in a fresh kernel; returns the seconds that the cells took.
 
     watch: from the process id of the kernel, what is entered before its first cell and left after its last.
+    Raises `RefreshError` where a cell fails.
     """
     with temporary_folder() as home:
         startup = home / "profile_default" / "startup"
         startup.mkdir(parents=True)
         (startup / "00-offline.py").write_text(OFFLINE_STARTUP, encoding="utf-8")
-        (startup / "01-path.py").write_text(KERNEL_PATH, encoding="utf-8")
-        environment = clean_environment({"IPYTHONDIR": str(home), STORE_SCENES: "1"})
+        (startup / "01-path.py").write_text(f'__import__("sys").path.extend([{str(REPOSITORY)!r}, ""])')
+        environment = os.environ | {"IPYTHONDIR": str(home), STORE_SCENES: "1", "PYTHONSAFEPATH": "1"}
         client = NotebookClient(
             notebook,
             timeout=math.ceil(cell_timeout),  # 0 would be no limit
@@ -139,7 +132,7 @@ def execute(
         except CellTimeoutError as error:
             raise RefreshError(f"a cell took longer than {cell_timeout:g} s: {str(error).splitlines()[-1]}") from error
         except (CellExecutionError, DeadKernelError) as error:
-            raise RefreshError(strip_colour(str(error))) from error
+            raise RefreshError(re.sub(r"\x1b\[[0-9;]*m", "", str(error))) from error  # without its colours
 
 
 def normalize(notebook: nbformat.NotebookNode) -> None:
@@ -171,11 +164,6 @@ def merge_streams(outputs: list) -> list:
         else:
             merged.append(output)
     return merged
-
-
-def strip_colour(text: str) -> str:
-    """Text of a traceback without its terminal colours."""
-    return re.sub(r"\x1b\[[0-9;]*m", "", text)
 
 
 if __name__ == "__main__":

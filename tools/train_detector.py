@@ -8,12 +8,17 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import json
+import platform
 import sys
+from dataclasses import asdict
+from hashlib import sha256
 from pathlib import Path
 
 from course_lib.files import atomic_write
 
 DATA = Path(__file__).parents[1] / "data" / "detector"
+RECORDED_WIDTH = 1280
+"""Columns of the recorded panoramas. The finished detector sees them so, not scaled as the training keeps them."""
 
 
 class PyTorchMissing(ValueError):
@@ -21,41 +26,27 @@ class PyTorchMissing(ValueError):
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options of `train-detector`."""
-    folder = {"required": True, "type": Path, "metavar": "FOLDER"}
-    parser.add_argument("--images", **folder, nargs="+", help="panoramas to train on, with boxes.json (no default)")
-    parser.add_argument(
-        "--validation", **folder, nargs="+", help="panoramas of other rooms, which choose the threshold (no default)"
-    )
-    parser.add_argument("--out", **folder, help="checkpoints, weights and results go here (no default)")
-    parser.add_argument("--minutes", type=float, metavar="M", help="training time (default: 60, unless --epochs)")
-    parser.add_argument("--epochs", type=int, metavar="N", help="stop after N epochs, if the time has not run out")
-    parser.add_argument("--batch", type=int, default=8, metavar="N", help="images a step (default: 8)")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
-    parser.add_argument(
-        "--resume",
-        action="store_true",
-        help="go on from the checkpoint in --out (default: start anew, or from --weights)",
-    )
-    parser.add_argument(
-        "--weights", type=Path, metavar="FILE", help="start from these Darknet weights (default: random)"
-    )
-    parser.add_argument(
-        "--learning-rate", type=float, default=1.5e-3, metavar="R", help="the largest (default: 0.0015)"
-    )
+    """Declare the options of `train_detector`."""
+    add = parser.add_argument
+    folder, number = {"required": True, "type": Path, "metavar": "FOLDER"}, {"type": int, "metavar": "N"}
+    add("--images", **folder, nargs="+", help="panoramas to train on, with boxes.json (no default)")
+    what = "panoramas of other rooms, which choose the threshold (no default)"
+    add("--validation", **folder, nargs="+", help=what)
+    add("--out", **folder, help="checkpoints, weights and results go here (no default)")
+    add("--minutes", type=float, metavar="M", help="training time (default: 60, unless --epochs)")
+    add("--epochs", **number, help="stop after N epochs, if the time has not run out")
+    add("--batch", **number, default=8, help="images a step (default: 8)")
+    add("--seed", **number, default=0, help="seed of the random numbers (default: 0)")
+    what = "go on from the checkpoint in --out (default: start anew, or from --weights)"
+    add("--resume", action="store_true", help=what)
+    add("--weights", type=Path, metavar="FILE", help="start from these Darknet weights (default: random)")
+    add("--learning-rate", type=float, default=1.5e-3, metavar="R", help="the largest (default: 0.0015)")
     for option, what in (("cfg", "the network"), ("names", "its classes")):
-        name = f"room_yolo.{option}"
-        parser.add_argument(
-            f"--{option}",
-            type=Path,
-            default=DATA / name,
-            metavar="FILE",
-            help=f"{what} (default: data/detector/{name})",
-        )
-    parser.add_argument(
-        "--processes", type=int, default=1, metavar="N", help="with one thread each (default: 1, with all threads)"
-    )
-    parser.add_argument("--threads", type=int, metavar="N", help="processor threads (default: PyTorch's choice)")
+        path = DATA / f"room_yolo.{option}"
+        what += f" (default: data/detector/{path.name})"
+        add(f"--{option}", type=Path, default=path, metavar="FILE", help=what)
+    add("--processes", **number, default=1, help="with one thread each (default: 1, with all threads)")
+    add("--threads", **number, help="processor threads (default: PyTorch's choice)")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -72,8 +63,10 @@ def run(arguments: argparse.Namespace) -> int:
         )
     import torch
 
-    from tools.detector_training.report import measure_detector, write_report
+    from course_lib.spherical_stereo.detection.darknet import read_names
+    from tools.detector_training.images import read_panoramas
     from tools.detector_training.train import TrainingPlan, train
+    from tools.detector_training.validation import measure_detector
 
     if arguments.threads:
         torch.set_num_threads(arguments.threads)
@@ -102,12 +95,36 @@ def run(arguments: argparse.Namespace) -> int:
         if path.resolve().parent != arguments.out.resolve():
             atomic_write(arguments.out / path.name, path.read_bytes())
     cfg, names = arguments.out / arguments.cfg.name, arguments.out / arguments.names.name
-    _log("measuring the finished detector (OpenCV) on the validation images")
-    validation = measure_detector(cfg, result.weights, names, arguments.validation)
-    path = write_report(arguments.out / "training.json", plan, result, validation, arguments.weights)
-    print(json.dumps(json.loads(path.read_text(encoding="utf-8")), indent=1))
-    print(f"Written to {arguments.out}: {result.weights.name}, {cfg.name}, {names.name}, {path.name}")
+    panoramas = read_panoramas(arguments.validation, read_names(names), RECORDED_WIDTH)
+    validation = measure_detector(cfg, result.weights, names, panoramas)
+    text = json.dumps(report(plan, result, validation, arguments.weights), indent=1)
+    atomic_write(arguments.out / "training.json", text + "\n")
+    print(text)
+    print(f"Written to {arguments.out}: {result.weights.name}, {cfg.name}, {names.name}, training.json")
     return 0
+
+
+def report(plan, result, validation, initial_weights: Path | None) -> dict:
+    """What training.json holds: the numbers, the seed, the versions, and of which weights the training began."""
+    import cv2
+    import numpy
+    import torch
+
+    return {
+        "version": 1,
+        "score_threshold": round(validation.threshold, 3),
+        "validation": asdict(validation),
+        "plan": asdict(plan),
+        "started_from_sha256": sha256(initial_weights.read_bytes()).hexdigest() if initial_weights else None,
+        "position": asdict(result.position),
+        "images_per_second": round(result.images_per_second, 2),
+        "versions": {
+            "python": platform.python_version(),
+            "torch": torch.__version__,
+            "opencv": cv2.__version__,
+            "numpy": numpy.__version__,
+        },
+    }
 
 
 def _require_positive(arguments: argparse.Namespace) -> None:

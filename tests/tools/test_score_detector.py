@@ -4,7 +4,6 @@ import json
 
 import pytest
 
-from course_lib.cli import main
 from tools import detector_evaluation
 from tools.detector_evaluation import DetectorScore, VotingScore
 
@@ -18,8 +17,8 @@ def compared(monkeypatch):
     monkeypatch.setattr(detector_evaluation, "compare_voting", lambda detector, labelled: found)
 
 
-def test_the_table_marks_the_constants_in_use(compared, tmp_path, capsys):
-    assert main(["score-detector", "--voting", "--images", str(tmp_path)]) == 0
+def test_the_table_marks_the_constants_in_use(compared, tmp_path, run_tool, capsys):
+    assert run_tool("score_detector", "--voting", "--images", tmp_path) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 4
     assert "no votes" in lines[1]
@@ -27,8 +26,8 @@ def test_the_table_marks_the_constants_in_use(compared, tmp_path, capsys):
     assert [line.endswith("(used)") for line in lines[1:]] == [False, True, False]
 
 
-def test_json_is_one_object_with_the_constants_in_use(compared, tmp_path, capsys):
-    assert main(["score-detector", "--voting", "--images", str(tmp_path), "--json"]) == 0
+def test_json_is_one_object_with_the_constants_in_use(compared, tmp_path, run_tool, capsys):
+    assert run_tool("score_detector", "--voting", "--images", tmp_path, "--json") == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed["used"] == {"vote_iou": 0.6, "vote_score": 0.1}
     assert [one["jitter_v"] for one in printed["voting"]] == [3.2, 2.5, 2.6]

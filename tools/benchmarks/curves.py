@@ -6,9 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from growth import finer_survey
-from other_tools import open3d_embree
-from side_by_side import IMAGE, N_PARTICLES, Scene, timed_step
+from matplotlib.figure import Figure
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
 
@@ -16,6 +14,8 @@ from course_lib.geometry import optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.rendering.simplification import _welded
+from tools.benchmarks.growth import finer_survey
+from tools.benchmarks.side_by_side import IMAGE, N_PARTICLES, Scene, open3d_embree, timed_step
 
 PARTICLES = (25, 50, 100, 200, 400, 800, 1600)
 IMAGES = ((44, 36), (88, 72), (176, 144), (352, 288))
@@ -33,16 +33,14 @@ Point = dict[str, float]
 def curves(scene: Scene, repeats: int, note: Callable[[str], None]) -> dict[str, list[Point]]:
     """Milliseconds, medians over frames, with the other two quantities as in the paper's experiment."""
     maps = [*(decimated(scene.scene_map, n) for n in TRIANGLES), scene.scene_map, finer_survey(scene.scene_map)]
-    found: dict[str, list[Point]] = {"particles": [], "pixels": [], "triangles": []}
-    for n in PARTICLES:
-        note(f"curve of particles: {n}")
-        found["particles"].append({"x": n} | _point(scene, scene.scene_map, IMAGE, n, repeats))
-    for image in IMAGES:
-        note(f"curve of pixels: {image[0]} x {image[1]}")
-        found["pixels"].append({"x": image[0] * image[1]} | _point(scene, scene.scene_map, image, N_PARTICLES, repeats))
-    for scene_map in maps:
-        note(f"curve of triangles: {len(scene_map)}")
-        found["triangles"].append({"x": len(scene_map)} | _point(scene, scene_map, IMAGE, N_PARTICLES, repeats))
+    usual = scene.scene_map
+    asked = [("particles", n, (usual, IMAGE, n)) for n in PARTICLES]
+    asked += [("pixels", image[0] * image[1], (usual, image, N_PARTICLES)) for image in IMAGES]
+    asked += [("triangles", len(scene_map), (scene_map, IMAGE, N_PARTICLES)) for scene_map in maps]
+    found: dict[str, list[Point]] = {}
+    for quantity, x, given in asked:
+        note(f"curve of {quantity}: {x}")
+        found.setdefault(quantity, []).append({"x": x} | _point(scene, *given, repeats))
     return found
 
 
@@ -78,12 +76,8 @@ def decimated(scene_map: SceneMap, triangles: int) -> SceneMap:
 
 def draw(found: dict[str, list[Point]], path: Path) -> None:
     """Three panels, both axes logarithmic."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), sharey=True, layout="constrained")
+    figure = Figure(figsize=(13, 4.2), layout="constrained")
+    axes = figure.subplots(1, 3, sharey=True)
     for axis, (quantity, points) in zip(axes, found.items(), strict=True):
         for name, (label, colour, style) in STYLES.items():
             shown = [(point["x"], point[f"{name}_ms"]) for point in points if f"{name}_ms" in point]
@@ -101,4 +95,3 @@ def draw(found: dict[str, list[Point]], path: Path) -> None:
     figure.suptitle("One quantity changes, the others stay at 200 particles, 176 x 144 pixels and the shipped map")
     axes[0].legend(loc="lower right", fontsize=8)
     figure.savefig(path, dpi=110)
-    plt.close(figure)

@@ -7,12 +7,12 @@ import time
 from collections.abc import Iterable
 
 import numpy as np
-from side_by_side import N_PARTICLES, Scene, timed_step
 
 from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering import simplification
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
+from tools.benchmarks.side_by_side import N_PARTICLES, Scene, timed_step
 
 NOISE_OF_FINER_SURVEY = 0.002  # metres, across the surface: what a scanner leaves after fusion
 
@@ -41,18 +41,16 @@ def particle_growth(scene: Scene, repeats: int, counts: tuple[int, int] = (N_PAR
 
 def map_growth(scene: Scene, repeats: int) -> dict[str, object]:
     """Time of a step on a map of the same building with nine times the triangles, in units of that on the map."""
-    fine = finer_survey(scene.scene_map)
+    maps = {"usual": scene.scene_map, "fine": finer_survey(scene.scene_map)}
     begun = time.perf_counter()
-    simplification._simplify(fine, simplification.TOLERANCE)  # not what the cache may hold
+    simplification._simplify(maps["fine"], simplification.TOLERANCE)  # not what the cache may hold
     preprocessing = time.perf_counter() - begun
-    with DepthRenderer(scene.scene_map, scene.camera()) as usual, DepthRenderer(fine, scene.camera()) as much:
-        seconds = step_seconds(scene, {"usual": usual, "fine": much}, repeats)
-        drawn = [len(usual.drawn), len(much.drawn)]
-    ratio = seconds["fine", N_PARTICLES] / seconds["usual", N_PARTICLES]
+    renderers = {name: DepthRenderer(scene_map, scene.camera()) for name, scene_map in maps.items()}
+    seconds = step_seconds(scene, renderers, repeats)
     return {
-        "triangles": [len(scene.scene_map), len(fine)],
-        "drawn": drawn,
-        "growth": float(np.median(ratio)),
+        "triangles": [len(scene_map) for scene_map in maps.values()],
+        "drawn": [len(renderer.drawn) for renderer in renderers.values()],
+        "growth": float(np.median(seconds["fine", N_PARTICLES] / seconds["usual", N_PARTICLES])),
         "preprocessing_s": preprocessing,
     }
 
@@ -60,14 +58,11 @@ def map_growth(scene: Scene, repeats: int) -> dict[str, object]:
 def finer_survey(scene_map: SceneMap) -> SceneMap:
     """The map with each triangle cut into nine and noise on every corner, as a finer survey of the building gives."""
     thirds = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)]
-    weights = np.array(thirds) / 3
-    index = {point: k for k, point in enumerate(thirds)}
-    up = [(index[i + 1, j, k - 1], index[i, j + 1, k - 1], index[i, j, k]) for i, j, k in thirds if k >= 1]
-    down = [
-        (index[i, j + 1, k - 1], index[i + 1, j, k - 1], index[i + 1, j + 1, k - 2]) for i, j, k in thirds if k >= 2
-    ]
+    at = {point: k for k, point in enumerate(thirds)}
+    up = [(at[i + 1, j, k - 1], at[i, j + 1, k - 1], at[i, j, k]) for i, j, k in thirds if k >= 1]
+    down = [(at[i, j + 1, k - 1], at[i + 1, j, k - 1], at[i + 1, j + 1, k - 2]) for i, j, k in thirds if k >= 2]
     corners = scene_map.vertices[scene_map.faces]
-    points = np.einsum("pw,fwx->fpx", weights, corners).reshape(-1, 3)
+    points = np.einsum("pw,fwx->fpx", np.array(thirds) / 3, corners).reshape(-1, 3)
     faces = (np.array(up + down)[None] + len(thirds) * np.arange(len(corners))[:, None, None]).reshape(-1, 3)
     # Both triangles of an edge make its points, which rounding may tell apart: a micrometre does not.
     _, first, inverse = np.unique(np.round(points, 6), axis=0, return_index=True, return_inverse=True)
@@ -82,10 +77,9 @@ def truth(scene: Scene, true_world: SceneMap, frames: int) -> dict[str, dict[str
     """Depth errors in millimetres against the true world, of the map and of the simplified map: median and 99 %."""
     chosen = np.linspace(0, len(scene.sequence) - 1, frames).astype(int)
     states = state_from_optical_pose(scene.sequence.camera_to_world[chosen])
-    camera = scene.camera()
 
     def images(scene_map: SceneMap, exact: bool) -> np.ndarray:
-        with DepthRenderer(scene_map, camera, exact=exact) as renderer:
+        with DepthRenderer(scene_map, scene.camera(), exact=exact) as renderer:
             return renderer.render(states).astype(np.float64)
 
     true = images(true_world, True)

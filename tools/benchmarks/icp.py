@@ -61,16 +61,11 @@ def follow(
     return position, np.rad2deg(rotation)
 
 
-def main() -> None:
-    """Prints the JSON object."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--map", required=True)
-    parser.add_argument("--sequence", required=True)
-    parser.add_argument("--every", default="1")
-    arguments = parser.parse_args()
-    target, whole = map_cloud(SceneMap.load(arguments.map)), read_sequence(arguments.sequence)
+def measure(map_file: str, sequence: str, everies: list[int]) -> dict[str, dict[int, dict]]:
+    """Errors of every frame, by variant and thinning."""
+    target, whole = map_cloud(SceneMap.load(map_file)), read_sequence(sequence)
     rows = {}
-    for every in map(int, arguments.every.split(",")):
+    for every in everies:
         for name, gates in GATES.items():
             for velocity in (False, True):
                 runs = [follow(target, whole.thinned(every, offset), gates, velocity) for offset in range(every)]
@@ -80,8 +75,13 @@ def main() -> None:
                     "rotation_deg": np.concatenate([r for _, r in runs]).tolist(),
                 }
                 print(told, every, file=sys.stderr)
-    print(json.dumps(rows))
+    return rows
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--map", required=True)
+    parser.add_argument("--sequence", required=True)
+    parser.add_argument("--every", default="1")
+    given = parser.parse_args()
+    print(json.dumps(measure(given.map, given.sequence, [int(n) for n in given.every.split(",")])))

@@ -6,16 +6,16 @@ is not another's: prints one JSON object.
 
 from __future__ import annotations
 
-import argparse
 import json
+import sys
+from collections.abc import Callable
 
 import numpy as np
-from measure import corridor
-from side_by_side import Scene
-from start_up import held_mb
 
 from course_lib.geometry import state_from_optical_pose
-from course_lib.rendering.renderer import Backend, DepthRenderer, OpenGLError
+from course_lib.rendering.renderer import DepthRenderer, OpenGLError
+from tools.benchmarks.measure import corridor
+from tools.benchmarks.waiting import held_mb
 
 CLOUDS, VIEWS = 10, 4
 SPREAD = np.array([0.1, 0.1, 0.05, 0.05, 0.05, 0.2])  # metres and radians: standard deviation about the true pose
@@ -28,37 +28,35 @@ QUARTER = 4
 and gives back (8 MB often, once 18) is not growth, and what is kept with each call is in every later least."""
 
 
-def clouds(scene: Scene) -> np.ndarray:
-    """States `(CLOUDS, VIEWS, 6)` about true poses from all along the recording: what is rendered in turn."""
+def measure(backend: str, n_renders: int, n_renderers: int) -> dict[str, object]:
+    """What `bench --renders` tells of a backend, or why it is not here: n renders of one renderer, then n renderers.
+
+    A call draws a cloud of states about a true pose of the recording; the clouds are drawn in turn.
+    """
+    scene = corridor()
     frames = np.linspace(0, len(scene.sequence) - 1, CLOUDS).astype(int)
     true = state_from_optical_pose(scene.sequence.camera_to_world[frames])
-    noise = np.random.default_rng(SEED).normal(size=(CLOUDS, VIEWS, 6))
-    return true[:, None] + SPREAD * noise
+    clouds = true[:, None] + SPREAD * np.random.default_rng(SEED).normal(size=(CLOUDS, VIEWS, 6))
+
+    def opened() -> DepthRenderer:
+        return DepthRenderer(scene.scene_map, scene.camera(), backend)
+
+    def render_once(k: int) -> np.ndarray:
+        with opened() as renderer:
+            return renderer.render(clouds[k])
+
+    try:
+        with opened() as renderer:
+            renders = over(n_renders, lambda k: renderer.render(clouds[k]))
+        return {"views": VIEWS, "renders": renders, "renderers": over(n_renderers, render_once)}
+    except OpenGLError as error:
+        return {"missing": str(error)}
 
 
-def many_renders(scene: Scene, backend: Backend, n: int) -> dict[str, float]:
-    """n calls of one renderer, the clouds in turn: memory (MB) on the way, and how many calls gave another image."""
-    states = clouds(scene)
-    with DepthRenderer(scene.scene_map, scene.camera(), backend) as renderer:
-        start = held_mb()
-        first = np.array([renderer.render(cloud) for cloud in states])
-        return {"before_the_first_mb": start, **_over(n, lambda k: renderer.render(states[k]), first)}
-
-
-def many_renderers(scene: Scene, backend: Backend, n: int) -> dict[str, float]:
-    """The same for n renderers, each opened, asked for one cloud and closed."""
-    states = clouds(scene)
-
-    def render(k: int) -> np.ndarray:
-        with DepthRenderer(scene.scene_map, scene.camera(), backend) as renderer:
-            return renderer.render(states[k])
-
+def over(n: int, render: Callable[[int], np.ndarray]) -> dict[str, float]:
+    """What n calls of `render` do to memory (MB), and how many of them differ from the first of their cloud."""
     start = held_mb()
-    return {"before_the_first_mb": start, **_over(n, render, np.array([render(k) for k in range(CLOUDS)]))}
-
-
-def _over(n, render, first: np.ndarray) -> dict[str, float]:
-    """What n calls of `render` do to memory, and how many of them differ from the `first` of their cloud."""
+    first = [render(k) for k in range(CLOUDS)]
     held, differ = [], 0
     for i in range(n):
         differ += not np.array_equal(render(i % CLOUDS), first[i % CLOUDS])
@@ -66,6 +64,7 @@ def _over(n, render, first: np.ndarray) -> dict[str, float]:
     settled = held[max(int(SETTLING * n), min(SETTLING_CALLS, n // 2)) :]
     part = -(-len(settled) // QUARTER)
     return {
+        "before_the_first_mb": start,
         "calls": n,
         "settled_mb": settled[0],
         "greatest_mb": max(settled),
@@ -75,23 +74,5 @@ def _over(n, render, first: np.ndarray) -> dict[str, float]:
     }
 
 
-def measure(backend: Backend, n_renders: int, n_renderers: int) -> dict[str, object]:
-    """What `bench --renders` tells of a backend; or why it is not here."""
-    scene = corridor()
-    try:
-        return {
-            "views": VIEWS,
-            "renders": many_renders(scene, backend, n_renders),
-            "renderers": many_renderers(scene, backend, n_renderers),
-        }
-    except OpenGLError as error:
-        return {"missing": str(error)}
-
-
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("backend")
-    parser.add_argument("renders", type=int)
-    parser.add_argument("renderers", type=int)
-    given = parser.parse_args()
-    print(json.dumps(measure(given.backend, given.renders, given.renderers)))
+    print(json.dumps(measure(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]))))

@@ -6,7 +6,9 @@ batches         the order of the samples, made beside the training
 network         a Darknet cfg as a PyTorch module
 assignment      which cell and anchor is responsible for which object
 loss            what the network is trained to make small
-train           the loop: schedule, checkpoints, validation
+state           what changes from step to step, and the checkpoint that keeps it; the learning rate
+workers         several processes that train one network together
+train           the loop
 export          Darknet .weights, written and read
 validation      precision and recall on rooms that were not trained on, and the choice of the threshold
 """

@@ -7,7 +7,7 @@ object make a short training possible.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -15,8 +15,7 @@ import torch
 from tools.detector_training.network import YoloHead
 
 
-@dataclass(frozen=True)
-class Targets:
+class Targets(NamedTuple):
     """The objects of a batch."""
 
     image: torch.Tensor
@@ -31,16 +30,14 @@ class Targets:
     """(m, 4) their boxes, like `boxes`."""
 
 
-@dataclass(frozen=True)
-class Assignment:
-    """Who answers on one map: n entries, each one box of the network and its object."""
+class Assignment(NamedTuple):
+    """Who answers on one map: n entries, each one box of the network and its object, its index in `Targets`."""
 
     image: torch.Tensor
     anchor: torch.Tensor
     row: torch.Tensor
     column: torch.Tensor
     target: torch.Tensor
-    """(n,) index of the object in `Targets`."""
 
 
 def make_targets(samples: list[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> Targets:
@@ -53,12 +50,9 @@ def make_targets(samples: list[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> Ta
     corners = np.concatenate([s[1].reshape(-1, 4) for s in samples]).astype(np.float32)
     ignored = np.concatenate([s[2] for s in samples]).astype(bool)
     boxes = np.concatenate([(corners[:, :2] + corners[:, 2:]) / 2, corners[:, 2:] - corners[:, :2]], axis=1)
+    taught = ~ignored
     return Targets(
-        image=torch.from_numpy(image[~ignored]),
-        label=torch.from_numpy(labels[~ignored]),
-        boxes=torch.from_numpy(boxes[~ignored]),
-        ignored_image=torch.from_numpy(image[ignored]),
-        ignored_boxes=torch.from_numpy(boxes[ignored]),
+        *map(torch.from_numpy, (image[taught], labels[taught], boxes[taught], image[ignored], boxes[ignored]))
     )
 
 

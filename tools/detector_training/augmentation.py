@@ -15,7 +15,7 @@ import numpy as np
 from tools.detector_training.images import LabelledPanorama
 
 # An object of which less than this share of the width is inside the window is neither taught nor held to be background.
-LEAST_SHARE_INSIDE = 0.4
+MIN_SHARE_INSIDE = 0.4
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def panorama_window(
 
     Column u of the panorama comes to (u + roll) scale, modulo the turn, row v to v scale - top. With the values left
     out it is what the detector sees. Boxes that cross the window's border are cut there; those cut to less than
-    `LEAST_SHARE_INSIDE` of their width become ignored.
+    `MIN_SHARE_INSIDE` of their width become ignored.
     """
     width = panorama.image.shape[1]
     image, boxes = panorama.image, panorama.boxes.astype(np.float64)
@@ -111,7 +111,7 @@ def panorama_window(
     cut = np.clip(copies, 0.0, limits)
     share = (cut[:, 2:] - cut[:, :2]) / (copies[:, 2:] - copies[:, :2])
     inside = (share > 0.0).all(axis=1)
-    ignored = ignored | (share < LEAST_SHARE_INSIDE).any(axis=1)
+    ignored = ignored | (share < MIN_SHARE_INSIDE).any(axis=1)
     return Sample(np.ascontiguousarray(image), labels[inside], cut[inside].astype(np.float32), ignored[inside])
 
 

@@ -20,15 +20,10 @@ VERSION = (0, 2, 5)
 
 
 def write_weights(network: TrainableNetwork, path: str | Path, images_seen: int = 0) -> Path:
-    """Writes the network's weights as a Darknet file that OpenCV reads; returns its path.
-
-    The file appears whole or not at all: a training that is killed while it writes leaves the older one.
-    """
+    """Write the network's weights as a Darknet file that OpenCV reads; return its path."""
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    parts = [np.array(VERSION, "<i4"), np.array([images_seen], "<i8")]
-    for tensor in _tensors_in_file_order(network):
-        parts.append(tensor.detach().cpu().contiguous().numpy().astype("<f4"))
+    tensors = [tensor.detach().numpy().astype("<f4") for tensor in _tensors_in_file_order(network)]
+    parts = [np.array(VERSION, "<i4"), np.array([images_seen], "<i8"), *tensors]
     atomic_write(path, b"".join(part.tobytes() for part in parts))
     return path
 
@@ -58,10 +53,7 @@ def _tensors_in_file_order(network: TrainableNetwork):
         convolution = layer[0]
         if convolution.bias is None:
             normalization = layer[1]
-            yield normalization.bias
-            yield normalization.weight
-            yield normalization.running_mean
-            yield normalization.running_var
+            yield from (normalization.bias, normalization.weight, normalization.running_mean, normalization.running_var)
         else:
             yield convolution.bias
         yield convolution.weight

@@ -1,6 +1,6 @@
 """What the network is trained to make small: YOLOv4's loss, box overlap (CIoU), objectness and class.
 
-    L = (w_box sum (1 - CIoU) + w_objectness sum BCE(objectness) + w_class sum BCE(class)) / number of assigned boxes
+    L = (5 sum (1 - CIoU) + sum BCE(objectness) + sum BCE(class)) / number of assigned boxes
 
 The sums of the first and last term run over the assigned boxes, the second over all that are objects or background.
 The objectness of an assigned box is taught to be its CIoU, so that of two boxes on one object the better one scores
@@ -18,16 +18,10 @@ from torch.nn.functional import binary_cross_entropy_with_logits as cross_entrop
 from tools.detector_training.assignment import Targets, assign, not_background
 from tools.detector_training.network import YoloHead, decode_boxes
 
-
-@dataclass(frozen=True)
-class LossWeights:
-    """How much each term counts (chosen: 5, 1, 1, with all terms divided by the number of assigned boxes, as YOLOX)."""
-
-    box: float = 5.0
-    objectness: float = 1.0
-    classes: float = 1.0
-    label_smoothing: float = 0.01
-    """A class is taught to have the chance 1 - s/2, the others s/2: nothing is certain in an image."""
+# How much the terms count (chosen: 5, 1, 1, all divided by the number of assigned boxes, as YOLOX does).
+BOX_WEIGHT = 5.0
+# A class is taught to have the chance 1 - s/2, the others s/2: nothing is certain in an image.
+LABEL_SMOOTHING = 0.01
 
 
 @dataclass(frozen=True)
@@ -62,20 +56,13 @@ def complete_iou(boxes: torch.Tensor, targets: torch.Tensor) -> torch.Tensor:
     return iou - apart / around.clamp(min=1e-6) - a * v
 
 
-def yolo_loss(
-    outputs: list[torch.Tensor],
-    heads: list[YoloHead],
-    targets: Targets,
-    input_width: int,
-    weights: LossWeights | None = None,
-) -> Loss:
+def yolo_loss(outputs: list[torch.Tensor], heads: list[YoloHead], targets: Targets, input_width: int) -> Loss:
     """The loss of the raw maps of a batch (as `TrainableNetwork` gives them) against its objects.
 
     `input_width` is the width of the input images in pixels. Boxes that overlap an object well without being assigned
     to it, and boxes inside ignored objects, are left out of the objectness term.
     Source: paper 2, section 2.2 (its detector is YOLOv4).
     """
-    weights = weights or LossWeights()
     grids = [(raw.shape[-2], raw.shape[-1], input_width / raw.shape[-1]) for raw in outputs]
     box_sum = objectness_sum = class_sum = torch.zeros(())
     n_assigned = 0
@@ -91,20 +78,15 @@ def yolo_loss(
             wanted[where] = overlap.detach().clamp(min=0)
             counts[where] = True
             chance = raw[found.image, found.anchor, 5:, found.row, found.column]
-            labels = torch.full_like(chance, weights.label_smoothing / 2)
-            labels[torch.arange(len(labels)), targets.label[found.target]] = 1.0 - weights.label_smoothing / 2
+            labels = torch.full_like(chance, LABEL_SMOOTHING / 2)
+            labels[torch.arange(len(labels)), targets.label[found.target]] = 1.0 - LABEL_SMOOTHING / 2
             class_sum = class_sum + cross_entropy(chance, labels, reduction="sum")
             n_assigned += len(found.target)
         objectness_sum = objectness_sum + (cross_entropy(raw[:, :, 4], wanted, reduction="none") * counts).sum()
     # A batch without objects still teaches what background is.
     n = max(n_assigned, 1)
-    box, objectness, classes = (
-        weights.box * box_sum / n,
-        weights.objectness * objectness_sum / n,
-        weights.classes * class_sum / n,
-    )
-    total = box + objectness + classes
-    return Loss(total, box.item(), objectness.item(), classes.item())
+    box, objectness, classes = BOX_WEIGHT * box_sum / n, objectness_sum / n, class_sum / n
+    return Loss(box + objectness + classes, box.item(), objectness.item(), classes.item())
 
 
 @torch.no_grad()

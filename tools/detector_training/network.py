@@ -22,7 +22,7 @@ LEAKY_SLOPE = 0.1
 # just that wastes its first hundred steps.
 PRIOR_OBJECTNESS = 0.01
 # exp() of a wider range than this is no furniture, only overflow at the start of a training.
-LARGEST_LOG_SCALE = 4.0
+MAX_LOG_SCALE = 4.0
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,12 @@ class TrainableNetwork(nn.Module):
         if not self.heads:
             raise DetectorError("the cfg has no [yolo] section, so there is nothing to train")
         self.layers = nn.ModuleList(layers)
-        self._needed = _needed_later(sections)
-        self._start_from_prior(generator)
+        detections = [index for index, section in enumerate(sections[1:]) if section.kind == "yolo"]
+        for index, head in zip(detections, self.heads, strict=True):
+            _start_from_prior(layers[index - 1][0], head, generator)
+        # Only the layers that some [route] reads are kept in memory.
+        routes = [(index, section) for index, section in enumerate(sections[1:]) if section.kind == "route"]
+        self._needed = {source for index, section in routes for source in _sources(section, index)}
 
     def forward(self, images: torch.Tensor) -> list[torch.Tensor]:
         """Raw maps (b, anchors, 5 + classes, rows, columns), one per `[yolo]`, of images (b, 3, h, w), RGB in [0, 1].
@@ -74,7 +78,8 @@ class TrainableNetwork(nn.Module):
         for index, (section, layer) in enumerate(zip(self.sections[1:], self.layers, strict=True)):
             if section.kind == "route":
                 sources = [kept[source] for source in _sources(section, index)]
-                value = layer(sources[0] if len(sources) == 1 else torch.cat(sources, dim=1))
+                value = sources[0] if len(sources) == 1 else torch.cat(sources, dim=1)
+                value = value.chunk(section.integer("groups", 1), dim=1)[section.integer("group_id", 0)]
             elif section.kind == "yolo":
                 b, channels, rows, columns = value.shape
                 n_anchors = len(self.heads[len(outputs)].anchors)
@@ -84,29 +89,6 @@ class TrainableNetwork(nn.Module):
             if index in self._needed:
                 kept[index] = value
         return outputs
-
-    def _start_from_prior(self, generator: torch.Generator) -> None:
-        for index, section in enumerate(self.sections[1:]):
-            if section.kind == "yolo":
-                convolution = self.layers[index - 1][0]
-                head = yolo_head(section)
-                bias = convolution.bias.data.view(len(head.anchors), 5 + head.classes)
-                nn.init.normal_(convolution.weight, std=0.01, generator=generator)
-                bias.zero_()
-                bias[:, 4] = float(torch.logit(torch.tensor(PRIOR_OBJECTNESS)))
-                bias[:, 5:] = float(torch.logit(torch.tensor(1.0 / head.classes)))
-
-
-class ChannelGroup(nn.Module):
-    """One of `groups` equal parts of the channels: what a `[route]` with groups passes on."""
-
-    def __init__(self, groups: int, group: int):
-        super().__init__()
-        self.groups, self.group = groups, group
-
-    def forward(self, value: torch.Tensor) -> torch.Tensor:
-        """Part (b, c / groups, h, w) of (b, c, h, w)."""
-        return value.chunk(self.groups, dim=1)[self.group]
 
 
 def yolo_head(section: Section) -> YoloHead:
@@ -141,25 +123,8 @@ def decode_boxes(raw: torch.Tensor, head: YoloHead, stride: float) -> torch.Tens
     anchors = head.anchors.to(raw.device).view(1, -1, 2, 1, 1)
     u = stride * (column + head.scale_xy * torch.sigmoid(t[:, :, 0]) - shift)
     v = stride * (row + head.scale_xy * torch.sigmoid(t[:, :, 1]) - shift)
-    size = anchors * torch.exp(t[:, :, 2:4].clamp(max=LARGEST_LOG_SCALE))
+    size = anchors * torch.exp(t[:, :, 2:4].clamp(max=MAX_LOG_SCALE))
     return torch.stack([u, v, size[:, :, 0], size[:, :, 1]], dim=-1)
-
-
-def decode(outputs: list[torch.Tensor], heads: list[YoloHead], input_width: int) -> torch.Tensor:
-    """All boxes (b, n, 5 + classes): centre u, v, width, height [pixels], objectness, score of each class.
-
-    A class score is objectness times the chance of the class, as OpenCV gives it. `input_width` is the width of the
-    images that the maps were made from, in pixels: it tells each map's stride. n runs over maps, rows, columns,
-    anchors.
-    """
-    parts = []
-    for raw, head in zip(outputs, heads, strict=True):
-        boxes = decode_boxes(raw, head, input_width / raw.shape[-1])
-        chance = torch.sigmoid(raw[:, :, 4:].float()).permute(0, 1, 3, 4, 2)
-        objectness = chance[..., :1]
-        table = torch.cat([boxes, objectness, objectness * chance[..., 1:]], dim=-1)
-        parts.append(table.permute(0, 2, 3, 1, 4).reshape(raw.shape[0], -1, table.shape[-1]))
-    return torch.cat(parts, dim=1)
 
 
 def _build(section: Section, incoming: int, generator: torch.Generator) -> nn.Module:
@@ -172,15 +137,21 @@ def _build(section: Section, incoming: int, generator: torch.Generator) -> nn.Mo
         return nn.MaxPool2d(size, stride, padding=(size - 1) // 2)
     if section.kind == "upsample":
         return nn.Upsample(scale_factor=section.integer("stride", 2), mode="nearest")
-    if section.kind == "route":
-        groups = section.integer("groups", 1)
-        return nn.Identity() if groups == 1 else ChannelGroup(groups, section.integer("group_id", 0))
-    if section.kind == "yolo":
+    if section.kind in ("route", "yolo"):  # `forward` does what they say
         return nn.Identity()
     raise DetectorError(
         f"the training cannot build [{section.kind}] (line {section.line}); it knows convolutional, maxpool, upsample, "
         "route and yolo"
     )
+
+
+def _start_from_prior(convolution: nn.Conv2d, head: YoloHead, generator: torch.Generator) -> None:
+    """Let the untrained network expect hardly any object, and every class as much as the others."""
+    nn.init.normal_(convolution.weight, std=0.01, generator=generator)
+    bias = convolution.bias.data.view(len(head.anchors), 5 + head.classes)
+    bias.zero_()
+    bias[:, 4] = float(torch.logit(torch.tensor(PRIOR_OBJECTNESS)))
+    bias[:, 5:] = float(torch.logit(torch.tensor(1.0 / head.classes)))
 
 
 def _convolution(section: Section, incoming: int, generator: torch.Generator) -> nn.Sequential:
@@ -205,13 +176,3 @@ def _convolution(section: Section, incoming: int, generator: torch.Generator) ->
 
 def _sources(section: Section, index: int) -> list[int]:
     return [source if source >= 0 else index + source for source in section.integers("layers")]
-
-
-def _needed_later(sections: list[Section]) -> set[int]:
-    """Indices of the layers that some `[route]` reads: only these are kept in memory."""
-    return {
-        source
-        for index, section in enumerate(sections[1:])
-        if section.kind == "route"
-        for source in _sources(section, index)
-    }

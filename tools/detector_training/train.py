@@ -7,31 +7,23 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import torch
 
 from course_lib.experiments.detection_scores import DetectionScoreError
 from course_lib.files import temporary_folder
 from course_lib.spherical_stereo.detection.darknet import check_names, class_count, read_cfg, read_names
+from tools.detector_training import workers
 from tools.detector_training.augmentation import AugmentationRanges
 from tools.detector_training.batches import Batch, epoch_batches
-from tools.detector_training.checkpoints import Position, load_checkpoint, save_checkpoint
 from tools.detector_training.export import read_weights, write_weights
-from tools.detector_training.images import PanoramaFolders, TrainingDataError
+from tools.detector_training.images import TrainingDataError, read_boxes, read_panoramas
 from tools.detector_training.loss import Loss, yolo_loss
 from tools.detector_training.network import TrainableNetwork
-from tools.detector_training.schedule import AveragedNetwork, learning_rate
-from tools.detector_training.validation import Validation, every_nth, network_detector, validate
-from tools.detector_training.workers import (
-    Alone,
-    Together,
-    average_gradients,
-    average_statistics,
-    start_others,
-)
+from tools.detector_training.state import AveragedNetwork, Position, TrainingState, learning_rate
+from tools.detector_training.validation import Validation, every_nth, measure_detector
 
 # Gradients longer than this are shortened: one odd batch must not undo the ones before.
-LONGEST_GRADIENT = 10.0
+MAX_GRADIENT = 10.0
 
 
 @dataclass(frozen=True)
@@ -87,11 +79,11 @@ def train(
     log: Callable[[str], None] = print,
     progress: Callable[[Iterable, int], Iterable] = lambda batches, count: batches,
 ) -> TrainingResult:
-    """Trains the network of `cfg` on folders of panoramas and writes `OUTPUT/<cfg name>.weights`.
+    """Train the network of `cfg` on folders of panoramas and write `OUTPUT/<cfg name>.weights`.
 
-    New images in the folders are taken up at the start of each epoch. Checkpoints are written between epochs; `resume`
-    goes on from the one in `output`, `initial_weights` starts from a `.weights` file. `progress(batches, count)` may
-    draw a bar. Raises `DetectorError`, `TrainingDataError`, `CheckpointError`.
+    Checkpoints are written between epochs; `resume` goes on from the one in `output`, `initial_weights` starts from a
+    `.weights` file. `progress(batches, count)` may draw a bar.
+    Raises `DetectorError`, `TrainingDataError`, `CheckpointError`.
     """
     plan = plan or TrainingPlan()
     check_names(class_count(read_cfg(cfg)), read_names(names_file))
@@ -99,42 +91,19 @@ def train(
     output.mkdir(parents=True, exist_ok=True)
     given = (cfg, names_file, images, validation_images, output, plan, resume, initial_weights, ranges)
     if plan.processes == 1:
-        return _train(Alone(), *given, log, progress)
-    # Read here first: what is wrong with a folder is said once, not by every process.
-    PanoramaFolders(images, read_names(names_file), plan.panorama_width, (0, 10**9))
+        return _train(*given, log, progress)
+    for folder in images:  # what is wrong with a folder is said once, not by every process
+        read_boxes(folder)
     with temporary_folder() as folder:
-        meeting_file = folder / "meeting"
-        others = start_others(plan.processes, meeting_file, _train_beside, given)
+        others = workers.start_others(plan.processes, folder / "meeting", _train, (*given, _silent, _unchanged))
         try:
-            _one_thread()
-            workers = Together(0, plan.processes, meeting_file)
-            result = _train(workers, *given, log, progress)
-            workers.close()
-            return result
+            workers.join_others(0, plan.processes, folder / "meeting")
+            return _train(*given, log, progress)
         finally:
+            workers.leave_others()
             for process in others:
                 process.join(timeout=10)
                 process.terminate()
-
-
-def training_step(
-    network: TrainableNetwork,
-    optimiser: torch.optim.Optimizer,
-    batch: Batch,
-    bfloat16: bool = False,
-    workers: Alone | Together | None = None,
-) -> Loss:
-    """One step of the optimiser on a batch, the gradients averaged with the other processes'; the loss before it."""
-    images = batch.images.contiguous(memory_format=torch.channels_last)
-    with torch.autocast("cpu", torch.bfloat16, enabled=bfloat16):
-        outputs = network(images)
-    loss = yolo_loss(outputs, network.heads, batch.targets, images.shape[-1])
-    optimiser.zero_grad(set_to_none=True)
-    loss.total.backward()
-    average_gradients(network, workers or Alone())
-    torch.nn.utils.clip_grad_norm_(network.parameters(), LONGEST_GRADIENT)
-    optimiser.step()
-    return loss
 
 
 def check_plan(plan: TrainingPlan) -> None:
@@ -148,95 +117,96 @@ def check_plan(plan: TrainingPlan) -> None:
         )
 
 
-def _train_beside(rank: int, count: int, meeting_file: Path, *given) -> None:
-    """What every process but the first does: the same steps on its own part of the images, and no output."""
-    _one_thread()
-    workers = Together(rank, count, meeting_file)
-    _train(workers, *given, lambda text: None, lambda batches, count: batches)
-    workers.close()
+def _silent(text: str) -> None:
+    """The log of all processes but the first."""
 
 
-def _one_thread() -> None:
-    torch.set_num_threads(1)
-    cv2.setNumThreads(1)
+def _unchanged(batches: Iterable, count: int) -> Iterable:
+    """The progress bar of all processes but the first."""
+    return batches
 
 
 def _train(
-    workers, cfg, names_file, images, validation_images, output, plan, resume, initial_weights, ranges, log, progress
+    cfg, names_file, images, validation_images, output, plan, resume, initial_weights, ranges, log, progress
 ) -> TrainingResult:
-    sections, names = read_cfg(cfg), read_names(names_file)
-    training = PanoramaFolders(images, names, plan.panorama_width, (workers.rank, workers.count))
-    first = workers.rank == 0
-    validating = PanoramaFolders(validation_images, names, plan.panorama_width) if first else None
-    network = TrainableNetwork(sections, torch.Generator().manual_seed(plan.seed))
+    """What every process does. Only the first writes and validates."""
+    rank, count = workers.rank_and_count()
+    names = read_names(names_file)
+    training = read_panoramas(images, names, plan.panorama_width, (rank, count))
+    validating = read_panoramas(validation_images, names, plan.panorama_width) if rank == 0 else []
+    validating = every_nth(validating, plan.validation_images)
+    network = TrainableNetwork(read_cfg(cfg), torch.Generator().manual_seed(plan.seed))
     if initial_weights is not None:
         read_weights(network, initial_weights)
     network = network.to(memory_format=torch.channels_last).train()
-    average = AveragedNetwork(network)
-    optimiser = _optimiser(network, plan)
-    position = Position(plan.seed)
+    state = TrainingState(network, AveragedNetwork(network), _optimiser(network, plan), Position(plan.seed))
     if resume:
-        position = load_checkpoint(output, network, average, optimiser, plan.seed)
-        log(f"going on after epoch {position.epoch}, {position.seconds / 60:.1f} minutes")
-    clock = _Clock(position.seconds)
+        state.load(output)
+        log(f"going on after epoch {state.position.epoch}, {state.position.seconds / 60:.1f} minutes")
+    average, position = state.average.network, state.position
     path = output / (Path(cfg).stem + ".weights")
     last_validation, validated_at, saved_at, rate = None, position.seconds, position.seconds, 0.0
+    started = time.monotonic() - position.seconds
     while not _finished(plan, position):
-        _take_up_new_images(training, log)
-        rate, mean = _run_epoch(workers, clock, network, average, optimiser, training, position, plan, ranges, progress)
-        average_statistics(average.network, workers)
-        log(f"epoch {position.epoch}: {position.images_seen} images seen, {position.seconds / 60:.1f} min, {mean}")
+        rate, text = _run_epoch(state, started, training, plan, ranges, progress)
+        workers.average_statistics(average)
+        log(f"epoch {position.epoch}: {position.images_seen} images seen, {position.seconds / 60:.1f} min, {text}")
         over = _finished(plan, position)
-        if first and (over or position.seconds - saved_at > 60 * plan.minutes_between_checkpoints):
-            save_checkpoint(output, network, average, optimiser, position)
-            write_weights(average.network, path, position.images_seen)
+        if rank == 0 and (over or position.seconds - saved_at > 60 * plan.minutes_between_checkpoints):
+            state.save(output)
+            write_weights(average, path, position.images_seen)
             saved_at = position.seconds
-        if first and (over or position.seconds - validated_at > 60 * plan.minutes_between_validations):
-            _take_up_new_images(validating, log)
-            last_validation = _validation(average.network, validating, names, plan, log)
+        if rank == 0 and (over or position.seconds - validated_at > 60 * plan.minutes_between_validations):
+            write_weights(average, path, position.images_seen)
+            last_validation = _validation(cfg, path, names_file, validating, log)
             validated_at = position.seconds
     return TrainingResult(path, position, last_validation, rate)
 
 
-class _Clock:
-    """Seconds of training, going on from those of earlier sessions."""
+def _run_epoch(state, started, training, plan, ranges, progress) -> tuple[float, str]:
+    """One epoch, or what is left of the time; returns images per second, and a line with it and the mean losses.
 
-    def __init__(self, seconds: float):
-        self.start = time.monotonic() - seconds
-
-    def seconds(self) -> float:
-        return time.monotonic() - self.start
-
-
-def _run_epoch(
-    workers, clock, network, average, optimiser, training, position, plan, ranges, progress
-) -> tuple[float, str]:
-    """One epoch, or what is left of the time; returns images per second, and a line with it and the mean losses."""
-    size = plan.batch_size // workers.count
+    started: when the training began by `time.monotonic`, had it been in one piece.
+    """
+    rank, count = workers.rank_and_count()
+    position, size = state.position, plan.batch_size // count
     n_steps = workers.least(max(1, len(training) // size))
     # Each process draws its own samples, as if it trained with a seed of its own.
-    seed = plan.seed if workers.rank == 0 else plan.seed + 1_000_003 * workers.rank
-    batches = epoch_batches(training, size, plan.window, seed, position.epoch, n_steps, ranges)
-    losses, started = [], clock.seconds()
+    batches = epoch_batches(training, size, plan.window, plan.seed + 1_000_003 * rank, position.epoch, n_steps, ranges)
+    losses, begun = [], time.monotonic()
     for batch in progress(batches, n_steps):
-        position.seconds = workers.agree(clock.seconds())
+        position.seconds = workers.agree(time.monotonic() - started)
         if plan.minutes is not None and position.seconds >= 60 * plan.minutes:
             break
-        share = _progress(plan, position, n_steps)
-        for group in optimiser.param_groups:
+        share = _share_done(plan, position, n_steps)
+        for group in state.optimiser.param_groups:
             group["lr"] = learning_rate(plan.learning_rate, position.step, plan.warm_up_steps, share)
-        loss = training_step(network, optimiser, batch, plan.bfloat16, workers)
-        average.update(network)
+        loss = _training_step(state.network, state.optimiser, batch, plan.bfloat16)
+        state.average.update(state.network)
         losses.append((loss.total.item(), loss.box, loss.objectness, loss.classes))
         position.step += 1
-        position.images_seen += len(batch.images) * workers.count
+        position.images_seen += len(batch.images) * count
     position.epoch += 1
     if not losses:
         return 0.0, "out of time"
     total, box, objectness, classes = (sum(column) / len(losses) for column in zip(*losses, strict=True))
-    rate = len(losses) * size * workers.count / max(1e-9, clock.seconds() - started)
+    rate = len(losses) * size * count / max(1e-9, time.monotonic() - begun)
     text = f"{len(training)} images here, {rate:.1f} images/s, "
     return rate, text + f"loss {total:.3f} (box {box:.3f}, objectness {objectness:.3f}, class {classes:.3f})"
+
+
+def _training_step(network: TrainableNetwork, optimiser: torch.optim.Optimizer, batch: Batch, bfloat16: bool) -> Loss:
+    """One step of the optimiser on a batch, the gradients averaged with the other processes'; the loss before it."""
+    images = batch.images.contiguous(memory_format=torch.channels_last)
+    with torch.autocast("cpu", torch.bfloat16, enabled=bfloat16):
+        outputs = network(images)
+    loss = yolo_loss(outputs, network.heads, batch.targets, images.shape[-1])
+    optimiser.zero_grad(set_to_none=True)
+    loss.total.backward()
+    workers.average_gradients(network)
+    torch.nn.utils.clip_grad_norm_(network.parameters(), MAX_GRADIENT)
+    optimiser.step()
+    return loss
 
 
 def _finished(plan: TrainingPlan, position: Position) -> bool:
@@ -244,7 +214,7 @@ def _finished(plan: TrainingPlan, position: Position) -> bool:
     return out_of_time or (plan.epochs is not None and position.epoch >= plan.epochs)
 
 
-def _progress(plan: TrainingPlan, position: Position, steps_per_epoch: int) -> float:
+def _share_done(plan: TrainingPlan, position: Position, steps_per_epoch: int) -> float:
     """Share of the training that is done, by time or by epochs, whichever is further."""
     by_time = position.seconds / (60 * plan.minutes) if plan.minutes else 0.0
     by_step = position.step / (plan.epochs * steps_per_epoch) if plan.epochs else 0.0
@@ -259,17 +229,9 @@ def _optimiser(network: TrainableNetwork, plan: TrainingPlan) -> torch.optim.Opt
     return torch.optim.AdamW(groups, lr=plan.learning_rate)
 
 
-def _take_up_new_images(folder: PanoramaFolders, log: Callable[[str], None]) -> None:
+def _validation(cfg, weights, names_file, panoramas, log) -> Validation | None:
     try:
-        folder.refresh()
-    except TrainingDataError as error:
-        # boxes.json may be half-written at this moment, while the images are still being made: the next epoch reads it.
-        log(f"no new images this time: {error}")
-
-
-def _validation(network, validating, names, plan, log) -> Validation | None:
-    try:
-        result = validate(network_detector(network, names), every_nth(validating, plan.validation_images), names)
+        result = measure_detector(cfg, weights, names_file, panoramas)
     except DetectionScoreError as error:
         log(f"validation: {error}")
         return None

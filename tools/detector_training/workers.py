@@ -2,6 +2,8 @@
 
 After every step the gradients are averaged, so that all processes hold the same weights. On a machine that others use
 too this is much faster than one process with many threads, whose threads wait for each other at every layer.
+All processes must make the same calls in the same order. A training in one process calls the same functions, which
+then return what they were given.
 """
 
 from __future__ import annotations
@@ -10,100 +12,82 @@ from collections.abc import Callable
 from datetime import timedelta
 from pathlib import Path
 
+import cv2
 import torch
-import torch.distributed
+import torch.distributed as distributed
 import torch.multiprocessing
 from torch import nn
 
-from course_lib.worker_pool import end_with_parent
-
 # Loading some thousand images on a busy machine takes minutes; a process that is silent for longer is dead.
-LONGEST_SILENCE = timedelta(minutes=10)
+MAX_SILENCE = timedelta(minutes=10)
 
 
-class Alone:
-    """The only process of a training."""
-
-    rank, count = 0, 1
-
-    def mean(self, values: torch.Tensor) -> torch.Tensor:
-        """The mean of `values` (n,) over the processes."""
-        return values
-
-    def agree(self, value: float) -> float:
-        """The value of the first process."""
-        return value
-
-    def least(self, value: int) -> int:
-        """The smallest value of any process."""
-        return value
+def join_others(rank: int, count: int, meeting_file: Path) -> None:
+    """Wait for the other processes. `meeting_file` is a file, not there yet, by which they find each other."""
+    torch.set_num_threads(1)
+    cv2.setNumThreads(1)
+    meeting = {"init_method": meeting_file.as_uri(), "rank": rank, "world_size": count, "timeout": MAX_SILENCE}
+    distributed.init_process_group("gloo", **meeting)
 
 
-class Together:
-    """One of several processes; all of them must make the same calls in the same order."""
-
-    def __init__(self, rank: int, count: int, meeting_file: Path):
-        """Waits for the others. `meeting_file` is a file, not there yet, by which they find each other."""
-        self.rank, self.count = rank, count
-        torch.distributed.init_process_group(
-            "gloo", init_method=meeting_file.as_uri(), rank=rank, world_size=count, timeout=LONGEST_SILENCE
-        )
-
-    def mean(self, values: torch.Tensor) -> torch.Tensor:
-        """The mean of `values` (n,) over the processes."""
-        torch.distributed.all_reduce(values)
-        return values / self.count
-
-    def agree(self, value: float) -> float:
-        """The value of the first process."""
-        values = torch.tensor([value], dtype=torch.float64)
-        torch.distributed.broadcast(values, src=0)
-        return float(values[0])
-
-    def close(self) -> None:
-        """Parts from the others."""
-        torch.distributed.destroy_process_group()
-
-    def least(self, value: int) -> int:
-        """The smallest value of any process."""
-        values = torch.tensor([value])
-        torch.distributed.all_reduce(values, op=torch.distributed.ReduceOp.MIN)
-        return int(values[0])
-
-
-def average_gradients(network: nn.Module, workers: Alone | Together) -> None:
-    """Replaces the gradients of all parameters by their mean over the processes."""
-    if workers.count == 1:
-        return
-    parameters = [p for p in network.parameters() if p.grad is not None]
-    mean = workers.mean(torch.cat([p.grad.reshape(-1) for p in parameters]))
-    for p, part in zip(parameters, mean.split([p.numel() for p in parameters]), strict=True):
-        p.grad.copy_(part.view_as(p))
-
-
-@torch.no_grad()
-def average_statistics(network: nn.Module, workers: Alone | Together) -> None:
-    """Replaces the running means and variances of batch normalization by their mean over the processes."""
-    if workers.count == 1:
-        return
-    buffers = [b for b in network.buffers() if b.is_floating_point()]
-    mean = workers.mean(torch.cat([b.reshape(-1) for b in buffers]))
-    for b, part in zip(buffers, mean.split([b.numel() for b in buffers]), strict=True):
-        b.copy_(part.view_as(b))
-
-
-def _work_beside(work: Callable, *arguments: object) -> None:
-    end_with_parent()  # a process without its first one would wait for its part of the gradients
-    work(*arguments)
+def leave_others() -> None:
+    """Part from the others."""
+    if distributed.is_initialized():
+        distributed.destroy_process_group()
 
 
 def start_others(count: int, meeting_file: Path, work: Callable, arguments: tuple) -> list:
-    """Starts processes 1 .. count - 1, each running work(rank, count, meeting_file, *arguments); returns them."""
-    context = torch.multiprocessing.get_context("spawn")
-    processes = [
-        context.Process(target=_work_beside, args=(work, rank, count, meeting_file, *arguments), daemon=True)
-        for rank in range(1, count)
-    ]
-    for process in processes:
-        process.start()
-    return processes
+    """Start processes 1 .. count - 1, each running work(*arguments) with the others; return them.
+
+    PyTorch lets them end with this process, however it ends (on Linux).
+    """
+    given = (count, meeting_file, work, arguments)
+    return torch.multiprocessing.start_processes(_work, given, count - 1, join=False, daemon=True).processes
+
+
+def _work(index: int, count: int, meeting_file: Path, work: Callable, arguments: tuple) -> None:
+    join_others(index + 1, count, meeting_file)
+    work(*arguments)
+    leave_others()
+
+
+def rank_and_count() -> tuple[int, int]:
+    """Which process this is, from 0, and how many there are."""
+    return (distributed.get_rank(), distributed.get_world_size()) if distributed.is_initialized() else (0, 1)
+
+
+def agree(value: float) -> float:
+    """The value of the first process."""
+    values = torch.tensor([value], dtype=torch.float64)
+    if distributed.is_initialized():
+        distributed.broadcast(values, src=0)
+    return float(values[0])
+
+
+def least(value: int) -> int:
+    """The smallest value of any process."""
+    values = torch.tensor([value])
+    if distributed.is_initialized():
+        distributed.all_reduce(values, op=distributed.ReduceOp.MIN)
+    return int(values[0])
+
+
+def average_gradients(network: nn.Module) -> None:
+    """Replace the gradients of all parameters by their mean over the processes."""
+    _average([parameter.grad for parameter in network.parameters() if parameter.grad is not None])
+
+
+@torch.no_grad()
+def average_statistics(network: nn.Module) -> None:
+    """Replace the running means and variances of batch normalization by their mean over the processes."""
+    _average([buffer for buffer in network.buffers() if buffer.is_floating_point()])
+
+
+def _average(tensors: list[torch.Tensor]) -> None:
+    if not distributed.is_initialized():
+        return
+    values = torch.cat([tensor.reshape(-1) for tensor in tensors])
+    distributed.all_reduce(values)
+    values /= distributed.get_world_size()
+    for tensor, part in zip(tensors, values.split([tensor.numel() for tensor in tensors]), strict=True):
+        tensor.copy_(part.view_as(tensor))

@@ -36,13 +36,9 @@ def random_boxes(n, seed=0):
     return torch.rand(n, 4, generator=generator) * torch.tensor([100.0, 50.0, 40.0, 30.0]) + 5.0
 
 
-def test_equal_boxes_have_complete_iou_one():
-    boxes = random_boxes(20)
-    torch.testing.assert_close(complete_iou(boxes, boxes), torch.ones(20))
-
-
-def test_complete_iou_is_symmetric_and_never_above_one():
+def test_complete_iou_is_one_for_equal_boxes_symmetric_and_never_above_one():
     a, b = random_boxes(200, 1), random_boxes(200, 2)
+    torch.testing.assert_close(complete_iou(a, a), torch.ones(200))
     torch.testing.assert_close(complete_iou(a, b), complete_iou(b, a))
     assert float(complete_iou(a, b).max()) <= 1.0
 
@@ -75,25 +71,6 @@ def test_where_two_objects_collide_the_smaller_one_is_answered_for():
     (found,) = assign(targets([[58, 24, 82, 48], [60, 26, 80, 46]]), [HEAD], [(ROWS, COLUMNS, STRIDE)])
     centre = (found.column == 4) & (found.row == 2) & (found.anchor == 0)
     assert found.target[centre].tolist() == [1]
-
-
-def test_no_box_answers_for_two_objects():
-    generator = np.random.default_rng(0)
-    low = generator.uniform([0, 0], [120, 40], (30, 2))
-    boxes = np.concatenate([low, low + generator.uniform(5, 40, (30, 2))], axis=1)
-    (found,) = assign(targets(boxes), [HEAD], [(ROWS, COLUMNS, STRIDE)])
-    keys = set(zip(found.anchor.tolist(), found.row.tolist(), found.column.tolist(), strict=True))
-    assert len(keys) == len(found.target)
-
-
-def test_a_step_against_the_gradient_lowers_the_loss():
-    raw = empty_map(requires_grad=True)
-    wanted = targets([[60, 26, 80, 46], [100, 10, 140, 30]], labels=[1, 4])
-    first = yolo_loss([raw], [HEAD], wanted, WIDTH)
-    first.total.backward()
-    with torch.no_grad():
-        second = yolo_loss([raw - 0.05 * raw.grad], [HEAD], wanted, WIDTH)
-    assert second.total < first.total
 
 
 def test_the_gradient_raises_the_right_class_and_the_objectness_of_the_object():

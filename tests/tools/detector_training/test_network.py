@@ -6,10 +6,22 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
 
-from course_lib.spherical_stereo.detection.darknet import DetectorError, expected_weight_floats, parse_cfg, read_cfg  # noqa: E402
+from course_lib.spherical_stereo.detection.darknet import DetectorError, parse_cfg, read_cfg  # noqa: E402
 from tests.tools.detector_training.toy_panoramas import ROOM_CFG, TINY_CFG  # noqa: E402
 from tools.detector_training.export import read_weights, write_weights  # noqa: E402
-from tools.detector_training.network import PRIOR_OBJECTNESS, TrainableNetwork, decode, decode_boxes  # noqa: E402
+from tools.detector_training.network import PRIOR_OBJECTNESS, TrainableNetwork, decode_boxes  # noqa: E402
+
+
+def decode(outputs, heads, input_width):
+    """All boxes (n, 5 + classes) of the first image as OpenCV gives them: class scores include the objectness."""
+    parts = []
+    for raw, head in zip(outputs, heads, strict=True):
+        boxes = decode_boxes(raw, head, input_width / raw.shape[-1])
+        chance = torch.sigmoid(raw[:, :, 4:]).permute(0, 1, 3, 4, 2)
+        objectness = chance[..., :1]
+        table = torch.cat([boxes, objectness, objectness * chance[..., 1:]], dim=-1)
+        parts.append(table.permute(0, 2, 3, 1, 4).reshape(-1, table.shape[-1]))
+    return torch.cat(parts)
 
 
 def randomized(network, seed=0):
@@ -27,23 +39,17 @@ def randomized(network, seed=0):
 def outputs_of_both(cfg, network, weights, images):
     with torch.no_grad():
         width = images.shape[-1]
-        ours = decode(network(torch.from_numpy(images)), network.heads, width)[0].numpy()
+        ours = decode(network(torch.from_numpy(images)), network.heads, width).numpy()
     net = cv2.dnn.readNetFromDarknet(str(cfg), str(weights))
     net.setInput(images)
     theirs = np.concatenate(net.forward(net.getUnconnectedOutLayersNames()))
     return ours, theirs * np.array([width, images.shape[-2]] * 2 + [1] * (theirs.shape[1] - 4), np.float32)
 
 
-@pytest.fixture(scope="module")
-def tiny(tmp_path_factory):
-    path = tmp_path_factory.mktemp("cfg") / "tiny.cfg"
-    path.write_text(TINY_CFG)
-    return path
-
-
 @pytest.mark.parametrize("which", ["room", "tiny"])
-def test_pytorch_and_opencv_compute_the_same_boxes_and_scores(which, tiny, tmp_path):
-    cfg = ROOM_CFG if which == "room" else tiny
+def test_pytorch_and_opencv_compute_the_same_boxes_and_scores(which, tmp_path):
+    cfg = tmp_path / "net.cfg"
+    cfg.write_text(ROOM_CFG.read_text() if which == "room" else TINY_CFG)
     sections = read_cfg(cfg)
     network = randomized(TrainableNetwork(sections))
     weights = write_weights(network, tmp_path / "a.weights")
@@ -52,10 +58,6 @@ def test_pytorch_and_opencv_compute_the_same_boxes_and_scores(which, tiny, tmp_p
     ours, theirs = outputs_of_both(cfg, network, weights, images)
     assert ours[:, 4].std() > 1e-4, "a network that sees nothing would prove nothing"
     np.testing.assert_allclose(ours, theirs, atol=1e-3)
-
-
-def test_the_room_network_is_small():
-    assert expected_weight_floats(read_cfg(ROOM_CFG)) * 4 <= 6_000_000
 
 
 def test_weights_read_back_give_the_same_network(tmp_path):
@@ -74,15 +76,6 @@ def test_weights_of_another_network_are_refused(tmp_path):
     write_weights(TrainableNetwork(parse_cfg(TINY_CFG)), tmp_path / "a.weights")
     with pytest.raises(DetectorError, match="too short"):
         read_weights(TrainableNetwork(read_cfg(ROOM_CFG)), tmp_path / "a.weights")
-
-
-def test_one_seed_gives_one_network():
-    first, second, third = (
-        TrainableNetwork(parse_cfg(TINY_CFG), torch.Generator().manual_seed(seed)).layers[0][0].weight
-        for seed in (1, 1, 2)
-    )
-    assert torch.equal(first, second)
-    assert not torch.equal(first, third)
 
 
 def test_an_untrained_network_expects_hardly_any_object():

@@ -9,44 +9,31 @@ import numpy as np
 ROOM_CFG = Path(__file__).parents[3] / "data" / "detector" / "room_yolo.cfg"
 ROOM_NAMES = ROOM_CFG.with_suffix(".names")
 
+
+def convolution(filters, stride, size=3, normalize=1, activation="leaky"):
+    return f"""
+[convolutional]
+batch_normalize={normalize}
+filters={filters}
+size={size}
+stride={stride}
+pad=1
+activation={activation}
+"""
+
+
 # A network with every kind of section that the training knows, for panoramas 256 columns wide.
-TINY_CFG = """
+TINY_CFG = f"""
 [net]
 width=320
 height=128
 channels=3
-[convolutional]
-batch_normalize=1
-filters=12
-size=3
-stride=2
-pad=1
-activation=leaky
-[convolutional]
-batch_normalize=1
-filters=24
-size=3
-stride=2
-pad=1
-activation=leaky
-[convolutional]
-batch_normalize=1
-filters=32
-size=3
-stride=2
-pad=1
-activation=leaky
+{convolution(12, 2)}{convolution(24, 2)}{convolution(32, 2)}
 [route]
 layers=-1
 groups=2
 group_id=1
-[convolutional]
-batch_normalize=1
-filters=32
-size=3
-stride=2
-pad=1
-activation=leaky
+{convolution(32, 2)}
 [maxpool]
 size=5
 stride=1
@@ -56,19 +43,7 @@ layers=-1,-2
 stride=2
 [route]
 layers=-1,2
-[convolutional]
-batch_normalize=1
-filters=48
-size=3
-stride=1
-pad=1
-activation=leaky
-[convolutional]
-filters=36
-size=1
-stride=1
-pad=1
-activation=linear
+{convolution(48, 1)}{convolution(36, 1, size=1, normalize=0, activation="linear")}
 [yolo]
 mask=0,1,2
 anchors=12,18, 24,16, 20,32
@@ -92,7 +67,7 @@ CLASSES = {
 
 def write_toy_folder(folder, n_images, seed=0, width=1280, objects=6):
     """A folder with boxes.json and `n_images` JPEG panoramas; objects may cross the seam."""
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(parents=True)
     rng = np.random.default_rng(seed)
     entries = []
     for number in range(n_images):
@@ -111,7 +86,7 @@ def toy_panorama(rng, width, objects):
     entries = []
     # One object to each slot of the circle, so that none hides another.
     starts = (np.arange(objects) + rng.uniform(0, 0.15, objects)) * width / objects + rng.uniform(0, width)
-    for index, start in enumerate(starts):
+    for start in starts:
         label = list(CLASSES)[rng.integers(len(CLASSES))]
         colour, size = CLASSES[label]
         factor = rng.uniform(0.6, 1.05) * scale * min(1.0, 6 / objects)
@@ -122,7 +97,5 @@ def toy_panorama(rng, width, objects):
         columns = (u + np.arange(w)) % width
         image[v : v + h, columns] = np.clip(patch, 0, 255).astype(np.uint8)
         box = [float(u), float(v), float(u + w), float(v + h)]
-        entries.append(
-            {"object": index, "label": label, "visible_box": box, "unoccluded_box": box, "visible_fraction": 1.0}
-        )
+        entries.append({"label": label, "visible_box": box, "visible_fraction": 1.0})
     return image, entries
