@@ -61,7 +61,7 @@ def test_the_text_names_the_objects(map_file, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--association", "best"], "--association must name greedy, hungarian, consistent"),
+        (["--association", "best"], "association must be one of greedy, hungarian, consistent"),
         (["--step", "0"], "--step must be a positive number of metres"),
         (["--step", "nan"], "--step must be a positive number of metres"),
         (["--step", "500"], "give a smaller --step"),

@@ -141,7 +141,7 @@ def test_without_boxes_a_detector_finds_the_objects_and_the_course_s_says_what_i
         ((), {"baseline": 300}, "Is it in millimetres?"),
         ((), {"baseline": -0.3}, "baseline must be a positive number of metres"),
         (("--detector", "somewhere"), {}, "give one of the two"),
-        (("--association", "best"), {}, "--association must be one of greedy"),
+        (("--association", "best"), {}, "association must be one of greedy"),
         ((), {"upper": "lower.png", "lower": "upper.png"}, "Swap the two images"),
         (("--out", __file__), {}, "is a file: give a folder"),
     ],
