@@ -58,7 +58,7 @@ class StereoRig:
         if not 0 < baseline <= MAX_BASELINE:
             raise PanoramaError(
                 f"baseline must be a positive number of metres, at most {MAX_BASELINE:g}; got {baseline:g}. Is it in "
-                "millimetres, or, if negative, are upper and lower swapped?"
+                "millimetres? A negative one means that upper and lower are swapped"
             )
         if np.isinf(upper_height) or upper_height < baseline:
             raise PanoramaError(

@@ -40,7 +40,6 @@ def test_what_is_confused_is_told_with_its_places(map_file, tmp_path, capsys):
         "ambiguity.json",
         "ambiguity_consistent.png",
         "ambiguity_greedy.png",
-        "run.json",
     ]
 
 
@@ -49,15 +48,22 @@ def test_one_unlike_object_makes_the_room_sure(map_file, tmp_path, capsys):
     symmetric = told(capsys, "--map", map_file(SYMMETRIC), *words)[1]["consistent"]
     planted = told(capsys, "--map", map_file(PLANTED), *words)[1]["consistent"]
     assert planted["mean_confidence"] > symmetric["mean_confidence"] + 0.2
-    assert main(["ambiguity", "--step", "2", "--draws", "1", "--map", map_file(SYMMETRIC), *words]) == 0
-    assert "confused in" in capsys.readouterr().out
+
+
+def test_the_text_names_the_objects(map_file, tmp_path, capsys):
+    words = ["--step", "2", "--draws", "1", "--out", str(tmp_path / "out"), "--association", "greedy"]
+    assert main(["ambiguity", "--map", map_file(SYMMETRIC), *words]) == 0
+    text = capsys.readouterr().out
+    assert "free places" in text
+    assert "confused in" in text
 
 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--association", "best"], "greedy, hungarian, consistent"),
+        (["--association", "best"], "association must be one of greedy, hungarian, consistent"),
         (["--step", "0"], "--step must be a positive number of metres"),
+        (["--step", "nan"], "--step must be a positive number of metres"),
         (["--step", "500"], "give a smaller --step"),
         (["--draws", "0"], "--draws must be at least 1; got 0"),
         (["--seed", "-1"], "--seed must be 0 or more"),

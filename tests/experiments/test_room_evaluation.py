@@ -112,7 +112,7 @@ def with_objects():
         None,
         "unable",
         upper=View.of_detections(("a", "b", "c"), (4, 2)),
-        lower_detections=("d", "e", "f"),
+        lower=View.of_detections(("d", "e", "f"), (4, 2)),
         objects=objects,
         observations=(Observation("sofa", 0, 0, 0, 0),) * 2,
     )
