@@ -41,9 +41,8 @@ class Piece:
     def of(cls, label: str, meshes: Sequence[TexturedMesh]) -> Piece:
         """A piece from its parts, shifted so that the footprint's centre is the origin."""
         vertices = np.concatenate([mesh.vertices for mesh in meshes])
-        shift = np.eye(4)
-        shift[:2, 3] = -(vertices[:, :2].min(axis=0) + vertices[:, :2].max(axis=0)) / 2
-        return cls(label, tuple(mesh.moved(shift) for mesh in joined(meshes)))
+        x, y = -(vertices[:, :2].min(axis=0) + vertices[:, :2].max(axis=0)) / 2
+        return cls(label, tuple(turn(joined(meshes), x, y)))
 
     @property
     def size(self) -> np.ndarray:
@@ -53,11 +52,8 @@ class Piece:
 
     def at(self, x: float, y: float, heading: float, z: float = 0.0) -> RoomObject:
         """The piece standing in the room, its front towards heading (radians); z: metres above the floor."""
-        cosine, sine = np.cos(heading), np.sin(heading)
-        pose = np.eye(4)
-        pose[:2, :2] = [[cosine, -sine], [sine, cosine]]
-        pose[:3, 3] = x, y, z
-        return RoomObject(self.label, float(x), float(y), float(heading), tuple(m.moved(pose) for m in self.meshes))
+        meshes = tuple(turn(self.meshes, x, y, z, heading))
+        return RoomObject(self.label, float(x), float(y), float(heading), meshes)
 
 
 def grid_faces(rows: int, columns: int) -> np.ndarray:

@@ -6,7 +6,6 @@ The boxes, seen and unoccluded, come from pictures of object numbers.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -15,41 +14,17 @@ from numpy.random import Generator
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import RigPose
-from course_lib.spherical_stereo.recording import POSES_FILE, VERSION
+from course_lib.spherical_stereo.recording import POSES_FILE, VERSION, TrueObject
 
 Box = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True)
-class ObjectBox:
-    """Where one object is on a panorama.
-
-    number: index into `room.objects`. visible_box: around the pixels that show it. unoccluded_box: around the pixels
-    that would show it if nothing stood before it. visible_fraction: the first pixels' number over the second's. Boxes
-    are (u_min, v_min, u_max, v_max) in edge coordinates, 0 <= u_min < width; u_max passes the width at the seam.
-    """
-
-    number: int
-    label: str
-    visible_box: Box
-    unoccluded_box: Box
-    visible_fraction: float
-
-    def as_dict(self) -> dict:
-        """For JSON: plain lists and numbers, boxes to a hundredth of a pixel."""
-        return {
-            "object": self.number,
-            "label": self.label,
-            "visible_box": [round(value, 2) for value in self.visible_box],
-            "unoccluded_box": [round(value, 2) for value in self.unoccluded_box],
-            "visible_fraction": round(self.visible_fraction, 4),
-        }
-
-
-def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[ObjectBox]:
+def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[TrueObject]:
     """The boxes of all objects of which at least one pixel is seen, in the order of `room.objects`.
 
-    state: `(6,)` pose of the camera, metres and radians.
+    visible_box: around the pixels that show an object; unoccluded_box: around the pixels that would show it if nothing
+    stood before it; visible_fraction: the first pixels' number over the second's. Boxes are (u_min, v_min, u_max,
+    v_max), 0 <= u_min < width; u_max passes the width at the seam. state: `(6,)` camera pose, metres and radians.
     """
     numbers = renderer.render_objects(state)
     scale = numbers.shape[1] / renderer.width
@@ -58,8 +33,22 @@ def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[ObjectBo
         visible = numbers == number
         whole = renderer.render_alone(state, int(number)) | visible
         label, share = renderer.room.objects[number].label, float(visible.sum() / whole.sum())
-        boxes.append(ObjectBox(int(number), label, box_around(visible, scale), box_around(whole, scale), share))
+        boxes.append(TrueObject(int(number), label, box_around(visible, scale), box_around(whole, scale), share))
     return boxes
+
+
+def box_entries(renderer: PanoramaRenderer, state: np.ndarray) -> list[dict]:
+    """`object_boxes` for JSON, to a hundredth of a pixel."""
+    return [
+        {
+            "object": one.number,
+            "label": one.label,
+            "visible_box": [round(value, 2) for value in one.visible_box],
+            "unoccluded_box": [round(value, 2) for value in one.unoccluded_box],
+            "visible_fraction": round(one.visible_fraction, 4),
+        }
+        for one in object_boxes(renderer, state)
+    ]
 
 
 def box_around(mask: np.ndarray, scale: float = 1.0) -> Box:
@@ -90,7 +79,7 @@ def photograph_pair(
     for side, state in zip(("upper", "lower"), rig.camera_states(), strict=True):
         file = f"{name}_{side}.jpg"
         write_photograph(folder / file, photograph(renderer.render(state), camera, rng), camera, rng)
-        entry[side] = {"file": file, "objects": [box.as_dict() for box in object_boxes(renderer, state)]}
+        entry[side] = {"file": file, "objects": box_entries(renderer, state)}
     return entry
 
 

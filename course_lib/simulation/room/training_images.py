@@ -15,7 +15,7 @@ import numpy as np
 from course_lib.files import atomic_write, read_json
 from course_lib.simulation.room.footprints import free_places
 from course_lib.simulation.room.furnishing import make_room
-from course_lib.simulation.room.stereo_photographs import object_boxes
+from course_lib.simulation.room.stereo_photographs import box_entries
 from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, stand_up
@@ -106,6 +106,6 @@ def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:
             name = f"{seed:06d}_{index}.jpg"
             image = photograph(renderer.render(state), TRAINING_CAMERA, rng)
             write_photograph(folder / name, image, TRAINING_CAMERA, rng)
-            objects = [box.as_dict() for box in object_boxes(renderer, state)]
-            images.append({"file": name, "room_seed": seed, "width": WIDTH, "height": WIDTH // 2, "objects": objects})
+            size = {"width": WIDTH, "height": WIDTH // 2}
+            images.append({"file": name, "room_seed": seed, **size, "objects": box_entries(renderer, state)})
     return images

@@ -62,8 +62,8 @@ class CalibrationErrors:
     """How the true camera differs from the one that its user is told of; all zero where calibration is perfect.
 
     focal_length: share by which the true focal lengths are longer. radial: a pixel that should look along the tangent r
-    from the axis looks along r (1 + radial r^2), a distortion that nobody corrects. mount: the true camera's pose
-    [x, y, z, roll, pitch, yaw] in the body frame that the user takes for the camera's, metres and radians.
+    looks along r (1 + radial r^2). mount: the true camera's pose [x, y, z, roll, pitch, yaw] in the body frame that the
+    user takes for the camera's, metres and radians.
     """
 
     focal_length: float = 0.0
