@@ -22,20 +22,16 @@ MAX_SEEDS = 10_000  # by their number alone; who wants more, or meant one seed, 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options of `sweep`."""
     parser.add_argument("experiment", choices=["corridor"], help="corridor: table 1 of paper 1")
-    parser.add_argument(
-        "--seeds", default="20", metavar="N|A-B", help="N: seeds 1 to N; A-B: these (default: 20, an hour or two)"
-    )
+    told = "N: seeds 1 to N; A-B: these (default: 20, an hour or two)"
+    parser.add_argument("--seeds", default="20", metavar="N|A-B", help=told)
     parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
     parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames (default: all)")
-    parser.add_argument(
-        "--dask",
-        metavar="ADDRESS",
-        help="run on the workers of Dask's scheduler at this address (each with this repository); default: a process "
-        "of this machine for each processor",
+    told = (
+        "run on the workers of Dask's scheduler at this address (each with this repository); default: on this machine"
     )
-    parser.add_argument(
-        "--out", type=Path, default=Path("results/sweep"), metavar="FOLDER", help="for corridor.jsonl and corridor.json"
-    )
+    parser.add_argument("--dask", metavar="ADDRESS", help=told)
+    told = "for corridor.jsonl and corridor.json"
+    parser.add_argument("--out", type=Path, default=Path("results/sweep"), metavar="FOLDER", help=told)
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
 
 
@@ -83,14 +79,13 @@ def dask(address: str) -> contextlib.AbstractContextManager:
     try:
         from dask.distributed import Client
 
-        client = Client(address, timeout=CONNECT_S)
+        return joblib.parallel_config("dask", client=Client(address, timeout=CONNECT_S))
     except ImportError as error:
         raise ValueError("--dask needs Dask's scheduler: pip install distributed") from error
     except (OSError, ValueError) as error:
         raise ValueError(
             f"--dask {address}: no scheduler answers there ({error}); start one: dask scheduler"
         ) from error
-    return joblib.parallel_config("dask", client=client)
 
 
 def corridor(seed: int, frames: int | None, n_particles: int) -> dict:

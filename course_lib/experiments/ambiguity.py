@@ -6,7 +6,7 @@ stereo camera's covariance and the chances of detection, and a matcher says what
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -20,10 +20,8 @@ from course_lib.spherical_stereo.ranging.triangulation import triangulation_cova
 from course_lib.spherical_stereo.semantic_map.association import Association, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-OBJECT_HEIGHT = 0.5
-"""Metres above the floor of an object's middle, which a 2D map does not know; chosen: a sofa's or a chair's back."""
-RIG = StereoRig(0.3, 1.32)
-"""The paper's, at its lower height."""
+OBJECT_HEIGHT = 0.5  # m above the floor of an object's middle, which a 2D map does not know; chosen: a sofa's back
+RIG = StereoRig(0.3, 1.32)  # the paper's, at its lower height
 
 
 class AmbiguityMap(NamedTuple):
@@ -32,8 +30,8 @@ class AmbiguityMap(NamedTuple):
     places: np.ndarray
     """`(k, 2)` metres, on the map; only where a rig can stand."""
     confidence: np.ndarray
-    """`(k,)` mean confidence of the right pose, 0 to 1: 0 where it is not the most believed one. Of a matcher that asks
-    for no pose, the share of draws in which all its matches are right."""
+    """`(k,)` mean confidence of the right pose, 0 where it is not the most believed one. Of a matcher without
+    confidence, the share of draws in which all its matches are right."""
     confused: np.ndarray
     """`(k, m, m)` share of the belief by which landmark i is taken for landmark j."""
     step: float
@@ -51,10 +49,10 @@ class AmbiguityMap(NamedTuple):
 def imagined_observations(
     semantic_map: SemanticMap, pose: np.ndarray, rng: np.random.Generator, rig: StereoRig = RIG
 ) -> tuple[list[Observation], list[int]]:
-    """What a rig at a pose `(3,)` [x, y, theta] would observe, and which landmark each observation shows.
+    """Draw what a rig at a pose `(3,)` [x, y, theta] would observe, and which landmark each observation shows.
 
-    Every landmark is seen with its chance (`detection_probabilities`), at its place with noise of the stereo
-    covariance, in the colour of the map: what is confused here is confused by its place.
+    Every landmark is seen with its chance (`detection_probabilities`), with noise of the stereo covariance, in the
+    colour of the map: what is confused here is confused by its place.
     """
     chance = detection_probabilities(semantic_map, np.asarray(pose, dtype=np.float64)[None])[0]
     seen = np.flatnonzero(rng.random(len(semantic_map)) < chance)
@@ -83,13 +81,12 @@ def ambiguity_map(
     draws: int = 4,
     rig: StereoRig = RIG,
     association: str = "consistent",
-    progress: Callable[[Iterable], Iterable] = iter,
+    progress: Callable = iter,
 ) -> AmbiguityMap:
-    """The belief at every free place of a grid over the map, averaged over `draws` of what would be seen.
+    """Return the belief at every free place of a grid over the map, averaged over `draws` of what would be seen.
 
-    step: metres between places. The heading is drawn anew each time; a panorama sees all around, and nothing depends
-    on it. association: the matcher whose confusions are asked for. progress: wraps the loop over the places (tqdm).
-    Raises `ValueError` for a step that is not positive or no draw.
+    step: metres between places. association: the matcher whose confusions are asked for. Raises `ValueError` for a step
+    that is not positive or no draw.
     """
     if not step > 0 or draws < 1:
         raise ValueError(f"step must be positive and draws at least 1; got {step!r} and {draws!r}")

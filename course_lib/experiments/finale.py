@@ -66,11 +66,8 @@ def run(runner: Runner, *, seed: int, seeds: list[int] | None, places: int, dete
     return Outcome(result, finale_text(result), {"finale.json": (result, None)})
 
 
-def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[dict]:
-    """Run both methods one after the other from so many random places of a seed's room.
-
-    detector: folder of the network. camera: 1 or 2, the paper's heights of the stereo rig.
-    """
+def finale_room(seed: int, places: int, detector: str) -> list[dict]:
+    """Run both methods one after the other from so many random places of a seed's room, at the rig's first height."""
     models = RecordingModels()
     room, semantic_map = surveyed_room(seed, models)
     scene_map = SceneMap(*surveyed_mesh(room, DepthSurveyModel(), np.random.default_rng([STREAM, seed, MAP])))
@@ -81,7 +78,7 @@ def finale_room(seed: int, places: int, detector: str, camera: int = 1) -> list[
     results = []
     with temporary_folder() as temporary:
         # Two headings at each place of the paper's table; here every place is one of its own.
-        recording = read_stereo_recording(photograph_room(temporary, room, seed, 2 * places, models)[camera - 1])
+        recording = read_stereo_recording(photograph_room(temporary, room, seed, 2 * places, models)[0])
         size = (recording.width, recording.height)
         localizer = SemanticLocalizer(
             recording.rig, semantic_map, network, image_size=size, association=associate_consistent
@@ -102,7 +99,7 @@ def one_place(
     caster: WorldCaster,
     rng: np.random.Generator,
 ) -> dict:
-    """What the semantic pose is worth at one place, and what the depth filter makes of it. true_pose: x, y, heading."""
+    """Return what the semantic pose is worth at one place, and what the depth filter makes of it."""
     starts = starts_of(found, renderer.scene_map)
     result = {"semantic_status": found.status, "starts": len(starts)}
     if found.pose is not None:
@@ -129,10 +126,10 @@ def look_around(
     caster: WorldCaster,
     rng: np.random.Generator,
 ) -> tuple[AnnealedEstimate, np.ndarray, int]:
-    """The first estimate that knows its pose, the true state `(6,)` there, and how many views that took.
+    """Return the first estimate that knows its pose, else the last one, the true state `(6,)` there, and the views.
 
     A view that leaves the pose open may have moved the filter along a wall: the next one starts from the panoramas
-    again, carried on by the odometer. After the last view, its estimate as it is.
+    again, carried on by the odometer. true_pose: x, y, heading.
     """
     x, y, heading = true_pose
     views = 0
@@ -174,9 +171,9 @@ def carried_on(start: Pose2D, ahead: float, turn: float) -> Pose2D:
 def best_start(
     renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence[np.ndarray], seed: int
 ) -> AnnealedEstimate:
-    """The last estimate of the start that explains the depth images best: by its mean raw score.
+    """Return the last estimate of the start that explains the depth images best, by its mean raw score.
 
-    Where nothing was measured, nearer to a wall than the camera sees, it is the first start's prediction.
+    Where nothing was measured it is the first start's prediction.
     """
     best, best_score = None, -np.inf
     for start in starts:
@@ -227,10 +224,7 @@ def robot_states(pose: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 
 def start_covariance(covariance: np.ndarray) -> np.ndarray:
-    """Covariance `(6, 6)` of `start_state`: a semantic pose's own `(3, 3)`, and how high and level a robot stands.
-
-    Metres and radians, squared, in the order of the state.
-    """
+    """Return the covariance `(6, 6)` of `start_state`: a semantic pose's `(3, 3)`, and how high and level it stands."""
     height, level = LEVEL_SIGMA
     known = np.diag([0.0, 0.0, height**2, level**2, level**2, 0.0])
     known[np.ix_(ON_THE_FLOOR, ON_THE_FLOOR)] = covariance
@@ -240,13 +234,12 @@ def start_covariance(covariance: np.ndarray) -> np.ndarray:
 def joined(
     start: np.ndarray, covariance: np.ndarray, state: np.ndarray, state_covariance: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """State `(6,)` and covariance `(6, 6)` of two answers, each weighed by its covariance: a Kalman filter's update.
+    """Join two answers, each weighed by its covariance, into a state `(6,)` and its covariance: a Kalman update.
 
         K = P_0 (P_0 + P_1)^-1        x = x_0 + K (x_1 - x_0)        P = (1 - K) P_0
 
-    start, covariance: what was known before the image. state, state_covariance: what the depth filter makes of the
-    first image (its `error_covariance`). Differences of angles are taken on the circle; a robot stands nearly level,
-    so they are rotations about its axes.
+    start, covariance: what was known before the image, the semantic pose. state, state_covariance: what the depth
+    filter makes of the first image (its `error_covariance`). Differences of angles are taken on the circle.
     """
     difference = state - start
     difference[3:] = wrap_angle(difference[3:])

@@ -1,8 +1,7 @@
 """Rooms that look alike: answers within half a metre and 10 degrees, wrong ones given out, and none given.
 
 Table 2 of the paper calls a pose correct when every match is right and the errors are below 2 m. Here a pose is judged
-by where it is: within `MAX_ERROR_M` and `MAX_TURN_DEG` it is correct, given out and not correct it is wrong,
-and not given out it is unanswered. The paper's measure, all matches right, stands beside it.
+by where it is. The paper's measure, all matches right, stands beside it.
 """
 
 from __future__ import annotations

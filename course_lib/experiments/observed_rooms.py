@@ -7,7 +7,7 @@ room and kept as a record: the observations, and what each of them really shows.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import NamedTuple
@@ -26,10 +26,11 @@ from course_lib.simulation.room.look_alike_recording import (
     surveyed_room,
 )
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
+from course_lib.simulation.room.scene import Room
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.recording import read_stereo_recording
+from course_lib.spherical_stereo.recording import StereoPair, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
@@ -72,8 +73,23 @@ def observe_room(seed: int, poses: int, models: RecordingModels, detector) -> di
     poses: at each height. detector: anything with `detect(image_bgr)`. Source: paper 2, sections 2.2 to 2.4 and 3.
     """
     room, semantic_map = surveyed_room(seed, models)
-    alike = room.objects[0].label
-    seen = []
+    alike, seen = room.objects[0].label, []
+    for number, localizer, pair in photographed_pairs(room, semantic_map, seed, poses, models, detector):
+        results = {source: localize_pair(pair, localizer, source) for source in SOURCES}
+        seen.append({"experiment": number, "name": pair.name, "pose": pair.pose.tolist()} | _seen(results))
+    return {
+        "seed": seed,
+        "look_alike": {"label": alike, "n": sum(thing.label == alike for thing in room.objects)},
+        "map": [[one.label, one.x, one.y, _or_none(one.hue), one.saturation] for one in semantic_map.landmarks],
+        "walls": semantic_map.walls.tolist(),
+        "poses": seen,
+    }
+
+
+def photographed_pairs(
+    room: Room, semantic_map: SemanticMap, seed: int, poses: int, models: RecordingModels, detector
+) -> Iterator[tuple[int, SemanticLocalizer, StereoPair]]:
+    """Photograph a room at both heights; yield the experiment's number, the paper's localizer, and each pair."""
     with temporary_folder() as temporary:
         for number, folder in enumerate(photograph_room(temporary, room, seed, poses, models), start=1):
             recording = read_stereo_recording(folder)
@@ -82,15 +98,7 @@ def observe_room(seed: int, poses: int, models: RecordingModels, detector) -> di
                 recording.rig, semantic_map, detector, image_size=size, reject_implausible=False
             )
             for pair in recording.pairs:
-                results = {source: localize_pair(pair, localizer, source) for source in SOURCES}
-                seen.append({"experiment": number, "name": pair.name, "pose": pair.pose.tolist()} | _seen(results))
-    return {
-        "seed": seed,
-        "look_alike": {"label": alike, "n": sum(thing.label == alike for thing in room.objects)},
-        "map": [[one.label, one.x, one.y, _or_none(one.hue), one.saturation] for one in semantic_map.landmarks],
-        "walls": semantic_map.walls.tolist(),
-        "poses": seen,
-    }
+                yield number, localizer, pair
 
 
 def _seen(results: dict[str, PairResult]) -> dict:

@@ -1,8 +1,8 @@
 """The rooms of projects P2 and P3: what two spherical cameras saw in each, once detected, and where they stood.
 
-What takes long, photographs, detection and stereo matching, is done once for each room by `make-data projects`, and
-kept: the boxes of both images (P2 starts there), the observations that sections 2.2 to 2.4 make of them (P3 starts
-there), the map, and the truth. Students work on the practice rooms; the hidden rooms are for the score alone.
+What takes long, photographs, detection and stereo matching, is done once for each room by `tools.make_projects`. P2
+starts at the boxes of both images, P3 at the observations that sections 2.2 to 2.4 make of them. Students work on the
+practice rooms; the hidden rooms are for the score alone.
 """
 
 from __future__ import annotations
@@ -15,16 +15,19 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.observed_rooms import record_of_observations, stored_map, stored_observations
+from course_lib.experiments.observed_rooms import (
+    photographed_pairs,
+    record_of_observations,
+    stored_map,
+    stored_observations,
+)
 from course_lib.experiments.room import localize_pair
 from course_lib.experiments.runner import kept_rows
-from course_lib.files import atomic_write, temporary_folder
-from course_lib.simulation.room.look_alike_recording import RecordingModels, photograph_room, surveyed_room
+from course_lib.files import atomic_write
+from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.detection.detector import YoloDetector
-from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -73,27 +76,20 @@ def record_room(seed: int, poses: int, models: RecordingModels, detector) -> dic
     """
     room, semantic_map = surveyed_room(seed, models)
     views = []
-    with temporary_folder() as temporary:
-        for folder in photograph_room(temporary, room, seed, poses, models):
-            recording = read_stereo_recording(folder)
-            size = (recording.width, recording.height)
-            localizer = SemanticLocalizer(
-                recording.rig, semantic_map, detector, image_size=size, reject_implausible=False
-            )
-            for pair in recording.pairs:
-                result = localize_pair(pair, localizer)
-                found = result.localization
-                views.append(
-                    {
-                        "pose": np.round(pair.pose, 4).tolist(),
-                        "baseline": recording.rig.baseline,
-                        "size": size,
-                        "upper": [_row(one) for one in found.upper_detections],
-                        "lower": [_row(one) for one in found.lower_detections],
-                        "observations": _rounded(record_of_observations(found.observations)),
-                        "shows": list(result.true_landmarks),
-                    }
-                )
+    for _, localizer, pair in photographed_pairs(room, semantic_map, seed, poses, models, detector):
+        result = localize_pair(pair, localizer)
+        found = result.localization
+        views.append(
+            {
+                "pose": np.round(pair.pose, 4).tolist(),
+                "baseline": localizer.rig.baseline,
+                "size": result.size,
+                "upper": [_row(one) for one in found.upper_detections],
+                "lower": [_row(one) for one in found.lower_detections],
+                "observations": _rounded(record_of_observations(found.observations)),
+                "shows": list(result.true_landmarks),
+            }
+        )
     landmarks = [[one.label, one.x, one.y, _or_none(one.hue), one.saturation] for one in semantic_map.landmarks]
     return {
         "seed": seed,

@@ -1,7 +1,6 @@
 """The paper's experiment on a stretch of the shipped recording and on a seed's own; the rows of table 1."""
 
 import json
-import shutil
 from types import SimpleNamespace
 
 import numpy as np
@@ -22,7 +21,6 @@ from course_lib.experiments.corridor import (
     run_rows,
 )
 from course_lib.experiments.recordings import SIGMA, run_sequence
-from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.scene_map import SceneMap
 
 REPORTING_SEEDS = (1, 2, 3, 4, 5)
@@ -64,13 +62,6 @@ def test_particles_could_keep_up_with_one_and_a_half_of_the_longest_step(corrido
     assert SIGMA["xyyaw"][0] >= 1.5 * steps.max()
 
 
-def test_what_is_not_estimated_stays_at_its_first_value(corridor):
-    scene_map, _, sequence = corridor
-    run = run_sequence(scene_map, sequence, frames=3, n_particles=20)
-    start = state_from_optical_pose(sequence.camera_to_world[0])
-    assert run.states[:, 2:5] == pytest.approx(np.tile(start[2:5], (3, 1)))
-
-
 def test_both_backends_lead_to_the_same_estimates(corridor):
     scene_map, _, sequence = corridor
     runs = [run_sequence(scene_map, sequence, frames=2, n_particles=30, backend=b) for b in ("raster", "vtk", "ray")]
@@ -102,16 +93,6 @@ def shipped_maps(corridor_folder):
 @pytest.fixture(scope="module")
 def recordings(corridor_folder, tmp_path_factory):
     return own_recordings(corridor_folder, tmp_path_factory.mktemp("seed"), 10_030, frames=8)
-
-
-def test_the_filter_needs_the_maps_and_never_the_true_world(corridor_folder, shipped_maps, tmp_path):
-    for name in ("map.ply", "planar_map.ply"):
-        shutil.copy(corridor_folder / name, tmp_path)
-    alone = Maps.load(tmp_path)
-    for part, name in (("detailed", "map.ply"), ("planar", "planar_map.ply")):
-        stored = SceneMap.load(corridor_folder / name)
-        for maps in (alone, shipped_maps):
-            assert np.array_equal(getattr(maps, part).vertices, stored.vertices)
 
 
 def test_every_row_is_given_the_maps_and_its_own_recording(shipped_maps, recordings, monkeypatch):

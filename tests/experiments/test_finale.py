@@ -12,7 +12,6 @@ from course_lib.experiments.finale import (
     VIEW_TURN,
     VIEWS,
     best_start,
-    carried_on,
     is_known,
     joined,
     odometry,
@@ -119,24 +118,12 @@ def test_the_odometer_is_a_few_percent_off_and_without_bias(rng):
     assert told.std(axis=0) == pytest.approx([0.1, np.hypot(0.025, np.deg2rad(1.0))], rel=0.1)
 
 
-def test_a_start_is_carried_on_along_its_heading():
-    x, y, theta = carried_on(Pose2D(1.0, 2.0, np.pi / 2), 0.5, np.pi)
-    assert (x, y) == pytest.approx((1.0, 2.5))
-    assert np.cos(theta) == pytest.approx(0.0, abs=1e-12)
-    assert np.sin(theta) == pytest.approx(-1.0)
-
-
 def test_a_pose_outside_the_map_is_no_start(renderer):
     outside, right = Pose2D(40.0, 0.0, 0.0), Pose2D(TRUE[0] + 0.05, TRUE[1], TRUE[2])
     alternatives = tuple(SimpleNamespace(pose=pose) for pose in (outside, right))
     result = place(renderer, SimpleNamespace(status="unable", pose=None, alternatives=alternatives))
     assert result["starts"] == 1
     assert result["reached"]
-
-
-def test_without_any_pose_nothing_is_reached(renderer):
-    result = place(renderer, SimpleNamespace(status="unable", pose=None, alternatives=()))
-    assert result == {"semantic_status": "unable", "starts": 0, "reached": False}
 
 
 def test_the_robot_rolls_on_level_but_for_a_little(rng):

@@ -22,7 +22,7 @@ from course_lib.experiments.look_alikes import (
     risk_coverage,
     why_not_answered,
 )
-from course_lib.experiments.observed_rooms import record_of_observations, stored_sequences
+from course_lib.experiments.observed_rooms import record_of_observations
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed, scattered
 
@@ -90,14 +90,6 @@ def test_on_a_wrong_map_every_answer_is_wrong():
     assert {one.kind for one in found if one.method == "everything"} == {"unanswered"}
     own = answers_of_evidence(rooms, variants)
     assert {one.kind for one in own if one.method == "everything"} == {"correct"}
-
-
-def test_a_sequence_begins_with_the_rooms_own_pose():
-    room, views = record_of(PLANTED), views_of(PLANTED)
-    (sequence,) = stored_sequences(room, views)
-    np.testing.assert_allclose(sequence.poses, STEPS)
-    assert [len(one) for one in sequence.observations] == [6, 6, 6]
-    assert sequence.experiment == 2
 
 
 def test_what_the_first_view_told_is_known_after_the_last():

@@ -58,12 +58,6 @@ def test_a_record_gives_its_map_and_observations_back_grey_ones_too():
     np.testing.assert_allclose(table.covariance, NOISE)
 
 
-def test_a_map_keeps_its_walls_and_does_without():
-    assert stored_map(record()).walls is None
-    walls = [[0.0, 0.0], [5.0, 0.0], [5.0, 4.0]]
-    np.testing.assert_allclose(stored_map(record() | {"walls": walls}).walls, walls)
-
-
 def test_poses_are_judged_by_the_truth_of_the_record():
     right, wrong = (
         [one for one in judge_rooms([record(poses=[entry(shown=shown)])]) if one.method != "as_printed"]

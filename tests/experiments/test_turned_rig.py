@@ -70,12 +70,6 @@ def test_the_summary_is_of_those_that_agree():
     assert found["greatest_turned_deg"] == pytest.approx(np.rad2deg(0.01))
 
 
-def test_a_summary_of_nothing_that_agrees_has_no_numbers():
-    found = turn_summary([pair(Localization(None, UNABLE))])
-    assert found["associations_agree"] == 0
-    assert found["median_moved_m"] is None
-
-
 def test_weighted_by_covariance_a_far_object_that_moves_hardly_moves_the_pose():
     """The sofa, of which the covariance says that it is uncertain, is seen half a metre farther away."""
     sure, unsure = 0.01 * np.eye(2), np.eye(2)

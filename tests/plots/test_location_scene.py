@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from course_lib.plots.location_scene import location_scene
+from course_lib.plots.location_scene import _in_ascii, location_scene
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.scene_page import page_html
 from course_lib.spherical_stereo import SemanticLocalizer, StereoRig
@@ -75,3 +75,7 @@ def test_the_true_pose_is_drawn_where_it_is_known(answer):
     assert axes.bounds[4:] == pytest.approx((-0.1, 0.4), abs=0.15)
     assert np.asarray(axes.points)[:, :2].mean(axis=0) == pytest.approx(TRUE_POSE[:2], abs=0.3)
     assert "true pose" in words
+
+
+def test_names_in_other_scripts_are_numbers_in_a_scene():
+    assert [_in_ascii(label, 2) for label in ("chair", "café", "椅子")] == ["chair", "cafe", "[2]"]

@@ -11,9 +11,11 @@ import zlib
 import numpy as np
 import pytest
 
+from course_lib.commands.scene_output import write_scene
 from course_lib.plots import scene_page, scenes
 from course_lib.plots.scene_page import ScenePageError, page_html, same_scene, write_page
 from course_lib.plots.scenes import SceneError
+from course_lib.rendering.renderer import OpenGLError
 
 WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose <seen> from above"}
 STATE = np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])
@@ -130,3 +132,12 @@ def test_an_unknown_viewer_is_named(monkeypatch):
     monkeypatch.setattr(scene_page, "_viewer", lambda: "<html></html>")
     with pytest.raises(ScenePageError, match="unknown kind"):
         axes_page()
+
+
+@pytest.mark.parametrize("kind", [OpenGLError, ScenePageError, ImportError])
+def test_a_command_tells_why_it_wrote_no_page(tmp_path, kind):
+    def fails():
+        raise kind("nothing to draw with")
+
+    assert write_scene(tmp_path / "axes.html", "Three axes", fails) == "no axes.html (nothing to draw with)"
+    assert list(tmp_path.iterdir()) == []
