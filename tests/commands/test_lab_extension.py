@@ -151,12 +151,3 @@ def test_the_verdict_of_a_check_is_said_but_not_those_that_were_stored(page):
     page.evaluate(VERDICT, "best 0.5 m")
     page.evaluate(VERDICT, "(your function prints) 3\n06.1: right.")
     page.wait_for_function("() => document.querySelector('#course-says').textContent === '06.1: right.'")
-
-
-def test_in_the_dark_theme_figures_are_dimmed_never_inverted(page):
-    page.evaluate("html => { document.body.innerHTML = html; }", f'<div class="jp-OutputArea-output">{PANEL}</div>')
-    page.add_style_tag(url=f"{ADDRESS}static/style.css")
-    shown = "() => getComputedStyle(document.querySelector('img')).filter"
-    assert page.evaluate(shown) == "none"
-    page.evaluate("() => { document.body.dataset.jpThemeLight = 'false'; }")
-    assert page.evaluate(shown).startswith("brightness(0.")

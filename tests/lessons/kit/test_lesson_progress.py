@@ -205,4 +205,4 @@ def test_the_command_writes_the_page_where_it_is_wanted(record, tmp_path, capfd)
     assert "Your progress" in (tmp_path / "mine.html").read_text()
     assert not (record.parent / "progress.html").exists()
     assert main(["progress", "--out", str(tmp_path / "nowhere" / "mine.html")]) == 2
-    assert "mine.html cannot be written: there is no such folder" in capfd.readouterr().err
+    assert "No such file or directory" in capfd.readouterr().err
