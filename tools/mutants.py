@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
         for one in faults:
             outcome = say(tuple(one["tests"])).replace("killed", "fails as it is")
             if outcome == "survived":
-                with broken(root, one["file"], edited(root, one)):
+                with broken(*edited(root, one)):
                     outcome = tests_say(root, one["tests"], HANGS_S)
                 noticed += outcome != "survived"
             print(f"{outcome:8} {one['file']}: {one['name']}", flush=True)
@@ -63,14 +63,19 @@ def is_meant(fault: dict, name: str) -> bool:
     return name.lower() in fault["name"].lower() or name in fault["file"]
 
 
-def edited(root: Path, fault: dict) -> str:
-    """The source with the fault in it. Raises `ValueError` unless its old text stands there exactly once."""
-    path = root / fault["file"]
-    source = path.read_text(encoding="utf-8") if path.is_file() else ""
-    if source.count(fault["old"]) != 1 or fault["new"] == fault["old"]:
-        found = source.count(fault["old"])
-        raise ValueError(f"{fault['name']!r}: its old text stands {found} times in {fault['file']}; expected: once")
-    return source.replace(fault["old"], fault["new"])
+def edited(root: Path, fault: dict) -> tuple[Path, str]:
+    """The file of a fault and its source with the fault in it; code that moved to another file is found there.
+
+    Raises `ValueError` unless the old text stands exactly once in the file, or else in the library.
+    """
+    for paths in ([root / fault["file"]], sorted((root / "course_lib").rglob("*.py"))):
+        sources = {path: path.read_text(encoding="utf-8") for path in paths if path.is_file()}
+        holding = {path: source for path, source in sources.items() if fault["old"] in source}
+        if len(holding) == 1:
+            ((path, source),) = holding.items()
+            if source.count(fault["old"]) == 1:
+                return path, source.replace(fault["old"], fault["new"])
+    raise ValueError(f"{fault['name']!r}: its old text must stand once in {fault['file']}, or in the library")
 
 
 @contextlib.contextmanager
@@ -86,14 +91,14 @@ def copied_tree() -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def broken(root: Path, file: str, source: str) -> Iterator[None]:
+def broken(file: Path, source: str) -> Iterator[None]:
     """Put another source in the place of a file, and the file back at the end."""
-    whole = (root / file).read_bytes()
-    (root / file).write_text(source, encoding="utf-8")
+    whole = file.read_bytes()
+    file.write_text(source, encoding="utf-8")
     try:
         yield
     finally:
-        (root / file).write_bytes(whole)
+        file.write_bytes(whole)
 
 
 def tests_say(root: Path, tests: Sequence[str | Path], seconds: float, *options: str) -> str:

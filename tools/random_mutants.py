@@ -201,7 +201,7 @@ def run(arguments: argparse.Namespace) -> int:
                 print(told)
                 continue
             begun, outcome = time.monotonic(), "survived"
-            with broken(root, str(path), text):
+            with broken(root / path, text):
                 for tests in tests_of(root, path):
                     if tests and outcome == "survived":
                         left = max(arguments.seconds - (time.monotonic() - begun), 5.0)

@@ -8,13 +8,15 @@ FAULTS = mutants.read_faults()
 
 
 def test_there_are_at_most_eighty_each_with_a_name_of_its_own():
-    assert 60 <= len(FAULTS) <= 80
+    assert len(FAULTS) <= 80
     assert len({one["name"] for one in FAULTS}) == len(FAULTS)
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault["name"])
 def test_a_fault_applies_and_its_tests_are_there(fault):
-    compile(mutants.edited(mutants.ROOT, fault), fault["file"], "exec")
+    path, source = mutants.edited(mutants.ROOT, fault)
+    assert source != path.read_text()
+    compile(source, path, "exec")
     for test in fault["tests"]:
         path, _, function = test.partition("::")
         assert f"def {function.partition('[')[0]}" in (mutants.ROOT / path).read_text()
@@ -25,10 +27,10 @@ def test_a_fault_that_a_test_notices_is_killed_and_another_survives(tmp_path):
     (tmp_path / "test_small.py").write_text("import small\ndef test_one(): assert small.ONE > 0\n")
     fault = {"name": "", "file": "small.py", "old": "ONE = 1"}
     for new, outcome in (("ONE = 0", "killed"), ("ONE = 2", "survived"), ("while True: pass", "hung")):
-        with mutants.broken(tmp_path, "small.py", mutants.edited(tmp_path, fault | {"new": new})):
+        with mutants.broken(*mutants.edited(tmp_path, fault | {"new": new})):
             assert mutants.tests_say(tmp_path, ["test_small.py"], 10.0 if outcome == "hung" else 600.0) == outcome
     assert (tmp_path / "small.py").read_text() == "ONE = 1\n"
-    with pytest.raises(ValueError, match="stands 0 times"):
+    with pytest.raises(ValueError, match="must stand once"):
         mutants.edited(tmp_path, fault | {"old": "TWO", "new": ""})
 
 
