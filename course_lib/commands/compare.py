@@ -10,10 +10,9 @@ import argparse
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
-from course_lib.child import python
-from course_lib.child import run as run_child
 from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
 from course_lib.files import run_folder
 from course_lib.paths import REPOSITORY
@@ -101,8 +100,9 @@ def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, di
     if not packages.is_dir():
         raise RuntimeError("--icp needs Open3D: .venv/bin/python -m tools.bench --quick installs it")
     words = ["--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
-    environment = {"PYTHONPATH": os.pathsep.join(map(str, (REPOSITORY, packages)))}
-    done = run_child(python(script, *words), environment, stdout=subprocess.PIPE, text=True)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (REPOSITORY, packages)))}
+    command = [sys.executable, "-P", str(script), *map(str, words)]
+    done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"ICP ended with code {done.returncode}; what it said stands above")
     runs = {}

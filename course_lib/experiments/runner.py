@@ -15,9 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from filelock import FileLock, Timeout
-from joblib import Parallel, delayed
-
-from course_lib.processors import processors
+from joblib import Parallel, cpu_count, delayed
 
 
 class Outcome(NamedTuple):
@@ -77,7 +75,7 @@ def kept_rows(
         with FileLock(path.with_name(f".{path.name}.lock"), timeout=0):
             results = _read(path)
             missing = [point for point, key in zip(points, keys, strict=True) if key not in results]
-            workers = max(1, min(processes or processors(), len(missing)))
+            workers = max(1, min(processes or cpu_count(), len(missing)))
             computed = _computed(function, missing, workers)
             with path.open("ab") as file:
                 for _ in progress(missing):

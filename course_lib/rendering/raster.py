@@ -17,9 +17,9 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
+import numba
 import numpy as np
 
-from course_lib.processors import processors
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.chunks import MeshChunks, inward_normals
 from course_lib.rendering.compiled import compiled
@@ -75,7 +75,7 @@ class RasterBackend:
             invert(out[views], self._lens[5])
 
         starts = range(0, len(poses), VIEWS_A_TASK)
-        threads = min(processors(), len(starts))
+        threads = min(numba.config.NUMBA_NUM_THREADS, len(starts))
         if threads == 1:
             for start in starts:
                 draw(start)
@@ -95,7 +95,7 @@ class RasterBackend:
 
     def describe(self) -> str:
         """What draws, and on how many processors."""
-        return f"z-buffer in compiled loops on {processors()} processors (Numba)"
+        return f"z-buffer in compiled loops on {numba.config.NUMBA_NUM_THREADS} processors (Numba)"
 
     def close(self) -> None:
         """Nothing is held that the renderer's own end does not free."""

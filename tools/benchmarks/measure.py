@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from joblib import cpu_count
 
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.motion import BODY_AXES
@@ -20,7 +21,6 @@ from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.recordings import system_noise
 from course_lib.experiments.results import versions
 from course_lib.paths import data_path, notebook_paths
-from course_lib.processors import processors
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from tools.benchmarks import curves, growth, side_by_side, waiting
@@ -97,7 +97,7 @@ def machine(scene: Scene) -> dict[str, object]:
         opengl = f"none ({error})"
     return {
         "processor": names[0] if names else platform.processor(),
-        "processors": processors(),
+        "processors": cpu_count(),
         "load_at_the_end": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
         "opengl": opengl,
         "versions": versions(),
