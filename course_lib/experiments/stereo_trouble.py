@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from course_lib.beyond.guarded_stereo import NO_IMAGE, GuardedRig
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.experiments.look_alikes import MAX_ERROR_M, MAX_TURN_DEG, pose_errors
 from course_lib.experiments.troubled_frames import Arrival, Gate, Spoil, troubles_of
 from course_lib.files import temporary_folder
@@ -131,7 +132,10 @@ def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float])
         walk = next(photograph_walks(folder, room, seed, 1, frames, models, WalkModel()))
     upper, lower = CAMERA_HEIGHTS[experiment_of(0)]
     localizer = SemanticLocalizer(
-        StereoRig(round(upper - lower, 6), upper), semantic_map, YoloDetector.load(detector), association="consistent"
+        StereoRig(round(upper - lower, 6), upper),
+        semantic_map,
+        YoloDetector.load(detector),
+        association=associate_consistent,
     )
     pairs = [(view.upper_image, view.lower_image) for view in walk]
     return walk_trouble(localizer, pairs, np.array([view.pose for view in walk]), seed, shares)

@@ -1,5 +1,6 @@
 """The paper's experiment on a stretch of the shipped recording and on a seed's own; the rows of table 1."""
 
+import dataclasses
 import json
 from types import SimpleNamespace
 
@@ -79,10 +80,10 @@ def test_blank_frames_are_counted_and_passed_over(corridor, monkeypatch):
     assert np.isfinite(run.states).all()
 
 
-def test_a_recording_without_a_path_on_the_floor_is_named(corridor, monkeypatch):
-    monkeypatch.setattr(corridor[2], "path_on_floor", None)
+def test_a_recording_without_a_path_on_the_floor_is_named(corridor):
+    without = dataclasses.replace(corridor[2], path_on_floor=None)
     with pytest.raises(ValueError, match="path_on_floor"):
-        path_errors(run_sequence(corridor[0], corridor[2], frames=1, n_particles=5), corridor[2])
+        path_errors(run_sequence(corridor[0], without, frames=1, n_particles=5), without)
 
 
 @pytest.fixture(scope="module")

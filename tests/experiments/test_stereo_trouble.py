@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.experiments.stereo_trouble import GATE, LENGTHS, PERIOD, SPOILS, STOPS, walk_trouble
 from course_lib.experiments.troubled_frames import summary, troubled_frames, troubled_recording
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -95,7 +96,8 @@ def troubled_walk():
     places = [(0.0, 0.0), (0.35, 0.1), (0.1, -0.3), (-0.3, 0.1)]
     pairs = [pair_from(*place) for place in places]
     semantic_map = mapped_scene()[2]
-    localizer = SemanticLocalizer(StereoRig(BASELINE), semantic_map, KnowingDetector(*pairs), association="consistent")
+    detector = KnowingDetector(*pairs)
+    localizer = SemanticLocalizer(StereoRig(BASELINE), semantic_map, detector, association=associate_consistent)
     poses = []
     for x, y in places:
         moved = TRUE_POSE.apply([[x, y]])[0]

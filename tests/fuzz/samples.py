@@ -101,7 +101,7 @@ def write_samples(folder: Path) -> None:
     write_darknet(folder / "detector")
     (folder / "detector" / "training.json").write_text(json.dumps({"score_threshold": 0.4, "epochs": 3, "seed": 1}))
     write_darknet(folder / "onnx")
-    (folder / "onnx" / "blobs.onnx").write_bytes(blob_onnx("yolov8"))
+    (folder / "onnx" / "blobs.onnx").write_bytes(blob_onnx())
 
 
 def _write_meshes(folder: Path) -> None:

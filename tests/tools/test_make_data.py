@@ -10,7 +10,7 @@ from course_lib.simulation.data_folder import checksums
 
 # Tool -> what makes the data, the shipped seed, what it returns.
 MADE = {
-    "corridor": ("course_lib.simulation.corridor.data", "make_corridor_data", 4, {"measured": {}}),
+    "corridor": ("tools.corridor_data", "make_corridor_data", 4, {"measured": {}}),
     "room": ("course_lib.simulation.room.data", "make_room_data", 4, {"pairs": 40, "objects": 14}),
     "finale": (
         "course_lib.simulation.room.finale_data",
