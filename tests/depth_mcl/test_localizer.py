@@ -119,6 +119,15 @@ def test_a_frame_without_measurement_moves_the_particles_says_so_and_the_filter_
 
 
 @pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
+@pytest.mark.parametrize("depth", [SMALL.near / 2, SMALL.far + 1])
+def test_what_the_views_cannot_show_is_no_measurement(renderer, depth):
+    """Eq. (7): the measured image goes through the camera's near and far planes as the simulated ones do."""
+    localizer = MonteCarloLocalizer(renderer, 10, SIGMA)
+    localizer.initialize(START)
+    assert localizer.step(np.full(SMALL.shape, depth)).status == "no measurement"
+
+
+@pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
 def test_after_a_gap_in_a_walk_the_filter_is_soon_there_again(renderer):
     """Ten blank frames, 0.4 m: particles that had been kept all the while are still 0.18 m behind after four more."""
     true, blank, errors = walk(18), np.full(SMALL.shape, np.nan), []

@@ -91,6 +91,11 @@ def shipped_maps(corridor_folder):
     return Maps.load(corridor_folder)
 
 
+def test_the_maps_are_the_surveyed_ones_and_never_the_true_world(corridor_folder, shipped_maps):
+    for scene_map, name in zip(shipped_maps, ("map.ply", "planar_map.ply"), strict=True):
+        assert np.array_equal(scene_map.vertices, SceneMap.load(corridor_folder / name).vertices)
+
+
 @pytest.fixture(scope="module")
 def recordings(corridor_folder, tmp_path_factory):
     return own_recordings(corridor_folder, tmp_path_factory.mktemp("seed"), 10_030, frames=8)
