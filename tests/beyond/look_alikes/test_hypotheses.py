@@ -35,7 +35,7 @@ def test_pairs_join_like_classes_to_distinct_landmarks_at_compatible_distances()
 
 
 def test_two_objects_in_one_place_tell_no_heading():
-    observations = [Observation("sofa", 1.0, 0.0, 0.0, 50.0), Observation("chair", 1.2, 0.0, 0.0, 50.0)]
+    observations = [Observation("sofa", 1.0, 0.0, 0.0, 50.0), Observation("sofa", 1.2, 0.0, 0.0, 50.0)]
     assert len(pairs_of_matches(scene_of(observations, PLANTED))[0]) == 0
 
 
