@@ -68,7 +68,12 @@ def _announced(data: bytes, kind: str) -> tuple[int, int]:
         counts = {name: int(count) for name, count in re.findall(rb"element\s+(\S+)\s+(\d+)", header)}
         n_vertices, n_faces, total = counts.get(b"vertex", 0), counts.get(b"face", 0), sum(counts.values())
         is_text = re.search(rb"format\s+ascii", header)
-        held = sum(bool(line.strip()) for line in body.splitlines()) if is_text else len(body)
+        lines = [line.split() for line in body.splitlines() if line.strip()] if is_text else []
+        held = len(lines) if is_text else len(body)
+        first, _, others = header.partition(b"element")[2].partition(b"element")
+        n_words = len(re.findall(rb"property", first)) if b"list" not in first else 0
+        if others and n_words and any(len(words) != n_words for words in lines[: int(first.split()[1])]):
+            raise ValueError(f"a row of its element {first.split()[0].decode()} has not {n_words} numbers")
     elif kind == "off" and (counts := re.match(rb"\S*OFF\s+(\d+)\s+(\d+)", b" ".join(rows[:2]))):
         n_vertices, n_faces = int(counts[1]), int(counts[2])
         total = n_vertices + n_faces

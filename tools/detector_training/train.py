@@ -86,7 +86,7 @@ def train(
     Raises `DetectorError`, `TrainingDataError`, `CheckpointError`.
     """
     plan = plan or TrainingPlan()
-    check_names(class_count(read_cfg(cfg)), read_names(names_file))
+    check_names(class_count(read_cfg(cfg)), read_names(names_file), names_file)
     check_plan(plan)
     output.mkdir(parents=True, exist_ok=True)
     given = (cfg, names_file, images, validation_images, output, plan, resume, initial_weights, ranges)

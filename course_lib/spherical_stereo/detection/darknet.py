@@ -196,10 +196,12 @@ def read_names(path: str | Path) -> list[str]:
     return names
 
 
-def check_names(n_classes: int, names: list[str]) -> None:
-    """Raise `DetectorError` if the class names are not as many as the cfg's classes."""
+def check_names(n_classes: int, names: list[str], path: str | Path) -> None:
+    """Raise `DetectorError` if the class names are not as many as the network's classes. path: of the names."""
     if len(names) != n_classes:
-        raise DetectorError(f"the cfg has {n_classes} classes, the names file {len(names)}: give that network's names")
+        raise DetectorError(
+            f"the network has {n_classes} classes, names file {path} {len(names)}: give that network's names"
+        )
 
 
 class Network:

@@ -66,7 +66,7 @@ class YoloDetector:
         """
         class_names = read_names(names)
         network = DarknetNetwork(cfg, weights, input_size)
-        check_names(network.n_classes, class_names)
+        check_names(network.n_classes, class_names, names)
         self._set_up(network, class_names, **thresholds)
 
     @classmethod

@@ -149,9 +149,9 @@ def test_names_are_one_a_line_without_gaps_and_as_many_as_the_classes(tmp_path):
     path = tmp_path / "some.names"
     path.write_text("sofa\npotted plant\n\n\n")
     assert read_names(path) == ["sofa", "potted plant"]
-    check_names(2, read_names(path))
-    with pytest.raises(DetectorError, match="3 classes, the names file 2"):
-        check_names(3, read_names(path))
+    check_names(2, read_names(path), path)
+    with pytest.raises(DetectorError, match=r"3 classes, names file .*names 2"):
+        check_names(3, read_names(path), path)
     for text, says in (("sofa\n\nchair\n", "line 2, is empty"), ("\n", "is empty")):
         path.write_text(text)
         with pytest.raises(DetectorError, match=says):
