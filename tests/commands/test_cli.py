@@ -81,12 +81,9 @@ def test_an_error_is_one_line_and_a_code(command, capsys, error, code):
     assert "Traceback" not in errors
 
 
-@pytest.mark.parametrize("way", ["option", "variable"])
-def test_debug_shows_the_traceback(command, capsys, monkeypatch, way):
+def test_debug_shows_the_traceback(command, capsys):
     command(raising(ValueError("bad")))
-    if way == "variable":
-        monkeypatch.setenv("COURSE_DEBUG", "1")
-    assert cli.main(["try", "it", *(["--debug"] if way == "option" else [])]) == 2
+    assert cli.main(["try", "it", "--debug"]) == 2
     assert "Traceback" in capsys.readouterr().err
 
 

@@ -4,9 +4,7 @@ import asyncio
 import json
 import shutil
 import signal
-import socket
 import subprocess
-import time
 import urllib.error
 import urllib.request
 from pathlib import Path
@@ -17,34 +15,22 @@ from course_lib.cli import main
 from course_lib.commands import lab
 from course_lib.commands.saved_panels import WIDGET_VIEW
 from course_lib.paths import REPOSITORY
+from tests.notebooks.driven_lab import TOKEN, free_port, wait_for_server
 
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     """The lessons' server as `lab` starts it: its address, its token, and the (empty) home it ran in."""
     home, state = tmp_path_factory.mktemp("home"), tmp_path_factory.mktemp("state")
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    port = free_port()
     command, environment = lab.lab_command(port, browser=False, state_folder=state)
-    environment |= {"HOME": str(home), "JUPYTER_TOKEN": "a-token-for-the-tests"}
+    environment |= {"HOME": str(home), "JUPYTER_TOKEN": TOKEN}
     with open(state / "log", "wb") as log:
         process = subprocess.Popen(command, env=environment, stdout=log, stderr=log, cwd=home)
-    address = f"http://127.0.0.1:{port}"
-    wait_until_it_answers(address, process)
-    yield address, "a-token-for-the-tests", home
+    wait_for_server(process, port, state / "log")
+    yield f"http://127.0.0.1:{port}", TOKEN, home
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=600) == 0, "Ctrl-C ends it without a question"
-
-
-def wait_until_it_answers(address, process):
-    for _ in range(6000):
-        try:
-            get(f"{address}/api")
-            return
-        except OSError:
-            assert process.poll() is None, "the server ended by itself"
-            time.sleep(0.1)
-    raise AssertionError("the server did not answer within ten minutes")
 
 
 def get(address):
