@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands.localize import join_words
 from course_lib.commands.localize_report import believed
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.depth_mcl.sequence_files import read_tum
@@ -169,17 +168,6 @@ def test_a_filter_that_is_wrong_from_the_start_says_so_and_ends_well(corridor_fo
 def test_one_line_says_what_is_believed(statuses, line):
     names = {"T": "tracked", "D": "doubtful", "L": "lost"}
     assert believed([10 * (i + 1) for i in range(len(statuses))], [names[s] for s in statuses]) == line
-
-
-@pytest.mark.parametrize(
-    ("typed", "joined"),
-    [
-        ("--start 1 -2 .5 0 -1e-3 -90 --up -y", ["--start=1 -2 .5 0 -1e-3 -90", "--up=-y"]),
-        ("--start file.txt --seed 3", ["--start", "file.txt", "--seed", "3"]),
-    ],
-)
-def test_negative_numbers_are_no_options(typed, joined):
-    assert join_words(typed.split()) == joined
 
 
 @pytest.mark.parametrize(

@@ -45,20 +45,6 @@ def test_parts_can_be_left_out(words, parts, marks):
     assert ("--ignore=tests/lessons" in given) == ("--fast" in words)
 
 
-@pytest.mark.parametrize(
-    ("passed_on", "lessons"),
-    [
-        (["tests/test_geometry.py", "-k", "foo"], False),
-        (["notebooks/", "tests/test_geometry.py"], True),
-    ],
-)
-def test_a_path_chooses_what_runs_in_this_one_process(passed_on, lessons):
-    words = words_for(*passed_on, n_workers=2)
-    assert words[-len(passed_on) :] == passed_on
-    assert not {"tests", "notebooks", "-n"} & set(words)
-    assert ("--nbval" in words) == lessons
-
-
 @pytest.fixture
 def course(tmp_path, monkeypatch):
     """A course of one test file, whose text is given; `run` runs its tests in two processes."""
