@@ -45,10 +45,7 @@ def test_text_with_and_without_a_mark_and_with_any_line_end_is_the_same(tmp_path
 
 @pytest.mark.parametrize(
     ("data", "said"),
-    [
-        (b"sofa\nch\xe4ir", "names .*a is not UTF-8 text: byte 0xe4 in line 2"),
-        (b"sofa\nch\0ir", "zero byte in line 2"),
-    ],
+    [(b"sofa\nch\xe4ir", "names .*a is not UTF-8 text: byte 0xe4 in line 2"), (b"sofa\nch\0ir", "zero byte in line 2")],
 )
 def test_what_is_no_text_is_named_with_its_line(tmp_path, data, said):
     (tmp_path / "a").write_bytes(data)

@@ -215,11 +215,7 @@ def test_the_results_quote_detector_stereo_and_distances_as_stored():
         assert quoted == [f"{values[key]:.{digits}f}" for key in keys]
 
 
-METHODS = {
-    "the paper's method": "paper",
-    "implausible poses rejected": "library",
-    "eq. (1) as printed": "as_printed",
-}
+METHODS = {"the paper's method": "paper", "implausible poses rejected": "library", "eq. (1) as printed": "as_printed"}
 
 
 @pytest.mark.parametrize("source", ["images", "exact_boxes"])

@@ -49,9 +49,7 @@ COUNTS = {"Two": 2, "Eight": 8, "Fifteen": 15}
 
 
 def rows_of(plan: str) -> list[list[str]]:
-    return [
-        [cell.strip() for cell in row.split("|")[1:-1]] for row in re.findall(r"^\| \d+ \|.*$", section(plan), re.M)
-    ]
+    return cells_of(re.findall(r"^\| \d+ \|.*$", section(plan), re.M))
 
 
 def test_there_are_plans_of_fifteen_eight_and_two_meetings():

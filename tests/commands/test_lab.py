@@ -160,11 +160,7 @@ def test_a_lesson_that_is_named_or_begun_anew_is_what_opens(started, monkeypatch
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["--notebook", "x.ipynb"], "no notebook x.ipynb"),
-        (["--fresh", "44"], "no lesson 44"),
-    ],
+    ("words", "said"), [(["--notebook", "x.ipynb"], "no notebook x.ipynb"), (["--fresh", "44"], "no lesson 44")]
 )
 def test_what_cannot_be_opened_is_told(started, capsys, words, said):
     course, code, _ = started(*words)

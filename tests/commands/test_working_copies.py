@@ -162,10 +162,7 @@ def test_what_opens_for_a_lesson_is_its_copy(small, notebook, opened):
 
 @pytest.mark.parametrize(
     ("notebook", "said"),
-    [
-        ("../x.ipynb", "lies outside"),
-        ("notebooks/x.ipynb", "there is no notebook notebooks/x.ipynb"),
-    ],
+    [("../x.ipynb", "lies outside"), ("notebooks/x.ipynb", "there is no notebook notebooks/x.ipynb")],
 )
 def test_what_cannot_be_opened_is_told(small, notebook, said):
     with pytest.raises(ValueError, match=said):

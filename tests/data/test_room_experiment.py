@@ -6,12 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.room import (
-    experiment_summary,
-    localize_pair,
-    range_errors,
-    run_experiment,
-)
+from course_lib.experiments.room import experiment_summary, localize_pair, range_errors, run_experiment
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.recording import read_stereo_recording

@@ -7,12 +7,7 @@ import re
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.series_pictures import (
-    CHOSEN,
-    MAX_BYTES,
-    SIZE,
-    write_pictures,
-)
+from course_lib.lessons.kit.series_pictures import CHOSEN, MAX_BYTES, SIZE, write_pictures
 from course_lib.paths import REPOSITORY, notebook_paths
 
 FOLDER = REPOSITORY / "notebooks"

@@ -65,10 +65,7 @@ def test_small_or_hidden_objects_are_ignored_unknown_labels_left_out_and_boxes_s
 
 @pytest.mark.parametrize(
     ("content", "said"),
-    [
-        ({"version": 2, "images": []}, "version"),
-        ({"version": 1, "images": [5]}, "image 0 has no file"),
-    ],
+    [({"version": 2, "images": []}, "version"), ({"version": 1, "images": [5]}, "image 0 has no file")],
 )
 def test_a_folder_that_cannot_be_used_is_named(tmp_path, content, said):
     (tmp_path / "boxes.json").write_text(json.dumps(content))
