@@ -149,14 +149,6 @@ def test_what_course_py_did_not_make_is_refused_and_left_as_it_is(copy, put):
     assert sorted((path, path.lstat().st_mtime_ns) for path in copy.parent.rglob("*")) == before
 
 
-def test_a_folder_without_write_permission_is_told(copy):
-    denied = "def denied(path, *a, **k): raise PermissionError(13, 'Permission denied', path)\nos.makedirs = denied"
-    done = call(copy, "check", prelude=denied)
-    assert done.returncode == 1
-    assert "Permission denied" in done.stderr
-    assert "Does this folder belong to you" in done.stderr
-
-
 @pytest.mark.slow
 def test_two_at_once_wait_for_each_other(copy):
     command = [sys.executable, str(copy / "course.py"), "x"]
@@ -195,20 +187,11 @@ def test_opengl_that_is_missing_is_installed_or_its_line_is_told(course, monkeyp
     assert (line in capsys.readouterr().err) == (not root)
 
 
-def test_a_python_without_ensurepip_is_told_with_its_package(course, monkeypatch):
-    monkeypatch.setattr(course.os, "geteuid", lambda: 1000)
-    package = f"python{sys.version_info[0]}.{sys.version_info[1]}-venv"
-    with pytest.raises(course.SetupError, match=rf"ensurepip.*install .* {package}; then call course\.py again"):
-        course.make_venv()
-
-
 @pytest.mark.parametrize(
     ("output", "told"),
     [
         ("ERROR: [Errno 28] No space left on device", "the disk is full"),
-        ("ERROR: [Errno 13] Permission denied: '/x'", "a folder of your own"),
         ("ERROR: No matching distribution found for x (from versions: none)", "Is there a network connection"),
-        ("error: Failed to fetch: https://pypi.org", "Is there a network connection"),
         ("a\nERROR: hashes do not match", "could not install the environment. pip said: ERROR: hashes do not match"),
     ],
 )

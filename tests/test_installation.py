@@ -74,14 +74,6 @@ def test_what_the_methods_import_is_what_is_installed_with_them():
             assert owners & installed, f"{path.relative_to(ROOT)} imports {name}, which `pip install .` does not bring"
 
 
-def test_the_lessons_packages_come_with_their_extra_alone():
-    extras = PROJECT["optional-dependencies"]
-    names = {extra: {canonicalize_name(Requirement(line).name) for line in lines} for extra, lines in extras.items()}
-    assert {"jupyterlab", "ipywidgets", "matplotlib", "pyvista"} <= names["lessons"]
-    assert names["lessons"].isdisjoint(canonicalize_name(Requirement(line).name) for line in PROJECT["dependencies"])
-    assert "torch" in names["train"]
-
-
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     """Names of the files that setuptools would install, from a build of a copy of the package."""

@@ -165,8 +165,3 @@ def test_a_grey_object_is_compared_without_its_hue():
     told = spherical_stereo.penalty(grey, MAP.landmarks[0], np.zeros(2), np.zeros(2))
     assert told.hue == 0.0
     assert np.isfinite(told.total)
-
-
-def test_a_rig_whose_height_nobody_measured_still_sees_distances():
-    rig = StereoRig(0.2, np.nan)
-    assert np.isfinite(spherical_stereo.triangulate(UP, DOWN, rig.baseline))

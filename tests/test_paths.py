@@ -2,7 +2,7 @@
 
 import pytest
 
-from course_lib.paths import REPOSITORY, data_path, notebook_paths, project_paths
+from course_lib.paths import REPOSITORY, data_path, notebook_paths
 
 
 def test_data_and_lessons_are_found_from_anywhere(tmp_path, monkeypatch):
@@ -15,8 +15,3 @@ def test_what_is_missing_is_named_with_the_folder_and_the_cure():
     with pytest.raises(FileNotFoundError, match=r"no 'corridor/nothing' in .*make the data again"):
         data_path("corridor/nothing")
     assert REPOSITORY.is_dir()
-
-
-def test_the_projects_are_found_apart_from_the_lessons():
-    assert next(path.name[:2] for path in project_paths()) == "P1"
-    assert not set(project_paths()) & set(notebook_paths())

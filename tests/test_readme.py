@@ -20,130 +20,117 @@ from tools.bench_tables import bench_table
 
 ROOT = Path(__file__).parents[1]
 README, RESULTS = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "RESULTS.md"))
-CORRIDOR_RESULTS = ROOT / "data" / "corridor" / "results"
-ROOM_RESULTS = ROOT / "data" / "room" / "results"
 SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.S)
 
 
-def results():
-    return [json.loads((CORRIDOR_RESULTS / f"seed_{seed}.json").read_text()) for seed in range(1, 6)]
+def stored(path):
+    """The stored results data/corridor/results/... or data/room/results/..."""
+    folder, _, name = path.partition("/")
+    return json.loads((ROOT / "data" / folder / "results" / name).read_text())
+
+
+def row(name):
+    """Cells of the row of RESULTS.md that begins so, without the first one."""
+    line = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name}"))
+    return [cell.strip() for cell in line.split("|")[2:-1]]
+
+
+def numbers(cell):
+    return [float(number) for number in re.findall(r"\d+(?:\.\d+)?", cell)]
+
+
+def middle_and_range(values, digits):
+    return [float(f"{value:.{digits}f}") for value in (np.median(values), min(values), max(values))]
+
+
+def is_quoted(printed, text=RESULTS):
+    return "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in text
 
 
 def test_the_table_is_the_one_that_seed_1_prints():
-    printed = [line.rstrip() for line in table_1(results()[0]).splitlines()]
-    # Without the line of the times, which differ from machine to machine.
-    printed = [line for line in printed if "ms a frame" not in line]
-    quoted = [line[4:].rstrip() for line in RESULTS.splitlines() if line.startswith("    ") or not line.strip()]
-    start = quoted.index(printed[0])
-    assert quoted[start : start + len(printed)] == printed
+    """But for the line of the times, which differ from machine to machine."""
+    printed = table_1(stored("corridor/seed_1.json")).splitlines()
+    assert is_quoted("\n".join(line for line in printed if "ms a frame" not in line))
+
+
+OVER_SEEDS = [
+    ("nearest-path median", "proposed", "median_m", 3),
+    ("sigma", "proposed", "sigma_m", 3),
+    ("within 0.30 m", "proposed", "within_3sigma_percent", 1),
+    ("timed median", "proposed", "median_timed_m", 3),
+    ("Fallon-style (depth, 20 x 15) nearest-path median", "fallon", "median_m", 3),
+]
+
+
+@pytest.mark.parametrize(("name", "method", "key", "digits"), OVER_SEEDS)
+def test_the_rows_over_seeds_are_the_medians_and_ranges_of_the_stored_results(name, method, key, digits):
+    values = [
+        stored(f"corridor/seed_{seed}.json")[f"fallon_{key}" if method == "fallon" else key] for seed in range(1, 6)
+    ]
+    assert numbers(row(f"{name} ")[0])[:3] == middle_and_range(values, digits)
 
 
 @pytest.mark.parametrize(
-    ("name", "key", "digits"),
-    [
-        ("nearest-path median", "median_m", 3),
-        ("sigma", "sigma_m", 3),
-        ("within 0.30 m", "within_3sigma_percent", 1),
-        ("timed median", "median_timed_m", 3),
-        ("Fallon-style (depth, 20 x 15) nearest-path median", "fallon_median_m", 3),
-    ],
-)
-def test_the_rows_over_seeds_are_the_medians_and_ranges_of_the_stored_results(name, key, digits):
-    values = [r[key] for r in results()]
-    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name} "))
-    middle, low, high = (float(v) for v in re.findall(r"\d+\.\d+", row.split("|")[2])[:3])
-    expected = np.round([np.median(values), min(values), max(values)], digits)
-    assert np.array_equal([middle, low, high], expected)
-
-
-@pytest.mark.parametrize(
-    ("name", "method", "key", "digits"),
-    [
-        ("nearest-path median", "proposed", "median_m", 3),
-        ("sigma", "proposed", "sigma_m", 3),
-        ("within 0.30 m", "proposed", "within_3sigma_percent", 1),
-        ("timed median", "proposed", "median_timed_m", 3),
-        ("Fallon-style (depth, 20 x 15) nearest-path median", "fallon", "median_m", 3),
-        ("Fallon-style timed median", "fallon", "median_timed_m", 2),
-    ],
+    ("name", "method", "key", "digits"), [*OVER_SEEDS, ("Fallon-style timed median", "fallon", "median_timed_m", 2)]
 )
 def test_the_rows_over_recordings_are_the_medians_and_ranges_of_five(name, method, key, digits):
-    stored = json.loads((CORRIDOR_RESULTS / "recordings_1-5.json").read_text())
-    assert stored["seeds"] == [1, 2, 3, 4, 5]
-    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| recordings: {name} |"))
-    for part, cell in zip(("methods", "methods_by_hand"), row.split("|")[2:4], strict=True):
-        values = [one[part][method][key] for one in stored["recordings"]]
-        expected = np.round([np.median(values), min(values), max(values)], digits)
-        assert np.array_equal([float(v) for v in re.findall(r"\d+\.\d+", cell)[:3]], expected)
+    recordings = stored("corridor/recordings_1-5.json")["recordings"]
+    assert len(recordings) == 5
+    for part, cell in zip(("methods", "methods_by_hand"), row(f"recordings: {name} |")[:2], strict=True):
+        assert numbers(cell)[:3] == middle_and_range([one[part][method][key] for one in recordings], digits)
 
 
 def test_the_table_with_intervals_is_what_the_sweep_prints_of_its_stored_rows(tmp_path, capsys):
     """The command itself, which finds every row finished."""
-    stored = (CORRIDOR_RESULTS / "sweep_corridor.jsonl").read_text()
-    (tmp_path / "corridor.jsonl").write_text(stored)
-    count = len(stored.splitlines()) - 1
-    assert count >= 20
+    rows = (ROOT / "data" / "corridor" / "results" / "sweep_corridor.jsonl").read_text()
+    (tmp_path / "corridor.jsonl").write_text(rows)
+    count = len(rows.splitlines()) - 1
     words = ["corridor", "--seeds", str(count), "--out", str(tmp_path)]
     assert cli.call(lambda: sweep, "python -m tools.sweep", words) == 0
-    table = capsys.readouterr().out.rstrip()
-    assert "\n".join(f"    {line}".rstrip() for line in table.splitlines()) in RESULTS
+    assert is_quoted(capsys.readouterr().out.rstrip())
     assert f"With `--seeds {count}` it prints this" in RESULTS
-    assert (tmp_path / "corridor.jsonl").read_text() == stored, "nothing was run"
+    assert (tmp_path / "corridor.jsonl").read_text() == rows, "nothing was run"
 
 
-SIX_DEGREES = [
-    *(CORRIDOR_RESULTS / f"kitchen_{name}.json" for name in ("six_degrees", "icp", "ablation")),
-    CORRIDOR_RESULTS / "hand_1-5.json",
-    ROOM_RESULTS / "walk_10061-10066.json",
-    ROOM_RESULTS / "walk_1-10.json",
-]
+SIX_DEGREES = ["corridor/kitchen_six_degrees", "corridor/kitchen_icp", "corridor/kitchen_ablation", "corridor/hand_1-5"]
+SIX_DEGREES += ["room/walk_10061-10066", "room/walk_1-10"]
 
 
-@pytest.mark.parametrize("path", SIX_DEGREES, ids=lambda path: path.stem)
-def test_the_tables_in_six_degrees_are_what_the_commands_print_of_their_stored_numbers(path):
-    stored = json.loads(path.read_text())
-    printed = six_degrees_table(stored["rows"])
-    assert "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in RESULTS
+@pytest.mark.parametrize("name", SIX_DEGREES)
+def test_the_tables_in_six_degrees_are_what_the_commands_print_of_their_stored_numbers(name):
+    assert is_quoted(six_degrees_table(stored(f"{name}.json")["rows"]))
 
 
-@pytest.mark.parametrize("name", ["lost_kitchen.json", "lost_corridor.json"])
+@pytest.mark.parametrize("name", ["lost_kitchen", "lost_corridor"])
 def test_lost_and_found_is_what_the_command_prints_of_its_stored_trials(name):
-    stored = json.loads((CORRIDOR_RESULTS / name).read_text())
-    again = {"seeds": stored["seeds"], **summarize(stored["trials_in_full"])}
-    assert again == {key: stored[key] for key in again}
-    assert "\n".join(f"    {line}".rstrip() for line in lost_table(again).splitlines()) in RESULTS
+    found = stored(f"corridor/{name}.json")
+    again = {"seeds": found["seeds"], **summarize(found["trials_in_full"])}
+    assert again == {key: found[key] for key in again}
+    assert is_quoted(lost_table(again))
 
 
 def test_the_finale_is_what_the_command_prints_of_its_stored_numbers():
-    stored = json.loads((ROOM_RESULTS / "finale_1-10.json").read_text())
-    assert "\n".join(f"    {line}" for line in finale_text(stored).splitlines()) in RESULTS
-    low, high = wilson_percent(stored["reached"], stored["places"])
-    assert f"of {stored['places']} places {stored['reached']} mean {low:.0f} to {high:.0f} % (Wilson)" in RESULTS
+    found = stored("room/finale_1-10.json")
+    assert is_quoted(finale_text(found))
+    low, high = wilson_percent(found["reached"], found["places"])
+    assert f"of {found['places']} places {found['reached']} mean {low:.0f} to {high:.0f} % (Wilson)" in RESULTS
 
 
-TROUBLE = [
-    CORRIDOR_RESULTS / "trouble_wagon.json",
-    CORRIDOR_RESULTS / "trouble_hand.json",
-    ROOM_RESULTS / "trouble.json",
-]
-
-
-@pytest.mark.parametrize("path", TROUBLE, ids=lambda path: path.stem)
-def test_sensor_trouble_is_what_the_command_prints_of_its_stored_numbers(path):
+@pytest.mark.parametrize("name", ["corridor/trouble_wagon", "corridor/trouble_hand", "room/trouble"])
+def test_sensor_trouble_is_what_the_command_prints_of_its_stored_numbers(name):
     section = RESULTS.partition("### 4.1 Sensor trouble")[2].partition("\n### ")[0].partition("\n## ")[0]
-    stored = json.loads(path.read_text())
-    printed = trouble_table(stored)
-    assert "\n".join(f"    {line}".rstrip() for line in printed.splitlines()) in section
-    wrong = sum(row["confident_wrong"] for row in [stored["undisturbed"], *stored["rows"]])
-    assert f"{stored['method']}: {wrong} confident and wrong" in " ".join(section.replace("`", "").split())
+    found = stored(f"{name}.json")
+    assert is_quoted(trouble_table(found), section)
+    wrong = sum(one["confident_wrong"] for one in [found["undisturbed"], *found["rows"]])
+    assert f"{found['method']}: {wrong} confident and wrong" in " ".join(section.replace("`", "").split())
 
 
 def test_the_speed_is_what_the_benchmark_printed():
-    stored = json.loads((CORRIDOR_RESULTS / "bench.json").read_text())
+    found = stored("corridor/bench.json")
     quoted = [line.removeprefix("    ").rstrip() for line in RESULTS.splitlines()]
-    assert [line for line in bench_table(stored).splitlines() if line not in quoted] == []
+    assert [line for line in bench_table(found).splitlines() if line not in quoted] == []
     told = re.search(r"(\d+) ms on two cores .* (\d+) times as fast as Embree", README.replace("\n", " "))
-    assert (float(told[1]), float(told[2])) == (round(stored["step_ms"]), round(stored["embree_ratio"]))
+    assert (float(told[1]), float(told[2])) == (round(found["step_ms"]), round(found["embree_ratio"]))
 
 
 def test_the_readme_is_a_front_page():
@@ -179,10 +166,6 @@ def test_the_second_snippet_of_the_readme_finds_the_rig(monkeypatch):
     assert np.hypot(found.pose.x - true[0], found.pose.y - true[1]) < 0.5
 
 
-def test_there_are_no_more_snippets():
-    assert len(SNIPPETS) == 2
-
-
 @pytest.mark.parametrize("text", [README, RESULTS], ids=["README", "RESULTS"])
 def test_every_local_link_leads_somewhere(text):
     for target in re.findall(r"\]\(([^)#]+)\)", text):
@@ -190,143 +173,99 @@ def test_every_local_link_leads_somewhere(text):
             assert (ROOT / target).exists(), target
 
 
-@pytest.mark.parametrize(
-    ("name", "method", "keys", "digits"),
-    [
-        ("correct [%]", "greedy", ("correct_percent",), 0),
-        ("incorrect [%]", "greedy", ("incorrect_percent",), 0),
-        ("unable [%]", "greedy", ("unable_percent",), 0),
-        ("mean error in x when correct [m]", "greedy", ("correct", "mean_dx_m"), 2),
-        ("mean error in y when correct [m]", "greedy", ("correct", "mean_dy_m"), 2),
-        ("mean error in heading when correct [degrees]", "greedy", ("correct", "mean_dtheta_deg"), 1),
-        ("correct from exact boxes [%]", "greedy_exact_boxes", ("correct_percent",), 0),
-    ],
-)
+ROOM = [
+    ("correct [%]", "greedy", ("correct_percent",), 0),
+    ("incorrect [%]", "greedy", ("incorrect_percent",), 0),
+    ("unable [%]", "greedy", ("unable_percent",), 0),
+    ("mean error in x when correct [m]", "greedy", ("correct", "mean_dx_m"), 2),
+    ("mean error in y when correct [m]", "greedy", ("correct", "mean_dy_m"), 2),
+    ("mean error in heading when correct [degrees]", "greedy", ("correct", "mean_dtheta_deg"), 1),
+    ("correct from exact boxes [%]", "greedy_exact_boxes", ("correct_percent",), 0),
+]
+
+
+@pytest.mark.parametrize(("name", "method", "keys", "digits"), ROOM)
 def test_the_rows_of_the_room_are_the_medians_and_ranges_of_its_stored_results(name, method, keys, digits):
-    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name} |"))
-    for experiment, cell in zip(("experiment_1", "experiment_2"), row.split("|")[2:4], strict=True):
-        values = []
-        for path in sorted(ROOM_RESULTS.glob("seed_*.json")):
-            value = json.loads(path.read_text())[experiment][method]
-            for key in keys:
-                value = value[key]
-            values.append(value)
-        assert len(values) == 5
-        quoted = [float(number) for number in re.findall(r"\d+(?:\.\d+)?", cell)]
-        expected = [float(f"{number:.{digits}f}") for number in (np.median(values), min(values), max(values))]
-        assert quoted == expected
+    for experiment, cell in zip(("experiment_1", "experiment_2"), row(f"{name} |")[:2], strict=True):
+        values = [stored(f"room/seed_{seed}.json")[experiment][method] for seed in range(1, 6)]
+        for key in keys:
+            values = [value[key] for value in values]
+        assert numbers(cell) == middle_and_range(values, digits)
 
 
 def test_the_results_quote_detector_stereo_and_distances_as_stored():
     scores = json.loads((ROOT / "data" / "detector" / "scores.json").read_text())
-    stored = json.loads((ROOM_RESULTS / "seed_4.json").read_text())
-    errors, matching = stored["median_relative_range_error_percent"], stored["stereo_matching"]
-    turns, greatest = stored["rolled_images"], ("greatest_moved_m", "greatest_turned_deg")
-    for row, values in (
-        ("| detector on the experiment's room", [scores["experiment_room"][k] for k in ("precision", "recall")]),
-        ("| detector on 20 rooms", [scores["unseen_rooms"][k] for k in ("precision", "recall")]),
-        ("| images rolled by", [turns["alike"][key] for key in greatest]),
-        ("| the same, pairs weighted", [turns["by_covariance"][key] for key in greatest]),
-        ("| stereo matching", [matching["right_percent"], matching["unmatched_percent"]]),
-        (
-            "| median relative error of distances",
-            [errors[k] for k in ("exact_boxes", "detected_box_centres", "akaze_disparities")],
-        ),
-    ):
-        line = next(line for line in RESULTS.splitlines() if line.startswith(row))
-        quoted = [number.strip() for number in line.split("|")[2].split(",")]
-        digits = len(quoted[0].split(".")[1])
-        assert quoted == [f"{value:.{digits}f}" for value in values]
-
-
-@pytest.mark.parametrize(
-    ("name", "source", "method"),
-    [
-        ("from images, the paper's method", "images", "paper"),
-        ("from images, implausible poses rejected", "images", "library"),
-        ("from exact boxes, the paper's method", "exact_boxes", "paper"),
-        ("from exact boxes, implausible poses rejected", "exact_boxes", "library"),
-        ("from images, eq. (1) as printed", "images", "as_printed"),
-        ("from exact boxes, eq. (1) as printed", "exact_boxes", "as_printed"),
-    ],
-)
-def test_the_rows_of_the_rooms_are_the_stored_shares_and_intervals(name, source, method):
-    stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["both"][source][method]
-    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name} |"))
-    shares = (
-        f"{stored[f'{kind}_percent']:.1f} ({stored[f'{kind}_rooms_percent'][0]:.0f} to "
-        f"{stored[f'{kind}_rooms_percent'][1]:.0f})"
-        for kind in ("correct", "incorrect", "unable")
+    found = stored("room/seed_4.json")
+    turns, greatest, rates = (
+        found["rolled_images"],
+        ("greatest_moved_m", "greatest_turned_deg"),
+        ("precision", "recall"),
     )
-    assert [cell.strip() for cell in row.split("|")[2:5]] == list(shares)
+    distances = ("exact_boxes", "detected_box_centres", "akaze_disparities")
+    for name, values, keys in (
+        ("detector on the experiment's room", scores["experiment_room"], rates),
+        ("detector on 20 rooms", scores["unseen_rooms"], rates),
+        ("images rolled by", turns["alike"], greatest),
+        ("the same, pairs weighted", turns["by_covariance"], greatest),
+        ("stereo matching", found["stereo_matching"], ("right_percent", "unmatched_percent")),
+        ("median relative error of distances", found["median_relative_range_error_percent"], distances),
+    ):
+        quoted = [number.strip() for number in row(name)[0].split(",")]
+        digits = len(quoted[0].split(".")[1])
+        assert quoted == [f"{values[key]:.{digits}f}" for key in keys]
 
 
-@pytest.mark.parametrize(
-    ("group", "words", "method"),
-    [
-        ("one_view", "one view", "greedy"),
-        ("one_view", "one view", "hungarian"),
-        ("one_view", "one view", "consistent"),
-        ("several_views", "three views", "odometry"),
-        ("several_views", "three views", "no_odometry"),
-    ],
-)
-def test_the_rows_of_the_look_alikes_are_the_stored_shares_and_errors(group, words, method):
-    stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["answers"][group][method]
-    name = f"| {words}, {method.replace('_', ' ')} |"
-    row = next(line for line in RESULTS.splitlines() if line.startswith(name))
+METHODS = {"the paper's method": "paper", "implausible poses rejected": "library", "eq. (1) as printed": "as_printed"}
+
+
+@pytest.mark.parametrize("source", ["images", "exact_boxes"])
+@pytest.mark.parametrize("words", METHODS)
+def test_the_rows_of_the_rooms_are_the_stored_shares_and_intervals(words, source):
+    found = stored("room/rooms_1-20.json")["both"][source][METHODS[words]]
     cells = [
-        "{:.1f} ({:.1f} to {:.1f})".format(stored[f"{kind}_percent"], *stored[f"{kind}_wilson_percent"])
+        "{:.1f} ({:.0f} to {:.0f})".format(found[f"{kind}_percent"], *found[f"{kind}_rooms_percent"])
+        for kind in ("correct", "incorrect", "unable")
+    ]
+    assert row(f"from {source.replace('_', ' ')}, {words} |")[:3] == cells
+
+
+ANSWERS = [("one_view", f"one view, {name}", name) for name in ("greedy", "hungarian", "consistent")]
+ANSWERS += [("several_views", f"three views, {name.replace('_', ' ')}", name) for name in ("odometry", "no_odometry")]
+ANSWERS += [("thinned_views", "half seen, one view", "1_views_odometry")]
+ANSWERS += [
+    ("thinned_views", f"half seen, {word} views, {odometry.replace('_', ' ')}", f"{n}_views_{odometry}")
+    for n, word in ((2, "two"), (3, "three"))
+    for odometry in ("odometry", "no_odometry")
+]
+
+
+@pytest.mark.parametrize(("group", "name", "method"), ANSWERS)
+def test_the_rows_of_the_look_alikes_are_the_stored_shares_and_errors(group, name, method):
+    found = stored("room/rooms_1-20.json")["answers"][group][method]
+    cells = [
+        "{:.1f} ({:.1f} to {:.1f})".format(found[f"{kind}_percent"], *found[f"{kind}_wilson_percent"])
         for kind in ("correct", "wrong", "unanswered")
     ]
-    right = stored["all_matches_right_percent"]
-    cells.append("-" if right is None else f"{right:.1f}")
-    cells.append("{mean_dx_m:.2f}, {mean_dy_m:.2f}, {mean_dtheta_deg:.1f}".format(**stored))
-    assert [cell.strip() for cell in row.split("|")[2:7]] == cells
-
-
-@pytest.mark.parametrize(
-    ("name", "method"),
-    [
-        ("half seen, one view", "1_views_odometry"),
-        ("half seen, two views, odometry", "2_views_odometry"),
-        ("half seen, two views, no odometry", "2_views_no_odometry"),
-        ("half seen, three views, odometry", "3_views_odometry"),
-        ("half seen, three views, no odometry", "3_views_no_odometry"),
-    ],
-)
-def test_the_rows_of_the_thinned_views_are_the_stored_shares_and_errors(name, method):
-    stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["answers"]["thinned_views"][method]
-    row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name} |"))
-    cells = [
-        "{:.1f} ({:.1f} to {:.1f})".format(stored[f"{kind}_percent"], *stored[f"{kind}_wilson_percent"])
-        for kind in ("correct", "wrong", "unanswered")
-    ]
-    cells.append("{mean_dx_m:.2f}, {mean_dy_m:.2f}, {mean_dtheta_deg:.1f}".format(**stored))
-    assert [cell.strip() for cell in row.split("|")[2:6]] == cells
+    if group != "thinned_views":
+        right = found["all_matches_right_percent"]
+        cells.append("-" if right is None else f"{right:.1f}")
+    cells.append("{mean_dx_m:.2f}, {mean_dy_m:.2f}, {mean_dtheta_deg:.1f}".format(**found))
+    assert row(f"{name} |")[: len(cells)] == cells
 
 
 def test_the_rows_of_the_ablation_are_the_stored_shares():
-    stored = json.loads((ROOM_RESULTS / "rooms_1-20.json").read_text())["answers"]["ablation"]
-    for name, shown in stored["right_map"].items():
-        row = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name.replace('_', ' ')} |"))
-        shares = [shown[f"{kind}_percent"] for kind in ("correct", "wrong", "unanswered")]
-        shares.append(stored["wrong_map"][name]["wrong_percent"])
-        assert [cell.strip() for cell in row.split("|")[2:6]] == [f"{share:.1f}" for share in shares]
+    found = stored("room/rooms_1-20.json")["answers"]["ablation"]
+    for name, shown in found["right_map"].items():
+        percents = [shown[f"{kind}_percent"] for kind in ("correct", "wrong", "unanswered")]
+        percents.append(found["wrong_map"][name]["wrong_percent"])
+        assert row(f"{name.replace('_', ' ')} |")[:4] == [f"{share:.1f}" for share in percents]
 
 
 @pytest.mark.parametrize("source", ["images", "exact_boxes"])
 @pytest.mark.parametrize("tilt", ["0", "0.1", "0.3", "1"])
 def test_the_rows_of_the_tilts_are_the_stored_shares_and_errors(source, tilt):
-    stored = json.loads((ROOM_RESULTS / "tilts_1-10.json").read_text())["tilts"][tilt][source]
-    name = f"| from {source.replace('_', ' ')}, {tilt} degrees |"
-    row = next(line for line in RESULTS.splitlines() if line.startswith(name))
-    errors = (
-        ", ".join(
-            f"{stored[method]['correct'][f'median_{error}']:.{digits}f}"
-            for error, digits in (("dx_m", 2), ("dy_m", 2), ("dtheta_deg", 1))
-        )
-        for method in ("paper", "weighted_fit")
-    )
-    shares = f"{stored['paper']['correct_percent']:.0f}", f"{stored['library']['unable_percent']:.0f}"
-    assert [cell.strip() for cell in row.split("|")[2:6]] == [*shares, *errors]
+    found = stored("room/tilts_1-10.json")["tilts"][tilt][source]
+    correct = [found[method]["correct"] for method in ("paper", "weighted_fit")]
+    cells = [f"{found['paper']['correct_percent']:.0f}", f"{found['library']['unable_percent']:.0f}"]
+    cells += ["{median_dx_m:.2f}, {median_dy_m:.2f}, {median_dtheta_deg:.1f}".format(**one) for one in correct]
+    assert row(f"from {source.replace('_', ' ')}, {tilt} degrees |")[:4] == cells

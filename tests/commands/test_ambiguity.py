@@ -36,11 +36,8 @@ def test_what_is_confused_is_told_with_its_places(map_file, tmp_path, capsys):
     assert first < second
     assert one["confused"][0]["labels"][0] == one["confused"][0]["labels"][1]
     assert [list(SYMMETRIC.positions[first]), list(SYMMETRIC.positions[second])] == [a, b]
-    assert sorted(path.name for path in out.glob("[!.]*")) == [
-        "ambiguity.json",
-        "ambiguity_consistent.png",
-        "ambiguity_greedy.png",
-    ]
+    files = {path.name for path in out.glob("[!.]*")}
+    assert files == {"ambiguity.json", "ambiguity_consistent.png", "ambiguity_greedy.png", "run.json"}
 
 
 def test_one_unlike_object_makes_the_room_sure(map_file, tmp_path, capsys):
@@ -50,23 +47,12 @@ def test_one_unlike_object_makes_the_room_sure(map_file, tmp_path, capsys):
     assert planted["mean_confidence"] > symmetric["mean_confidence"] + 0.2
 
 
-def test_the_text_names_the_objects(map_file, tmp_path, capsys):
-    words = ["--step", "2", "--draws", "1", "--out", str(tmp_path / "out"), "--association", "greedy"]
-    assert main(["ambiguity", "--map", map_file(SYMMETRIC), *words]) == 0
-    text = capsys.readouterr().out
-    assert "free places" in text
-    assert "confused in" in text
-
-
 @pytest.mark.parametrize(
     ("words", "said"),
     [
         (["--association", "best"], "association must be one of greedy, hungarian, consistent"),
         (["--step", "0"], "--step must be a positive number of metres"),
-        (["--step", "nan"], "--step must be a positive number of metres"),
         (["--step", "500"], "give a smaller --step"),
-        (["--draws", "0"], "--draws must be at least 1; got 0"),
-        (["--seed", "-1"], "--seed must be 0 or more"),
     ],
 )
 def test_bad_words_are_told(map_file, tmp_path, capsys, words, said):

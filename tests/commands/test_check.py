@@ -2,7 +2,6 @@
 
 import argparse
 import importlib.metadata
-import types
 
 import numpy as np
 import pytest
@@ -29,21 +28,10 @@ def test_each_broken_import_is_named_and_the_others_are_still_tried(modules):
     assert set(broken) == {"crashes_at_import", "raises_at_import", "not_there"}
 
 
-def test_every_dependency_of_the_package_gets_a_line_and_its_own_module(monkeypatch):
-    tried = []
-    monkeypatch.setattr(check, "find_broken_imports", lambda modules: tried.extend(modules) or {})
-    names = {finding.text.split()[0] for finding in check.check_packages()}
-    assert {"Python", "numpy", "vtk", "pyvista", "opencv-python-headless", "jupyterlab", "pytest", "nbval"} <= names
-    assert {"cv2", "skimage", "matplotlib", "numpy", "xdist", "setuptools"} <= set(tried)
-    assert len(tried) >= len(names) - 2
-    assert not {"mpl_toolkits", "pylab"} & set(tried)
-
-
 @pytest.mark.parametrize(
     ("requirement", "imports", "said"),
     [
         ("numpy>=1.26,<9", {}, f"OK    numpy {np.__version__} (wanted <9,>=1.26)"),
-        ("numpy<1", {}, "(wanted <1). Cure: delete the folder .venv"),
         ("no-such-package>=2", {}, "FAIL  no-such-package is not installed (wanted >=2). Cure: delete"),
         ("numpy>=1.26", {"numpy": "ImportError libc"}, "cannot be imported (numpy: ImportError libc). Cure: delete"),
     ],
@@ -61,15 +49,6 @@ def test_the_tilted_plane_reads_its_closed_form(backend):
     _, error_mm, n_pixels = check.render_plane(backend)
     assert n_pixels == 176 * 144
     assert error_mm <= check.MAX_ERROR_MM
-
-
-def test_a_plane_in_the_wrong_place_is_noticed(monkeypatch):
-    # Every depth 2 mm too great.
-    from course_lib.rendering.renderer import DepthRenderer
-
-    render = DepthRenderer.render
-    monkeypatch.setattr(DepthRenderer, "render", lambda renderer, states: render(renderer, states) + np.float32(0.002))
-    assert check.render_plane("ray")[1] > 1.9
 
 
 @pytest.mark.slow
@@ -90,16 +69,6 @@ def test_a_driver_that_crashes_or_hangs_is_a_finding(monkeypatch, code, said):
     findings = list(check.check_depth_images())
     assert [finding.ok for finding in findings] == [False, False, False]
     assert f"{said}: last words" in findings[0].text or "no answer in time" in findings[0].text
-
-
-def test_a_program_that_hangs_is_ended():
-    assert check.run_apart("-c", "import time; time.sleep(60)", timeout_s=0.5)[0] is None
-
-
-@pytest.mark.parametrize(("free", "ok"), [(0.2e9, False), (8.0e9, True)])
-def test_too_little_memory_fails(monkeypatch, free, ok):
-    monkeypatch.setattr("psutil.virtual_memory", lambda: types.SimpleNamespace(available=free))
-    assert next(check.check_machine()).ok == ok
 
 
 @pytest.mark.parametrize(("ok", "code", "last"), [(True, 0, "All 3 OK."), (False, 1, "3 of 3 FAILED.")])

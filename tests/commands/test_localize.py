@@ -7,12 +7,10 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands.localize import join_words
 from course_lib.commands.localize_report import believed
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.depth_mcl.sequence_files import read_tum
 from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
-from course_lib.rendering.renderer import DepthRenderer
 
 
 def arguments(folder, sequence="wagon", **options):
@@ -163,10 +161,7 @@ def test_a_filter_that_is_wrong_from_the_start_says_so_and_ends_well(corridor_fo
     ("statuses", "line"),
     [
         ("TTTT", "tracked in all 4 frames"),
-        ("TDTD", "tracked in 2 of 4 frames, doubtful in 2"),
         ("TLLD", "lost from frame 20 on (2 of 4 frames; tracked 1, doubtful 1)"),
-        ("LLLL", "lost from the first frame on (4 of 4 frames; tracked 0, doubtful 0)"),
-        ("TLLDT", "lost from frame 20 to 30 (2 of 5 frames; tracked 2, doubtful 1)"),
         ("TLTLLT", "lost in 2 stretches between frames 20 and 50 (3 of 6 frames; tracked 3, doubtful 0)"),
     ],
 )
@@ -176,43 +171,19 @@ def test_one_line_says_what_is_believed(statuses, line):
 
 
 @pytest.mark.parametrize(
-    ("typed", "joined"),
-    [
-        ("--start 1 -2 .5 0 -1e-3 -90 --up -y", ["--start=1 -2 .5 0 -1e-3 -90", "--up=-y"]),
-        ("--start file.txt --seed 3", ["--start", "file.txt", "--seed", "3"]),
-        ("--start=-1,2,3,0,0,0 --up z", ["--start=-1,2,3,0,0,0", "--up", "z"]),
-        ("--json --start", ["--json", "--start"]),
-    ],
-)
-def test_negative_numbers_are_no_options(typed, joined):
-    assert join_words(typed.split()) == joined
-
-
-@pytest.mark.parametrize(
     ("options", "said"),
     [
         ({"start": "1 2 nan 0 0 0"}, "six finite numbers"),
-        ({"start": "nowhere.txt"}, "nowhere.txt is missing"),
         ({"start": "500 0 1 0 0 0"}, "outside the map"),
         ({"depth-scale": "nan"}, "--depth-scale"),
-        ({"near": "-1"}, "--near"),
-        ({"far": "inf"}, "--far"),
         ({"near": "5", "far": "2"}, "--near must be below --far"),
-        ({"sigma-rotation": "nan"}, "--sigma-rotation"),
         ({"map": "nowhere.ply"}, "nowhere.ply is missing"),
         ({"sequence": "nowhere"}, "no sequence at"),
-        ({"particles": "0"}, "--particles must be at least 1; got 0"),
-        ({"particles": "1000000000"}, "--particles must be at most 1,000,000; got 1,000,000,000"),
         ({"frames": "-3"}, "--frames must be at least 1; got -3"),
         ({"sequence": "{blind}"}, "where does the camera start"),
         ({"up": "unknown"}, "which way is up in this world is unknown"),
-        ({"dof": "6", "start": "unknown", "up": "unknown"}, "--start unknown needs --up"),
         ({"method": "annealed"}, "six degrees of freedom"),
-        ({"dof": "6", "sigma-position": "0.1"}, "--sigma-position goes with --method paper"),
         ({"dof": "6", "method": "paper", "recover": True}, "--recover goes with the annealed filter"),
-        ({"sigma-position": "1e300"}, "--sigma-position must be between 0 and 10 m a frame; got 1e+300"),
-        ({"sigma-rotation": "181"}, "--sigma-rotation must be between 0 and 180 degrees"),
-        ({"seed": "-1"}, "--seed"),
     ],
 )
 def test_bad_input_is_one_sentence_and_writes_nothing(corridor_folder, blind, tmp_path, capsys, options, said):
@@ -227,35 +198,10 @@ def test_bad_input_is_one_sentence_and_writes_nothing(corridor_folder, blind, tm
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("bad", ["a_file", "a_file/below", "/proc/nowhere"])
-def test_an_output_folder_that_cannot_be_is_told_before_any_work(corridor_folder, tmp_path, capsys, bad):
+def test_an_output_folder_that_cannot_be_is_told_before_any_work(corridor_folder, tmp_path, capsys):
     (tmp_path / "a_file").write_text("mine")
-    assert main(arguments(corridor_folder, dof="xyyaw", out=tmp_path / bad)) == 2
+    assert main(arguments(corridor_folder, dof="xyyaw", out=tmp_path / "a_file")) == 2
     captured = capsys.readouterr()
     assert "--out" in captured.err
     assert "frame/s" not in captured.err  # no progress bar: nothing ran
     assert (tmp_path / "a_file").read_text() == "mine"
-
-
-def test_exact_reaches_the_renderer(corridor_folder, monkeypatch):
-    asked = []
-
-    class Watched(DepthRenderer):
-        def __init__(self, *given, **options):
-            asked.append(options.get("exact", False))
-            super().__init__(*given, **options)
-
-    monkeypatch.setattr("course_lib.experiments.recordings.DepthRenderer", Watched)
-    for exact in (False, True):
-        more = {"exact": True} if exact else {}
-        assert main(arguments(corridor_folder, dof="xyyaw", frames=2, particles=8, **more)) == 0
-        assert asked
-        assert set(asked) == {exact}
-        asked.clear()
-
-
-def test_more_frames_than_there_are_are_warned_of(corridor_folder, blind):
-    folder, numbers = blind
-    words = arguments(corridor_folder, folder / "blind", dof="xyyaw", frames=5000, particles=5, start=" ".join(numbers))
-    with pytest.warns(UserWarning, match=r"--frames 5000: .* has 4, and all are taken"):
-        assert main(words) == 0

@@ -67,16 +67,6 @@ def test_the_consistent_matcher_says_how_sure_it_is_and_which_poses_there_are(pa
     assert answer(capsys, *words(pair))["confidence"] is None
 
 
-def test_each_residual_is_that_of_its_own_landmark(pair, capsys):
-    """Where the pose puts the object, from its range and azimuth, against the landmark of its row."""
-    found = answer(capsys, *words(pair))
-    for row in found["objects"]:
-        azimuth = math.radians(row["azimuth_deg"] + found["heading_deg"])
-        x = found["x_m"] + row["range_m"] * math.cos(azimuth) - row["landmark_x_m"]
-        y = found["y_m"] + row["range_m"] * math.sin(azimuth) - row["landmark_y_m"]
-        assert row["residual_m"] == pytest.approx(math.hypot(x, y), abs=1e-9)
-
-
 def test_the_table_and_the_files_say_the_same(pair, tmp_path, capsys):
     out = tmp_path / "out"
     assert main(words(pair, "--out", str(out))) == 0

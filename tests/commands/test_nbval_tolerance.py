@@ -31,23 +31,14 @@ def test_what_nobody_can_read_is_an_error(source):
     [
         ("error 1.05 m", "error 1.00 m", True),
         ("error 1.12 m", "error 1.00 m", False),
-        ("error -1.05 m", "error 1.05 m", False),
         ("error 1.05 cm", "error 1.00 m", False),
-        ("error   9.9 m", "error  10.1 m", True),
         ("1.0, 2.0", "1.0, 2.0, 3.0", False),
-        ("x3 = 1.0", "x4 = 1.0", False),
         ("nan m", "1.0 m", False),
-        ("1.05e-07", "1.00e-07", True),
         ("1.05e-06", "1.00e-07", False),
     ],
 )
 def test_numbers_within_the_tolerance_are_taken_and_nothing_else(new, stored, taken):
     assert within_tolerance(new, stored, TEN_PERCENT) == (stored if taken else new)
-
-
-def test_the_larger_of_the_two_tolerances_holds():
-    assert within_tolerance("1.4 109", "1.0 100", Tolerance(0.1, 0.5)) == "1.0 100"
-    assert within_tolerance("1.6", "1.0", Tolerance(0.1, 0.5)) == "1.6"
 
 
 def test_outputs_are_compared_one_by_one_in_every_form():

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import copy
-
 import nbformat
 import pytest
-from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
-from traitlets.utils.importstring import import_item
+from nbformat.v4 import new_code_cell, new_notebook, new_output
 
-from course_lib.commands.saved_panels import HOOK, SENTENCE, WIDGET_VIEW, keep_pictures
+from course_lib.commands.saved_panels import SENTENCE, WIDGET_VIEW, keep_pictures
 
 VIEW = {WIDGET_VIEW: {"model_id": "0123", "version_major": 2, "version_minor": 0}}
 
@@ -30,19 +27,3 @@ def test_a_widget_keeps_its_picture_or_leaves_a_sentence(shown, kept):
     nbformat.validate(notebook)
     assert dict(notebook["cells"][0]["outputs"][0]["data"]) == kept
     assert "widgets" not in notebook.metadata
-
-
-def test_what_has_no_widgets_stays_as_it_is():
-    cells = [new_markdown_cell("a"), new_code_cell("b", outputs=[new_output("stream", text="c"), new_output("error")])]
-    for model in (
-        {"type": "notebook", "content": new_notebook(cells=cells)},
-        {"type": "notebook"},  # a rename
-        {"type": "file", "content": "text", "format": "text"},
-    ):
-        before = copy.deepcopy(model)
-        keep_pictures(model=model)
-        assert model == before
-
-
-def test_the_name_for_a_servers_configuration_is_the_function():
-    assert import_item(HOOK) is keep_pictures

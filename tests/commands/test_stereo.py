@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands.stereo import BOXES_FORMAT
 from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
@@ -96,16 +95,6 @@ def plain_pair(tmp_path):
     return tmp_path
 
 
-def test_the_help_shows_a_boxes_file_that_can_be_read(tmp_path, capsys):
-    with pytest.raises(SystemExit):
-        main(["stereo", "--help"])
-    assert BOXES_FORMAT in capsys.readouterr().out
-    example = tmp_path / "boxes.json"
-    example.write_text("\n".join(BOXES_FORMAT.splitlines()[1:]))
-    boxes = read_stereo_boxes(example)
-    assert (boxes.width, boxes.height, len(boxes.upper), len(boxes.lower)) == (1024, 512, 1, 1)
-
-
 def test_images_without_features_are_told_in_words_and_are_valid_json_too(plain_pair, tmp_path, capsys):
     assert main(arguments(plain_pair, boxes=None)) == 0
     printed = capsys.readouterr().out
@@ -123,10 +112,8 @@ def test_images_without_features_are_told_in_words_and_are_valid_json_too(plain_
     [
         ({"baseline": "-0.3"}, "--baseline must be a positive number"),
         ({"upper": "missing.png"}, "missing.png is missing"),
-        ({"upper": "boxes.json"}, "PNG or JPEG is expected"),
         ({"upper": "lower.png", "lower": "upper.png"}, "swapped"),
         ({"lower": "half.png"}, "one size"),
-        ({"boxes": "missing.json"}, "missing.json is missing"),
     ],
 )
 def test_bad_input_is_told_in_one_line(pair, change, message, capsys):

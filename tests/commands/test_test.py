@@ -2,7 +2,6 @@
 
 import os
 import sys
-from pathlib import Path
 
 import nbformat
 import pytest
@@ -36,7 +35,6 @@ def test_without_arguments_the_lessons_and_the_tests_run_on_every_processor():
         (["--no-notebooks"], ["tests"], "not release"),
         (["--only-notebooks"], ["notebooks"], "not release"),
         (["--fast"], ["tests"], "not release and not browser and not slow"),
-        (["-k", "data"], ["notebooks", "tests"], "not release"),
     ],
 )
 def test_parts_can_be_left_out(words, parts, marks):
@@ -45,27 +43,6 @@ def test_parts_can_be_left_out(words, parts, marks):
     assert ("--nbval" in given) == ("notebooks" in parts)
     assert (given[given.index("-m") + 1] if "-m" in given else None) == marks
     assert ("--ignore=tests/lessons" in given) == ("--fast" in words)
-
-
-@pytest.mark.parametrize(
-    ("passed_on", "lessons"),
-    [
-        (["tests/test_geometry.py", "-k", "foo"], False),
-        (["tests/test_geometry.py::test_a"], False),
-        (["notebooks/00_start_here.ipynb"], True),
-        (["notebooks/", "tests/test_geometry.py"], True),
-    ],
-)
-def test_a_path_chooses_what_runs_in_this_one_process(passed_on, lessons):
-    words = words_for(*passed_on, n_workers=2)
-    assert words[-len(passed_on) :] == passed_on
-    assert not {"tests", "notebooks", "-n"} & set(words)
-    assert ("--nbval" in words) == lessons
-
-
-def test_breaking_the_code_on_purpose_is_a_tool_now(capsys):
-    assert main(["test", "--mutations"]) == 2
-    assert "python -m tools.mutants" in capsys.readouterr().err
 
 
 @pytest.fixture
@@ -128,24 +105,3 @@ def test_no_display_and_none_of_the_users_settings_reach_the_tests(tmp_path):
     assert environment["PATH"] == user["PATH"]
     if sys.platform.startswith("linux"):
         assert environment["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkEGLRenderWindow"
-
-
-def test_browsers_are_marked_and_what_takes_long_comes_first(request):
-    """What tests/conftest.py makes of collected tests (file, marks, fixtures): their files and marks, in order."""
-    conftest = request.config.pluginmanager.get_plugin(str(Path(__file__).parents[1] / "conftest.py"))
-
-    class Item:
-        def __init__(self, file, *marks, fixtures=()):
-            self.path, self.nodeid, self.marks, self.fixturenames = Path(file), f"{file}::test", list(marks), fixtures
-
-        def add_marker(self, name):
-            self.marks.append(name)
-
-        def get_closest_marker(self, name):
-            return name in self.marks
-
-    items = [Item("a.py"), Item("b.py"), Item("b.py", "slow"), Item("c.ipynb"), Item("d.py", fixtures=("page",))]
-    items.append(Item("test_nbgrader.py", "slow"))
-    conftest.pytest_collection_modifyitems(items)
-    assert [item.path.name for item in items] == ["c.ipynb", "b.py", "b.py", "d.py", "test_nbgrader.py", "a.py"]
-    assert [item.marks for item in items] == [[], [], ["slow"], ["browser", "release"], ["slow", "release"], []]

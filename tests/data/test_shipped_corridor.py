@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.geometry import rotation_angle, state_from_optical_pose
+from course_lib.geometry import rotation_angle
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.mesh_building import read_world_ply
@@ -52,23 +52,6 @@ def test_a_run_has_a_timed_pose_for_every_frame_and_short_steps(run, least_frame
     assert np.rad2deg(turns.max()) <= 5.0
 
 
-def test_only_the_wagon_keeps_height_roll_and_pitch():
-    wagon, hand = (state_from_optical_pose(read_sequence(FOLDER / run).camera_to_world) for run in ("wagon", "hand"))
-    assert np.ptp(wagon[:, 2]) < 0.0045
-    assert np.rad2deg(np.abs(wagon[:, 3:5])).max() < 0.21
-    assert np.ptp(hand[:, 2]) > 0.1
-    assert np.rad2deg(np.ptp(hand[:, 3:5], axis=0)).min() > 10
-
-
-def test_the_line_on_the_floor_runs_below_the_camera():
-    sequence = read_sequence(FOLDER / "wagon")
-    line, camera = sequence.path_on_floor, sequence.camera_to_world[:, :3, 3]
-    nearest = np.linalg.norm(camera[:, None, :2] - line[None, :, :2], axis=2).min(axis=1)
-    assert 0.0 < nearest.max() < 0.015
-    assert np.abs(line[:, 2]).max() < 0.02
-    assert len(line) > 50 * np.linalg.norm(camera[-1] - camera[0])
-
-
 @pytest.mark.parametrize("number", [i for i, row in enumerate(CLUTTER) if row[0] in ("cartons", "person", "bin")])
 def test_the_map_lacks_the_clutter(number, map_caster, true_caster):
     kind, x, y, _ = CLUTTER[number]
@@ -79,15 +62,6 @@ def test_the_map_lacks_the_clutter(number, map_caster, true_caster):
     seen, mapped = (c.cast(eye, target[None]).distance[0] for c in (true_caster, map_caster))
     assert seen < 1.05
     assert mapped > seen + 0.05
-
-
-def test_the_map_has_holes_where_the_world_has_surface(map_caster, true_caster):
-    rng = np.random.default_rng(0)
-    eyes = rng.uniform([2, -0.5, 0.4], [38, 0.5, 2.0], (50_000, 3))
-    directions = rng.normal(size=eyes.shape)
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    world, mapped = true_caster.cast(eyes, directions).distance, map_caster.cast(eyes, directions).distance
-    assert (np.isfinite(world) & np.isinf(mapped)).mean() > 0.01
 
 
 @pytest.mark.parametrize("run", ["wagon", "hand"])

@@ -8,7 +8,6 @@ import pytest
 
 from course_lib.experiments.room import localize_pair
 from course_lib.experiments.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
-from course_lib.simulation.room.training_images import labelled_images, make_room_images
 from course_lib.spherical_stereo.detection.darknet import check_weights, read_cfg
 from course_lib.spherical_stereo.detection.detected_object import CANONICAL_LABELS, box_iou
 from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -44,41 +43,16 @@ def scores():
     return json.loads((FOLDER / "scores.json").read_text())
 
 
-FILES = ("room_yolo.cfg", "room_yolo.names", "room_yolo.weights", "scores.json", "training.json", "training_picture")
-
-
 def test_the_network_is_small_and_whole(detector):
     weights = FOLDER / "room_yolo.weights"
     check_weights(read_cfg(FOLDER / "room_yolo.cfg"), weights)
     assert sorted(detector.labels) == sorted(CANONICAL_LABELS)
 
 
-def test_its_threshold_is_the_one_that_the_validation_rooms_chose(detector, scores):
-    chosen = json.loads((FOLDER / "training.json").read_text())["score_threshold"]
-    assert detector.score_threshold == chosen == scores["score_threshold"]
-
-
-def test_the_stored_scores_meet_the_aims(scores):
-    assert scores["experiment_room"]["precision"] >= 0.93
-    assert scores["experiment_room"]["recall"] >= 0.85
-    assert scores["unseen_rooms"]["precision"] >= 0.90
-    assert scores["unseen_rooms"]["recall"] >= 0.80
-
-
 def test_the_experiments_room_scores_as_stored(detector, recording, scores):
     score = score_detector(detector, list(labelled_panoramas(recording))[::2])
     assert score.precision == pytest.approx(scores["experiment_room"]["precision"], abs=0.04)
     assert score.recall == pytest.approx(scores["experiment_room"]["recall"], abs=0.04)
-
-
-@pytest.mark.slow
-def test_an_unseen_room_is_recognized(detector, tmp_path):
-    make_room_images(tmp_path, TEST_ROOM, 2, 2)
-    score = score_detector(detector, labelled_images(tmp_path))
-    assert score.objects > 20
-    # Four images are few: far below what twenty rooms give, far above chance.
-    assert score.precision > 0.7
-    assert score.recall > 0.6
 
 
 @pytest.mark.parametrize("shift", range(0, 1280, 128))
@@ -100,14 +74,6 @@ def rolled(localizer, recording):
     """Four pairs with their images rolled by two numbers of columns, 640 of them half a turn."""
     results = [localize_pair(pair, localizer) for pair in recording.pairs[4:12:2]]
     return turn_the_rig(results, localizer, (97, 640))
-
-
-@pytest.mark.slow
-def test_turning_the_rig_turns_the_heading_and_mostly_nothing_else(rolled):
-    found = turn_summary(rolled)
-    assert found["associations_agree"] >= 3
-    assert found["median_moved_m"] < 0.10
-    assert found["median_turned_deg"] < 2.0
 
 
 @pytest.mark.slow

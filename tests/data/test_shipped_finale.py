@@ -1,6 +1,5 @@
 """The finale's shipped room: two maps of the room that its seed makes."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,6 @@ from course_lib.simulation.room.depth_world import depth_caster
 from course_lib.simulation.room.finale_data import SEED
 from course_lib.simulation.room.look_alike_room import make_look_alike_room
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
-from tools.make_finale import SEED as COMMAND_SEED
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "finale"
 
@@ -19,11 +17,6 @@ FOLDER = Path(__file__).resolve().parents[2] / "data" / "finale"
 @pytest.fixture(scope="module")
 def room():
     return make_look_alike_room(SEED)
-
-
-def test_the_command_and_the_lesson_mean_the_same_tuning_seed():
-    assert COMMAND_SEED == SEED >= 10_000
-    assert str(SEED) in (FOLDER / "README.md").read_text()
 
 
 def test_the_semantic_map_is_of_the_seeds_room(room):
@@ -43,9 +36,3 @@ def test_the_mesh_map_is_a_survey_of_the_same_room(room):
     nearest = [np.linalg.norm(scene_map.vertices - end, axis=1).min() for end in ends]
     assert np.median(nearest) < 0.05
     assert np.median(nearest) > 0.001, "noise of a survey: the map is not the room"
-
-
-def test_the_readme_counts_what_there_is(room):
-    text = (FOLDER / "README.md").read_text()
-    assert f"{len(json.loads((FOLDER / 'semantic_map.json').read_text())['landmarks'])} objects" in text
-    assert "60,000 triangles" in text

@@ -60,12 +60,6 @@ def test_a_damaged_file_is_read_or_refused_by_name(name, samples):
     look_at_damaged(name, samples, 1)
 
 
-@pytest.mark.release
-@pytest.mark.parametrize("name", FORMATS)
-def test_many_damaged_files_are_read_or_refused_by_name(name, samples):
-    look_at_damaged(name, samples, 30)
-
-
 @pytest.mark.skipif(os.name == "nt", reason="pipes and devices of POSIX")
 @pytest.mark.parametrize("name", FORMATS)
 def test_what_is_no_file_is_refused_by_name(name, tmp_path):

@@ -53,53 +53,33 @@ def end_overwritten(data: bytes) -> bytes:
     return data[:-300] + bytes(300)
 
 
-def a_face_among_the_vertices(data: bytes) -> bytes:
-    *lines, last = data.rstrip().split(b"\n")
-    return b"\n".join([*lines[:13], last, *lines[13:]])
-
-
 def a_face_of_many_corners(data: bytes) -> bytes:
     header, _, rows = data.replace(b"uchar", b"uint").partition(b"end_header\n")
     return header + b"end_header\n" + rows[:96] + b"\xff" * 4
 
 
-JPEG_OF_65000 = (
-    b"\xff\xd8\xff\xc0\0\x11\x08" + struct.pack(">HH", 65_000, 65_000) + b"\x03\x01\x11\0\x02\x11\0\x03\x11\0"
-)
 ZEROS = zlib.compress(bytes(10_000_000), 9)
 EXAMPLES: dict[str, tuple[str, Edit]] = {
-    "the word format is misspelt": ("ply in text", put(b"format", b"fkrmat")),
     "a face of no corners": ("ply in text", put(b"\n4 0 1 3 2", b"\n0 0 1 3 2")),
     "a vertex of two numbers": ("ply in text", put(b" -1.5000\n", b"\n")),
-    "a face among the vertices": ("ply in text", a_face_among_the_vertices),
     "two elements of one name": ("ply", put(b"element face", b"element vertex 8\nelement face")),
-    "two properties of one name": ("ply", put(b"property float y", b"property float x")),
-    "a property of no known type": ("ply", put(b"property float y", b"property flcat y")),
     "an element of 10^12 faces": ("ply in text", put(b"element face 6", b"element face 1000000000000")),
     "a face of 2^32 corners": ("ply", a_face_of_many_corners),
-    "the word of a vertex is another": ("obj", put(b"\nv ", b"\nw ")),
-    "an OFF with a byte order mark": ("off", lambda data: b"\xef\xbb\xbf" + data),
     "a loop without its end": ("stl in text", put(b"endloop", b"")),
     "2^32 triangles": ("stl", lambda data: bytes(80) + b"\xff" * 4 + bytes(100)),
     "a JPEG whose end is overwritten": ("panorama, JPEG", end_overwritten),
-    "a JPEG of 65,000 x 65,000 pixels": ("panorama, JPEG", lambda data: JPEG_OF_65000 + b"\xff\xd9"),
     "a PNG of 20,000 x 20,000 pixels": ("depth image", bomb(20_000, 20_000, data=ZEROS)),
     "a PNG of 9,900 x 9,900 pixels of 8 bytes": ("panorama, PNG", bomb(9_900, 9_900, colour=6, data=ZEROS)),
-    "a part longer than its PNG": ("depth image", lambda data: data[:33] + struct.pack(">I", 2**31 + 11) + data[37:]),
-    "panoramas of no width": ("stereo recording", in_json("width", value=0)),
     "panoramas of another width than the list says": ("stereo recording", in_json("width", value=130)),
-    "a path of 2,000 letters": ("stereo recording", in_json("pairs", 0, "upper", "file", value="x" * 2000)),
     "a box that is a number": ("boxes", in_json("upper", 0, "box", value=5)),
     "200 kB of quotation marks": ("semantic map", lambda data: b'"\\' * 100_000),
     "100,000 levels of lists": ("boxes", lambda data: b"[" * 100_000 + b"]" * 100_000),
-    "a number of 200,000 digits": ("stereo recording", lambda data: b'{"version": ' + b"1" * 200_000 + b"}"),
     "a member twice": ("semantic map", put(b'"version"', b'"version": 1, "version"')),
     "a layer that no other takes": ("cfg", put(b"\n[yolo]", b"\n[maxpool]\nsize=2\n\n[route]\nlayers=-2\n\n[yolo]")),
     "weights cut short": ("weights", lambda data: data[:-4]),
     "weights that are no numbers": ("weights", lambda data: data[:20] + b"\xff" * (len(data) - 20)),
     "a threshold above 1": ("training", in_json("score_threshold", value=1.5)),
     "a line of 5 MB": ("poses", lambda data: b"1 " * 2_500_000),
-    "300,000 rows of eight numbers": ("poses", lambda data: b"1 2 3 4 5 6 7 8\n" * 300_000),
 }  # fmt: skip
 
 

@@ -2,20 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
-
 import pytest
 
 from course_lib.paths import notebook_paths
 from tests.notebooks.accessibility import serious_findings
-from tests.notebooks.driven_lab import (
-    STATES,
-    first_panel,
-    open_lesson,
-    require_chromium,
-    run_cells,
-    wait_for_a_picture,
-)
+from tests.notebooks.driven_lab import STATES, first_panel, open_lesson, run_cells, wait_for_a_picture
 
 # The first lesson and widgets of each paper that are used most: filter stepper (07), penalty weights (15). That other
 # panels draw, and draw anew, is tested without a browser (tests/lessons/kit/test_panels.py), their cells by nbval.
@@ -55,13 +46,3 @@ def test_a_lesson_runs_and_its_first_panel_answers(browser, lab, path):
     assert serious_findings(page) == []
     assert errors == []
     page.close()
-
-
-def test_a_missing_browser_is_said_and_fails_only_where_ci_is_true(monkeypatch):
-    monkeypatch.setattr(shutil, "which", lambda name: None)
-    monkeypatch.setenv("CI", "")
-    with pytest.raises(pytest.skip.Exception, match="no Chromium"):
-        require_chromium()
-    monkeypatch.setenv("CI", "true")
-    with pytest.raises(pytest.fail.Exception, match="no Chromium"):
-        require_chromium()

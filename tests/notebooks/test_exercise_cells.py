@@ -49,10 +49,6 @@ def test_a_lesson_has_a_warm_up_a_core_exercise_and_a_challenge_and_says_so(less
         assert (said[1] if said else "core") == exercise.level, heading
 
 
-def test_the_series_has_75_exercises(all_lessons):
-    assert sum(len(lesson.exercise_numbers()) for lesson in all_lessons) >= 75
-
-
 def test_the_first_hint_asks_and_no_hint_is_the_code(lesson):
     for number in lesson.exercise_numbers():
         text = "".join(cell.source for cell in lesson.exercise_cells(number, "hint"))

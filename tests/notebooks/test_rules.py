@@ -140,16 +140,6 @@ def test_nearly_every_printed_line_says_what_was_measured_not_whether_it_was_goo
     assert len(verdicts) <= 10, verdicts
 
 
-def test_lessons_show_scenes_in_three_dimensions(all_lessons):
-    shown = [lesson.number for lesson in all_lessons if any("<iframe" in html for html in lesson.html)]
-    assert len(shown) >= 9
-
-
-def test_where_no_frame_is_shown_a_scene_has_its_picture(lesson):
-    for html in lesson.html:
-        assert html.count("<iframe") <= len(re.findall(r"<img\b[^>]*\balt=", html)) or "11_sphere" in html
-
-
 def test_cell_ids_are_the_lessons_own(lesson):
     ids = [cell.id for cell in lesson.cells]
     assert len(set(ids)) == len(ids)

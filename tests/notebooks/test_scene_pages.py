@@ -1,19 +1,15 @@
-"""Every page of notebooks/scenes in a real browser, opened from the disk: no request, no error, and it can be turned.
-
-Beside the pages the lessons show, one that a cell just wrote is opened as JupyterLab opens it, in a sandboxed frame.
-"""
+"""Every page of notebooks/scenes in a real browser, from the disk: no request, no error, and it can be turned."""
 
 from __future__ import annotations
 
 import io
-import os
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from course_lib.paths import REPOSITORY
-from tests.notebooks.driven_lab import chromium
+from tests.notebooks.driven_lab import require_chromium
 
 playwright = pytest.importorskip("playwright.sync_api")
 
@@ -36,13 +32,7 @@ TWENTY_FRAMES = """() => new Promise(resolve => {
 
 @pytest.fixture(scope="module")
 def browser():
-    """A browser; without one the tests are skipped, and say so, but fail where CI=true."""
-    path = chromium()
-    if path is None:
-        message = "no Chromium or Chrome found (on Debian or Ubuntu: apt-get install chromium): no scene was turned"
-        if os.environ.get("CI", "").lower() == "true":
-            pytest.fail(message)
-        pytest.skip(message)
+    path = require_chromium()
     with playwright.sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=ARGUMENTS)
         yield browser
@@ -110,31 +100,4 @@ def test_a_page_opens_offline_draws_and_can_be_turned(browser, path):
         assert share_changed(after, before) > 0.02
     assert page.errors == []
     assert [url for url in page.requests if not url.startswith(("data:", "blob:"))] == [path.as_uri()]
-    page.close()
-
-
-@pytest.mark.browser
-def test_a_page_works_in_a_sandboxed_frame_and_the_wheel_zooms(browser, tmp_path):
-    """As JupyterLab serves files: scripts run, but the page has no origin of its own."""
-    from course_lib.plots.scene_page import write_page
-    from course_lib.plots.scenes import body_axes, new_plotter
-
-    plotter = new_plotter(viewpoint=(1.5, 1.2, 1.0), focus=(0, 0, 0))
-    plotter.add_mesh(body_axes(np.zeros(6), 0.5), rgb=True)
-    write_page(plotter, tmp_path / "axes.html", "Three axes", "Three axes that meet at the origin")
-    frame = '<iframe sandbox="allow-scripts" src="axes.html" style="position: fixed; inset: 0; border: 0" '
-    (tmp_path / "index.html").write_text(f'<!doctype html>{frame} width="100%" height="100%"></iframe>')
-    page = opened(browser, (tmp_path / "index.html").as_uri())
-    before = settled_picture(page)
-    for k, colour in enumerate(((213, 40, 0), (0, 158, 60), (0, 80, 200))):
-        others = [one for one in range(3) if one != k]
-        seen = before[..., k] - before[..., others].max(axis=2) > 60
-        assert seen.sum() > 100, f"the axis of colour {colour} is drawn"
-    page.mouse.move(400, 250)
-    drawn = 1.1 * (before < 245).any(axis=2).sum()
-    after = picture_after(
-        page, lambda page: page.mouse.wheel(0, -400), lambda picture: (picture < 245).any(axis=2).sum() > drawn
-    )
-    assert (after < 245).any(axis=2).sum() > drawn
-    assert page.errors == []
     page.close()

@@ -7,15 +7,7 @@ import re
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.series_pictures import (
-    CHOSEN,
-    MAX_BYTES,
-    SIZE,
-    SeriesPictureError,
-    small_png,
-    stored_picture,
-    write_pictures,
-)
+from course_lib.lessons.kit.series_pictures import CHOSEN, MAX_BYTES, SIZE, write_pictures
 from course_lib.paths import REPOSITORY, notebook_paths
 
 FOLDER = REPOSITORY / "notebooks"
@@ -64,16 +56,3 @@ def test_the_command_makes_the_pictures(tmp_path):
         with Image.open(path) as picture:
             assert picture.width <= SIZE[0]
             assert picture.height <= SIZE[1]
-
-
-def test_a_cell_without_a_picture_is_named(tmp_path):
-    path = tmp_path / "98_none.ipynb"
-    path.write_text('{"cells": [{"id": "98-a", "outputs": []}]}')
-    with pytest.raises(SeriesPictureError, match=r"98_none.ipynb: no cell 98-a"):
-        stored_picture(path, "98-a")
-
-
-def test_a_picture_that_cannot_be_made_small_is_refused(monkeypatch):
-    monkeypatch.setattr("course_lib.lessons.kit.series_pictures.MAX_BYTES", 10)
-    with pytest.raises(SeriesPictureError, match="at most 10"):
-        small_png(Image.new("RGB", (50, 50), "white"))

@@ -27,10 +27,6 @@ def text_of(cells: list) -> str:
     return "\n\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
 
 
-def test_the_lessons_are_there(all_lessons):
-    assert "03" in [lesson.number for lesson in all_lessons]
-
-
 def test_sections_are_all_there_in_order(lesson):
     assert re.findall(r"^## (.+?)\s*$", lesson.markdown, re.M) == SECTIONS
 

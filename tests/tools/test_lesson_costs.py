@@ -21,13 +21,10 @@ BURN = "import time\nwhile time.process_time() < 0.5: pass\n"
 WAIT = "import sys\nprint('ready', flush=True)\nsys.stdin.read()\n"
 PROGRAMS = {
     "itself": f"held = bytearray(b'x') * {HELD_MB}_000_000\n{BURN}{WAIT}",
-    "freed again": f"held = bytearray(b'x') * {HELD_MB}_000_000\ndel held\n{BURN}{WAIT}",
     "its child": "import subprocess, sys\nchild = subprocess.Popen([sys.executable, '-c', {}], stdin=subprocess.PIPE)\n"
     "sys.stdin.read(); child.communicate()",
-    "a child that ended": "import subprocess, sys\nsubprocess.run([sys.executable, '-c', {!r}])\n",
 }
 PROGRAMS["its child"] = PROGRAMS["its child"].format(repr(PROGRAMS["itself"]))
-PROGRAMS["a child that ended"] = PROGRAMS["a child that ended"].format(BURN) + WAIT
 
 
 def watched(program: str) -> Cost:
@@ -42,13 +39,11 @@ def watched(program: str) -> Cost:
 
 @pytest.mark.parametrize("taken", PROGRAMS)
 def test_what_a_process_and_its_children_take_is_seen(taken, monkeypatch):
-    if taken == "freed again" and not LINUX:
-        pytest.skip("only Linux keeps the peak")
-    monkeypatch.setattr(lesson_costs, "EVERY_S", 3600.0 if taken == "freed again" else 0.1)
+    monkeypatch.setattr(lesson_costs, "EVERY_S", 0.1)
     cost = watched(PROGRAMS[taken])
     assert cost.processor_s >= 0.45
-    assert (cost.peak_mb >= HELD_MB) == (taken != "a child that ended")
-    if LINUX and taken in ("itself", "its child"):
+    assert cost.peak_mb >= HELD_MB
+    if LINUX:
         assert HELD_MB <= cost.own_mb < cost.peak_mb - 2, "the files of interpreters are not their own"
 
 
@@ -62,11 +57,6 @@ def test_a_notebook_is_measured_and_nothing_is_stored(tmp_path):
     assert cost.peak_mb >= HELD_MB
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path], "what its cells write goes to a folder that is thrown away"
-
-
-@pytest.mark.slow
-def test_the_server_is_measured_until_it_has_shown_its_page():
-    assert lesson_costs.server_cost().peak_mb > 20, "more than an interpreter alone"
 
 
 RESULT = {

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
-import time
 
 import nbformat
 import pytest
@@ -141,25 +139,3 @@ def test_numbers_choose_lessons_and_what_cannot_be_is_named(run_tool, capsys):
     assert "no lesson 77; there are: 00, 01" in capsys.readouterr().err
     assert run_tool("refresh", "--cell-timeout", "nan") == 2
     assert "positive number of seconds" in capsys.readouterr().err
-
-
-@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-def test_stopped_in_a_cell_it_leaves_the_file_and_no_kernel_and_no_temporary_file(tmp_path):
-    temporary, note = tmp_path / "temporary", tmp_path / "kernel"
-    temporary.mkdir()
-    path = written(tmp_path, f"import os, time; open({str(note)!r}, 'w').write(f'{{os.getpid()}}.'); time.sleep(600)")
-    before = path.read_bytes()
-    program = "import sys; from pathlib import Path; from tools import refresh; from course_lib import cli\n"
-    program += f"refresh.select = lambda lessons: [Path({str(path)!r})]\n"
-    program += "sys.exit(cli.call(lambda: refresh, 'refresh', ['99']))"
-    environment = os.environ | {"TMPDIR": str(temporary)}
-    with subprocess.Popen([sys.executable, "-c", program], cwd=REPOSITORY, env=environment) as process:
-        while not (note.exists() and note.read_text().endswith(".")):
-            assert process.poll() is None
-            time.sleep(0.05)
-        process.send_signal(signal.SIGTERM)
-    assert process.returncode == 143
-    assert path.read_bytes() == before
-    assert list(temporary.iterdir()) == []
-    with pytest.raises(ProcessLookupError):
-        os.kill(int(note.read_text()[:-1]), 0)

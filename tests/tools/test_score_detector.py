@@ -17,15 +17,6 @@ def compared(monkeypatch):
     monkeypatch.setattr(detector_evaluation, "compare_voting", lambda detector, labelled: found)
 
 
-def test_the_table_marks_the_constants_in_use(compared, tmp_path, run_tool, capsys):
-    assert run_tool("score_detector", "--voting", "--images", tmp_path) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == 4
-    assert "no votes" in lines[1]
-    assert "v 3.20; 0.900, 0.900" in lines[1]
-    assert [line.endswith("(used)") for line in lines[1:]] == [False, True, False]
-
-
 def test_json_is_one_object_with_the_constants_in_use(compared, tmp_path, run_tool, capsys):
     assert run_tool("score_detector", "--voting", "--images", tmp_path, "--json") == 0
     printed = json.loads(capsys.readouterr().out)

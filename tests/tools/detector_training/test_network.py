@@ -8,8 +8,8 @@ torch = pytest.importorskip("torch", reason="PyTorch, which only the training of
 
 from course_lib.spherical_stereo.detection.darknet import DetectorError, parse_cfg, read_cfg  # noqa: E402
 from tests.tools.detector_training.toy_panoramas import ROOM_CFG, TINY_CFG  # noqa: E402
-from tools.detector_training.export import read_weights, write_weights  # noqa: E402
-from tools.detector_training.network import PRIOR_OBJECTNESS, TrainableNetwork, decode_boxes  # noqa: E402
+from tools.detector_training.export import write_weights  # noqa: E402
+from tools.detector_training.network import TrainableNetwork, decode_boxes  # noqa: E402
 
 
 def decode(outputs, heads, input_width):
@@ -58,38 +58,6 @@ def test_pytorch_and_opencv_compute_the_same_boxes_and_scores(which, tmp_path):
     ours, theirs = outputs_of_both(cfg, network, weights, images)
     assert ours[:, 4].std() > 1e-4, "a network that sees nothing would prove nothing"
     np.testing.assert_allclose(ours, theirs, atol=1e-3)
-
-
-def test_weights_read_back_give_the_same_network(tmp_path):
-    sections = parse_cfg(TINY_CFG)
-    network = randomized(TrainableNetwork(sections))
-    write_weights(network, tmp_path / "a.weights", images_seen=1234)
-    other = TrainableNetwork(sections, torch.Generator().manual_seed(5)).eval()
-    assert read_weights(other, tmp_path / "a.weights") == 1234
-    images = torch.rand(1, 3, 64, 160, generator=torch.Generator().manual_seed(2))
-    with torch.no_grad():
-        for a, b in zip(network(images), other(images), strict=True):
-            torch.testing.assert_close(a, b)
-
-
-def test_weights_of_another_network_are_refused(tmp_path):
-    write_weights(TrainableNetwork(parse_cfg(TINY_CFG)), tmp_path / "a.weights")
-    with pytest.raises(DetectorError, match="too short"):
-        read_weights(TrainableNetwork(read_cfg(ROOM_CFG)), tmp_path / "a.weights")
-
-
-def test_an_untrained_network_expects_hardly_any_object():
-    network = TrainableNetwork(parse_cfg(TINY_CFG)).eval()
-    with torch.no_grad():
-        table = decode(network(torch.rand(1, 3, 64, 160)), network.heads, 160)
-    assert float(table[..., 4].mean()) == pytest.approx(PRIOR_OBJECTNESS, rel=0.5)
-
-
-def test_a_zero_map_puts_an_anchor_in_the_middle_of_every_cell():
-    head = TrainableNetwork(parse_cfg(TINY_CFG)).heads[0]
-    boxes = decode_boxes(torch.zeros(1, len(head.anchors), 12, 2, 3), head, stride=16.0)
-    assert boxes[0, 0, 1, 2, :2].tolist() == [40.0, 24.0]
-    torch.testing.assert_close(boxes[0, :, 0, 0, 2:], head.anchors)
 
 
 def test_sections_that_cannot_be_trained_are_named():

@@ -1,18 +1,14 @@
 """The training loop: it learns toy panoramas, goes on where it was stopped, and works with several processes."""
 
-import threading
-from itertools import pairwise
-
 import pytest
 
 torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
 
 from course_lib.spherical_stereo.detection.darknet import check_weights  # noqa: E402
 from tests.tools.detector_training.toy_panoramas import CLASSES, ROOM_NAMES, TINY_CFG, write_toy_folder  # noqa: E402
-from tools.detector_training import batches  # noqa: E402
 from tools.detector_training.augmentation import AugmentationRanges  # noqa: E402
 from tools.detector_training.images import TrainingDataError, read_panoramas  # noqa: E402
-from tools.detector_training.state import AveragedNetwork, CheckpointError, learning_rate  # noqa: E402
+from tools.detector_training.state import CheckpointError  # noqa: E402
 from tools.detector_training.train import TrainingPlan, train  # noqa: E402
 from tools.detector_training.validation import measure_detector  # noqa: E402
 
@@ -87,29 +83,3 @@ def test_what_cannot_be_trained_is_named(toy, tmp_path):
     run(toy, tmp_path / "old", plan(epochs=1))
     with pytest.raises(CheckpointError, match="seed 0, not 3"):
         run(toy, tmp_path / "old", plan(epochs=2, seed=3), resume=True)
-
-
-def test_an_error_in_the_making_of_a_batch_reaches_the_training_and_ends_its_thread(monkeypatch):
-    monkeypatch.setattr(batches, "augmented_sample", lambda *given: 1 / 0)
-    before = threading.active_count()
-    with pytest.raises(ZeroDivisionError):
-        next(batches.epoch_batches([None] * 20, 2, (32, 32), 0, 0, 10))
-    assert threading.active_count() == before
-
-
-def test_the_learning_rate_warms_up_and_falls():
-    rates = [learning_rate(1.0, step, 10, step / 100) for step in range(101)]
-    assert rates[0] == pytest.approx(0.1, rel=0.01)
-    assert max(rates) == rates[9]
-    assert rates[100] == pytest.approx(0.01)
-    assert all(later < earlier for earlier, later in pairwise(rates[10:]))
-
-
-def test_the_average_forgets_its_start_and_follows_the_weights():
-    network = torch.nn.Linear(2, 2)
-    average = AveragedNetwork(network, decay=0.9, ramp=1.0)
-    with torch.no_grad():
-        network.weight.fill_(3.0)
-    for _ in range(200):
-        average.update(network)
-    torch.testing.assert_close(average.network.weight, network.weight.detach())
