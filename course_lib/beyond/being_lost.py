@@ -48,14 +48,10 @@ CONFIRMED = 3  # good frames that make up for any number of bad ones
 class Agreement(NamedTuple):
     """How a measured image agrees with the map as seen from one pose; shares of the measured pixels."""
 
-    pixels: int
-    """How many pixels were measured; with none, the shares are NaN."""
-    score: float
-    """Eq. (8) divided by the number of pixels: 1 for perfect agreement."""
-    agreeing: float
-    """Within `ALPHA`, 0.1 m, of the map."""
-    through: float
-    """More than `ALPHA` behind the map. A wrong pose does this, but a person or a moved chair cannot."""
+    pixels: int  # How many pixels were measured; with none, the shares are NaN.
+    score: float  # Eq. (8) divided by the number of pixels: 1 for perfect agreement.
+    agreeing: float  # Within `ALPHA`, 0.1 m, of the map.
+    through: float  # More than `ALPHA` behind the map. A wrong pose does this, but a person or a moved chair cannot.
 
     @property
     def support(self) -> float:

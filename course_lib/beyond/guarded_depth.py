@@ -43,8 +43,7 @@ OUTCOMES: tuple[Outcome, ...] = (
 class GuardedFrame(NamedTuple):
     """What became of a frame that arrived."""
 
-    outcome: Outcome
-    """Only a "tracked" pose can be relied on."""
+    outcome: Outcome  # Only a "tracked" pose can be relied on.
     estimate: Estimate | AnnealedEstimate | None
     """The filter's latest estimate. For a frame out of order, the previous one; None if there is no previous one."""
     missed: tuple[Estimate | AnnealedEstimate, ...]

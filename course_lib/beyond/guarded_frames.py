@@ -40,10 +40,8 @@ _MIN_HALF = 0.2  # share of returns that a half must usually have before we miss
 class FrameStatus(NamedTuple):
     """What is known of a frame before it is used."""
 
-    fault: Fault | None
-    """None if it is good."""
-    missed: int
-    """How many frames should have come since the last one in order, and did not."""
+    fault: Fault | None  # None if it is good.
+    missed: int  # How many frames should have come since the last one in order, and did not.
 
 
 class FrameOrder:
@@ -97,14 +95,10 @@ class FrameOrder:
 class Looks(NamedTuple):
     """What a depth image looks like, without a map."""
 
-    share: float
-    """Share of the pixels that measured something."""
-    halves: np.ndarray
-    """`(4,)` the same of the upper, lower, left and right half."""
-    most_of_one_value: float
-    """Share of the returns that have the commonest value."""
-    roughness: float
-    """Median over neighbours in a row of |difference| / distance; NaN if no two neighbours measured."""
+    share: float  # Share of the pixels that measured something.
+    halves: np.ndarray  # `(4,)` the same of the upper, lower, left and right half.
+    most_of_one_value: float  # Share of the returns that have the commonest value.
+    roughness: float  # Median over neighbours in a row of |difference| / distance; NaN if no two neighbours measured.
 
 
 def looks_of(depth: np.ndarray, near: float, far: float) -> Looks:

@@ -19,8 +19,7 @@ from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.features import SwappedImagesError
 from course_lib.spherical_stereo.pose.localization import OK, SWAPPED, Localization
 
-NO_IMAGE = "no image"
-"""The outcome of a pair that was due and never came."""
+NO_IMAGE = "no image"  # The outcome of a pair that was due and never came.
 
 
 class GuardedPair(NamedTuple):
@@ -29,10 +28,8 @@ class GuardedPair(NamedTuple):
     outcome: str
     """ "ok"; "out of order" or "repeated" (guarded_frames.py); or one of the reasons of `pose.localization` and of the
     fit why there is no pose."""
-    localization: Localization | None
-    """None if the pair was not used."""
-    missed: int
-    """Pairs that should have come before this one, and did not."""
+    localization: Localization | None  # None if the pair was not used.
+    missed: int  # Pairs that should have come before this one, and did not.
 
 
 class GuardedRig:

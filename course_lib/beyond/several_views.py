@@ -30,8 +30,7 @@ from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-CARRIED = 10
-"""Hypotheses that a belief keeps."""
+CARRIED = 10  # Hypotheses that a belief keeps.
 ELSEWHERE = 1e-3
 """Probability that between two views the rig was carried anywhere: what lets a belief that is wrong be given up."""
 REACH_M, REACH_RAD = 0.5, np.deg2rad(20.0)

@@ -43,20 +43,15 @@ class NoMeasurementWarning(UserWarning):
 class Estimate(NamedTuple):
     """What one frame gave."""
 
-    state: np.ndarray
-    """`(6,)` the weighted mean of the particles."""
+    state: np.ndarray  # `(6,)` the weighted mean of the particles.
     covariance: np.ndarray
     """`(6, 6)` of the weighted particles about it, metres along the world's axes and radians, as the motion measures
     deviations. It is the spread of the paper's weights, and *not* how far off the state may be: with the paper's beta
     they leave about one particle, and the spread of one is nothing. `error_covariance` answers that."""
-    score: float
-    """Raw score of the best particle; unlike its weight it falls when the filter is lost."""
-    ess: float
-    """Effective sample size of the weights, 1 to N."""
-    particles: np.ndarray
-    """`(N, 6)` before resampling, as weighed."""
-    weights: np.ndarray
-    """`(N,)` of these particles."""
+    score: float  # Raw score of the best particle; unlike its weight it falls when the filter is lost.
+    ess: float  # Effective sample size of the weights, 1 to N.
+    particles: np.ndarray  # `(N, 6)` before resampling, as weighed.
+    weights: np.ndarray  # `(N,)` of these particles.
     status: Status
     """"no measurement" where the frame held none: the particles were moved by system noise, and all weigh the same."""
     error_covariance: np.ndarray

@@ -40,12 +40,10 @@ _MIN_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cl
 class Tempered(NamedTuple):
     """Weights and how sharp they are."""
 
-    weights: np.ndarray
-    """`(N,)`, summing to one."""
+    weights: np.ndarray  # `(N,)`, summing to one.
     sharpness: float
     """kappa: how many independent pixels the image would be worth if these weights were its likelihood."""
-    ess: float
-    """Effective sample size of the weights."""
+    ess: float  # Effective sample size of the weights.
 
 
 def temper(scores: np.ndarray, sample_size: float, sharpest: float = SHARPEST) -> Tempered:

@@ -1,8 +1,7 @@
 """All of paper 2 in the order of its figure 2: an image pair walks from the panorama to a pose on the map.
 
-panorama -> detection -> matching -> ranging -> semantic map -> pose -> answer. Each step takes what the steps before it
-found and adds its own part. If the images give no pose (nothing detected, too few objects, points that no pose fits),
-the answer has status "unable" and a reason. A mistake of the caller's raises a named error.
+Each step takes what the steps before it found and adds its own part. If the images give no pose, the answer has status
+"unable" and a reason. A mistake of the caller's raises a named error.
 """
 
 from __future__ import annotations
@@ -37,8 +36,7 @@ from course_lib.spherical_stereo.semantic_map.association import (
 )
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-IMAGE_SIZE = (1280, 640)
-"""Width and height in pixels of the panoramas under data/room."""
+IMAGE_SIZE = (1280, 640)  # Width and height in pixels of the panoramas under data/room.
 
 
 class LocalizerError(ValueError):
@@ -108,10 +106,7 @@ class SemanticLocalizer:
         return _walk(Localization(upper=upper, lower=lower), steps)
 
     def localize_views(self, upper: View, lower: View) -> Localization:
-        """Return the pose from two panoramas with their detections: section 2.3 and on.
-
-        Raises `SwappedImagesError`, `DetectionError` for boxes that cannot be, `PanoramaError` for views of two sizes.
-        """
+        """Return the pose from two panoramas with their detections: section 2.3 and on."""
         return _walk(Localization(upper=upper, lower=lower), (self._match, self._range, self._associate, self._fit))
 
     def localize_detections(
@@ -137,10 +132,8 @@ class SemanticLocalizer:
         return _walk(found, (self._range, self._associate, self._fit))
 
     def localize_observations(self, observations: Sequence[Observation]) -> Localization:
-        """Return the pose from objects whose positions in the body frame are known: sections 2.5 and 2.6.
-
-        Raises `AssociationError` for observations that cannot be, `LocalizerError` for a class that the map lacks,
-        because it would move the centroid of eq. (1). Source: paper 2, sections 2.5, 2.6.
+        """Return the pose from objects whose positions in the body frame are known: sections 2.5 and 2.6. Source: paper
+        2, sections 2.5, 2.6.
         """
         observations = tuple(observations)
         for i, one in enumerate(observations):

@@ -14,14 +14,10 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 TEMPER = 0.5
 """Share of the evidence that is believed when hypotheses are weighed against each other. Errors of one room, such as a
 wrong baseline or a colour of light, are in all its observations at once, so they must not count once each."""
-MIN_INLIERS = 3
-"""Matched observations that a pose needs, because two always fit."""
-DOUBT = 0.001
-"""Share of the right poses whose residuals may be called too large, if the covariances are exact."""
-MIN_CONFIDENCE = 0.8
-"""A pose with a smaller confidence is not given out."""
-MARGIN = 1.0
-"""Metres that a room reaches beyond its landmarks, if the map has no walls (chosen)."""
+MIN_INLIERS = 3  # Matched observations that a pose needs, because two always fit.
+DOUBT = 0.001  # Share of the right poses whose residuals may be called too large, if the covariances are exact.
+MIN_CONFIDENCE = 0.8  # A pose with a smaller confidence is not given out.
+MARGIN = 1.0  # Metres that a room reaches beyond its landmarks, if the map has no walls (chosen).
 
 # Reasons why no pose is given out.
 NOTHING_AGREES = "no two objects agree on a pose"

@@ -40,12 +40,9 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 SAME_POSE_M, SAME_POSE_RAD = 0.5, np.deg2rad(10.0)
 """Metres and radians. Two poses that are nearer are one answer."""
-SHORT_LIST = 30
-"""Distinct poses that are assigned and refitted."""
-ALTERNATIVES = 3
-"""Poses that an answer keeps beside the best."""
-ROUNDS = 2
-"""Assignments and refits in turn. The second changes few pairs, a third changed none that mattered."""
+SHORT_LIST = 30  # Distinct poses that are assigned and refitted.
+ALTERNATIVES = 3  # Poses that an answer keeps beside the best.
+ROUNDS = 2  # Assignments and refits in turn. The second changes few pairs, a third changed none that mattered.
 
 
 def rank_poses(

@@ -21,24 +21,17 @@ CLUTTER_DENSITY = 1e-3
 """False observations a square metre: 1 in 50 observations shows nothing of the map (measured there), in 30 m^2."""
 HUE_SPREAD = 600.0
 """Degrees times percent: the standard deviation of a hue is this over the saturation; 20 degrees at 30 percent."""
-MIN_HUE_SIGMA = 12.0
-"""Degrees, for the most colourful of things: light differs from survey to survey."""
-SATURATION_SIGMA = 15.0
-"""Percent, standard deviation of a saturation between survey and photograph."""
-MAX_COLOUR_COST = 3.0
-"""Nats. A wrong colour never costs more."""
+MIN_HUE_SIGMA = 12.0  # Degrees, for the most colourful of things: light differs from survey to survey.
+SATURATION_SIGMA = 15.0  # Percent, standard deviation of a saturation between survey and photograph.
+MAX_COLOUR_COST = 3.0  # Nats. A wrong colour never costs more.
 DETECTION_NEAR, DETECTION_FAR = 0.95, 0.65
 """Probability that a landmark in plain sight is observed, nearby and at `FAR_RANGE`."""
-FAR_RANGE = 6.0
-"""Metres."""
-DETECTION_HIDDEN = 0.5
-"""Probability that a landmark behind another is observed all the same: over it, or past it."""
+FAR_RANGE = 6.0  # Metres.
+DETECTION_HIDDEN = 0.5  # Probability that a landmark behind another is observed all the same: over it, or past it.
 OBJECT_RADIUS = 0.4
 """Metres: half the width of a piece of furniture, which the map does not know. It hides what is behind it."""
-BODY_RADIUS = 0.2
-"""Metres about a landmark's centroid where no rig can stand."""
-OUTSIDE_COST = 20.0
-"""Nats for a pose inside a piece of furniture or outside the walls."""
+BODY_RADIUS = 0.2  # Metres about a landmark's centroid where no rig can stand.
+OUTSIDE_COST = 20.0  # Nats for a pose inside a piece of furniture or outside the walls.
 
 
 class Evidence(NamedTuple):
@@ -49,13 +42,10 @@ class Evidence(NamedTuple):
     stereo_covariance: bool = True
     """Residuals weighed by the covariance of their observation; False: by one number in every direction."""
     colour: bool = True
-    refit: bool = True
-    """The pose fitted to all its matches; False: the pose of the two it came from."""
-    negative: bool = True
-    """What should be seen and is not."""
+    refit: bool = True  # The pose fitted to all its matches; False: the pose of the two it came from.
+    negative: bool = True  # What should be seen and is not.
     free_space: bool = True
-    absolute: bool = True
-    """Confidence asks for an absolute fit too; False: for the gap to the other poses alone."""
+    absolute: bool = True  # Confidence asks for an absolute fit too; False: for the gap to the other poses alone.
 
 
 def place_distances(scene: Scene, poses: np.ndarray, pose_covariances: np.ndarray | None = None) -> tuple:

@@ -20,10 +20,8 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 DISTANCE_GATE = 3.5
 """Standard deviations by which two distances may differ and still be one (chosen: 1 in 2,000 right pairs is lost, if
 the covariances are exact)."""
-MIN_DISTANCE = 0.5
-"""Metres between two landmarks, and between two observations. Nearer ones tell no useful heading."""
-UNKNOWN_SIGMA = 0.3
-"""Metres, standard deviation of a position without a covariance (chosen)."""
+MIN_DISTANCE = 0.5  # Metres between two landmarks, and between two observations. Nearer ones tell no useful heading.
+UNKNOWN_SIGMA = 0.3  # Metres, standard deviation of a position without a covariance (chosen).
 MAP_SIGMA = 0.02
 """Metres, standard deviation of a landmark's coordinates: a tape measure, and what counts as an object's middle."""
 GAUSS_NEWTON_STEPS = 4
@@ -61,18 +59,13 @@ class PoseHypothesis(NamedTuple):
     """One pose, and how well it explains what was seen."""
 
     pose: Pose2D
-    covariance: np.ndarray
-    """`(3, 3)` of [x, y, theta], metres and radians, squared."""
-    pairs: tuple[tuple[int, int], ...]
-    """(observation, landmark) that it matches."""
+    covariance: np.ndarray  # `(3, 3)` of [x, y, theta], metres and radians, squared.
+    pairs: tuple[tuple[int, int], ...]  # (observation, landmark) that it matches.
     score: float
     """Log-likelihood ratio in nats. 0 means that the pose explains the observations no better than clutter does."""
-    chi_square: float
-    """Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers."""
-    missed: tuple[int, ...]
-    """Landmarks that were probably visible from there, and were not seen."""
-    share: float = 0.0
-    """Of the belief, among all distinct poses and "none of them": 0 to 1."""
+    chi_square: float  # Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers.
+    missed: tuple[int, ...]  # Landmarks that were probably visible from there, and were not seen.
+    share: float = 0.0  # Of the belief, among all distinct poses and "none of them": 0 to 1.
 
 
 def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> Scene:

@@ -52,12 +52,9 @@ CLEAR_GAP = 0.08  # of evidence, between the best candidate and the next elsewhe
 class PoseCandidate(NamedTuple):
     """A pose that the camera may have."""
 
-    state: np.ndarray
-    """`(6,)`."""
-    evidence: float
-    """Running mean of agreeing - 3 through over its frames: 1 at best."""
-    frames: int
-    """How many frames it has explained."""
+    state: np.ndarray  # `(6,)`.
+    evidence: float  # Running mean of agreeing - 3 through over its frames: 1 at best.
+    frames: int  # How many frames it has explained.
 
 
 class PoseCandidates(NamedTuple):
@@ -66,12 +63,9 @@ class PoseCandidates(NamedTuple):
     status: Literal["found", "several", "searching"]
     """"found": one pose explains the frames, and no other nearly as well. "several": more than one does. "searching":
     none for long enough."""
-    poses: list[PoseCandidate]
-    """Best first; no two are at the same place."""
-    particles: int
-    """How many poses were drawn from free space in this frame."""
-    renders: int
-    """How many images were drawn in this frame."""
+    poses: list[PoseCandidate]  # Best first; no two are at the same place.
+    particles: int  # How many poses were drawn from free space in this frame.
+    renders: int  # How many images were drawn in this frame.
 
 
 class _Followed(MotionPrediction):

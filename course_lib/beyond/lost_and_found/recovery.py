@@ -31,15 +31,12 @@ UNKNOWN_TILT_SIGMA = np.deg2rad(15.0)
 class RecoveryEstimate(NamedTuple):
     """What one frame gave."""
 
-    estimate: AnnealedEstimate
-    """Of the filter; its status says what it is worth."""
+    estimate: AnnealedEstimate  # Of the filter; its status says what it is worth.
     mode: Literal["following", "searching", "found again"]
     """"found again" in the frame in which the search set the filter to a new place."""
-    candidates: PoseCandidates | None
-    """The answer of the search, while there is one."""
+    candidates: PoseCandidates | None  # The answer of the search, while there is one.
     short: float
-    long: float
-    """The two means of the raw score."""
+    long: float  # The two means of the raw score.
 
 
 class RecoveringLocalizer:

@@ -64,29 +64,22 @@ RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
 class AnnealedEstimate(NamedTuple):
     """What one frame gave: the same as `Estimate`, and how it was reached."""
 
-    state: np.ndarray
-    """`(6,)` the best refined pose."""
+    state: np.ndarray  # `(6,)` the best refined pose.
     covariance: np.ndarray
     """`(6, 6)` of the last layer's weighted particles about the state, metres along the world's axes and radians about
     the body's: how wide the search was."""
     score: float
     """Raw score of the refined pose, eq. (8) as a mean over pixels of the finest image; NaN without a measurement."""
-    ess: float
-    """Effective sample size of the last layer's weights."""
-    particles: np.ndarray
-    """`(N, 6)` of the last layer."""
-    weights: np.ndarray
-    """`(N,)` of these particles."""
+    ess: float  # Effective sample size of the last layer's weights.
+    particles: np.ndarray  # `(N, 6)` of the last layer.
+    weights: np.ndarray  # `(N,)` of these particles.
     status: TrackStatus | Literal["no measurement"]
     """What being_lost.py says of the state, after a second look if the first was doubtful."""
     error_covariance: np.ndarray
     """`(6, 6)`, the same units and axes: of the error to expect while the status is "tracked"."""
-    agreement: Agreement
-    """How the measured image agrees with the map as seen from the state."""
-    layers: tuple[Tempered, ...]
-    """Weights, sharpness and effective sample size of every layer, in order."""
-    renders: int
-    """How many images were drawn."""
+    agreement: Agreement  # How the measured image agrees with the map as seen from the state.
+    layers: tuple[Tempered, ...]  # Weights, sharpness and effective sample size of every layer, in order.
+    renders: int  # How many images were drawn.
 
 
 class _Found(NamedTuple):

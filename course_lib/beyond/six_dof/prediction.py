@@ -35,10 +35,8 @@ GROWTH = 1.5  # of the spread, for every frame in which the camera was not found
 class Rival(NamedTuple):
     """Another pose that the camera may have."""
 
-    pose: np.ndarray
-    """Camera-to-world `(4, 4)`."""
-    evidence: float
-    """Score of its image less the score of the best pose's image: 0 or less."""
+    pose: np.ndarray  # Camera-to-world `(4, 4)`.
+    evidence: float  # Score of its image less the score of the best pose's image: 0 or less.
 
 
 class MotionPrediction:

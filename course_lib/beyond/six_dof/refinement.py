@@ -39,12 +39,9 @@ LONGEST_STEP = (0.2, 0.3)  # metres, radians: the first order is not valid beyon
 class NormalEquations(NamedTuple):
     """The system of one Gauss-Newton step for `N` poses; sums over pixels."""
 
-    matrices: np.ndarray
-    """`(N, 6, 6)` sum w J J'."""
-    vectors: np.ndarray
-    """`(N, 6)` sum w J r."""
-    weights: np.ndarray
-    """`(N,)` sum w: how many pixels took part."""
+    matrices: np.ndarray  # `(N, 6, 6)` sum w J J'.
+    vectors: np.ndarray  # `(N, 6)` sum w J r.
+    weights: np.ndarray  # `(N,)` sum w: how many pixels took part.
 
 
 def surface_normals(images: np.ndarray, camera: DepthCamera) -> tuple[np.ndarray, np.ndarray]:

@@ -68,23 +68,17 @@ def pyramid(renderer: DepthRenderer) -> list[Level]:
 class Layer(NamedTuple):
     """One round of drawing, weighing and resampling within a frame, on coarse images."""
 
-    particles: float
-    """Number of particles, as a share of the filter's `n_particles`."""
-    spread: float
-    """Standard deviation of the noise, as a share of the prediction's spread."""
-    survivors: float
-    """Effective sample size that the weights leave, as a share of the layer's particles."""
+    particles: float  # Number of particles, as a share of the filter's `n_particles`.
+    spread: float  # Standard deviation of the noise, as a share of the prediction's spread.
+    survivors: float  # Effective sample size that the weights leave, as a share of the layer's particles.
 
 
 class Step(NamedTuple):
     """One Gauss-Newton step for the poses that are left."""
 
-    level: Literal[0, 1, 2]
-    """Index into the pyramid: coarse, middle, fine."""
-    scale: float
-    """Metres: a residual of this size counts a quarter."""
-    hypotheses: int
-    """How many poses are kept, the best that differ."""
+    level: Literal[0, 1, 2]  # Index into the pyramid: coarse, middle, fine.
+    scale: float  # Metres: a residual of this size counts a quarter.
+    hypotheses: int  # How many poses are kept, the best that differ.
 
 
 # All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th.

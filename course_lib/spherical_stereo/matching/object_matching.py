@@ -1,8 +1,7 @@
 """Which object of the upper image is which object of the lower one (paper 2, section 2.3).
 
-For every two boxes of one class the AKAZE features inside them are matched under the epipolar constraint, in all
-combinations. The combination with most matches is one object. Repeating that until nothing is left pairs the objects
-one-to-one. An object without a match, or with two partners that have equally many, is left unmatched and says why.
+For every two boxes of one class the AKAZE features inside them are matched under the epipolar constraint. The
+combination with most matches is one object, and so on until nothing is left.
 """
 
 from __future__ import annotations
@@ -38,12 +37,7 @@ PARTNER_TAKEN = "partner taken"  # all with which it shares features went to bet
 
 @dataclass(frozen=True, eq=False)
 class ObjectMatch:
-    """One object seen in both images.
-
-    upper, lower: indices into the two lists of detections. label: its class, canonical.
-    keypoints_upper, keypoints_lower: `(k, 2)` edge coordinates (pixels) of the features matched inside the two boxes;
-    row i of one belongs to row i of the other.
-    """
+    """One object seen in both images."""
 
     upper: int
     lower: int
@@ -103,12 +97,9 @@ def match_views(
 ) -> StereoMatching:
     """Pair the objects of two panoramas: same class, most AKAZE matches under the epipolar constraint, one-to-one.
 
-    upper, lower: panoramas with their detections. Features that they lack are found. tolerance: radians on the sphere
-    by which a match may miss its epipolar half-circle. min_features: how many matched features make one object.
-    check_alignment: True asks first how the cameras stand to each other; if they are turned, or the images are of
-    different moments, nothing is matched, and `alignment` says why. The paper asks neither.
-    Raises `DetectionError` for boxes that cannot be, `SwappedImagesError`, and `PanoramaError` for unlike sizes or
-    min_features below one. Source: paper 2, section 2.3.
+    tolerance: radians by which a match may miss its epipolar half-circle. min_features: how many matched features make
+    one object. check_alignment: match nothing if the cameras are turned or the images of different moments. The paper
+    asks neither. Source: paper 2, section 2.3.
     """
     open_pair(upper, lower)
     if min_features < 1:
@@ -158,10 +149,7 @@ def match_views(
 
 
 def matched_indices(matches: Sequence, upper: View, lower: View) -> list[tuple[int, int]]:
-    """Return the indices (upper, lower) of the detections that matches join: `ObjectMatch`es, or such pairs.
-
-    Raises `DetectionError` for a match that names no detection, or one twice, or joins two classes.
-    """
+    """Return the indices (upper, lower) of the detections that matches join: `ObjectMatch`es, or such pairs."""
     pairs = []
     for match in matches:
         try:
@@ -184,9 +172,8 @@ def matched_indices(matches: Sequence, upper: View, lower: View) -> list[tuple[i
 def pair_by_most_matches(counts: np.ndarray) -> tuple[list[tuple[int, int]], set[int], set[int]]:
     """Return one-to-one pairs by repeated maximum of the counts `(n, m)`, and the rows and columns left out by a tie.
 
-    The largest count among the rows and columns still free makes a pair, and both leave; zero pairs nothing. Where the
-    largest count stands twice in one row or column, all rows and columns joined by such counts are left out: any choice
-    among them would be a guess. The order of rows and columns has no influence. Source: paper 2, section 2.3.
+    Where the largest count stands twice in one row or column, all that it joins are left out, because any choice would
+    be a guess. Source: paper 2, section 2.3.
     """
     counts = np.array(counts, dtype=int)
     pairs: list[tuple[int, int]] = []

@@ -1,14 +1,13 @@
 """From two directions to a position: X = d x_hat, how sure it is, and when there is none (paper 2, section 2.4).
 
-Seen from the rig's vertical axis, upper camera, lower camera and point make a triangle. Its angle at the point is the
-parallax e_l - e_u, its angle at the lower camera pi/2 - e_l, so the law of sines gives
+Upper camera, lower camera and point make a triangle. Its angle at the point is the parallax e_l - e_u, its angle at the
+lower camera pi/2 - e_l, so the law of sines gives
 
     d = baseline cos e_l / sin(e_l - e_u)          (along the upper camera's direction)
     rho = d cos e_u = baseline / (tan e_l - tan e_u)          (horizontal range)
 
-The centres of two boxes around one object differ a little in azimuth too, so the two rays do not meet. The distance
-comes from the elevations alone, because the baseline is vertical, and the azimuth is the upper camera's. A large
-difference in azimuth means that the boxes do not show one object, and has its own outcome.
+The rays of two box centres do not quite meet. The distance comes from the elevations, the azimuth from the upper
+camera.
 """
 
 from __future__ import annotations
@@ -44,11 +43,8 @@ def triangulation_outcome(
 ) -> np.ndarray:
     """Return the outcomes `(...)` of two directions `(..., 3)`: "ok", "parallel", "diverging" or "azimuth gap".
 
-    "azimuth gap": the epipolar residual is above `azimuth_gap_tolerance`; else "diverging": e_l - e_u is below
-    -`parallel_tolerance`; else "parallel": it is at most `parallel_tolerance`, or a direction is within that of
-    straight up or down, along the baseline. Tolerances in radians. Raises `PanoramaError` for directions that are
-    none.
-    Source: paper 2, section 2.4.
+    A direction within `parallel_tolerance` of straight up or down counts as parallel. Tolerances in radians. Source:
+    paper 2, section 2.4.
     """
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
     parallax = lower - upper
@@ -71,9 +67,8 @@ def triangulate(
 
     d = baseline cos e_l / sin(e_l - e_u)
 
-    Directions `(..., 3)` in the body frame, broadcast together; baseline in metres. A rotation about the vertical
-    leaves d as it is. Raises `TriangulationError` when any pair of directions has another outcome than "ok"
-    (`triangulation_outcome` tells which), `PanoramaError` for directions that are none, or a baseline that is not
+    Directions `(..., 3)` in the body frame, broadcast together; baseline in metres. Raises `TriangulationError` if any
+    pair has another outcome than "ok", `PanoramaError` for directions that are none, or a baseline that is not
     positive. Source: paper 2, section 2.4.
     """
     baseline = StereoRig(baseline).baseline
@@ -99,8 +94,7 @@ def triangulate(
 
 def object_position(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
     """Return positions X = d x_hat `(..., 3)` in metres, in the frame of the upper camera (x forward, y left, z up).
-
-    Raises what `triangulate` raises. Source: paper 2, section 2.4.
+    Source: paper 2, section 2.4.
     """
     distance = triangulate(direction_upper, direction_lower, baseline)
     azimuth, elevation = azimuth_elevation(direction_upper)
@@ -116,16 +110,12 @@ def triangulation_covariance(
 ) -> np.ndarray:
     """Return covariances `(..., 3, 3)` of X = d x_hat, square metres, from noise of the two directions (first order).
 
-    C = J diag(s_a^2, s_e^2, s_e^2) J'  with J the derivative of
+    C = J diag(s_a^2, s_e^2, s_e^2) J' with J the derivative of
 
-    X(a, e_u, e_l) = rho (cos a, sin a, tan e_u),      rho = baseline / (tan e_l - tan e_u)
-    d rho / d e_u = rho^2 sec^2 e_u / baseline,        d rho / d e_l = -rho^2 sec^2 e_l / baseline
+    X(a, e_u, e_l) = rho (cos a, sin a, tan e_u), rho = baseline / (tan e_l - tan e_u) d rho / d e_u = rho^2 sec^2 e_u /
+    baseline, d rho / d e_l = -rho^2 sec^2 e_l / baseline
 
-    The standard deviation along the ray grows with d^2 / baseline, the one across with d only. sigma_azimuth: of the
-    upper camera's azimuth, sigma_elevation: of either camera's elevation, radians, taken as independent; sigma pixels
-    are 2 pi sigma / W and pi sigma / H. The two errors of box centres around one object are alike in part. This is not
-    used, so the covariance is rather too large.
-    Raises what `triangulate` raises, and `PanoramaError` for a sigma that is negative or not finite.
+    sigma_azimuth: of the upper camera's azimuth, sigma_elevation: of either camera's elevation, radians, independent.
     Source: paper 2, section 2.4.
     """
     for name, sigma in (("sigma_azimuth", sigma_azimuth), ("sigma_elevation", sigma_elevation)):

@@ -32,8 +32,7 @@ import numpy as np
 from course_lib.files import atomic_write, read_json, read_text
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, canonical_label
 
-DUPLICATE_DISTANCE = 0.01
-"""Metres. Two objects of one class whose centroids are nearer are one object written twice."""
+DUPLICATE_DISTANCE = 0.01  # Metres. Two objects of one class whose centroids are nearer are one object written twice.
 VERSION = 1
 _FIELDS = ("label", "x", "y", "hue", "saturation")
 _CSV_FIRST_LINE = f"# semantic map, version {VERSION}"
@@ -45,11 +44,7 @@ class SemanticMapError(ValueError):
 
 @dataclass(frozen=True)
 class Landmark:
-    """One object of the map. Raises `SemanticMapError` for values out of range. Source: paper 2, section 2.5.
-
-    label: class, kept as its canonical label. x, y: centroid, world frame, metres. hue, saturation: means of the whole
-    object, degrees [0, 360), NaN for grey, and percent [0, 100].
-    """
+    """One object of the map. Raises `SemanticMapError` for values out of range. Source: paper 2, section 2.5."""
 
     label: str
     x: float
