@@ -98,11 +98,10 @@ class SceneMap:
         return SceneMap(self.vertices @ matrix[:3, :3].T + matrix[:3, 3], self.faces)
 
     def anchor(self, positions: np.ndarray) -> np.ndarray:
-        """The point `(3,)` that renderers subtract from vertices and cameras before anything becomes float32.
+        """Return the point `(3,)` that renderers subtract from vertices and cameras `(N, 3)` before anything becomes
+        float32.
 
-        positions: `(N, 3)` of the cameras. The anchor is the map's origin where the cameras are within some 50 m
-        of it, else whole hundreds of metres from it and near them: a millimetre there is still a millimetre, however
-        far away other parts of the map lie.
+        The map's origin if the cameras are within some 50 m of it, else whole hundreds of metres from it, near them.
         """
         if len(positions) == 0:
             return self.origin
@@ -128,9 +127,8 @@ class SceneMap:
 
 
 def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) -> np.ndarray:
-    """The faces of a file without those that are absurdly far from its middle, the median of all corners.
-
-    Raises `SceneMapError`, which names the first of them, unless they are to be dropped.
+    """Return the faces without those absurdly far from the median of all corners. Raises `SceneMapError` unless
+    dropped.
     """
     shapes = np.shape(vertices)[1:], np.shape(faces)[1:]
     if shapes != ((3,), (3,)) or not len(faces) or faces.min() < 0 or faces.max() >= len(vertices):

@@ -25,6 +25,7 @@ Beside it: recording, a folder of stereo panoramas with the truth beside them.
 Images are BGR uint8 arrays, as OpenCV reads them. Boxes and points on them are in edge coordinates (`panorama`).
 """
 
+# ruff: noqa: F401 - the public names
 from course_lib.spherical_stereo.detection.darknet import DetectorError
 from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -62,45 +63,3 @@ from course_lib.spherical_stereo.semantic_map.association import (
     penalty_table,
 )
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
-
-__all__ = [
-    "Association",
-    "AssociationError",
-    "Detection",
-    "DetectionError",
-    "DetectorError",
-    "Landmark",
-    "Localization",
-    "LocalizerError",
-    "ObjectMatch",
-    "Observation",
-    "PanoramaError",
-    "Penalty",
-    "PenaltyWeights",
-    "Pose2D",
-    "RigidFitError",
-    "SemanticLocalizer",
-    "SemanticMap",
-    "SemanticMapError",
-    "StereoRig",
-    "SwappedImagesError",
-    "TriangulationError",
-    "View",
-    "YoloDetector",
-    "associate_greedy",
-    "direction_to_pixel",
-    "disparity_distance",
-    "extend_seam",
-    "fit_covariance",
-    "fit_rigid_2d",
-    "match_objects",
-    "open_pair",
-    "open_view",
-    "penalty",
-    "penalty_table",
-    "pixel_to_direction",
-    "read_panorama",
-    "triangulate",
-    "triangulation_covariance",
-    "triangulation_outcome",
-]

@@ -81,10 +81,8 @@ class SemanticLocalizer:
             raise LocalizerError(
                 f'association must be "greedy" or a function called as associate_greedy is; got {association!r}'
             )
-        for name, value, allowed in (
-            ("distance", distance, DISTANCES),
-            ("distance_term", distance_term, DISTANCE_TERMS),
-        ):
+        options = ("distance", distance, DISTANCES), ("distance_term", distance_term, DISTANCE_TERMS)
+        for name, value, allowed in options:
             if value not in allowed:
                 raise LocalizerError(f"{name} must be one of {allowed}; got {value!r}")
         self.rig, self.semantic_map, self.detector = rig, semantic_map, detector

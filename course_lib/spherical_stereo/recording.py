@@ -34,12 +34,12 @@ class StereoPair:
     """One pair of panoramas and where it was taken."""
 
     name: str
-    pose: np.ndarray
+    pose: np.ndarray  # `(3,)` [x, y, heading] of the upper camera, metres and radians, heading in [-pi, pi]
     upper_file: Path
     lower_file: Path
     upper_objects: tuple[TrueObject, ...]
     lower_objects: tuple[TrueObject, ...]
-    size: tuple[int, int]
+    size: tuple[int, int]  # (width, height) of both, pixels
 
     def images(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the upper and the lower panorama, `(H, W, 3)` uint8 BGR."""

@@ -1,7 +1,4 @@
-"""How a frame is searched: on images of which size, in which layers of particles, by which steps of refinement.
-
-Most particles are compared on few pixels, the last few poses on many.
-"""
+"""How a frame is searched: on images of which size, in which layers of particles, by which steps of refinement."""
 
 from __future__ import annotations
 
@@ -49,10 +46,7 @@ class Level:
 
 
 def pyramid(renderer: DepthRenderer) -> list[Level]:
-    """Return the three levels for the renderer's map and camera, coarse first, none larger than the camera's image.
-
-    Where a level has the camera's own size, the renderer itself serves.
-    """
+    """Return the three levels for the renderer's map and camera, coarse first, none larger than the camera's image."""
     camera, weighting = renderer.camera, paper_weighting()
     levels = []
     for pixels in (COARSE, MIDDLE, FINE):

@@ -29,8 +29,8 @@ VERSION = 1
 
 @dataclass(frozen=True)
 class LabelledBox:
-    label: str
-    box: tuple[float, float, float, float]
+    label: str  # canonical
+    box: tuple[float, float, float, float]  # 0 <= u_min < width
     name: str | None = None
 
 

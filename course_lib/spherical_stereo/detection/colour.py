@@ -9,14 +9,9 @@ import numpy as np
 from course_lib.geometry import circular_mean
 from course_lib.spherical_stereo.detection.detected_object import DetectionError
 
-GREY_SATURATION_PERCENT = 10.0
-"""Mean saturation below which a thing counts as grey: a white balance that is off by as much gives white this tint."""
-
-MIXED_HUES_RESULTANT = 0.2
-"""Length of the mean hue vector (1: all hues equal, 0: all directions alike) below which there is no mean hue."""
-
-DARKEST_VALUE = 1 / 16
-"""Brightness (0 to 1) below which a pixel has no say in hue: one grey level of noise may turn it by 60 degrees."""
+GREY_SATURATION_PERCENT = 10.0  # mean saturation below which a thing is grey: a wrong white balance gives as much
+MIXED_HUES_RESULTANT = 0.2  # length of the mean hue vector (1: all hues equal) below which there is no mean hue
+DARKEST_VALUE = 1 / 16  # brightness (0 to 1) below which a pixel has no say: a grey level turns its hue by 60 degrees
 
 Box = tuple[float, float, float, float]
 

@@ -24,8 +24,7 @@ DETECTION_KINDS = ("yolo", "region")
 LAYER_KINDS = ("convolutional", "route", "reorg", "scale_channels", "maxpool", "avgpool", "upsample", "dropout",
                "softmax", "shortcut", "sam", *DETECTION_KINDS)  # fmt: skip
 """Layers whose channels are known. An unknown one would make the count of weights wrong."""
-MAX_INPUT_PIXELS = 1 << 24
-"""Pixels of a network's input, 4096 x 4096. YOLOv4 has 608 x 608, and needs a hundred times as many numbers inside."""
+MAX_INPUT_PIXELS = 1 << 24  # 4096 x 4096; YOLOv4 has 608 x 608
 
 
 class DetectorError(ValueError):

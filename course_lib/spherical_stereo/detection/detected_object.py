@@ -14,24 +14,18 @@ import numpy as np
 
 from course_lib.spherical_stereo.panorama import View
 
+# Labels of the maps, rooms and network of this project.
 CANONICAL_LABELS = ("sofa", "chair", "table", "television", "potted plant", "refrigerator", "cabinet")
-"""Labels of the maps, rooms and network of this project."""
-
-ALIASES = {
-    "couch": "sofa",
-    "settee": "sofa",
-    "diningtable": "table",
-    "dining table": "table",
-    "desk": "table",
-    "tv": "television",
-    "tvmonitor": "television",
-    "tv monitor": "television",
-    "pottedplant": "potted plant",
-    "houseplant": "potted plant",
-    "fridge": "refrigerator",
-    "cupboard": "cabinet",
+# Names that COCO, VOC and people use for these classes, in lower case with single spaces.
+_OTHER_NAMES = {
+    "sofa": ("couch", "settee"),
+    "table": ("diningtable", "dining table", "desk"),
+    "television": ("tv", "tvmonitor", "tv monitor"),
+    "potted plant": ("pottedplant", "houseplant"),
+    "refrigerator": ("fridge",),
+    "cabinet": ("cupboard",),
 }
-"""Names that COCO, VOC and people use for these classes, in lower case with single spaces -> canonical label."""
+ALIASES = {name: label for label, names in _OTHER_NAMES.items() for name in names}
 
 
 class DetectionError(ValueError):

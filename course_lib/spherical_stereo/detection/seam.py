@@ -14,12 +14,10 @@ import numpy as np
 from course_lib.spherical_stereo.detection.detected_object import box_area, box_iou, shared_area, wrapped_box
 from course_lib.spherical_stereo.detection.suppression import limit_by_class, suppress
 
-MARGIN = 1 / 32
-"""Margin of the valid range at either end, as a share of the panorama's width (11 degrees). A cut copy that it lets in
-shows at least 3/4 of its object, enough for the whole copy to suppress it."""
-
-EDGE_TOLERANCE = 1 / 64
-"""How near to an end of the extended image a box counts as cut by it, as a share of the panorama's width."""
+# Shares of the panorama's width. A cut copy that the margin lets in shows at least 3/4 of its object, enough for the
+# whole copy to suppress it.
+MARGIN = 1 / 32  # of the valid range at either end (11 degrees)
+EDGE_TOLERANCE = 1 / 64  # how near to an end of the extended image a box counts as cut by it
 
 
 def appended_columns(width: int) -> int:
@@ -28,7 +26,7 @@ def appended_columns(width: int) -> int:
 
 
 def extend_seam(image: np.ndarray) -> np.ndarray:
-    """Return the panorama (H, W, ...) with its left quarter appended, (H, 1.25 W, ...). Source: paper 2, section 2.2."""
+    """Return the panorama (H, W, ...) with its left quarter added: (H, 1.25 W, ...). Source: paper 2, section 2.2."""
     return np.concatenate([image, image[:, : appended_columns(image.shape[1])]], axis=1)
 
 

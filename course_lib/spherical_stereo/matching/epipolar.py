@@ -17,14 +17,12 @@ from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_differen
 if TYPE_CHECKING:
     from course_lib.spherical_stereo.matching.features import PanoramaFeatures
 
+# Radians on the sphere by which a match may miss its epipolar half-circle: 3 columns at 1280 (chosen: AKAZE's own noise
+# is about one column, and a lower camera turned by half a degree is still let through).
 EPIPOLAR_TOLERANCE = 0.015
-"""Radians on the sphere by which a match may miss its epipolar half-circle: 3 columns at 1280 (chosen: AKAZE's own
-noise is about one column, and a lower camera turned by half a degree against the upper one is still let through)."""
-MIN_RANGE = 0.3
-"""Metres. No object's surface is nearer to the rig's axis (chosen; the paper's places keep 0.3 m clear)."""
+MIN_RANGE = 0.3  # metres: no surface is nearer to the rig's axis (chosen; the paper's places keep 0.3 m clear)
 MAX_HAMMING = 120  # Bits of 486 in which the descriptors of one point may differ (chosen from a real pair).
-RATIO = 0.8
-"""Hamming distance of the best candidate over that of the second best, at most (Lowe's value for distances)."""
+RATIO = 0.8  # Hamming distance of the best candidate over that of the second best, at most (Lowe's value)
 
 _BIT_COUNT = np.array([bin(byte).count("1") for byte in range(256)], dtype=np.uint8)
 
@@ -33,11 +31,11 @@ _BIT_COUNT = np.array([bin(byte).count("1") for byte in range(256)], dtype=np.ui
 class EpipolarPairs:
     """Pairs of features that the epipolar constraint allows: arrays `(n,)`, one element a pair."""
 
-    upper: np.ndarray
+    upper: np.ndarray  # index into the features
     lower: np.ndarray
-    distance: np.ndarray
-    disparity: np.ndarray
-    slope: np.ndarray
+    distance: np.ndarray  # Hamming distance of the descriptors, bits
+    disparity: np.ndarray  # e_l - e_u, radians, of either sign
+    slope: np.ndarray  # tan e_l - tan e_u, which is baseline / horizontal range for a true pair
 
     def __len__(self) -> int:
         return len(self.upper)

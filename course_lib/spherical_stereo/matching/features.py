@@ -21,16 +21,14 @@ from course_lib.spherical_stereo.panorama import (
     open_view,
 )
 
+# Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
+# 1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none.
 AKAZE_THRESHOLD = 2e-4
-"""Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
-1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none, for half as much time again; on a real pair as
-large a share of the weaker features obeys the epipolar constraint."""
 AKAZE_OCTAVES = 3  # Octaves of scale. A fourth adds nothing on panoramas about 1,000 pixels wide.
+# Columns repeated at both sides of the image: the descriptor of AKAZE's coarsest feature in three octaves reaches
+# 10 sqrt(2) x 1.6 x 2^2.75 = 152 pixels, and must not leave the image.
 SEAM_MARGIN = 160
-"""Columns repeated at both sides of the image, pixels: the descriptor of AKAZE's coarsest feature in three octaves
-reaches 10 sqrt(2) x 1.6 x 2^2.75 = 152 pixels, and a feature whose descriptor would leave the image is not found."""
-MIN_DISPARITY = 0.0025
-"""Radians, half a row at a height of 640. A smaller disparity does not tell which camera is higher."""
+MIN_DISPARITY = 0.0025  # radians, half a row at a height of 640: a smaller one does not tell which camera is higher
 
 
 class SwappedImagesError(PanoramaError):
@@ -41,9 +39,9 @@ class SwappedImagesError(PanoramaError):
 class PanoramaFeatures:
     """AKAZE features of one panorama."""
 
-    keypoints: np.ndarray
-    descriptors: np.ndarray
-    width: int
+    keypoints: np.ndarray  # `(n, 2)` float64, edge coordinates (u, v), pixels, u in [0, width)
+    descriptors: np.ndarray  # `(n, 61)` uint8, 486 bits compared by Hamming distance
+    width: int  # of the panorama, pixels
     height: int
 
     def __len__(self) -> int:
@@ -54,14 +52,12 @@ class PanoramaFeatures:
         return azimuth_elevation_of_pixel(self.keypoints, self.width, self.height)
 
 
-def detect_features(
-    image: np.ndarray, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES
-) -> PanoramaFeatures:
+def detect_features(image: np.ndarray) -> PanoramaFeatures:
     """Return the features of an image, uint8 BGR `(H, W, 3)`."""
-    return find_features(open_view(image), threshold, octaves).features
+    return find_features(open_view(image)).features
 
 
-def find_features(view: View, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES) -> View:
+def find_features(view: View) -> View:
     """Return the panorama with its AKAZE features. If it has some already, they stay.
 
     The image is extended by its own other end on both sides, so that a feature on the seam is found whole. Source:
@@ -69,14 +65,12 @@ def find_features(view: View, threshold: float = AKAZE_THRESHOLD, octaves: int =
     """
     if view.features is not None:
         return view
-    if not threshold > 0 or int(octaves) != octaves or octaves < 1:
-        raise PanoramaError(f"threshold must be positive and octaves at least 1; got {threshold!r} and {octaves!r}")
     image, height, width = view.image, view.height, view.width
     margin = min(SEAM_MARGIN, width // 2)
     grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
     extended = np.concatenate([grey[:, -margin:], grey, grey[:, :margin]], axis=1)
     akaze = cv2.AKAZE_create(
-        descriptor_type=cv2.AKAZE_DESCRIPTOR_MLDB_UPRIGHT, threshold=float(threshold), nOctaves=int(octaves)
+        descriptor_type=cv2.AKAZE_DESCRIPTOR_MLDB_UPRIGHT, threshold=AKAZE_THRESHOLD, nOctaves=AKAZE_OCTAVES
     )
     keypoints, descriptors = akaze.detectAndCompute(extended, None)
     if not keypoints:
@@ -100,12 +94,12 @@ def inside_box(points: np.ndarray, box: np.ndarray, width: int) -> np.ndarray:
 class FeatureMatches:
     """Matches of features over two whole panoramas, one row a match, before the epipolar constraint is applied."""
 
-    keypoints_upper: np.ndarray
+    keypoints_upper: np.ndarray  # `(n, 2)` edge coordinates, pixels
     keypoints_lower: np.ndarray
-    azimuth_difference: np.ndarray
-    vertical_disparity: np.ndarray
-    epipolar: np.ndarray
-    tolerance: float
+    azimuth_difference: np.ndarray  # a_lower - a_upper `(n,)`, radians
+    vertical_disparity: np.ndarray  # e_lower - e_upper `(n,)`, radians, positive for a true match
+    epipolar: np.ndarray  # bool `(n,)`: which obey the epipolar constraint within `tolerance`
+    tolerance: float  # radians on the sphere
 
     def __len__(self) -> int:
         return len(self.epipolar)

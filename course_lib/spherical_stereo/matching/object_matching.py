@@ -24,8 +24,7 @@ from course_lib.spherical_stereo.matching.epipolar import (
 from course_lib.spherical_stereo.matching.features import check_not_swapped, find_features, inside_box
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, open_pair
 
-MIN_FEATURES = 3
-"""Matched features that make one object, where one alone may be an accident (the paper asks for no number)."""
+MIN_FEATURES = 3  # matched features that make one object; one alone may be an accident (the paper has no number)
 
 # Reasons why an object has no partner.
 CLASS_NOT_IN_OTHER = "class not in the other image"
@@ -39,11 +38,11 @@ PARTNER_TAKEN = "partner taken"  # all with which it shares features went to bet
 class ObjectMatch:
     """One object seen in both images."""
 
-    upper: int
+    upper: int  # index into the upper image's detections
     lower: int
-    label: str
-    keypoints_upper: np.ndarray
-    keypoints_lower: np.ndarray
+    label: str  # its class, canonical
+    keypoints_upper: np.ndarray  # `(k, 2)` edge coordinates, pixels, of the features matched inside the two boxes
+    keypoints_lower: np.ndarray  # row by row those of `keypoints_upper`
 
     @property
     def n_matches(self) -> int:

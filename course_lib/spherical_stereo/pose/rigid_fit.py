@@ -15,11 +15,8 @@ from scipy.stats import chi2
 from course_lib.geometry import wrap_angle
 
 MIN_SPREAD = 1e-3  # Metres, root mean square about the centroid. Points nearer together give no heading.
-MIN_WIDTH = 0.2
-"""Width over length of a point set. A narrower set counts as a line, on which a mirror image does not show."""
-MIRROR_ADVANTAGE = 3.0
-"""A set counts as mirrored if the fit with a reflection leaves a residual smaller by this factor. Noise on points near
-a line can favour the reflection a little, but seldom this much."""
+MIN_WIDTH = 0.2  # width over length: a narrower point set counts as a line, on which a mirror image does not show
+MIRROR_ADVANTAGE = 3.0  # mirrored: the fit with a reflection leaves a residual smaller by this factor
 GAUSS_NEWTON_STEPS = 10
 DOUBT = 0.001  # Share of the right poses that may be called implausible, if the covariances are exact.
 NOISE_FACTOR = 1.5
@@ -58,8 +55,7 @@ class Residuals(NamedTuple):
     """How large the residuals of a fit are, and how large they may be under the points' covariances."""
 
     expected_rms: float  # Metres: the root mean square that the covariances let expect.
-    chi_square: float
-    """Least sum of r^T C^-1 r over all poses: of 2 n - 3 numbers, and their mean, when the covariances are right."""
+    chi_square: float  # Least sum of r^T C^-1 r over all poses.
     degrees_of_freedom: int  # 2 n - 3.
 
     @property

@@ -28,14 +28,10 @@ from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_dis
 
 Distance = Literal["box_centre", "disparity"]
 DISTANCES: tuple[Distance, ...] = ("box_centre", "disparity")
-BOX_CENTRE_SIGMA = 0.0075
-"""Radians, standard deviation of a box centre's azimuth and elevation (chosen: 1.5 pixels at a width of 1280)."""
-CENTROID_SIGMA = 0.1
-"""Metres, standard deviation in each direction of the object's centroid about the point that its box's centre shows,
-because a box is of the visible side (chosen). Without it, objects close by would seem certain to a centimetre."""
-SURFACE_SIGMA = 0.15
-"""Metres, standard deviation of the distance from an object's centroid to the surface that its features lie on (chosen:
-about a quarter of a sofa's depth). The disparities know nothing of the inside, so it is added to what they say."""
+# Standard deviations, all chosen.
+BOX_CENTRE_SIGMA = 0.0075  # radians, of a box centre's azimuth and elevation: 1.5 pixels at a width of 1280
+CENTROID_SIGMA = 0.1  # metres, of the object's centroid about the point that its box's centre shows
+SURFACE_SIGMA = 0.15  # metres, from the centroid to the surface that the features lie on: a quarter of a sofa's depth
 TOO_FAR = "too far"  # Outcome of an object beyond `max_range`.
 
 

@@ -17,12 +17,10 @@ import numpy as np
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, azimuth_elevation, direction_from_angles
 
-PARALLEL_TOLERANCE = 1e-3
-"""Parallax (e_l - e_u), radians, below which rays count as parallel: a fifth of a row at 1280 x 640, where the smallest
-error of a box makes any distance; 300 m at a baseline of 0.3 m."""
+PARALLEL_TOLERANCE = 1e-3  # radians of parallax below which rays count as parallel: 300 m at a baseline of 0.3 m
+# Epipolar residual, radians, above which two box centres are not one object's (chosen: 20 columns at 1280, 0.6 of the
+# width of a chair three metres away).
 AZIMUTH_GAP_TOLERANCE = 0.1
-"""Epipolar residual, radians on the sphere, above which two box centres are not one object's: 20 columns at 1280
-(chosen: 0.6 of the width of a chair three metres away)."""
 
 OK, PARALLEL, DIVERGING, AZIMUTH_GAP = "ok", "parallel", "diverging", "azimuth gap"
 
@@ -35,34 +33,22 @@ class TriangulationError(ValueError):
         self.outcome = outcome
 
 
-def triangulation_outcome(
-    direction_upper: np.ndarray,
-    direction_lower: np.ndarray,
-    parallel_tolerance: float = PARALLEL_TOLERANCE,
-    azimuth_gap_tolerance: float = AZIMUTH_GAP_TOLERANCE,
-) -> np.ndarray:
+def triangulation_outcome(direction_upper: np.ndarray, direction_lower: np.ndarray) -> np.ndarray:
     """Return the outcomes `(...)` of two directions `(..., 3)`: "ok", "parallel", "diverging" or "azimuth gap".
 
-    A direction within `parallel_tolerance` of straight up or down counts as parallel. Tolerances in radians. Source:
-    paper 2, section 2.4.
+    A direction straight up or down counts as parallel. Source: paper 2, section 2.4.
     """
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
     parallax = lower - upper
-    upright = np.pi / 2 - np.maximum(np.abs(upper), np.abs(lower)) <= parallel_tolerance
+    upright = np.pi / 2 - np.maximum(np.abs(upper), np.abs(lower)) <= PARALLEL_TOLERANCE
     return np.select(
-        [residual > azimuth_gap_tolerance, parallax < -parallel_tolerance, (parallax <= parallel_tolerance) | upright],
+        [residual > AZIMUTH_GAP_TOLERANCE, parallax < -PARALLEL_TOLERANCE, (parallax <= PARALLEL_TOLERANCE) | upright],
         [AZIMUTH_GAP, DIVERGING, PARALLEL],
         OK,
     )
 
 
-def triangulate(
-    direction_upper: np.ndarray,
-    direction_lower: np.ndarray,
-    baseline: float,
-    parallel_tolerance: float = PARALLEL_TOLERANCE,
-    azimuth_gap_tolerance: float = AZIMUTH_GAP_TOLERANCE,
-) -> np.ndarray:
+def triangulate(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
     """Return distances d `(...)` in metres along the upper camera's directions: the object is at X = d x_hat_upper.
 
     d = baseline cos e_l / sin(e_l - e_u)
@@ -72,7 +58,7 @@ def triangulate(
     positive. Source: paper 2, section 2.4.
     """
     baseline = StereoRig(baseline).baseline
-    outcome = triangulation_outcome(direction_upper, direction_lower, parallel_tolerance, azimuth_gap_tolerance)
+    outcome = triangulation_outcome(direction_upper, direction_lower)
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
     hint = {
         AZIMUTH_GAP: "the directions do not show one object; match the objects first",
@@ -89,7 +75,7 @@ def triangulate(
                 f"{gap:.2f} degrees apart across the epipolar half-circle: {hint[name]}",
                 name,
             )
-    return _distance(upper, lower, baseline)
+    return baseline * np.cos(lower) / np.sin(lower - upper)
 
 
 def object_position(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
@@ -134,10 +120,6 @@ def triangulation_covariance(
     jacobian = np.stack([by_azimuth, by_upper, by_lower], axis=-1)
     variance = np.stack([sigma_azimuth, sigma_elevation, sigma_elevation], axis=-1) ** 2
     return (jacobian * variance[..., None, :]) @ np.swapaxes(jacobian, -1, -2)
-
-
-def _distance(elevation_upper: np.ndarray, elevation_lower: np.ndarray, baseline: float) -> np.ndarray:
-    return baseline * np.cos(elevation_lower) / np.sin(elevation_lower - elevation_upper)
 
 
 def _angles(direction_upper, direction_lower):

@@ -32,14 +32,14 @@ _MEDIAN_OVER_MEAN = 1.2533
 class DisparityDistance:
     """Horizontal range of one object from its matched features."""
 
-    outcome: str
-    horizontal_range: float
-    spread: float
-    sigma: float
+    outcome: str  # "ok", "too few matches", or "parallel"; the numbers are nan unless it is "ok"
+    horizontal_range: float  # metres from the rig's axis, the median over the matches
+    spread: float  # metres, robust standard deviation of single matches' ranges, the object's depth included
+    sigma: float  # metres, standard deviation of the median
     n_matches: int
 
     def position(self, direction_upper: np.ndarray) -> np.ndarray:
-        """Return X = rho (cos a, sin a, tan e) `(3,)` in the direction of the box centre, upper camera's frame, metres."""
+        """Return X = rho (cos a, sin a, tan e) `(3,)` in the direction of the box centre, upper camera, metres."""
         azimuth, elevation = azimuth_elevation(direction_upper)
         return self.horizontal_range / np.cos(elevation)[..., None] * direction_from_angles(azimuth, elevation)
 

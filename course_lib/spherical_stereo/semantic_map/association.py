@@ -15,9 +15,7 @@ from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
 DISTANCE_TERMS = ("absolute", "as_printed")
-MIN_DISTANCE = 0.1
-"""Metres: the smallest |dx_m| that eq. (1) divides by. An object at the map's centroid would otherwise cost infinitely
-much, or 0/0. The centroid of a piece of furniture is known to about a decimetre."""
+MIN_DISTANCE = 0.1  # metres: the smallest |dx_m| that eq. (1) divides by, or an object at the map's centroid gives 0/0
 TIE = 1e-9  # Penalties nearer than this are equal, because rounding must not choose between two objects that are alike.
 
 
@@ -29,11 +27,11 @@ class Observation(NamedTuple):
     """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame."""
 
     label: str
-    x: float
-    y: float
-    hue: float
-    saturation: float
-    covariance: np.ndarray | None = None
+    x: float  # centroid, metres: forward
+    y: float  # left
+    hue: float  # degrees [0, 360), NaN for grey
+    saturation: float  # percent [0, 100]
+    covariance: np.ndarray | None = None  # `(2, 2)` of x and y, square metres; None if nothing is known
 
 
 class PenaltyWeights(NamedTuple):
@@ -43,8 +41,7 @@ class PenaltyWeights(NamedTuple):
     """
 
     p_obj: float = 100.0  # Cost of unlike classes.
-    p_h: float = 1.0
-    """Weight of the hue difference over 360 degrees; on the circle none exceeds 180, so at most half of it counts."""
+    p_h: float = 1.0  # Weight of the hue difference over 360 degrees; at most half of it counts, because of the circle.
     p_s: float = 1.0  # Weight of the saturation difference over 100 percent.
     p_d: float = 1.0  # Weight of the relative difference of the distances to the centroids.
 
@@ -74,15 +71,11 @@ class Association(NamedTuple):
 
     pairs: tuple[tuple[int, int], ...]  # In the order in which they were chosen.
     penalties: tuple[Penalty, ...]  # Of the pairs.
-    same_class: tuple[bool, ...]
-    """True if a pair's classes agree. One-to-one matching goes on until one side is used up, so at the end it may join
-    a chair to a plant. Such a pair is never used for the fit."""
+    same_class: tuple[bool, ...]  # False for a pair of unlike classes, which is never used for the fit
     unassigned: tuple[int, ...]  # Observations without a partner.
     table: Penalty  # Every observation with every landmark, `(n_observations, n_landmarks)` arrays.
     steps: tuple[AssociationStep, ...] = ()  # The rounds of the greedy search.
-    hypotheses: tuple = ()
-    """A matcher beyond the paper may weigh whole poses against each other. Then these are they, best first, each with
-    `pose`, `covariance` and `share`."""
+    hypotheses: tuple = ()  # the poses that a matcher beyond the paper weighed, best first
     confidence: float | None = None  # How sure the best of them is, 0 to 1; None from a matcher that weighs no poses.
     reason: str | None = None  # Why the best of them should not be given out; None if it should.
     explanation: str = ""  # The reason in a sentence.

@@ -46,11 +46,11 @@ class SemanticMapError(ValueError):
 class Landmark:
     """One object of the map. Raises `SemanticMapError` for values out of range. Source: paper 2, section 2.5."""
 
-    label: str
-    x: float
+    label: str  # class, kept as its canonical label
+    x: float  # centroid, world frame, metres
     y: float
-    hue: float
-    saturation: float
+    hue: float  # mean of the whole object, degrees [0, 360), NaN for grey
+    saturation: float  # mean, percent [0, 100]
 
     def __post_init__(self):
         try:
@@ -92,8 +92,7 @@ class SemanticMap:
         self.walls = None if walls is None else _checked_walls(walls)
         self.name = str(name)
         self.labels = tuple(landmark.label for landmark in self.landmarks)
-        self.positions = _read_only([[landmark.x, landmark.y] for landmark in self.landmarks])
-        """`(n, 2)` centroids, world frame, metres."""
+        self.positions = _read_only([[landmark.x, landmark.y] for landmark in self.landmarks])  # `(n, 2)`, metres
         self.hues = _read_only([landmark.hue for landmark in self.landmarks])
         self.saturations = _read_only([landmark.saturation for landmark in self.landmarks])
         for i, first in enumerate(self.landmarks):
