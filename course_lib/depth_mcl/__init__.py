@@ -20,12 +20,7 @@ from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, Motion, propagate
-from course_lib.depth_mcl.particle_filter import (
-    effective_sample_size,
-    initial_particles,
-    resample,
-    weighted_mean_state,
-)
+from course_lib.depth_mcl.particle_filter import effective_sample_size, initial_particles, resample, weighted_mean_state
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.depth_mcl.sequence_files import SequenceError
 from course_lib.rendering.camera import DepthCamera

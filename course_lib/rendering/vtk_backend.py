@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -48,6 +49,7 @@ _NO_SHIFT_AND_SCALE = 0
 MAX_TILES = 1000
 
 
+_windows: weakref.WeakSet[vtkRenderWindow] = weakref.WeakSet()
 _process_of_the_first_window: int | None = None
 
 
@@ -63,6 +65,7 @@ def off_screen_window() -> vtkRenderWindow:
         raise OpenGLError(f"OpenGL cannot start without a display (EGL failed). {CURE}")
     window.SetOffScreenRendering(True)
     window.SetMultiSamples(0)
+    _windows.add(window)
     return window
 
 
@@ -74,6 +77,16 @@ def _require_own_process(process: int) -> None:
             'leaves the threads of OpenGL behind, and drawing would hang. Start workers with "spawn" or "forkserver" '
             '(multiprocessing.get_context("spawn")), or fork before the first renderer, or use backend="raster"'
         )
+
+
+def _leave_windows_to_the_parent() -> None:
+    """One reference too many, so that nothing in this forked child ever frees a window: that would hang."""
+    for window in _windows:
+        window.Register(None)
+
+
+if hasattr(os, "register_at_fork"):  # not on Windows, which cannot fork
+    os.register_at_fork(after_in_child=_leave_windows_to_the_parent)
 
 
 class VtkBackend:

@@ -104,11 +104,7 @@ def pair_poses(scene: Scene, gate: float = DISTANCE_GATE) -> PairPoses:
 
 
 def fit_poses(
-    start: np.ndarray,
-    places: np.ndarray,
-    targets: np.ndarray,
-    covariances: np.ndarray,
-    used: np.ndarray | None = None,
+    start: np.ndarray, places: np.ndarray, targets: np.ndarray, covariances: np.ndarray, used: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the anisotropic fits of many poses at once: poses `(h, 3)` and their covariances `(h, 3, 3)`.
 

@@ -26,14 +26,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import (
-    NOTHING_MEASURED,
-    Agreement,
-    TrackJudge,
-    TrackStatus,
-    agreement,
-    judge_refined,
-)
+from course_lib.beyond.being_lost import NOTHING_MEASURED, Agreement, TrackJudge, TrackStatus, agreement, judge_refined
 from course_lib.beyond.six_dof.covariance import (
     fused,
     in_world_and_body,

@@ -94,11 +94,8 @@ class YoloDetector:
         if "score_threshold" not in options and is_given(report):
             trained = read_json(report, "training report", DetectorError)
             threshold = trained.get("score_threshold") if isinstance(trained, dict) else None
-            if isinstance(threshold, bool) or not isinstance(threshold, (int, float)) or not 0 <= threshold <= 1:
-                raise DetectorError(
-                    f"{report} must have a score_threshold between 0 and 1; got {threshold!r}. Mend or remove the "
-                    "file, or give score_threshold yourself"
-                )
+            if type(threshold) not in (int, float) or not 0 <= threshold <= 1:
+                raise DetectorError(f"{report} must have a score_threshold between 0 and 1; got {threshold!r}")
             options["score_threshold"] = threshold
         return cls(*paths, **options)
 

@@ -15,14 +15,13 @@ import numpy as np
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, boxes_on, canonical_label
 from course_lib.spherical_stereo.matching.alignment import Alignment, camera_alignment
 from course_lib.spherical_stereo.matching.epipolar import (
-    EPIPOLAR_TOLERANCE,
     EpipolarPairs,
     allowed_by_rig,
     best_pairs,
     epipolar_pairs,
 )
 from course_lib.spherical_stereo.matching.features import check_not_swapped, find_features, inside_box
-from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, open_pair
+from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 
 MIN_FEATURES = 3  # matched features that make one object; one alone may be an accident (the paper has no number)
 
@@ -74,7 +73,6 @@ def match_objects(
     lower_image: np.ndarray,
     lower_detections: Sequence,
     rig: StereoRig,
-    tolerance: float = EPIPOLAR_TOLERANCE,
 ) -> list[ObjectMatch]:
     """Return the objects seen in both images. `match_views` says also what is left over, and why.
 
@@ -83,26 +81,18 @@ def match_objects(
     """
     upper, lower = open_pair(upper_image, lower_image)
     upper, lower = upper.replace(detections=upper_detections), lower.replace(detections=lower_detections)
-    return match_views(upper, lower, rig, tolerance).matches
+    return match_views(upper, lower, rig).matches
 
 
 def match_views(
-    upper: View,
-    lower: View,
-    rig: StereoRig,
-    tolerance: float = EPIPOLAR_TOLERANCE,
-    min_features: int = 1,
-    check_alignment: bool = False,
+    upper: View, lower: View, rig: StereoRig, min_features: int = 1, check_alignment: bool = False
 ) -> StereoMatching:
     """Pair the objects of two panoramas: same class, most AKAZE matches under the epipolar constraint, one-to-one.
 
-    tolerance: radians by which a match may miss its epipolar half-circle. min_features: how many matched features make
-    one object. check_alignment: match nothing if the cameras are turned or the images of different moments. The paper
-    asks neither. Source: paper 2, section 2.3.
+    min_features: how many matched features make one object. check_alignment: match nothing if the cameras are turned or
+    the images of different moments. The paper asks neither. Source: paper 2, section 2.3.
     """
     open_pair(upper, lower)
-    if min_features < 1:
-        raise PanoramaError(f"min_features must be at least 1; got {min_features!r}")
     boxes = boxes_on(upper, "upper"), boxes_on(lower, "lower")
     labels = [[canonical_label(d.label) for d in view.detections] for view in (upper, lower)]
     counts = np.zeros((len(boxes[0]), len(boxes[1])), dtype=int)
@@ -114,7 +104,7 @@ def match_views(
             alignment = camera_alignment(upper.features, lower.features)
             if not (alignment.of_one_moment and alignment.is_upright):
                 return StereoMatching([], [], alignment)
-        pairs = epipolar_pairs(upper.features, lower.features, tolerance)
+        pairs = epipolar_pairs(upper.features, lower.features)
         check_not_swapped(best_pairs(pairs).disparity)
         in_upper, in_lower = (
             [inside_box(view.features.keypoints, box, view.width)[index] for box in of_view]

@@ -81,10 +81,7 @@ def rotation_2d(theta: float) -> np.ndarray:
 
 
 def fit_rigid_2d(
-    source: np.ndarray,
-    target: np.ndarray,
-    weights: np.ndarray | None = None,
-    covariances: np.ndarray | None = None,
+    source: np.ndarray, target: np.ndarray, weights: np.ndarray | None = None, covariances: np.ndarray | None = None
 ) -> Pose2D:
     """Return the pose that takes the source points nearest to the target points, in the least-squares sense.
 
@@ -192,11 +189,7 @@ def fit_covariance(
 
 
 def residual_statistics(
-    pose: Pose2D,
-    source: np.ndarray,
-    target: np.ndarray,
-    noise: np.ndarray,
-    covariances: np.ndarray | None = None,
+    pose: Pose2D, source: np.ndarray, target: np.ndarray, noise: np.ndarray, covariances: np.ndarray | None = None
 ) -> Residuals:
     """Return how large the residuals r_i = R s_i + t - m_i of a fit may be, and how large they are.
 
@@ -246,10 +239,8 @@ def _checked_pairs(
 def _checked_covariances(covariances: np.ndarray, kept: np.ndarray) -> np.ndarray:
     """Return the `(n, 2, 2)` covariances of the kept pairs."""
     array = np.asarray(covariances, dtype=np.float64)
-    if array.shape != (len(kept), 2, 2):
-        raise RigidFitError(f"covariances must be one (2, 2) matrix a pair; got shape {array.shape}")
-    if not np.isfinite(array).all():
-        raise RigidFitError("covariances must be finite; got NaN or infinity")
+    if array.shape != (len(kept), 2, 2) or not np.isfinite(array).all():
+        raise RigidFitError(f"covariances must be one finite (2, 2) matrix a pair; got shape {array.shape}")
     array = array[kept]
     if not np.allclose(array, np.swapaxes(array, 1, 2)) or (np.linalg.eigvalsh(array) <= 0).any():
         raise RigidFitError("every covariance must be symmetric with positive eigenvalues (square metres)")

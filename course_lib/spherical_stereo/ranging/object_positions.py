@@ -11,7 +11,6 @@ import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, box_centre, canonical_label
 from course_lib.spherical_stereo.panorama import (
-    PanoramaError,
     StereoRig,
     View,
     azimuth_elevation,
@@ -123,8 +122,6 @@ def measure_objects(
 
     sigma_pixels: standard deviation of a box centre's u and v, pixels. Source: paper 2, section 2.4.
     """
-    if not sigma_pixels >= 0:
-        raise PanoramaError(f"sigma_pixels must not be negative; got {sigma_pixels!r}")
     matches = sorted(matches, key=lambda m: m.upper)
     pairs = [(match.upper, match.lower) for match in matches]
     noise = Noise(2 * np.pi / upper.width * sigma_pixels, 0.0, 0.0)

@@ -63,17 +63,15 @@ class Landmark:
             if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
                 raise SemanticMapError(f"{name} of this {self.label} must be a number; got {value!r}")
             object.__setattr__(self, name, float(value))
-        if not (math.isfinite(self.x) and math.isfinite(self.y)):
-            raise SemanticMapError(f"x and y of this {self.label} must be finite metres; got {self.x}, {self.y}")
-        if not (math.isnan(self.hue) or 0 <= self.hue < 360):
-            raise SemanticMapError(
-                f"hue of this {self.label} must lie in [0, 360) degrees, or be NaN for grey (null in JSON, empty in "
-                f"CSV); got {self.hue}"
-            )
-        if not 0 <= self.saturation <= 100:
-            raise SemanticMapError(
-                f"saturation of this {self.label} must lie in [0, 100] percent; got {self.saturation}"
-            )
+        hue_exists = math.isnan(self.hue) or 0 <= self.hue < 360
+        rules = {
+            "x and y must be finite metres": math.isfinite(self.x) and math.isfinite(self.y),
+            "hue must lie in [0, 360) degrees (grey: null in JSON, empty in CSV)": hue_exists,
+            "saturation must lie in [0, 100] percent": 0 <= self.saturation <= 100,
+        }
+        for rule, holds in rules.items():
+            if not holds:
+                raise SemanticMapError(f"{rule}; got {self}")
 
 
 class SemanticMap:
