@@ -165,11 +165,9 @@ class DepthRenderer:
     def render_points(self, points: np.ndarray) -> np.ndarray:
         """Depth image `(H, W)` float32 metres of the camera's own points; NaN where none fell.
 
-        points: `(..., 3)` metres in the optical frame; NaN points are no measurement. They go through the projection
-        and the z-buffer that the particles' views go through, so that both images obey one rule: of several points on
-        one pixel the nearest counts, and what lies outside near and far is not seen.
-        Z_t = {z_t^1, ..., z_t^m}. `depth_image_from_points` is the same in NumPy.
-        Raises `ValueError` for a wrong shape, `RendererClosedError` after `close()`. Source: paper 1, section 3.3.2.
+        points: `(..., 3)` metres in the optical frame; NaN points are no measurement. They go through the z-buffer of
+        the particles' views, so both images obey one rule. `depth_image_from_points` is the same in NumPy. Raises
+        `ValueError` for a wrong shape, `RendererClosedError` after `close()`. Source: paper 1, section 3.3.2.
         """
         backend = self._backend()
         points = np.asarray(points, dtype=np.float64)

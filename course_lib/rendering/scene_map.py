@@ -31,11 +31,9 @@ class SceneMapWarning(UserWarning):
 class SceneMap:
     """Triangles in the world frame.
 
-    vertices: `(V, 3)` float64 metres. faces: `(F, 3)` int32 vertex indices; the winding does not matter, both sides of
-    a triangle are seen. bounds: `(2, 3)`, least and greatest coordinates. origin: `(3,)` float64, the median of
-    the triangles' corners: where most of the map is, however far away a stray triangle lies (`anchor`).
-    Raises `SceneMapError` (a `ValueError`) for an empty mesh, no faces, vertices that are not finite, a triangle too
-    far away to be part of a building, or indices out of range. Triangles without area are dropped.
+    vertices: `(V, 3)` float64 metres. faces: `(F, 3)` int32 vertex indices; both sides of a triangle are seen. bounds:
+    `(2, 3)`. origin: `(3,)`, the median of the triangles' corners. Triangles without area are dropped. Raises
+    `SceneMapError` (a `ValueError`) for vertices or faces that make no map.
     """
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
@@ -76,10 +74,9 @@ class SceneMap:
         """Return the map in any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
 
         drop_far: triangles farther than `MAX_DISTANCE` from the middle of the map are left out; else they are an error.
-        Warns (`SceneMapWarning`) of what looks like millimetres, like a stray part, or like coordinates that the file
-        holds too coarsely. Raises `FileNotFoundError` where there is no file, `SceneMapError` where it cannot be read,
-        holds no triangles, or fewer than its own header announces. An OBJ file has no header, so one that was cut off
-        at the end of a line goes unnoticed.
+        Warns (`SceneMapWarning`) of what looks like millimetres or like a stray part. Raises `FileNotFoundError`, or
+        `SceneMapError` for a file that cannot be read or holds fewer triangles than it announces. An OBJ announces
+        nothing.
         """
         vertices, faces = read_mesh(path)
         try:

@@ -46,18 +46,14 @@ class LocalizerError(ValueError):
 class SemanticLocalizer:
     """Pose of a spherical stereo camera on a semantic map.
 
-    rig: baseline and heights. semantic_map: where things are. detector: anything with `detect(image_bgr)` that gives
-    detections, needed by `localize` only. association: "greedy" (the paper's), or a function that is called as
-    `associate_greedy` is, for example `associate_consistent`.
-    distance: "box_centre", the paper's way, or "disparity", from the features matched inside the boxes. weights and
-    distance_term: of eq. (1). weighted_fit: False, the paper's way, counts all pairs alike; True weights each by the
-    covariance of its observation. image_size: (width, height) of the panoramas that detections come from if their
-    images are not given.
-    reject_implausible: False is the paper's method. True asks more: the cameras are not turned against each other, and
-    their images are of one moment (`camera_alignment`); an object has at least three matched features and is nearer
-    than `max_range`; the residuals can be those of a right pose (`residual_statistics`).
-    Raises `LocalizerError` for a name that does not exist, `PanoramaError` for a size that no panorama has.
-    Source: paper 2, figure 2.
+    detector: anything with `detect(image_bgr)`, needed by `localize` only. association: "greedy" (the paper's), or a
+    function that is called as `associate_greedy` is. distance: "box_centre", the paper's way, or "disparity", from the
+    matched features. weights and distance_term: of eq. (1). weighted_fit: True weights each pair by the covariance of
+    its observation; the paper counts all alike. image_size: (width, height) of panoramas whose images are not given.
+    reject_implausible: False is the paper's method; True also asks that the cameras are aligned and their images of one
+    moment, that an object has three matched features and is nearer than `max_range`, and that the residuals can be
+    those of a right pose. Raises `LocalizerError` for a name that does not exist, `PanoramaError` for a size that no
+    panorama has. Source: paper 2, figure 2.
     """
 
     def __init__(
@@ -116,11 +112,9 @@ class SemanticLocalizer:
     ) -> Localization:
         """Return the pose from the detections of two panoramas and their matches: section 2.4 and on.
 
-        matches: `ObjectMatch`es, or pairs of indices (upper, lower), which carry no features and so serve "box_centre"
-        only. size: (width, height) of the panoramas in pixels; None: the localizer's `image_size`.
-        Raises `DetectionError` for matches that name no detection, or one twice, or join two classes, or lack features
-        that are asked for, and for boxes that do not fit on a panorama of that size; `PanoramaError` for a size that no
-        panorama has. Source: paper 2, sections 2.4 to 2.6.
+        matches: `ObjectMatch`es, or pairs of indices (upper, lower), which serve "box_centre" only. size: (width,
+        height) of the panoramas; None: `image_size`. Raises `DetectionError` for matches and boxes that cannot be,
+        `PanoramaError` for a size that no panorama has. Source: paper 2, sections 2.4 to 2.6.
         """
         size = self.image_size if size is None else size
         upper, lower = (View.of_detections(side, size) for side in (upper_detections, lower_detections))

@@ -29,7 +29,7 @@ RIVAL_SCALE = 0.02  # of raw score: a rival that is worse by this much is e time
 def pose_information(measured: np.ndarray, image: np.ndarray, camera: DepthCamera) -> np.ndarray:
     """Return the inverse covariance `(6, 6)` of a pose, along and about the camera's axes, from its image alone.
 
-    I = n (sum w J K' + K J') / (2 sum w s^2), s^2 = sum w r^2 / sum w
+    I = n (sum w J K' + K J') / (2 sum w s^2),    s^2 = sum w r^2 / sum w
 
     J = (n, p x n) with the normals n of the map, K = (m, p x m) with the normals m of the measured surface; roughness
     that only one of them shows adds nothing on average. A direction u below `SIGNIFICANT` sqrt(sum (w J.u K.u)^2) has

@@ -49,12 +49,10 @@ class YoloDetector:
     ) -> None:
         """Check the three files against each other and load the network.
 
-        input_size: (width, height) in pixels, multiples of 32, instead of the cfg's. YOLOv4 as published has a square
-        input, in which a panorama fills two fifths; (1280, 512) suits better.
-        thresholds: score_threshold (0.5), below which detections are left out; iou_threshold (0.45, Darknet's value)
-        for suppression within a class; use_seam_extension (True): False shows what happens at the seam without it.
-        Raises `DetectorError` for a file that is missing, malformed or does not fit, and a threshold outside [0, 1].
-        Source: paper 2, section 2.2.
+        input_size: (width, height) in pixels, multiples of 32, instead of the cfg's; (1280, 512) suits a panorama.
+        thresholds: score_threshold (0.5); iou_threshold (0.45, Darknet's) for suppression within a class;
+        use_seam_extension (True). Raises `DetectorError` for a file that is missing or does not fit, and a threshold
+        outside [0, 1]. Source: paper 2, section 2.2.
         """
         class_names = read_names(names)
         network = DarknetNetwork(cfg, weights, input_size)

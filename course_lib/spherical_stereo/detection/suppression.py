@@ -47,7 +47,7 @@ def vote_on_boxes(boxes: np.ndarray, scores: np.ndarray, classes: np.ndarray, ke
     """Return the kept boxes (k, 4), each the mean of those of its class that nearly coincide with it, weighted by
     score.
 
-    b_k = sum_i s_i b_i / sum_i s_i, over all i with IoU(b_i, b_k) >= VOTE_IOU, s_i >= VOTE_SCORE and k itself.
+    b_k = sum_i s_i b_i / sum_i s_i,  over all i with IoU(b_i, b_k) >= VOTE_IOU, s_i >= VOTE_SCORE and k itself.
     """
     if len(kept) == 0:
         return boxes[kept]

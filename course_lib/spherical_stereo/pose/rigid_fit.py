@@ -88,13 +88,9 @@ def fit_rigid_2d(
     min over R, t of sum_i w_i |R s_i + t - m_i|^2:
     U D V^T = svd(sum_i w_i (m_i - m_G)(s_i - s_G)^T),  R = U diag(1, det U det V) V^T,  t = m_G - R s_G
 
-    source: `(n, 2)` body frame, target: `(n, 2)` world, metres. weights: `(n,)`, not negative; a pair of weight 0 is
-    left out. covariances: `(n, 2, 2)` of the source points in the body frame; then sum_i r_i^T (R C_i R^T)^-1 r_i is
-    made small by Gauss-Newton steps from the closed form. Each step keeps R C_i R^T of the step before, so the result
-    is close to the minimum, not exactly there. The paper uses neither weights nor covariances.
-    Raises `RigidFitError`, whose reason is `TOO_FEW_PAIRS`, `COINCIDENT`, `MIRRORED` (three or more pairs that are no
-    line, and the fit with a reflection clearly better), `UNDETERMINED`, or `NO_POINTS` for shapes that do not fit and
-    for NaN. Source: paper 2, section 2.6.
+    source: `(n, 2)` body frame, target: `(n, 2)` world, metres. weights: `(n,)`, 0 leaves a pair out. covariances: `(n,
+    2, 2)` of the source points, body frame; then Gauss-Newton steps make sum_i r_i^T (R C_i R^T)^-1 r_i small. The
+    paper uses neither. Raises `RigidFitError`, whose reason is one of the names above. Source: paper 2, section 2.6.
     """
     source, target, w, covariances = _checked_pairs(source, target, weights, covariances)
     start_weights = w if covariances is None else w / np.trace(covariances, axis1=1, axis2=2)
@@ -169,7 +165,7 @@ def fit_covariance(
 ) -> np.ndarray:
     """Return the covariance `(3, 3)` of the fitted [x, y, theta]: metres and radians, squared.
 
-    C = A^-1 (sum J^T W N W J) A^-1, A = sum J^T W J: J the residuals' derivative, W what the fit weighed with
+    C = A^-1 (sum J^T W N W J) A^-1,  A = sum J^T W J:  J the residuals' derivative, W what the fit weighed with
 
     noise: `(n, 2, 2)` covariances N of the source points, body frame. Without it they are the covariances that the fit
     used. Without both it is one variance for all, from the residuals: sum w |r|^2 / (2 n - 3). Beyond the paper.
@@ -193,7 +189,7 @@ def residual_statistics(
 ) -> Residuals:
     """Return how large the residuals r_i = R s_i + t - m_i of a fit may be, and how large they are.
 
-    r = (I - J A^-1 J^T W) e, e ~ N: expected_rms^2 = trace cov(r) / n, chi_square = min_x (r - J x)^T N^-1 (r - J x)
+    r = (I - J A^-1 J^T W) e, e ~ N:  expected_rms^2 = trace cov(r) / n,  chi_square = min_x (r - J x)^T N^-1 (r - J x)
 
     with J, W, A and the arguments as in `fit_covariance`, the map taken as exact. Beyond the paper.
     """

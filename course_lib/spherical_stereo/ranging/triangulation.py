@@ -96,10 +96,10 @@ def triangulation_covariance(
 ) -> np.ndarray:
     """Return covariances `(..., 3, 3)` of X = d x_hat, square metres, from noise of the two directions (first order).
 
-    C = J diag(s_a^2, s_e^2, s_e^2) J' with J the derivative of
+    C = J diag(s_a^2, s_e^2, s_e^2) J'  with J the derivative of
 
-    X(a, e_u, e_l) = rho (cos a, sin a, tan e_u), rho = baseline / (tan e_l - tan e_u) d rho / d e_u = rho^2 sec^2 e_u /
-    baseline, d rho / d e_l = -rho^2 sec^2 e_l / baseline
+    X(a, e_u, e_l) = rho (cos a, sin a, tan e_u),      rho = baseline / (tan e_l - tan e_u)
+    d rho / d e_u = rho^2 sec^2 e_u / baseline,        d rho / d e_l = -rho^2 sec^2 e_l / baseline
 
     sigma_azimuth: of the upper camera's azimuth, sigma_elevation: of either camera's elevation, radians, independent.
     Source: paper 2, section 2.4.

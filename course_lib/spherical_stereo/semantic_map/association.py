@@ -105,13 +105,10 @@ def penalty(
     penalty = p_obj + p_h dh / 360 + p_s ds / 100 + p_d (|dx_c| - |dx_m|) / |dx_m|
 
     p_obj counts only if the classes differ. dh: degrees on the circle, at most 180, so its term is at most half of p_h;
-    if either side is grey, it is 0. ds: percent. dx_c = x_c - x_G.camera in the body frame, dx_m = x_m - x_G.map in the
-    world, horizontal, metres; the divisor is at least `MIN_DISTANCE`.
-    distance_term: "absolute" takes the absolute value of the distance term. "as_printed" does not, so that the term
-    falls below zero for an object that looks too near the centroid, and the nearer it looks the better it fits.
-    observed_centroid, map_centroid: `(2,)`. The fields of observed and landmark may be arrays that broadcast, and then
-    so do the terms. Raises `AssociationError` for weights, centroids, options, labels, positions and colours that
-    cannot be. Source: paper 2, eq. (1).
+    0 if either side is grey. ds: percent. dx_c, dx_m: horizontal, metres, from the centroids; the divisor is at least
+    `MIN_DISTANCE`. distance_term: "absolute" takes the absolute value of the distance term; "as_printed" falls below
+    zero for an object that looks too near the centroid. Fields may be arrays that broadcast, and then so do the terms.
+    Raises `AssociationError` for values that cannot be. Source: paper 2, eq. (1).
     """
     _check_options(weights, distance_term)
     observed_centroid, map_centroid = _centroid(observed_centroid, "observed"), _centroid(map_centroid, "map")
@@ -186,10 +183,8 @@ def associate_greedy(
 ) -> Association:
     """Pair observations with landmarks as the paper does: take the cheapest open combination until a side is used up.
 
-    A choice is never taken back. Among equal penalties (within `TIE`) the first observation is taken, then the first
-    landmark, so that one input has one result.
-    No observations give an association without pairs. Raises `AssociationError` as `penalty_table` does.
-    Source: paper 2, section 2.5.
+    Among equal penalties (within `TIE`) the first observation is taken, then the first landmark. Raises
+    `AssociationError` as `penalty_table` does. Source: paper 2, section 2.5.
     """
     table = penalty_table(observations, semantic_map, weights, distance_term)
     open_cost = table.total.copy()

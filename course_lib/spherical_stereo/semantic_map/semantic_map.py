@@ -77,10 +77,8 @@ class Landmark:
 class SemanticMap:
     """Landmarks, and for drawings the walls around them. It never changes once made.
 
-    landmarks: at least one. walls: `(k, 2)` corners of the room in order, world frame, metres, the last joined to the
-    first. name: of the map in figures and results.
-    Raises `SemanticMapError` for no landmarks, one object written twice (same class, centroids within 1 cm), or
-    walls that are not at least three finite corners. Source: paper 2, section 2.5.
+    walls: `(k, 2)` corners of the room in order, world frame, metres. Raises `SemanticMapError` for no landmarks, one
+    object written twice, or walls that are not at least three finite corners. Source: paper 2, section 2.5.
     """
 
     def __init__(self, landmarks: Sequence[Landmark], walls: np.ndarray | None = None, name: str = ""):
@@ -115,10 +113,8 @@ class SemanticMap:
 
     @classmethod
     def load(cls, path: str | Path) -> SemanticMap:
-        """Read the map in a `.json` or `.csv` file (format: see the module).
-
-        Raises `SemanticMapError`, with the file's name, for a file that cannot be read, is not JSON or CSV, has another
-        version, lacks fields, or holds values that no map may have.
+        """Read the map in a `.json` or `.csv` file (format: see the module). Raises `SemanticMapError` with the file's
+        name.
         """
         path = Path(path)
         if path.suffix.lower() not in (".json", ".csv"):
