@@ -9,6 +9,7 @@ guarded_frames, guarded_depth, guarded_stereo
                  sensor trouble: whether a frame can be used, and the outcome of each
 """
 
+# ruff: noqa: F401 - the public names
 from course_lib.beyond.guarded_depth import GuardedFrame, GuardedLocalizer
 from course_lib.beyond.guarded_stereo import GuardedPair, GuardedRig
 from course_lib.beyond.look_alikes.consistent import associate_consistent, rank_poses
@@ -19,24 +20,3 @@ from course_lib.beyond.lost_and_found.global_search import GlobalSearch, PoseCan
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.beyond.several_views import Motion, SemanticTracker, Track
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
-
-__all__ = [
-    "AnnealedEstimate",
-    "AnnealedLocalizer",
-    "Evidence",
-    "GlobalSearch",
-    "GuardedFrame",
-    "GuardedLocalizer",
-    "GuardedPair",
-    "GuardedRig",
-    "Motion",
-    "PoseCandidate",
-    "PoseCandidates",
-    "PoseHypothesis",
-    "RecoveringLocalizer",
-    "SemanticTracker",
-    "Track",
-    "associate_consistent",
-    "associate_hungarian",
-    "rank_poses",
-]

@@ -1,13 +1,8 @@
 """Is the filter lost? This module alone decides whether a pose is "tracked", "doubtful" or "lost".
 
-The weights of a particle filter cannot say it, because they are normalized among the particles. Three things can: how
-a frame's image agrees with the map as seen from the estimate (`agreement`); the covariance, which is wide along a bare
-wall, or if another pose fits as well (`is_known`); and the frames before, because walls look alike and one good image
-after lost frames is no proof (`Debt`).
-
-Nothing here knows the truth, and nothing looks ahead. `judge_track` is for the paper's filter, whose estimate may lag
-by centimetres. `judge_refined` and `TrackJudge` are for refined poses, which fit as well as they can. None of them sees
-a pose that is wrong where the map looks alike.
+Weights cannot say it, because they are normalized. Three things can: how the image agrees with the map (`agreement`);
+the covariance (`is_known`); and the frames before, because walls look alike (`Debt`). Nothing here knows the truth or
+looks ahead, and none of it sees a pose that is wrong where the map looks alike.
 """
 
 from __future__ import annotations
@@ -48,20 +43,15 @@ CONFIRMED = 3  # good frames that make up for any number of bad ones
 class Agreement(NamedTuple):
     """How a measured image agrees with the map as seen from one pose; shares of the measured pixels."""
 
-    pixels: int
-    """How many pixels were measured; with none, the shares are NaN."""
-    score: float
-    """Eq. (8) divided by the number of pixels: 1 for perfect agreement."""
-    agreeing: float
-    """Within `ALPHA`, 0.1 m, of the map."""
-    through: float
-    """More than `ALPHA` behind the map. A wrong pose does this, but a person or a moved chair cannot."""
+    pixels: int  # How many pixels were measured; with none, the shares are NaN.
+    score: float  # Eq. (8) divided by the number of pixels: 1 for perfect agreement.
+    agreeing: float  # Within `ALPHA`, 0.1 m, of the map.
+    through: float  # More than `ALPHA` behind the map. A wrong pose does this, but a person or a moved chair cannot.
 
     @property
     def support(self) -> float:
-        """What speaks for the pose less what speaks against it, agreeing - through: -1 to 1, NaN without a pixel.
-
-        Pixels in front of the map count for neither, because the map may lack what stands there; nor do holes in it.
+        """Return agreeing - through: -1 to 1, NaN without a pixel. Pixels in front of the map and holes in it do not
+        count.
         """
         return self.agreeing - self.through
 
@@ -75,10 +65,7 @@ NOTHING_MEASURED = Agreement(0, np.nan, np.nan, np.nan)
 
 
 def agreement(measured: np.ndarray, simulated: np.ndarray) -> Agreement:
-    """Compare a measured image `(H, W)` with the image `(H, W)` of the map from one pose; metres.
-
-    measured: NaN = no measurement; simulated: `inf` = nothing hit. Raises `DepthImageError` as `likelihood` does.
-    """
+    """Compare a measured image `(H, W)`, NaN = no measurement, with the map's image from one pose, `inf` = a miss."""
     valid, images = paired_pixels(measured, np.asarray(simulated)[None])
     pixels = int(valid.sum())
     if pixels == 0:
@@ -93,10 +80,7 @@ def agreement(measured: np.ndarray, simulated: np.ndarray) -> Agreement:
 
 
 def sigmas(covariance: np.ndarray) -> np.ndarray:
-    """Return the standard deviations `(2,)` of position and rotation along the least known direction, metres, radians.
-
-    covariance: `(6, 6)` of a pose.
-    """
+    """Return the standard deviations `(2,)` of position and rotation along the least known direction, m and rad."""
     return np.sqrt([np.linalg.eigvalsh(part)[-1] for part in (covariance[:3, :3], covariance[3:, 3:])])
 
 
@@ -124,9 +108,8 @@ class Debt:
 def judge_track(agreements: Sequence[Agreement]) -> list[TrackStatus]:
     """Return the status of each frame of the paper's filter, from the frames so far.
 
-    A frame is lost if the mean support of the last three frames is below `LOST_SUPPORT`. It is tracked if this mean
-    reaches `TRACKED_SUPPORT`; but once lost, three frames in a row must reach `RECOVERED_SUPPORT` first. All other
-    frames are doubtful, and so is a frame with hardly any measurement.
+    The mean support of the last three frames decides. Once lost, three frames in a row must reach `RECOVERED_SUPPORT`
+    before a frame is tracked again.
     """
     statuses, lost, good_frames = [], False, 0
     for index, frame in enumerate(agreements):
@@ -145,8 +128,7 @@ def judge_track(agreements: Sequence[Agreement]) -> list[TrackStatus]:
 def judge_refined(frame: Agreement) -> TrackStatus:
     """Return the status of a *refined* pose from its own image: lost if agreeing - 3 through is below `REFINED_LOST`.
 
-    If measurements still lie behind the map after refinement, where no light comes from, the pose is wrong, however
-    much else agrees. With hardly any pixel it is doubtful.
+    If measurements still lie behind the map after refinement, the pose is wrong, however much else agrees.
     """
     if frame.pixels < MIN_PIXELS:
         return "doubtful"
@@ -172,8 +154,7 @@ class TrackJudge:
     def judge(self, image: TrackStatus, agreement: Agreement, covariance: np.ndarray, has_rivals: bool) -> TrackStatus:
         """Return a frame's status; called once per frame. image: `judge_image` of it. covariance: `(6, 6)`.
 
-        A frame is lost if its image says so, or if the image is good but the pose is not known. After lost frames it
-        stays lost until the debt of good frames without a rival is paid.
+        After lost frames it stays lost until the debt of good frames without a rival is paid.
         """
         status = "lost" if image == "tracked" and not is_known(covariance) else image
         if status == "lost":

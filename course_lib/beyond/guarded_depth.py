@@ -5,10 +5,8 @@
     for depth, time in recording:
         frame = localizer.step(depth, time)       # frame.outcome, frame.estimate
 
-A frame at fault (guarded_frames.py) is not weighed. The filter moves its particles as if nothing had been measured, so
-the cloud grows while the camera goes on unseen. For frames that never came the filter is moved once each, and for a
-frame out of order not at all. After faults, as many good frames are owed before a pose is "tracked" (`Debt`). If no
-frame is at fault, the filter does exactly what it does without a guard.
+A frame at fault is not weighed: the particles move as if nothing had been measured. After faults, as many good frames
+are owed before a pose is "tracked". If no frame is at fault, the filter does exactly what it does without a guard.
 """
 
 from __future__ import annotations
@@ -28,27 +26,33 @@ from course_lib.beyond.being_lost import (
     judge_track,
 )
 from course_lib.beyond.guarded_frames import Fault, FrameCheck
-from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer, checked_image
+from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
+from course_lib.depth_mcl.likelihood import checked_image
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
 
 Outcome = TrackStatus | Fault | Literal["no image"]
 OUTCOMES: tuple[Outcome, ...] = (
-    "tracked", "doubtful", "lost",
-    "no image", "out of order", "repeated", "no return", "saturated", "noise",
-    "half covered", "few returns", "exposure jump",
-)  # fmt: skip
-"""What becomes of a frame: it is used, and its pose is one of the first three; or it never came; or it is not used."""
+    "tracked",
+    "doubtful",
+    "lost",
+    "no image",
+    "out of order",
+    "repeated",
+    "no return",
+    "saturated",
+    "noise",
+    "half covered",
+    "few returns",
+    "exposure jump",
+)  # fmt: skip - used, with one of the first three; or it never came; or not used
 
 
 class GuardedFrame(NamedTuple):
     """What became of a frame that arrived."""
 
-    outcome: Outcome
-    """Only a "tracked" pose can be relied on."""
-    estimate: Estimate | AnnealedEstimate | None
-    """The filter's latest estimate. For a frame out of order, the previous one; None if there is no previous one."""
-    missed: tuple[Estimate | AnnealedEstimate, ...]
-    """One for every frame that should have come before this one ("no image"): where the camera may have been."""
+    outcome: Outcome  # Only a "tracked" pose can be relied on.
+    estimate: Estimate | AnnealedEstimate | None  # the latest; for a frame out of order, the previous one
+    missed: tuple[Estimate | AnnealedEstimate, ...]  # one for every frame that should have come before ("no image")
 
 
 class GuardedLocalizer:
@@ -75,10 +79,7 @@ class GuardedLocalizer:
         self._debt = Debt()
 
     def step(self, depth: np.ndarray, time: float | None = None) -> GuardedFrame:
-        """Return what becomes of a depth image `(H, W)` in metres (NaN = no measurement), taken at `time` (seconds).
-
-        Raises `DepthImageError` for an image of another size, `ValueError` for a time that is not finite.
-        """
+        """Return what becomes of a depth image `(H, W)` in metres (NaN = no measurement), taken at `time` (seconds)."""
         depth = checked_image(depth, self._camera)
         fault, n_missed = self._check.look(depth, time)
         missed = tuple(self._move() for _ in range(n_missed))

@@ -1,11 +1,8 @@
 """A look at a sensor's frame before it is used: is it a new one, and is it an image of the world at all?
 
-A particle filter believes every pixel. A repeated image pulls it back to where the camera was; an image of a single
-distance, or of noise, pulls it anywhere. So we ask each frame four questions that need no map. `FrameOrder` (for both
-methods) asks whether it is later than the last frame and another image. `FrameCheck` asks whether enough pixels
-measured something; whether they have more than one value and no noise; and whether the share of returns, also of each
-half, and the roughness are those of the last good frames. Such a change may be the world's, because somebody steps
-before the camera or it turns to a far wall. So what lasts longer than `PATIENCE` frames is taken as the world.
+A particle filter believes every pixel, so each frame is asked questions that need no map. `FrameOrder`: is it later
+than the last frame, and another image? `FrameCheck`: did enough pixels measure something, of more than one value and
+without noise, as in the last good frames? What lasts longer than `PATIENCE` frames is taken as the world.
 """
 
 from __future__ import annotations
@@ -40,18 +37,12 @@ _MIN_HALF = 0.2  # share of returns that a half must usually have before we miss
 class FrameStatus(NamedTuple):
     """What is known of a frame before it is used."""
 
-    fault: Fault | None
-    """None if it is good."""
-    missed: int
-    """How many frames should have come since the last one in order, and did not."""
+    fault: Fault | None  # None if it is good.
+    missed: int  # How many frames should have come since the last one in order, and did not.
 
 
 class FrameOrder:
-    """Remembers the last frame's time and images. Drivers stumble: they hand out old images, or skip some.
-
-    period: seconds from one frame to the next. Without it (None), or without times, missed frames are not counted.
-    Raises `ValueError` for a period that is not positive and finite.
-    """
+    """Remembers the last frame's time and images. period: seconds from frame to frame, or None: no frame is missed."""
 
     def __init__(self, period: float | None = None) -> None:
         if period is not None and not (np.isfinite(period) and period > 0):
@@ -64,9 +55,8 @@ class FrameOrder:
     def look(self, images: tuple[np.ndarray, ...], time: float | None = None) -> FrameStatus:
         """Return a frame's status; called once for each frame that arrives.
 
-        images: of all cameras of the sensor. A frame is "repeated" if *all* of them are those of the last frame, value
-        for value, because a real sensor's noise never comes twice. time: seconds, on any clock; None if unknown.
-        Raises `ValueError` for a time that is not finite.
+        images: of all cameras of the sensor. "repeated": all of them are those of the last frame, value for value.
+        time: seconds, on any clock; None if unknown.
         """
         if time is not None and not np.isfinite(time):
             raise ValueError(f"a frame's time must be a finite number of seconds, or None; got {time!r}")
@@ -97,14 +87,10 @@ class FrameOrder:
 class Looks(NamedTuple):
     """What a depth image looks like, without a map."""
 
-    share: float
-    """Share of the pixels that measured something."""
-    halves: np.ndarray
-    """`(4,)` the same of the upper, lower, left and right half."""
-    most_of_one_value: float
-    """Share of the returns that have the commonest value."""
-    roughness: float
-    """Median over neighbours in a row of |difference| / distance; NaN if no two neighbours measured."""
+    share: float  # Share of the pixels that measured something.
+    halves: np.ndarray  # `(4,)` the same of the upper, lower, left and right half.
+    most_of_one_value: float  # Share of the returns that have the commonest value.
+    roughness: float  # Median over neighbours in a row of |difference| / distance; NaN if no two neighbours measured.
 
 
 def looks_of(depth: np.ndarray, near: float, far: float) -> Looks:
@@ -126,10 +112,7 @@ def looks_of(depth: np.ndarray, near: float, far: float) -> Looks:
 
 
 class FrameCheck:
-    """Looks at every frame of one depth camera, in the order in which they arrive.
-
-    near, far: what the camera can measure, metres. period: as in `FrameOrder`.
-    """
+    """Looks at every frame of one depth camera, in their order. near, far: metres. period: as in `FrameOrder`."""
 
     def __init__(self, near: float, far: float, period: float | None = None) -> None:
         self.near, self.far = float(near), float(far)
@@ -138,10 +121,7 @@ class FrameCheck:
         self._changed = 0
 
     def look(self, depth: np.ndarray, time: float | None = None) -> FrameStatus:
-        """Return the status of a depth image `(H, W)` in metres, taken at `time` (seconds; None if unknown).
-
-        Raises `ValueError` for a time that is not finite.
-        """
+        """Return the status of a depth image `(H, W)` in metres, taken at `time` (seconds; None if unknown)."""
         order = self._order.look((np.asarray(depth),), time)
         if order.fault == "out of order":
             return order

@@ -1,11 +1,8 @@
 """Pairs of panoramas from a rig that moves: each pair is checked first, and gets an outcome.
 
-    guarded = GuardedRig(localizer, period=1.0)
-    for upper, lower, time in pairs:
-        outcome = guarded.localize(upper, lower, time).outcome      # "ok", or why there is no pose
-
-The localizer itself knows one pair only. Here a pair is named that came twice or out of order. A faulty pair changes
-nothing for the pairs after it.
+guarded = GuardedRig(localizer, period=1.0)
+for upper, lower, time in pairs:
+    outcome = guarded.localize(upper, lower, time).outcome      # "ok", or why there is no pose
 """
 
 from __future__ import annotations
@@ -19,20 +16,15 @@ from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.features import SwappedImagesError
 from course_lib.spherical_stereo.pose.localization import OK, SWAPPED, Localization
 
-NO_IMAGE = "no image"
-"""The outcome of a pair that was due and never came."""
+NO_IMAGE = "no image"  # The outcome of a pair that was due and never came.
 
 
 class GuardedPair(NamedTuple):
     """The outcome of a pair."""
 
-    outcome: str
-    """ "ok"; "out of order" or "repeated" (guarded_frames.py); or one of the reasons of `pose.localization` and of the
-    fit why there is no pose."""
-    localization: Localization | None
-    """None if the pair was not used."""
-    missed: int
-    """Pairs that should have come before this one, and did not."""
+    outcome: str  # "ok"; "out of order" or "repeated"; or a reason why there is no pose (`pose.localization`)
+    localization: Localization | None  # None if the pair was not used.
+    missed: int  # Pairs that should have come before this one, and did not.
 
 
 class GuardedRig:
@@ -45,8 +37,7 @@ class GuardedRig:
     def localize(self, upper_image: np.ndarray, lower_image: np.ndarray, time: float | None = None) -> GuardedPair:
         """Return the outcome of two panoramas, taken at `time` (seconds; None: unknown).
 
-        In a stream exchanged images are an outcome, because cables can be exchanged. Raises `PanoramaError` for images
-        that are no pair of panoramas, `ValueError` for a time that is not finite.
+        In a stream exchanged images are an outcome, because cables can be exchanged.
         """
         frame = self._order.look((np.asarray(upper_image), np.asarray(lower_image)), time)
         if frame.fault is not None:

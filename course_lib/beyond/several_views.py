@@ -30,42 +30,31 @@ from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-CARRIED = 10
-"""Hypotheses that a belief keeps."""
-ELSEWHERE = 1e-3
-"""Probability that between two views the rig was carried anywhere: what lets a belief that is wrong be given up."""
-REACH_M, REACH_RAD = 0.5, np.deg2rad(20.0)
-"""Standard deviations of a step in each direction, and of a turn, when nothing else is known of them."""
+CARRIED = 10  # Hypotheses that a belief keeps.
+ELSEWHERE = 1e-3  # probability that between two views the rig was carried anywhere, so that a belief can be given up
+REACH_M, REACH_RAD = 0.5, np.deg2rad(20.0)  # standard deviations of a step in each direction, and of a turn, if unknown
 
 
 class Motion(NamedTuple):
-    """How the rig moved since the view before, in the body frame it had then: metres, metres, radians counterclockwise.
-
-    covariance: `(3, 3)` of the three.
-    """
+    """How the rig moved since the view before, in the body frame it had then: metres and radians, counterclockwise."""
 
     forward: float
     left: float
     turn: float
-    covariance: np.ndarray
+    covariance: np.ndarray  # `(3, 3)` of the three
 
 
-UNKNOWN_MOTION = Motion(0.0, 0.0, 0.0, np.diag([REACH_M, REACH_M, REACH_RAD]) ** 2)
-"""No odometry: it moved some way, but not far."""
+UNKNOWN_MOTION = Motion(0.0, 0.0, 0.0, np.diag([REACH_M, REACH_M, REACH_RAD]) ** 2)  # no odometry
 
 
 class CarriedPose(NamedTuple):
-    """One hypothesis of the belief.
+    """One hypothesis of the belief."""
 
-    mean: `(3,)` [x, y, theta], with its covariance `(3, 3)`. log_weight: nats. view: what it makes of the last view.
-    n_matches: in all the views that it has explained.
-    """
-
-    mean: np.ndarray
-    covariance: np.ndarray
-    log_weight: float
-    view: PoseHypothesis
-    n_matches: int = 0
+    mean: np.ndarray  # `(3,)` [x, y, theta]
+    covariance: np.ndarray  # `(3, 3)`
+    log_weight: float  # nats
+    view: PoseHypothesis  # what it makes of the last view
+    n_matches: int = 0  # in all the views that it has explained
 
 
 class Belief(NamedTuple):
@@ -77,18 +66,14 @@ class Belief(NamedTuple):
 
 
 class Track(NamedTuple):
-    """The answer after a view.
+    """The answer after a view."""
 
-    pose: of the last view, None if unable. confidence: 0 to 1. covariance: `(3, 3)`. alternatives: all poses that are
-    believed, with their shares, best first.
-    """
-
-    pose: Pose2D | None
+    pose: Pose2D | None  # of the last view; None if unable
     status: Status
     reason: str | None
-    confidence: float
-    covariance: np.ndarray | None
-    alternatives: tuple[tuple[Pose2D, float], ...]
+    confidence: float  # 0 to 1
+    covariance: np.ndarray | None  # `(3, 3)`
+    alternatives: tuple[tuple[Pose2D, float], ...]  # all poses that are believed, with their shares, best first
 
 
 def carried_on(hypothesis: CarriedPose, motion: Motion) -> CarriedPose:
@@ -107,8 +92,7 @@ def carried_on(hypothesis: CarriedPose, motion: Motion) -> CarriedPose:
 def fused(carried: CarriedPose, view: PoseHypothesis, prior_log_density: float) -> CarriedPose:
     """Join a carried hypothesis and a pose of the new view by a Kalman update with the view's pose as measurement.
 
-    The weight grows by the view's score and by how well the two agree: log N(view - carried; 0, P + P_view), against
-    the density of an unknown pose.
+    The weight grows by the view's score and by log N(view - carried; 0, P + P_view) against an unknown pose's density.
     """
     kalman = KalmanFilter(dim_x=3, dim_z=3)
     kalman.x, kalman.P = carried.mean.reshape(3, 1).copy(), carried.covariance.copy()
@@ -125,10 +109,9 @@ def fused(carried: CarriedPose, view: PoseHypothesis, prior_log_density: float) 
 
 
 class SemanticTracker:
-    """Poses of a moving rig on a semantic map, from one view after another.
+    """Poses of a moving rig on a semantic map, from one view after another; the state is `belief`.
 
-    semantic_map: where things are. evidence: what counts (`consistent`). min_confidence: below it the answer is
-    "unable" with the alternatives. The state is `belief`, which `step` replaces.
+    evidence: what counts. min_confidence: below it the answer is "unable" with the alternatives.
     """
 
     def __init__(
@@ -141,10 +124,7 @@ class SemanticTracker:
         self.belief = Belief()
 
     def step(self, observations: Sequence[Observation], motion: Motion | None = None) -> Track:
-        """Return the answer with one more view. motion: since the view before; None without odometry.
-
-        Raises `ValueError` for a motion whose numbers are not finite.
-        """
+        """Return the answer with one more view. motion: since the view before; None without odometry."""
         self.belief = updated(
             self.belief, observations, self.semantic_map, UNKNOWN_MOTION if motion is None else motion, self.evidence
         )
@@ -160,9 +140,7 @@ def updated(
 ) -> Belief:
     """Return the belief after one more view: predicted, joined with the view's own poses, and cut to the best few.
 
-    Every carried hypothesis is joined with every pose of the view; those far apart weigh nothing. Beside them each pose
-    of the view stands for itself, as one that the rig was carried to from elsewhere. Raises `ValueError` for a motion
-    whose numbers are not finite.
+    Each pose of the view also stands for itself, as one that the rig was carried to from elsewhere.
     """
     if not (np.isfinite(motion[:3]).all() and np.isfinite(motion.covariance).all()):
         raise ValueError(f"motion must be finite metres and radians with a finite covariance; got {motion}")

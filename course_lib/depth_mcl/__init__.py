@@ -15,49 +15,15 @@ State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`. 
 `course_lib.beyond`.
 """
 
+# ruff: noqa: F401 - the public names
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, Motion, propagate
-from course_lib.depth_mcl.particle_filter import (
-    effective_sample_size,
-    initial_particles,
-    resample,
-    weighted_mean_state,
-)
+from course_lib.depth_mcl.particle_filter import effective_sample_size, initial_particles, resample, weighted_mean_state
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.depth_mcl.sequence_files import SequenceError
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from course_lib.rendering.scene_map import SceneMap, SceneMapError
 from course_lib.rendering.sensor import depth_image_from_points
-
-__all__ = [
-    "BODY_AXES",
-    "TANGENT_SPACE",
-    "WORLD_AXES",
-    "DepthCamera",
-    "DepthImageError",
-    "DepthRenderer",
-    "Estimate",
-    "MonteCarloLocalizer",
-    "Motion",
-    "NoMeasurementWarning",
-    "OpenGLError",
-    "RendererClosedError",
-    "SceneMap",
-    "SceneMapError",
-    "SequenceError",
-    "depth_image_from_points",
-    "effective_sample_size",
-    "initial_particles",
-    "likelihood",
-    "nearest_path_error",
-    "normalize_likelihood",
-    "propagate",
-    "read_sequence",
-    "resample",
-    "timed_error",
-    "weighted_mean_state",
-    "weights",
-]

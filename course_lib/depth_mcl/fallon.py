@@ -97,10 +97,7 @@ def weights_from_log_likelihood(log_likelihood: np.ndarray) -> np.ndarray:
 
 
 # Form -> (log-likelihood of every particle, which pixels it compares).
-_FORMS = {
-    "depth": (depth_log_likelihood, valid_pixels),
-    "disparity": (disparity_log_likelihood, disparity_pixels),
-}
+_FORMS = {"depth": (depth_log_likelihood, valid_pixels), "disparity": (disparity_log_likelihood, disparity_pixels)}
 
 
 def fallon_weighting(form: Literal["depth", "disparity"] = "depth") -> Weighting:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
 
 ALPHA = 0.1  # metres, paper 1, section 4
@@ -22,6 +23,16 @@ BETA = 0.01  # no unit (a normalized likelihood), paper 1, section 4
 
 class DepthImageError(ValueError):
     """Depth images that do not fit each other or the camera."""
+
+
+def checked_image(depth: np.ndarray, camera: DepthCamera) -> np.ndarray:
+    """Return a depth image `(H, W)` as an array. Raises `DepthImageError` if it has another size than the camera's."""
+    depth = np.asarray(depth)
+    if depth.shape != camera.shape:
+        raise DepthImageError(
+            f"the depth image has shape {depth.shape}; the camera gives {camera.shape} (height, width)"
+        )
+    return depth
 
 
 def valid_pixels(measured: np.ndarray) -> np.ndarray:

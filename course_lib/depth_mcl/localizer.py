@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.depth_mcl.likelihood import ALPHA, BETA, DepthImageError, Weighting, paper_weighting, valid_pixels
+from course_lib.depth_mcl.likelihood import ALPHA, BETA, Weighting, checked_image, paper_weighting, valid_pixels
 from course_lib.depth_mcl.motion import BODY_AXES, Motion, checked_sigma
 from course_lib.depth_mcl.particle_filter import Scheme, effective_sample_size, initial_particles, resample
 from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, positive_part
@@ -43,24 +43,16 @@ class NoMeasurementWarning(UserWarning):
 class Estimate(NamedTuple):
     """What one frame gave."""
 
-    state: np.ndarray
-    """`(6,)` the weighted mean of the particles."""
+    state: np.ndarray  # `(6,)` the weighted mean of the particles.
+    # `(6, 6)` of the weighted particles, metres along the world's axes and radians. It is *not* how far off the state
+    # may be, because the paper's beta leaves about one particle. `error_covariance` answers that.
     covariance: np.ndarray
-    """`(6, 6)` of the weighted particles about it, metres along the world's axes and radians, as the motion measures
-    deviations. It is the spread of the paper's weights, and *not* how far off the state may be: with the paper's beta
-    they leave about one particle, and the spread of one is nothing. `error_covariance` answers that."""
-    score: float
-    """Raw score of the best particle; unlike its weight it falls when the filter is lost."""
-    ess: float
-    """Effective sample size of the weights, 1 to N."""
-    particles: np.ndarray
-    """`(N, 6)` before resampling, as weighed."""
-    weights: np.ndarray
-    """`(N,)` of these particles."""
-    status: Status
-    """"no measurement" where the frame held none: the particles were moved by system noise, and all weigh the same."""
-    error_covariance: np.ndarray
-    """`(6, 6)`, the same units and axes: of the error to expect while the filter follows (uncertainty.py)."""
+    score: float  # Raw score of the best particle; unlike its weight it falls when the filter is lost.
+    ess: float  # Effective sample size of the weights, 1 to N.
+    particles: np.ndarray  # `(N, 6)` before resampling, as weighed.
+    weights: np.ndarray  # `(N,)` of these particles.
+    status: Status  # "no measurement": the particles were moved, and all weigh the same
+    error_covariance: np.ndarray  # `(6, 6)`, the same units: of the error to expect while the filter follows
 
 
 class MonteCarloLocalizer:
@@ -127,7 +119,8 @@ class MonteCarloLocalizer:
         """
         if self.particles is None:
             raise RuntimeError("call initialize(state0) before the first step: the paper's filter is given its start")
-        measured = self._measure(depth)  # 3.3.2, eq. (7)
+        camera = self.renderer.camera
+        measured = self.renderer.render_points(camera.points(checked_image(depth, camera)))  # 3.3.2, eq. (7)
         particles = self.motion.propagate(self.particles, self.sigma, self.rng)  # A-1, eq. (5)
         if not valid_pixels(measured).any():
             return self._moved_only(particles)
@@ -137,16 +130,6 @@ class MonteCarloLocalizer:
         estimate = self._estimate(particles, w, scores, "ok")  # A-3, eq. (12)
         self.particles = particles[resample(w, self.rng, self.resampling)]  # 3.4
         return estimate
-
-    def _measure(self, depth: np.ndarray) -> np.ndarray:
-        """Eq. (7): the camera's own points through the projection and z-buffer of the simulated views."""
-        depth = np.asarray(depth)
-        camera = self.renderer.camera
-        if depth.shape != camera.shape:
-            raise DepthImageError(
-                f"the depth image has shape {depth.shape}; the camera gives {camera.shape} (height, width)"
-            )
-        return self.renderer.render_points(camera.points(depth))
 
     def _moved_only(self, particles: np.ndarray) -> Estimate:
         """The estimate of a frame without measurement: the particles as they moved, each with the same weight."""

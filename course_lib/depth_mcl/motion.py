@@ -31,8 +31,7 @@ class Motion(NamedTuple):
 
     propagate: Callable[[np.ndarray, np.ndarray, np.random.Generator], np.ndarray]
     """(particles `(N, 6)`, sigma `(6,)` a frame, generator) -> moved particles `(N, 6)`, a new array."""
-    mean: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    """(particles `(N, 6)`, weights `(N,)`) -> state `(6,)`."""
+    mean: Callable[[np.ndarray, np.ndarray], np.ndarray]  # (particles `(N, 6)`, weights `(N,)`) -> state `(6,)`.
     deviations: Callable[[np.ndarray, np.ndarray], np.ndarray]
     """(particles `(N, 6)`, state `(6,)`) -> `(N, 6)`, metres along the world's axes, then radians."""
 

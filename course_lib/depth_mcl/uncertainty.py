@@ -1,20 +1,12 @@
 """How far off may the estimate be? A covariance from the particles and raw scores that a frame has anyway.
 
-The paper's weights cannot say it. With beta = 0.01 they leave about one particle in 200, and the spread of one particle
-is nothing: they reported a median of 2e-7 m where the error was 0.024 m. A likelihood of independent pixels cannot say
-it either. Its exponent is a sum over 25,000 pixels, so the best particle takes all the weight again. But pixels are not
-independent, because a displaced door or a bias of the map moves thousands of them at once.
+The paper's weights cannot say it: with beta = 0.01 they leave about one particle, and reported a median of 2e-7 m where
+the error was 0.024 m. A likelihood of independent pixels cannot either, because a displaced door moves thousands of
+pixels at once. So we weigh the particles a second time, by exp(kappa l/m), as if the whole image were worth kappa
+independent pixels, fewer where particles are sparse. That is one frame's share of the error; `carried_covariance` takes
+the earlier ones along, as a Kalman filter would.
 
-So we weigh the particles a second time, by exp(kappa l/m), as if the whole image were worth kappa independent pixels.
-Where particles are sparse we lower kappa, so that enough of them are left to span the space they move in. Then the
-spacing between them, which is an error too, is in the answer. We take the spread about the estimate that the filter
-gives, whatever its own weights were.
-
-That is one frame's share of the error. Particles lie within a frame's noise of where the last frame left them, so the
-error of that frame is still in them. `carried_covariance` takes it along, as a Kalman filter would.
-
-kappa was calibrated on one frame's share, with a run that no result is reported from: a wagon in the corridor of seed
-10,001. No such covariance can say that the filter is lost, because then all its particles are in the wrong place
+kappa was calibrated on a wagon in the corridor of seed 10,001. No such covariance can say that the filter is lost
 (course_lib.beyond.being_lost).
 """
 
@@ -40,25 +32,18 @@ _MIN_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cl
 class Tempered(NamedTuple):
     """Weights and how sharp they are."""
 
-    weights: np.ndarray
-    """`(N,)`, summing to one."""
+    weights: np.ndarray  # `(N,)`, summing to one.
     sharpness: float
     """kappa: how many independent pixels the image would be worth if these weights were its likelihood."""
-    ess: float
-    """Effective sample size of the weights."""
+    ess: float  # Effective sample size of the weights.
 
 
 def temper(scores: np.ndarray, sample_size: float, sharpest: float = SHARPEST) -> Tempered:
     """Return weights of exponential form, as sharp as leaves `sample_size` effective particles.
 
-    w_i ~ exp(kappa s_i),    kappa such that 1 / sum w_i^2 = sample_size
+    w_i ~ exp(kappa s_i), kappa in [0, `sharpest`] such that 1 / sum w_i^2 = sample_size
 
-    The paper's beta = 0.01 asks the other way round, and leaves about one particle in 200. In x, y and yaw that works,
-    because 200 particles lie close together there. In six dimensions the best of 200 is far from the best place, and a
-    filter that copies it alone throws the cloud away (course_lib.beyond.six_dof).
-    scores: `(N,)` raw scores s, means over pixels. kappa is between 0, where all weigh the same (so few particles that
-    they do not reach the sample size), and `sharpest` (so alike that even then more remain).
-    Raises `ValueError` for no scores or scores that are not finite.
+    scores: `(N,)` raw scores s, means over pixels.
     """
     scores = np.asarray(scores, dtype=np.float64)
     if scores.ndim != 1 or len(scores) == 0 or not np.isfinite(scores).all():
@@ -101,16 +86,14 @@ def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
 
 
 def carried_covariance(covariance: np.ndarray, deviations: np.ndarray, earlier: np.ndarray) -> np.ndarray:
-    """Covariance `(6, 6)` of the estimate's error, with what is left of the error that the particles started from.
+    """Return the covariance `(6, 6)` of the estimate's error, with what is left of the error that the particles started
+    from.
 
     P = C + A E A',    A = C Q^-1
 
-    covariance: C `(6, 6)`, what this frame leaves of the cloud's own covariance Q, that of `deviations` `(N, 6)` about
-    their mean. A is then the share of an earlier error that the frame did not correct: a Kalman filter's I - K, with C
-    for its posterior and Q for its prior. It is 0 along what the image shows, and 1 along a wall without a door, where
-    errors add up. earlier: E `(6, 6)`, of the place where the particles started.
-    A has no eigenvalue above 1: no frame makes an earlier error larger. Along what the particles do not span (too few
-    of them, or a component without noise) nothing was corrected, and A is the identity.
+    C: what this frame leaves of the cloud's own covariance Q, that of `deviations` `(N, 6)`. A is the share of an
+    earlier error E that the frame did not correct, a Kalman filter's I - K: 0 along what the image shows, 1 along a
+    bare wall and along what the particles do not span; no eigenvalue is above 1.
     """
     deviations = np.asarray(deviations, dtype=np.float64)
     scale = np.std(deviations, axis=0)

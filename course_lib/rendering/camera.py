@@ -25,11 +25,8 @@ class DepthCamera:
     """Pinhole depth camera.
 
     width, height: pixels. fx, fy: focal lengths in pixels (they differ for an SR4000). cx, cy: principal point in
-    pixels, pixel centres at integers. near, far: clip planes in metres; a surface outside them is not hit, one on
-    them is (`nearest`, `farthest`). The z-buffer has steps of Z^2 / (near 2^24): 0.06 mm at 10 m with near = 0.1 m,
-    ten times that with near = 0.01 m; far costs nothing.
-    Raises `ValueError` for a size below one pixel, focal lengths or clip planes that are not positive and finite, or
-    near >= far.
+    pixels, pixel centres at integers. near, far: clip planes in metres; a surface outside them is not hit, one on them
+    is. Raises `ValueError` for values that no camera has.
     """
 
     width: int
@@ -82,7 +79,9 @@ class DepthCamera:
     def from_matrix(
         cls, matrix: np.ndarray, width: int, height: int, near: float = 0.1, far: float = 30.0
     ) -> DepthCamera:
-        """Camera from a 3 x 3 intrinsic matrix K = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]; skew is not modelled."""
+        """Return a camera from a 3 x 3 intrinsic matrix K = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]; skew is not
+        modelled.
+        """
         k = np.asarray(matrix, dtype=np.float64)
         if k.shape != (3, 3) or not np.isfinite(k).all():
             raise ValueError(f"intrinsics must be a finite 3 x 3 matrix; got shape {k.shape}")
@@ -137,10 +136,7 @@ class DepthCamera:
         return dataclasses.replace(self, near=near, far=far)
 
     def rays(self) -> np.ndarray:
-        """Directions `(height, width, 3)` through the pixel centres, optical frame, forward component one.
-
-        The distance along such a ray is depth, not ray length.
-        """
+        """Return directions `(height, width, 3)` through the pixel centres, optical frame, forward component one."""
         u, v = np.meshgrid(np.arange(self.width), np.arange(self.height))
         return np.stack([(u - self.cx) / self.fx, (v - self.cy) / self.fy, np.ones(self.shape)], axis=-1)
 
@@ -160,11 +156,10 @@ class DepthCamera:
             return self.rays() * depth[..., None].astype(np.float64)
 
     def projection_matrix(self) -> np.ndarray:
-        """OpenGL projection `(4, 4)` of the optical frame turned to x right, y up, z backward.
+        """Return OpenGL's projection `(4, 4)` of the optical frame turned to x right, y up, z backward.
 
-        Set explicitly because a view angle alone assumes fx = fy and a centred principal point. Image edges lie half a
-        pixel outside the outer pixel centres. Depth buffer value (window range 0 to 1):
-        b = far (Z - near) / (Z (far - near)).
+        Depth buffer value: b = far (Z - near) / (Z (far - near)). Image edges lie half a pixel outside the outer pixel
+        centres.
         """
         w, h, n, f = self.width, self.height, self.near, self.far
         return np.array(

@@ -1,8 +1,7 @@
 """A map made ready to be drawn: large triangles are cut, and all are sorted into compact chunks.
 
-A batch of views draws only the chunks that one of its cameras can see. Leaving out what lies outside every camera's
-view changes no pixel: a chunk is left out only when its bounding sphere is wholly outside one of the five planes of
-*every* view (four sides and behind), or beyond far.
+A chunk is left out of a batch only if its bounding sphere lies outside one side, behind, or beyond far of *every* view,
+so leaving it out changes no pixel.
 """
 
 from __future__ import annotations
@@ -23,12 +22,11 @@ MAX_PIECES = 5_000_000
 def cut_large_triangles(
     vertices: np.ndarray, faces: np.ndarray, max_edge: float = MAX_EDGE
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices `(V', 3)` and faces `(F', 3)` of the same surface, no edge longer than `max_edge` metres.
+    """Return vertices `(V', 3)` and faces `(F', 3)` of the same surface, no edge longer than `max_edge` metres.
 
-    In float64, before anything becomes float32: a corner 10 km away is off by half a millimetre there, and the plane of
-    its triangle, seen from near, by centimetres. An edge that two triangles share is halved for both at one and the
-    same point, so no gap opens. Where no triangle is large, the same arrays come back. Raises `SceneMapError` above
-    `MAX_PIECES`.
+    In float64: in float32 a corner 10 km away is off by half a millimetre, and its plane, seen from near, by
+    centimetres. A shared edge is halved for both triangles at one point, so no gap opens. Unchanged arrays come back as
+    they are.
     """
     done: list[np.ndarray] = []
     while True:
@@ -78,30 +76,25 @@ CHUNK_SIZE = 0.5
 
 
 class MeshChunks:
-    """Triangles sorted by the cube that their centre lies in.
-
-    order: `(F,)` the triangles in chunk order. starts: `(C + 1,)` where each chunk begins in it. centers `(C, 3)` and
-    radii `(C,)`: a sphere around each chunk's triangles, metres.
-    """
+    """Triangles sorted by the cube that their centre lies in."""
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray, chunk_size: float = CHUNK_SIZE) -> None:
         corners = vertices[faces]
         cubes = np.floor(corners.mean(axis=1) / chunk_size).astype(np.int64)
         _, chunk_of_face = np.unique(cubes, axis=0, return_inverse=True)
         chunk_of_face = chunk_of_face.ravel()
-        self.order = np.argsort(chunk_of_face, kind="stable")
+        self.order = np.argsort(chunk_of_face, kind="stable")  # `(F,)` the triangles in chunk order
         counts = np.bincount(chunk_of_face)
-        self.starts = np.concatenate([[0], np.cumsum(counts)])
+        self.starts = np.concatenate([[0], np.cumsum(counts)])  # `(C + 1,)` where each chunk begins in it
         sorted_corners = corners[self.order]
         low = np.minimum.reduceat(sorted_corners.min(axis=1), self.starts[:-1])
         high = np.maximum.reduceat(sorted_corners.max(axis=1), self.starts[:-1])
-        self.centers = 0.5 * (low + high)
+        self.centers = 0.5 * (low + high)  # `(C, 3)` and radii `(C,)`: a sphere around each chunk, metres
         self.radii = 0.5 * np.linalg.norm(high - low, axis=1)
 
     def visible(self, camera: DepthCamera, camera_to_world: np.ndarray) -> np.ndarray:
-        """Which chunks any of the views can see: `(C,)` bool.
-
-        camera_to_world: `(N, 4, 4)`, optical convention, in the frame of the vertices.
+        """Return which chunks any view can see: `(C,)` bool. camera_to_world: `(N, 4, 4)`, optical, in the vertices'
+        frame.
         """
         normals = inward_normals(camera)
         rotation, position = camera_to_world[:, :3, :3], camera_to_world[:, :3, 3]
@@ -121,10 +114,7 @@ class MeshChunks:
         return seen
 
     def with_own_vertices(self, faces: np.ndarray, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Vertices `(V', 3)` chunk by chunk, where each chunk's begin `(C + 1,)`, and faces `(F, 3)` counted from it.
-
-        faces, vertices: those that the chunks were made of. A vertex on the border of two chunks is in both.
-        """
+        """Return vertices chunk by chunk `(V', 3)`, where each chunk's begin `(C + 1,)`, and faces counted so."""
         chunk = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
         # One number for a vertex in a chunk; sorted, they stand chunk by chunk.
         keys = (chunk[:, None] * np.int64(len(vertices)) + faces[self.order]).ravel()

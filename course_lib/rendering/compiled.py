@@ -11,8 +11,7 @@ from numba import njit
 def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]:
     """Decorator: Numba compiles the function at its first call; threads run it side by side (without Python's lock).
 
-    fastmath: what the compiler may take liberties with, all of it or LLVM's flags. Compiled code is kept beside the
-    source or in the user's cache. Where it cannot be kept, or what was kept is damaged, each process compiles anew.
+    Compiled code is kept beside the source or in the user's cache. Where it cannot be, each process compiles anew.
     """
 
     def decorate(function: Callable) -> Callable:
@@ -28,7 +27,7 @@ def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]
 
 
 def _or_none(step: Callable) -> Callable:
-    """A step of Numba's cache that gives None, as where nothing is kept, when it fails: a damaged file, a full disk."""
+    """Return the step of Numba's cache such that it gives None, as where nothing is kept, when it fails."""
 
     def tried(*arguments: object) -> object:
         with contextlib.suppress(Exception):

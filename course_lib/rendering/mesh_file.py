@@ -26,8 +26,7 @@ def mesh_endings() -> set[str]:
 def read_mesh(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
     """Return the vertices `(V, 3)` and faces `(F, 3)` of a mesh file; its materials and textures are left alone.
 
-    Raises `FileNotFoundError` for a missing file, `SceneMapError` for a file that cannot be read, or that holds less
-    than it announces: it was cut off, or is damaged.
+    Raises `FileNotFoundError`, or `SceneMapError` for a file that cannot be read or holds less than it announces.
     """
     path = Path(path)
     data = read_bytes(path, "map", SceneMapError, missing=FileNotFoundError)
@@ -56,10 +55,7 @@ def read_mesh(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _announced(data: bytes, kind: str) -> tuple[int, int]:
-    """Numbers of vertices and faces that a PLY, OFF or STL announces, at least; (0, 0) for other formats.
-
-    Raises `ValueError` where the file has not even a row or a byte for each: trimesh would take memory for all of them.
-    """
+    """Return the numbers of vertices and faces that a PLY, OFF or STL announces, at least; (0, 0) for other formats."""
     n_vertices = n_faces = total = 0
     rows = [row for line in data.splitlines() if (row := line.partition(b"#")[0].strip())] if kind == "off" else []
     held = max(0, len(rows) - 1)

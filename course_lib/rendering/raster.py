@@ -1,15 +1,12 @@
 """A z-buffer in plain loops, compiled by Numba: what a graphics card does with a mesh, on every processor.
 
-For each view: chunks of the mesh that the view cannot see are left out; the others are drawn, the nearest first. A
-chunk's vertices are turned into the camera's frame and projected; each triangle is filled row by row, and each pixel
-keeps the nearest depth. What a pixel keeps is 1/Z, because that is linear in the image: three vertices give a plane
-over pixel coordinates, and the nearest is the greatest. 0 is "nothing hit".
+The chunks of the mesh that a view may see are drawn, the nearest first. Each triangle is filled row by row, and each
+pixel keeps the greatest 1/Z, which is linear in the image; 0 is "nothing hit".
 
     u = fx X/Z + cx,    v = fy Y/Z + cy,    1/Z = a u + b v + c
 
-A chunk is also left out where everything in front of its bounding sphere has been drawn already: every block of 8 x 8
-pixels that the sphere may cover then holds nearer surfaces in all of its pixels. So nothing is left out that one would
-see, and the image is the one that a ray through each pixel's centre gives.
+A chunk is also left out if every block of 8 x 8 pixels that its bounding sphere may cover holds nearer surfaces
+already.
 """
 
 from __future__ import annotations
@@ -105,12 +102,10 @@ class RasterBackend:
 def draw_views(
     images, rotations, positions, lens, sides, spheres, vertex_starts, vertices, face_starts, faces, scratch
 ):
-    """Fills `images` `(N, H, W)` float32 with 1/Z of the mesh, 0 where nothing is hit.
+    """Fill `images` `(N, H, W)` float32 with 1/Z of the mesh, 0 where nothing is hit.
 
-    rotations `(N, 3, 3)` from the world to the cameras, positions `(N, 3)`; lens: fx, fy, cx, cy, near, far; sides
-    `(4, 3)` inward normals of the view; spheres `(C, 4)` around the chunks, centre and radius; vertices `(V, 3)` chunk
-    by chunk, faces `(F, 3)` indices within the chunk's own vertices. All float32. scratch: `(6, V_max)` float64, for
-    one chunk.
+    rotations `(N, 3, 3)`, world to cameras; positions `(N, 3)`; lens: fx, fy, cx, cy, near, far; sides `(4, 3)` inward
+    normals; spheres `(C, 4)`; vertices `(V, 3)`, faces `(F, 3)` chunk by chunk; scratch `(6, V_max)` float64.
     """
     n_chunks = len(spheres)
     seen = np.empty(n_chunks, np.int64)

@@ -1,7 +1,6 @@
 """Depth images by ray casting: one ray through every pixel centre. The reference for the z-buffer.
 
 Intel's Embree (embreex) where it has a wheel for the processor, else trimesh's own ray casting, which is slower by far.
-Directions have a forward component of one, so that the ray parameter is depth along the optical axis, not ray length.
 """
 
 from __future__ import annotations
@@ -21,10 +20,7 @@ except ImportError:  # no wheel for this processor
 
 
 class EmbreeCaster:
-    """Triangles ready to be hit by rays, in float32. corners: `(F, 3, 3)`.
-
-    Raises `ImportError` where embreex is missing.
-    """
+    """Triangles `(F, 3, 3)` ready to be hit by rays, in float32. Raises `ImportError` where embreex is missing."""
 
     def __init__(self, corners: np.ndarray) -> None:
         if EmbreeScene is None:
@@ -37,10 +33,10 @@ class EmbreeCaster:
         self._mesh = TriangleMesh(self._scene, np.ascontiguousarray(corners, dtype=np.float32))
 
     def cast(self, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """First hits of rays: origins and directions `(N, 3)`.
+        """Return the first hits of rays, origins and directions `(N, 3)`.
 
-        Returns distances `(N,)` in units of the direction's length, `inf` where nothing is hit; the faces hit `(N,)`,
-        -1 where none; their normals `(N, 3)`, not of unit length.
+        Distances `(N,)` in units of the direction's length, `inf` if nothing is hit; faces `(N,)`, -1; normals `(N,
+        3)`.
         """
         origins, directions = (np.ascontiguousarray(array, dtype=np.float32) for array in (origins, directions))
         hits = self._scene.run(origins, directions, output=True)

@@ -1,14 +1,11 @@
 """GPU scene simulation (paper 1, 3.3.1): what a depth camera would measure at every particle's pose.
 
-`DepthRenderer` is one door with three rooms behind it. Backend "vtk" is the paper's way, for a graphics card: it draws
-the map once per particle, as tiles of one off-screen window, and reads OpenGL's z-buffer back once (vtk_backend.py).
-Backend "raster" fills a z-buffer in compiled loops, on every processor (raster.py). Backend "ray" shoots one ray
-through every pixel centre (ray.py): the reference that tests compare with. "auto" is "vtk" on a graphics card, else
-"raster". All take float64 states, subtract the map's anchor before anything becomes float32, and give depth along the
-optical axis, `inf` where nothing between the camera's near and far planes is hit.
+"vtk" draws the map once per particle, as tiles of one off-screen window, and reads OpenGL's z-buffer back once.
+"raster" fills a z-buffer in compiled loops. "ray" shoots one ray through every pixel centre: the reference. All take
+float64 states, subtract the map's anchor before anything becomes float32, and give depth along the optical axis.
 
-Threads may share a renderer. A forked child may use one that it inherits, unless it is "vtk", which says by name that
-it cannot. A pickled renderer takes its map and camera along and opens again when first used.
+Threads may share a renderer. A forked child may use an inherited one, unless it is "vtk". A pickled one opens again
+when first used.
 """
 
 from __future__ import annotations
@@ -49,8 +46,7 @@ class RendererClosedError(RuntimeError):
 
 
 class OpenGLError(RuntimeError):
-    """OpenGL could not start or draw, or belongs to the process that this one was forked from; the message says what to
-    do."""
+    """OpenGL could not start or draw, or belongs to the process that this one was forked from."""
 
 
 def chosen_backend(backend: Backend) -> Backend:
@@ -73,16 +69,13 @@ def _automatic_backend() -> Backend:
 
 
 class DepthRenderer:
-    """Depth images of a map from any number of poses.
+    """Depth images of a map from any number of poses; a context manager.
 
-    scene_map: triangles in the world. camera: the depth camera, its resolution, and its near and far planes.
     backend: "vtk" (OpenGL's z-buffer), "raster" (a compiled z-buffer), "ray" (the reference), or "auto": "vtk" on a
     graphics card, else "raster"; the attribute `backend` says which. exact: draw every triangle of the map; else a
-    large map is drawn with fewer triangles, which lie within centimetres of it (simplification.py; `drawn`).
-    max_batch_pixels bounds one batch's memory: as many images as fit are drawn at once, at least one.
-    A context manager; `close()` frees the window, after which every call raises `RendererClosedError`.
-    Raises `OpenGLError` where OpenGL cannot start (backend "vtk"), which is so in a process forked after the first
-    window was opened, `ValueError` for an unknown backend.
+    large map is drawn with fewer triangles, which lie within centimetres of it (simplification.py). max_batch_pixels:
+    bounds one batch's memory. After `close()` every call raises `RendererClosedError`. Raises `OpenGLError` where
+    OpenGL cannot start, `ValueError` for an unknown backend.
     """
 
     def __init__(
@@ -172,11 +165,9 @@ class DepthRenderer:
     def render_points(self, points: np.ndarray) -> np.ndarray:
         """Depth image `(H, W)` float32 metres of the camera's own points; NaN where none fell.
 
-        points: `(..., 3)` metres in the optical frame; NaN points are no measurement. They go through the projection
-        and the z-buffer that the particles' views go through, so that both images obey one rule: of several points on
-        one pixel the nearest counts, and what lies outside near and far is not seen.
-        Z_t = {z_t^1, ..., z_t^m}. `depth_image_from_points` is the same in NumPy.
-        Raises `ValueError` for a wrong shape, `RendererClosedError` after `close()`. Source: paper 1, section 3.3.2.
+        points: `(..., 3)` metres in the optical frame; NaN points are no measurement. They go through the z-buffer of
+        the particles' views, so both images obey one rule. `depth_image_from_points` is the same in NumPy. Raises
+        `ValueError` for a wrong shape, `RendererClosedError` after `close()`. Source: paper 1, section 3.3.2.
         """
         backend = self._backend()
         points = np.asarray(points, dtype=np.float64)

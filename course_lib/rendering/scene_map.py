@@ -31,11 +31,9 @@ class SceneMapWarning(UserWarning):
 class SceneMap:
     """Triangles in the world frame.
 
-    vertices: `(V, 3)` float64 metres. faces: `(F, 3)` int32 vertex indices; the winding does not matter, both sides of
-    a triangle are seen. bounds: `(2, 3)`, least and greatest coordinates. origin: `(3,)` float64, the median of
-    the triangles' corners: where most of the map is, however far away a stray triangle lies (`anchor`).
-    Raises `SceneMapError` (a `ValueError`) for an empty mesh, no faces, vertices that are not finite, a triangle too
-    far away to be part of a building, or indices out of range. Triangles without area are dropped.
+    vertices: `(V, 3)` float64 metres. faces: `(F, 3)` int32 vertex indices; both sides of a triangle are seen. bounds:
+    `(2, 3)`. origin: `(3,)`, the median of the triangles' corners. Triangles without area are dropped. Raises
+    `SceneMapError` (a `ValueError`) for vertices or faces that make no map.
     """
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
@@ -76,10 +74,9 @@ class SceneMap:
         """Return the map in any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
 
         drop_far: triangles farther than `MAX_DISTANCE` from the middle of the map are left out; else they are an error.
-        Warns (`SceneMapWarning`) of what looks like millimetres, like a stray part, or like coordinates that the file
-        holds too coarsely. Raises `FileNotFoundError` where there is no file, `SceneMapError` where it cannot be read,
-        holds no triangles, or fewer than its own header announces. An OBJ file has no header, so one that was cut off
-        at the end of a line goes unnoticed.
+        Warns (`SceneMapWarning`) of what looks like millimetres or like a stray part. Raises `FileNotFoundError`, or
+        `SceneMapError` for a file that cannot be read or holds fewer triangles than it announces. An OBJ announces
+        nothing.
         """
         vertices, faces = read_mesh(path)
         try:
@@ -98,11 +95,10 @@ class SceneMap:
         return SceneMap(self.vertices @ matrix[:3, :3].T + matrix[:3, 3], self.faces)
 
     def anchor(self, positions: np.ndarray) -> np.ndarray:
-        """The point `(3,)` that renderers subtract from vertices and cameras before anything becomes float32.
+        """Return the point `(3,)` that renderers subtract from vertices and cameras `(N, 3)` before anything becomes
+        float32.
 
-        positions: `(N, 3)` of the cameras. The anchor is the map's origin where the cameras are within some 50 m
-        of it, else whole hundreds of metres from it and near them: a millimetre there is still a millimetre, however
-        far away other parts of the map lie.
+        The map's origin if the cameras are within some 50 m of it, else whole hundreds of metres from it, near them.
         """
         if len(positions) == 0:
             return self.origin
@@ -128,9 +124,8 @@ class SceneMap:
 
 
 def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) -> np.ndarray:
-    """The faces of a file without those that are absurdly far from its middle, the median of all corners.
-
-    Raises `SceneMapError`, which names the first of them, unless they are to be dropped.
+    """Return the faces without those absurdly far from the median of all corners. Raises `SceneMapError` unless
+    dropped.
     """
     shapes = np.shape(vertices)[1:], np.shape(faces)[1:]
     if shapes != ((3,), (3,)) or not len(faces) or faces.min() < 0 or faces.max() >= len(vertices):

@@ -34,10 +34,10 @@ def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarr
 
 
 def subsample_depth(depth: np.ndarray, camera: DepthCamera, coarse: DepthCamera) -> np.ndarray:
-    """Depth image of a coarser grid with the same view: the fine pixel nearest to each coarse pixel's centre.
+    """Return the depth image `(h, w)` of a coarser grid with the same view: the fine pixel nearest to each coarse
+    centre.
 
-    depth: `(H, W)` of `camera`. coarse: `camera.resized(w, h)`. Result `(h, w)`. Values are picked, not averaged, since
-    the mean of depths across an edge is a surface that is not there.
+    Values are picked, not averaged, because the mean of depths across an edge is a surface that is not there.
     """
     depth = np.asarray(depth)
     if depth.shape != camera.shape:

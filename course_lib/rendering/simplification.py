@@ -1,9 +1,8 @@
 """Fewer triangles that look the same to a depth camera: what `DepthRenderer` draws unless it is told `exact=True`.
 
-A laser-scanned map has triangles of the scanner's fineness everywhere, most of them on flat walls, and many fall into
-one pixel of a depth image. They are merged (VTK's quadric decimation, after Garland and Heckbert, "Surface
-simplification using quadric error metrics", 1997) as far as the surface stays where it was: 99 of 100 vertices of the
-map lie within a tolerance of what is left. What was found is kept in the user's cache, since it takes seconds.
+Triangles are merged (VTK's quadric decimation, after Garland and Heckbert, "Surface simplification using quadric error
+metrics", 1997) until 99 of 100 vertices of the map lie just within a tolerance of what is left. What was found is kept
+in the user's cache, since it takes seconds.
 """
 
 from __future__ import annotations
@@ -47,9 +46,7 @@ class LargeMapWarning(UserWarning):
 def simplified(scene_map: SceneMap, tolerance: float = TOLERANCE) -> SceneMap:
     """Return the map with fewer triangles: 99 % of its vertices lie within `tolerance` metres of them.
 
-    A small map comes back as it is.
-    The same for the same map, in every process. Warns (`LargeMapWarning`) before a wait of many seconds.
-    Raises `ValueError` for a tolerance that is not positive and finite.
+    A small map comes back as it is. Warns (`LargeMapWarning`) before a wait of many seconds.
     """
     if not (np.isfinite(tolerance) and tolerance > 0):
         raise ValueError(f"tolerance must be a positive number of metres; got {tolerance}")

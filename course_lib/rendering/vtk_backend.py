@@ -1,11 +1,7 @@
 """Depth images by VTK's z-buffer: every particle's view is a tile of one off-screen window, read back once.
 
-Tile k has a vtkRenderer of its own (a viewport and a camera); all share one actor, the map. The colour of a pixel is
-never looked at. Threads take turns with the window (`_drawing`).
-
-After a fork the child has OpenGL's memory without its threads, and whatever it asks of OpenGL waits for them for ever:
-to draw, to open another window, even to free the one it inherited. So a child never touches the windows of its parent,
-and is refused one of its own.
+Tile k has a vtkRenderer of its own; all share one actor, the map. Threads take turns with the window (`_drawing`).
+After a fork OpenGL's threads are missing and whatever is asked of it waits for ever, so a child is refused by name.
 """
 
 from __future__ import annotations
@@ -52,15 +48,13 @@ _NO_SHIFT_AND_SCALE = 0
 # Each tile costs VTK some 40 kB, however small its image, and is kept for the next frame.
 MAX_TILES = 1000
 
+
 _windows: weakref.WeakSet[vtkRenderWindow] = weakref.WeakSet()
 _process_of_the_first_window: int | None = None
 
 
 def off_screen_window() -> vtkRenderWindow:
-    """Return a new window off the screen, without multisampling, not yet of any size.
-
-    Raises `OpenGLError` where OpenGL cannot start, and in a process forked from one that had opened a window.
-    """
+    """Return a new window off the screen, without multisampling, not yet of any size."""
     global _process_of_the_first_window
     if _process_of_the_first_window is None:
         _process_of_the_first_window = os.getpid()
@@ -86,7 +80,7 @@ def _require_own_process(process: int) -> None:
 
 
 def _leave_windows_to_the_parent() -> None:
-    """One reference too many, so that nothing in this forked child ever frees a window: that would hang as well."""
+    """One reference too many, so that nothing in this forked child ever frees a window: that would hang."""
     for window in _windows:
         window.Register(None)
 
@@ -186,10 +180,8 @@ class VtkBackend:
 
     @contextmanager
     def _drawing(self) -> Iterator[None]:
-        """The window is this thread's alone for the while.
-
-        OpenGL draws in the thread that holds the window's context. A thread that did not hold it would draw nothing and
-        read the depth of an earlier image, without an error; so each takes the context and gives it back.
+        """Take the window's context for this thread: without it a thread would read an earlier image's depth, without
+        an error.
         """
         _require_own_process(self._process)  # before the lock: a fork copies it as it is, held or not
         with self._turn:
@@ -297,10 +289,10 @@ class VtkBackend:
 
 
 def depth_from_buffer(buffer: np.ndarray, camera: DepthCamera, farthest: float) -> np.ndarray:
-    """Depth in metres, float32, of depth-buffer values in [0, 1] by the camera's planes; `inf` beyond `farthest`.
+    """Return depth in metres, float32, of depth-buffer values in [0, 1] by the camera's planes; `inf` beyond
+    `farthest`.
 
-    Z = near far / (far - b (far - near)), the inverse of b = far (Z - near) / (Z (far - near)). Where nothing was drawn
-    the buffer still holds its clear value 1, which is far.
+    Z = near far / (far - b (far - near)), the inverse of b = far (Z - near) / (Z (far - near)).
     """
     near, far = camera.near, camera.far
     # float64, since far - b (far - near) loses the digits that the two have in common.

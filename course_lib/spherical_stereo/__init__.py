@@ -1,30 +1,19 @@
 """Paper 2: Onozeki, Iriyama, Ogasa, Pathak, Umeda, "Localization in a 2D semantic map using object recognition from a
-spherical stereo camera".
+spherical stereo camera". An image pair walks through figure 2 in this order; a folder imports only those above it:
 
-An image pair walks through figure 2 in this order. Each folder imports only those above it:
+    panorama       2.1, 2.4: the sphere behind an image, the rig, and `View`, the record of one image
+    detection/     2.2: a network and its files, the seam (figure 3), suppression, colour; boxes drawn by hand
+    matching/      2.3: features, the epipolar constraint, objects in both views; is a camera turned?
+    ranging/       2.4: a distance from two directions, and one from the matched features
+    semantic_map/  2.5: the map and its files, eq. (1) and the greedy search
+    pose/          2.6: the least-squares fit, whether its residuals contradict it, and the answer
+    localizer      the steps themselves
 
-  panorama        2.1, 2.4. The sphere behind an image, the rig, and `View`, the record of one image.
-  detection/      2.2. `find_objects` gives a view its detections.
-    detected_object                 class, box and colour of one object; boxes on the circle of columns
-    darknet, onnx_network           one network and its files
-    detector, suppression, seam     figure 3: every object whole once, and counted once
-    colour                          hue and saturation inside a box
-    boxes_file                      boxes drawn by hand, in place of a network
-  matching/       2.3. `match_views` says which object of one view is which of the other.
-    epipolar, features, object_matching
-    alignment                       is the lower camera turned against the upper one?
-  ranging/        2.4. `position_objects` says where the matched objects are.
-    triangulation, vertical_disparity   a distance from two directions, and one from the matched features
-    object_positions                the position of every matched object
-  semantic_map/   2.5. The map and its files, eq. (1) and the greedy search: observations to landmarks
-  pose/           2.6. The least-squares fit, whether its residuals contradict it, and the answer
-  localizer       the steps themselves
-
-Beside it: recording, a folder of stereo panoramas with the truth beside them.
-
-Images are BGR uint8 arrays, as OpenCV reads them. Boxes and points on them are in edge coordinates (`panorama`).
+recording reads a folder of stereo panoramas with the truth beside them. Images are BGR uint8 arrays, as OpenCV reads
+them. Boxes and points on them are in edge coordinates (`panorama`).
 """
 
+# ruff: noqa: F401 - the public names
 from course_lib.spherical_stereo.detection.darknet import DetectorError
 from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -62,45 +51,3 @@ from course_lib.spherical_stereo.semantic_map.association import (
     penalty_table,
 )
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
-
-__all__ = [
-    "Association",
-    "AssociationError",
-    "Detection",
-    "DetectionError",
-    "DetectorError",
-    "Landmark",
-    "Localization",
-    "LocalizerError",
-    "ObjectMatch",
-    "Observation",
-    "PanoramaError",
-    "Penalty",
-    "PenaltyWeights",
-    "Pose2D",
-    "RigidFitError",
-    "SemanticLocalizer",
-    "SemanticMap",
-    "SemanticMapError",
-    "StereoRig",
-    "SwappedImagesError",
-    "TriangulationError",
-    "View",
-    "YoloDetector",
-    "associate_greedy",
-    "direction_to_pixel",
-    "disparity_distance",
-    "extend_seam",
-    "fit_covariance",
-    "fit_rigid_2d",
-    "match_objects",
-    "open_pair",
-    "open_view",
-    "penalty",
-    "penalty_table",
-    "pixel_to_direction",
-    "read_panorama",
-    "triangulate",
-    "triangulation_covariance",
-    "triangulation_outcome",
-]

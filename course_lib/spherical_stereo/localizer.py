@@ -1,8 +1,7 @@
 """All of paper 2 in the order of its figure 2: an image pair walks from the panorama to a pose on the map.
 
-panorama -> detection -> matching -> ranging -> semantic map -> pose -> answer. Each step takes what the steps before it
-found and adds its own part. If the images give no pose (nothing detected, too few objects, points that no pose fits),
-the answer has status "unable" and a reason. A mistake of the caller's raises a named error.
+Each step takes what the steps before it found and adds its own part. If the images give no pose, the answer has status
+"unable" and a reason. A mistake of the caller's raises a named error.
 """
 
 from __future__ import annotations
@@ -37,8 +36,7 @@ from course_lib.spherical_stereo.semantic_map.association import (
 )
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-IMAGE_SIZE = (1280, 640)
-"""Width and height in pixels of the panoramas under data/room."""
+IMAGE_SIZE = (1280, 640)  # Width and height in pixels of the panoramas under data/room.
 
 
 class LocalizerError(ValueError):
@@ -48,18 +46,14 @@ class LocalizerError(ValueError):
 class SemanticLocalizer:
     """Pose of a spherical stereo camera on a semantic map.
 
-    rig: baseline and heights. semantic_map: where things are. detector: anything with `detect(image_bgr)` that gives
-    detections, needed by `localize` only. association: "greedy" (the paper's), or a function that is called as
-    `associate_greedy` is, for example `associate_consistent`.
-    distance: "box_centre", the paper's way, or "disparity", from the features matched inside the boxes. weights and
-    distance_term: of eq. (1). weighted_fit: False, the paper's way, counts all pairs alike; True weights each by the
-    covariance of its observation. image_size: (width, height) of the panoramas that detections come from if their
-    images are not given.
-    reject_implausible: False is the paper's method. True asks more: the cameras are not turned against each other, and
-    their images are of one moment (`camera_alignment`); an object has at least three matched features and is nearer
-    than `max_range`; the residuals can be those of a right pose (`residual_statistics`).
-    Raises `LocalizerError` for a name that does not exist, `PanoramaError` for a size that no panorama has.
-    Source: paper 2, figure 2.
+    detector: anything with `detect(image_bgr)`, needed by `localize` only. association: "greedy" (the paper's), or a
+    function that is called as `associate_greedy` is. distance: "box_centre", the paper's way, or "disparity", from the
+    matched features. weights and distance_term: of eq. (1). weighted_fit: True weights each pair by the covariance of
+    its observation; the paper counts all alike. image_size: (width, height) of panoramas whose images are not given.
+    reject_implausible: False is the paper's method; True also asks that the cameras are aligned and their images of one
+    moment, that an object has three matched features and is nearer than `max_range`, and that the residuals can be
+    those of a right pose. Raises `LocalizerError` for a name that does not exist, `PanoramaError` for a size that no
+    panorama has. Source: paper 2, figure 2.
     """
 
     def __init__(
@@ -83,10 +77,8 @@ class SemanticLocalizer:
             raise LocalizerError(
                 f'association must be "greedy" or a function called as associate_greedy is; got {association!r}'
             )
-        for name, value, allowed in (
-            ("distance", distance, DISTANCES),
-            ("distance_term", distance_term, DISTANCE_TERMS),
-        ):
+        options = ("distance", distance, DISTANCES), ("distance_term", distance_term, DISTANCE_TERMS)
+        for name, value, allowed in options:
             if value not in allowed:
                 raise LocalizerError(f"{name} must be one of {allowed}; got {value!r}")
         self.rig, self.semantic_map, self.detector = rig, semantic_map, detector
@@ -108,10 +100,7 @@ class SemanticLocalizer:
         return _walk(Localization(upper=upper, lower=lower), steps)
 
     def localize_views(self, upper: View, lower: View) -> Localization:
-        """Return the pose from two panoramas with their detections: section 2.3 and on.
-
-        Raises `SwappedImagesError`, `DetectionError` for boxes that cannot be, `PanoramaError` for views of two sizes.
-        """
+        """Return the pose from two panoramas with their detections: section 2.3 and on."""
         return _walk(Localization(upper=upper, lower=lower), (self._match, self._range, self._associate, self._fit))
 
     def localize_detections(
@@ -123,11 +112,9 @@ class SemanticLocalizer:
     ) -> Localization:
         """Return the pose from the detections of two panoramas and their matches: section 2.4 and on.
 
-        matches: `ObjectMatch`es, or pairs of indices (upper, lower), which carry no features and so serve "box_centre"
-        only. size: (width, height) of the panoramas in pixels; None: the localizer's `image_size`.
-        Raises `DetectionError` for matches that name no detection, or one twice, or join two classes, or lack features
-        that are asked for, and for boxes that do not fit on a panorama of that size; `PanoramaError` for a size that no
-        panorama has. Source: paper 2, sections 2.4 to 2.6.
+        matches: `ObjectMatch`es, or pairs of indices (upper, lower), which serve "box_centre" only. size: (width,
+        height) of the panoramas; None: `image_size`. Raises `DetectionError` for matches and boxes that cannot be,
+        `PanoramaError` for a size that no panorama has. Source: paper 2, sections 2.4 to 2.6.
         """
         size = self.image_size if size is None else size
         upper, lower = (View.of_detections(side, size) for side in (upper_detections, lower_detections))
@@ -137,10 +124,8 @@ class SemanticLocalizer:
         return _walk(found, (self._range, self._associate, self._fit))
 
     def localize_observations(self, observations: Sequence[Observation]) -> Localization:
-        """Return the pose from objects whose positions in the body frame are known: sections 2.5 and 2.6.
-
-        Raises `AssociationError` for observations that cannot be, `LocalizerError` for a class that the map lacks,
-        because it would move the centroid of eq. (1). Source: paper 2, sections 2.5, 2.6.
+        """Return the pose from objects whose positions in the body frame are known: sections 2.5 and 2.6. Source: paper
+        2, sections 2.5, 2.6.
         """
         observations = tuple(observations)
         for i, one in enumerate(observations):

@@ -27,12 +27,9 @@ class PanoramaError(ValueError):
     """A panorama, a pair of them, or a coordinate on one that cannot be used."""
 
 
-MAX_BASELINE = 10.0
-"""Metres. A longer baseline was probably given in millimetres."""
-BLANK_LEVEL = 12
-"""Brightest value, of 255, of a frame that shows nothing. The noise of a covered lens stays below it."""
-HOT_SHARE = 1e-4
-"""Share of the pixels of such a frame that may be brighter, because a sensor has hot pixels (chosen)."""
+MAX_BASELINE = 10.0  # Metres. A longer baseline was probably given in millimetres.
+BLANK_LEVEL = 12  # Brightest value, of 255, of a frame that shows nothing. The noise of a covered lens stays below it.
+HOT_SHARE = 1e-4  # Share of the pixels of such a frame that may be brighter, because a sensor has hot pixels (chosen).
 
 
 @dataclass(frozen=True)
@@ -76,9 +73,7 @@ class StereoRig:
 def azimuth_elevation_of_pixel(uv: np.ndarray, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
     """Return azimuth in [-pi, pi) and elevation in [-pi/2, pi/2] of edge coordinates `(..., 2)`, radians.
 
-    azimuth = (1/2 - u/W) 2 pi, elevation = (1/2 - v/H) pi. u may lie beyond the seam; v must lie in [0, H].
-    Raises `PanoramaError` for a wrong shape, values that are not finite, or v outside the image.
-    Source: paper 2, section 2.4.
+    azimuth = (1/2 - u/W) 2 pi, elevation = (1/2 - v/H) pi. u may lie beyond the seam. Source: paper 2, section 2.4.
     """
     uv = _finite(uv, "uv", "uv")
     if ((uv[..., 1] < 0) | (uv[..., 1] > height)).any():
@@ -91,8 +86,8 @@ def azimuth_elevation_of_pixel(uv: np.ndarray, width: int, height: int) -> tuple
 def pixel_to_direction(uv: np.ndarray, width: int, height: int) -> np.ndarray:
     """Return the directions `(..., 3)` (unit vectors, body frame) of edge coordinates `(..., 2)` on a panorama.
 
-    x_hat = (cos e cos a, cos e sin a, sin e) with a and e of `azimuth_elevation_of_pixel`.
-    Raises `PanoramaError` as that does. Source: paper 2, section 2.4.
+    x_hat = (cos e cos a, cos e sin a, sin e) with a and e of `azimuth_elevation_of_pixel`. Raises `PanoramaError` for v
+    outside the image and for values that are not finite. Source: paper 2, section 2.4.
     """
     return direction_from_angles(*azimuth_elevation_of_pixel(uv, width, height))
 
@@ -112,12 +107,7 @@ def direction_to_pixel(direction: np.ndarray, width: int, height: int) -> np.nda
 
 
 def azimuth_elevation(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Azimuth in [-pi, pi) and elevation in [-pi/2, pi/2] (radians, `(...)`) of directions `(..., 3)`.
-
-    a = atan2(y, x), e = atan2(z, hypot(x, y)); straight up and down a is 0.
-    Raises `PanoramaError` for a wrong shape, a zero vector or values that are not finite.
-    Source: paper 2, section 2.4.
-    """
+    """Return azimuth a = atan2(y, x), 0 straight up and down, and elevation e of directions `(..., 3)`, radians."""
     x, y, z = np.moveaxis(_finite(direction, "direction", "xyz"), -1, 0)
     horizontal = np.hypot(x, y)
     if ((horizontal == 0) & (z == 0)).any():
@@ -127,10 +117,7 @@ def azimuth_elevation(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def direction_from_angles(azimuth: np.ndarray | float, elevation: np.ndarray | float) -> np.ndarray:
-    """Unit vectors `(..., 3)` of azimuths and elevations in radians: (cos e cos a, cos e sin a, sin e).
-
-    Source: paper 2, section 2.4.
-    """
+    """Return unit vectors `(..., 3)` of azimuths and elevations in radians: (cos e cos a, cos e sin a, sin e)."""
     azimuth, elevation = np.broadcast_arrays(np.asarray(azimuth, float), np.asarray(elevation, float))
     return np.stack(
         [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)], axis=-1
@@ -154,22 +141,14 @@ def azimuth_difference(first: np.ndarray | float, second: np.ndarray | float) ->
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """One panorama, checked once, and what the steps of the method found in it.
+    """One panorama, checked once, and what the steps of the method found in it."""
 
-    Raises `PanoramaError` for a size that no panorama has.
-    """
-
-    width: int
-    """Pixels; twice the height."""
+    width: int  # Pixels; twice the height.
     height: int
-    image: np.ndarray | None = None
-    """`(H, W, 3)` uint8 BGR; None if only its detections are known."""
-    detections: Sequence = ()
-    """Section 2.2: anything with `label` and `box`, and for the map `hue` and `saturation`."""
-    features: Any = None
-    """Section 2.3: `PanoramaFeatures`, once they were looked for."""
-    is_blank: bool = False
-    """True if the image shows nothing: a covered lens, or an exposure that failed."""
+    image: np.ndarray | None = None  # `(H, W, 3)` uint8 BGR; None if only its detections are known.
+    detections: Sequence = ()  # Section 2.2: anything with `label` and `box`, and for the map `hue` and `saturation`.
+    features: Any = None  # Section 2.3: `PanoramaFeatures`, once they were looked for.
+    is_blank: bool = False  # True if the image shows nothing: a covered lens, or an exposure that failed.
 
     def __post_init__(self) -> None:
         if self.height < 1 or self.width != 2 * self.height:
@@ -198,9 +177,7 @@ class View:
 def open_view(image: np.ndarray | View, name: str = "image") -> View:
     """Check that an image is a panorama, uint8 BGR `(H, W, 3)` with W = 2 H, and return it as a `View`.
 
-    A `View` was checked already. A black frame is let in, because it is no mistake of the caller's. Raises
-    `PanoramaError`, beginning with `name`, for no pixels, one channel or three equal ones (hue and saturation are
-    needed), another shape, another ratio of width to height, or values that are not 8 bits.
+    A `View` was checked already. A black frame is let in. Raises `PanoramaError`, beginning with `name`.
     """
     if isinstance(image, View):
         return image
@@ -228,7 +205,7 @@ def open_view(image: np.ndarray | View, name: str = "image") -> View:
 
 
 def open_pair(upper_image: np.ndarray | View, lower_image: np.ndarray | View) -> tuple[View, View]:
-    """Check the two panoramas of a rig. Raises `PanoramaError` as `open_view` does, and if their sizes differ."""
+    """Check the two panoramas of a rig."""
     upper, lower = open_view(upper_image, "upper image"), open_view(lower_image, "lower image")
     if upper.size != lower.size:
         raise PanoramaError(
@@ -239,10 +216,7 @@ def open_pair(upper_image: np.ndarray | View, lower_image: np.ndarray | View) ->
 
 
 def read_panorama(path: str | os.PathLike) -> np.ndarray:
-    """Read the panorama in an image file, uint8 BGR `(H, W, 3)`. An alpha channel is left out.
-
-    Raises `PanoramaError` for a missing file, a file that is no image, and an image that `open_view` refuses.
-    """
+    """Read the panorama in an image file, uint8 BGR `(H, W, 3)`. An alpha channel is left out."""
     image = read_image(path, "image", PanoramaError)
     if image.ndim == 3 and image.shape[2] == 4:
         image = np.ascontiguousarray(image[..., :3])

@@ -31,22 +31,18 @@ class TrueObject:
 
 @dataclass(frozen=True)
 class StereoPair:
-    """One pair of panoramas and where it was taken.
-
-    pose: `(3,)` [x, y, heading] of the upper camera, metres and radians, heading in [-pi, pi].
-    upper_objects, lower_objects: what can be seen on each image. size: (width, height) of both panoramas, pixels.
-    """
+    """One pair of panoramas and where it was taken."""
 
     name: str
-    pose: np.ndarray
+    pose: np.ndarray  # `(3,)` [x, y, heading] of the upper camera, metres and radians, heading in [-pi, pi]
     upper_file: Path
     lower_file: Path
     upper_objects: tuple[TrueObject, ...]
     lower_objects: tuple[TrueObject, ...]
-    size: tuple[int, int]
+    size: tuple[int, int]  # (width, height) of both, pixels
 
     def images(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the upper and the lower panorama, `(H, W, 3)` uint8 BGR. Raises `PanoramaError` if one is unusable."""
+        """Return the upper and the lower panorama, `(H, W, 3)` uint8 BGR."""
         return self._image(self.upper_file), self._image(self.lower_file)
 
     def _image(self, file: Path) -> np.ndarray:
@@ -61,7 +57,7 @@ class StereoPair:
 
 @dataclass(frozen=True)
 class StereoRecording:
-    """Pairs of panoramas taken with one rig. width, height: of every panorama, pixels. seed: of the data."""
+    """Pairs of panoramas taken with one rig; sizes in pixels, and the seed of the data."""
 
     folder: Path
     rig: StereoRig
@@ -72,11 +68,7 @@ class StereoRecording:
 
 
 def read_stereo_recording(folder: str | Path) -> StereoRecording:
-    """Read the recording in a folder. Images are read only when a pair is asked for them.
-
-    Raises `PanoramaError` if poses.json or an image that it names is missing, or if a field is missing or of another
-    kind than expected.
-    """
+    """Read the recording in a folder. Images are read only when a pair is asked for them."""
     folder = Path(folder)
     path = folder / POSES_FILE
     content = read_json(path, "list of pairs", PanoramaError)
@@ -115,7 +107,7 @@ def _pair(folder: Path, entry: dict, size: tuple[int, int]) -> StereoPair:
 
 
 def true_object(entry: dict) -> TrueObject:
-    """Return one object from its entry in poses.json or boxes.json. Raises `KeyError` or `TypeError` for others."""
+    """Return one object from its entry in poses.json or boxes.json."""
     return TrueObject(
         _of_kind(entry["object"], int),
         _of_kind(entry["label"], str),

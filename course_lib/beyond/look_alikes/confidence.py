@@ -11,17 +11,13 @@ from course_lib.beyond.look_alikes.evidence import CLUTTER_DENSITY, FAR_RANGE, E
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
+# Share of the evidence that is believed when hypotheses are weighed, because errors of one room, such as a wrong
+# baseline, are in all its observations at once.
 TEMPER = 0.5
-"""Share of the evidence that is believed when hypotheses are weighed against each other. Errors of one room, such as a
-wrong baseline or a colour of light, are in all its observations at once, so they must not count once each."""
-MIN_INLIERS = 3
-"""Matched observations that a pose needs, because two always fit."""
-DOUBT = 0.001
-"""Share of the right poses whose residuals may be called too large, if the covariances are exact."""
-MIN_CONFIDENCE = 0.8
-"""A pose with a smaller confidence is not given out."""
-MARGIN = 1.0
-"""Metres that a room reaches beyond its landmarks, if the map has no walls (chosen)."""
+MIN_INLIERS = 3  # Matched observations that a pose needs, because two always fit.
+DOUBT = 0.001  # Share of the right poses whose residuals may be called too large, if the covariances are exact.
+MIN_CONFIDENCE = 0.8  # A pose with a smaller confidence is not given out.
+MARGIN = 1.0  # Metres that a room reaches beyond its landmarks, if the map has no walls (chosen).
 
 # Reasons why no pose is given out.
 NOTHING_AGREES = "no two objects agree on a pose"
@@ -30,11 +26,7 @@ AMBIGUOUS = "ambiguous"  # another pose, or none at all, explains what is seen n
 
 
 def score_of_nothing(semantic_map: SemanticMap) -> float:
-    """Return the score of "none of these poses" for every observation, nats: 1 / area against `CLUTTER_DENSITY`.
-
-    If no pose is right, an object is seen anywhere in the room, or in a hall anywhere within `FAR_RANGE`. A pose that
-    leaves the object unmatched calls it clutter, which is rarer, so the pose must be much better with the others.
-    """
+    """Return the score of "none of these poses" for every observation, nats: 1 / area against `CLUTTER_DENSITY`."""
     return -float(np.log(CLUTTER_DENSITY * min(area(semantic_map), np.pi * FAR_RANGE**2)))
 
 
@@ -52,8 +44,7 @@ def with_shares(
 ) -> tuple[PoseHypothesis, ...]:
     """Return the same poses with their shares of the belief: exp(`TEMPER` score) over the sum of all.
 
-    The sum contains "none of these" (`score_of_nothing` for every observation), because a pose must be ahead of it too.
-    Without `absolute` evidence it is left out, and the share is the gap to the others alone.
+    With `absolute` evidence the sum contains "none of these", because a pose must be ahead of it too.
     """
     scores = [one.score for one in ranked]
     if evidence.absolute:
@@ -64,10 +55,7 @@ def with_shares(
 
 
 def plausibility(found: PoseHypothesis) -> float:
-    """Return min(1, p / `DOUBT`), p the probability of a chi^2 as large as this pose's.
-
-    A wrong pose may be far ahead of all others and still leave its observations far from their landmarks.
-    """
+    """Return min(1, p / `DOUBT`), p the probability of a chi^2 as large as this pose's."""
     return min(1.0, float(chi2.sf(found.chi_square, 2 * len(found.pairs) - 3)) / DOUBT)
 
 

@@ -38,14 +38,10 @@ from course_lib.spherical_stereo.semantic_map.association import (
 )
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-SAME_POSE_M, SAME_POSE_RAD = 0.5, np.deg2rad(10.0)
-"""Metres and radians. Two poses that are nearer are one answer."""
-SHORT_LIST = 30
-"""Distinct poses that are assigned and refitted."""
-ALTERNATIVES = 3
-"""Poses that an answer keeps beside the best."""
-ROUNDS = 2
-"""Assignments and refits in turn. The second changes few pairs, a third changed none that mattered."""
+SAME_POSE_M, SAME_POSE_RAD = 0.5, np.deg2rad(10.0)  # metres, radians: two poses that are nearer are one answer
+SHORT_LIST = 30  # Distinct poses that are assigned and refitted.
+ALTERNATIVES = 3  # Poses that an answer keeps beside the best.
+ROUNDS = 2  # Assignments and refits in turn. The second changes few pairs, a third changed none that mattered.
 
 
 def rank_poses(
@@ -83,9 +79,8 @@ def associate_consistent(
 ) -> Association:
     """Return the pairs of the pose that explains everything best, that pose, its alternatives, and how sure it is.
 
-    Called as `associate_greedy`, whose weights and distance_term serve for the table of penalties only: eq. (1) decides
-    nothing here. min_confidence: 0 to 1. If the best pose is less sure, `reason` and `explanation` say why it should
-    not be given out. Raises `ValueError` for another min_confidence, `AssociationError` as `penalty_table` does.
+    Called as `associate_greedy`; weights and distance_term serve for the table only. Below min_confidence, `reason` and
+    `explanation` say why the pose should not be given out.
     """
     if not 0 <= min_confidence <= 1:
         raise ValueError(f"min_confidence must lie between 0 and 1; got {min_confidence!r}")

@@ -14,56 +14,38 @@ from course_lib.beyond.look_alikes.hypotheses import MAP_SIGMA, Scene, seen_from
 from course_lib.spherical_stereo.semantic_map.association import hue_difference
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
+# Measured on rooms 10,100 to 10,103: errors of places are larger than their covariances say (1.1 along the ray, with
+# heavier tails), and 1 in 50 observations shows nothing of the map.
 NOISE_FACTOR = 1.2
-"""How much larger than their covariances say the errors of places are (measured on rooms 10,100 to 10,103: 1.1 along
-the ray, with heavier tails)."""
-CLUTTER_DENSITY = 1e-3
-"""False observations a square metre: 1 in 50 observations shows nothing of the map (measured there), in 30 m^2."""
-HUE_SPREAD = 600.0
-"""Degrees times percent: the standard deviation of a hue is this over the saturation; 20 degrees at 30 percent."""
-MIN_HUE_SIGMA = 12.0
-"""Degrees, for the most colourful of things: light differs from survey to survey."""
-SATURATION_SIGMA = 15.0
-"""Percent, standard deviation of a saturation between survey and photograph."""
-MAX_COLOUR_COST = 3.0
-"""Nats. A wrong colour never costs more."""
-DETECTION_NEAR, DETECTION_FAR = 0.95, 0.65
-"""Probability that a landmark in plain sight is observed, nearby and at `FAR_RANGE`."""
-FAR_RANGE = 6.0
-"""Metres."""
-DETECTION_HIDDEN = 0.5
-"""Probability that a landmark behind another is observed all the same: over it, or past it."""
-OBJECT_RADIUS = 0.4
-"""Metres: half the width of a piece of furniture, which the map does not know. It hides what is behind it."""
-BODY_RADIUS = 0.2
-"""Metres about a landmark's centroid where no rig can stand."""
-OUTSIDE_COST = 20.0
-"""Nats for a pose inside a piece of furniture or outside the walls."""
+CLUTTER_DENSITY = 1e-3  # false observations a square metre
+HUE_SPREAD = 600.0  # degrees times percent: the standard deviation of a hue is this over the saturation
+MIN_HUE_SIGMA = 12.0  # Degrees, for the most colourful of things: light differs from survey to survey.
+SATURATION_SIGMA = 15.0  # Percent, standard deviation of a saturation between survey and photograph.
+MAX_COLOUR_COST = 3.0  # Nats. A wrong colour never costs more.
+DETECTION_NEAR, DETECTION_FAR = 0.95, 0.65  # probability that a landmark in plain sight is observed, to `FAR_RANGE`
+FAR_RANGE = 6.0  # Metres.
+DETECTION_HIDDEN = 0.5  # Probability that a landmark behind another is observed all the same: over it, or past it.
+OBJECT_RADIUS = 0.4  # metres: half the width of a piece of furniture, which hides what is behind it
+BODY_RADIUS = 0.2  # Metres about a landmark's centroid where no rig can stand.
+OUTSIDE_COST = 20.0  # Nats for a pose inside a piece of furniture or outside the walls.
 
 
 class Evidence(NamedTuple):
     """Which parts of the score count: all of them, or for an ablation all but one."""
 
-    one_to_one: bool = True
-    """An assignment; False: every observation takes the landmark it likes best, be it taken or not."""
-    stereo_covariance: bool = True
-    """Residuals weighed by the covariance of their observation; False: by one number in every direction."""
+    one_to_one: bool = True  # an assignment; False: every observation takes the landmark it likes best
+    stereo_covariance: bool = True  # residuals weighed by their covariance; False: by one number in every direction
     colour: bool = True
-    refit: bool = True
-    """The pose fitted to all its matches; False: the pose of the two it came from."""
-    negative: bool = True
-    """What should be seen and is not."""
+    refit: bool = True  # The pose fitted to all its matches; False: the pose of the two it came from.
+    negative: bool = True  # What should be seen and is not.
     free_space: bool = True
-    absolute: bool = True
-    """Confidence asks for an absolute fit too; False: for the gap to the other poses alone."""
+    absolute: bool = True  # Confidence asks for an absolute fit too; False: for the gap to the other poses alone.
 
 
 def place_distances(scene: Scene, poses: np.ndarray, pose_covariances: np.ndarray | None = None) -> tuple:
-    """Squared Mahalanobis distances `(h, n, m)` of every observation to every landmark, and log|S| `(h, n)`.
+    """Return squared Mahalanobis distances `(h, n, m)` of every observation to every landmark, and log|S| `(h, n)`.
 
-    d^2 = r^T S^-1 r,  r = R z + t - m,  S = f^2 R C R^T + s_map^2 I + J P J^T
-
-    f: `NOISE_FACTOR`. P: covariances `(h, 3, 3)` of the poses; None: the poses are taken as exact.
+    d^2 = r^T S^-1 r, r = R z + t - m, S = f^2 R C R^T + s_map^2 I + J P J^T, f = `NOISE_FACTOR`, P: of the poses
     """
     places, jacobians, spread = seen_from(poses, scene.places[None], scene.covariances[None])
     spread = NOISE_FACTOR**2 * spread + MAP_SIGMA**2 * np.eye(2)
@@ -75,10 +57,9 @@ def place_distances(scene: Scene, poses: np.ndarray, pose_covariances: np.ndarra
 
 
 def colour_costs(scene: Scene) -> np.ndarray:
-    """Cost `(n, m)` of the colours of every observation and landmark: 0 where they are the same.
+    """Return the cost `(n, m)` of the colours of every observation and landmark: 0 where they are the same.
 
-    dh^2 / (2 s_h^2) + ds^2 / (2 s_s^2), at most `MAX_COLOUR_COST`; dh on the circle, s_h = `HUE_SPREAD` / the lesser
-    saturation: the paler, the less a hue means. Grey has no hue, and then the saturations speak alone.
+    dh^2 / (2 s_h^2) + ds^2 / (2 s_s^2), at most `MAX_COLOUR_COST`; s_h = `HUE_SPREAD` / the lesser saturation.
     """
     landmarks = scene.semantic_map
     d_hue = hue_difference(scene.hues[:, None], landmarks.hues[None])
@@ -90,11 +71,9 @@ def colour_costs(scene: Scene) -> np.ndarray:
 
 
 def detection_probabilities(semantic_map: SemanticMap, poses: np.ndarray, max_range: float = np.inf) -> np.ndarray:
-    """Probability `(h, m)` that each landmark is observed from each pose: what makes evidence of a miss.
+    """Return the probability `(h, m)` that each landmark is observed from each pose: what makes evidence of a miss.
 
-    It falls from `DETECTION_NEAR` to `DETECTION_FAR` with the distance, is at most `DETECTION_HIDDEN` for a landmark
-    that stands behind another one (as seen from the pose: within its half width, and further away), and 0 beyond
-    max_range, metres.
+    It falls with the distance, and is small for a landmark behind another one, and 0 beyond max_range, metres.
     """
     away = semantic_map.positions[None] - poses[:, None, :2]
     distance, azimuth = np.linalg.norm(away, axis=-1), np.arctan2(away[..., 1], away[..., 0])

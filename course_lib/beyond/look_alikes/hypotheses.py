@@ -1,7 +1,7 @@
-"""Poses of two matches: every pair of observations is laid on every pair of landmarks that it may show.
+"""Poses of two matches: every pair of observations is laid on every pair of landmarks that it may show. Beyond the
+paper.
 
-Beyond the paper, which matches first and fits afterwards. If objects look alike, no match can be believed alone. But
-two matches give a pose, and a pose can be judged by everything else that is seen (`evidence`).
+If objects look alike, no match can be believed alone, but two give a pose that everything else can judge.
 """
 
 from __future__ import annotations
@@ -17,66 +17,47 @@ from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-DISTANCE_GATE = 3.5
-"""Standard deviations by which two distances may differ and still be one (chosen: 1 in 2,000 right pairs is lost, if
-the covariances are exact)."""
-MIN_DISTANCE = 0.5
-"""Metres between two landmarks, and between two observations. Nearer ones tell no useful heading."""
-UNKNOWN_SIGMA = 0.3
-"""Metres, standard deviation of a position without a covariance (chosen)."""
-MAP_SIGMA = 0.02
-"""Metres, standard deviation of a landmark's coordinates: a tape measure, and what counts as an object's middle."""
+DISTANCE_GATE = 3.5  # standard deviations by which two distances may differ and still be one (chosen)
+MIN_DISTANCE = 0.5  # Metres between two landmarks, and between two observations. Nearer ones tell no useful heading.
+UNKNOWN_SIGMA = 0.3  # Metres, standard deviation of a position without a covariance (chosen).
+MAP_SIGMA = 0.02  # metres, standard deviation of a landmark's coordinates
 GAUSS_NEWTON_STEPS = 4
 
 
 class Scene(NamedTuple):
-    """n observations and a map of m landmarks as arrays, made once for all parts of the search.
+    """n observations and a map of m landmarks as arrays, made once for all parts of the search."""
 
-    places: `(n, 2)`, body frame, metres; covariances: `(n, 2, 2)` of them. hues: `(n,)` degrees, NaN for grey.
-    saturations: `(n,)` percent. like: `(n, m)` bool, True if the classes of an observation and a landmark agree.
-    """
-
-    places: np.ndarray
-    covariances: np.ndarray
-    hues: np.ndarray
-    saturations: np.ndarray
-    like: np.ndarray
+    places: np.ndarray  # `(n, 2)`, body frame, metres
+    covariances: np.ndarray  # `(n, 2, 2)` of the places
+    hues: np.ndarray  # `(n,)` degrees, NaN for grey
+    saturations: np.ndarray  # `(n,)` percent
+    like: np.ndarray  # `(n, m)` bool: do the classes of an observation and a landmark agree?
     semantic_map: SemanticMap
 
 
 class PairPoses(NamedTuple):
-    """h poses of pairs of matches.
+    """h poses of pairs of matches."""
 
-    poses: `(h, 3)` [x, y, theta], metres and radians; covariances: `(h, 3, 3)`, what two matches leave open.
-    observations, landmarks: `(h, 2)` indices of the two observations and the landmarks they were laid on.
-    """
-
-    poses: np.ndarray
-    covariances: np.ndarray
-    observations: np.ndarray
-    landmarks: np.ndarray
+    poses: np.ndarray  # `(h, 3)` [x, y, theta], metres and radians
+    covariances: np.ndarray  # `(h, 3, 3)`, what two matches leave open
+    observations: np.ndarray  # `(h, 2)` indices
+    landmarks: np.ndarray  # `(h, 2)` indices of what they were laid on
 
 
 class PoseHypothesis(NamedTuple):
     """One pose, and how well it explains what was seen."""
 
     pose: Pose2D
-    covariance: np.ndarray
-    """`(3, 3)` of [x, y, theta], metres and radians, squared."""
-    pairs: tuple[tuple[int, int], ...]
-    """(observation, landmark) that it matches."""
-    score: float
-    """Log-likelihood ratio in nats. 0 means that the pose explains the observations no better than clutter does."""
-    chi_square: float
-    """Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers."""
-    missed: tuple[int, ...]
-    """Landmarks that were probably visible from there, and were not seen."""
-    share: float = 0.0
-    """Of the belief, among all distinct poses and "none of them": 0 to 1."""
+    covariance: np.ndarray  # `(3, 3)` of [x, y, theta], metres and radians, squared.
+    pairs: tuple[tuple[int, int], ...]  # (observation, landmark) that it matches.
+    score: float  # log-likelihood ratio in nats: 0 means that clutter explains the observations as well
+    chi_square: float  # Sum of squared normalized residuals of the pairs, of 2 n - 3 numbers.
+    missed: tuple[int, ...]  # Landmarks that were probably visible from there, and were not seen.
+    share: float = 0.0  # Of the belief, among all distinct poses and "none of them": 0 to 1.
 
 
 def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> Scene:
-    """Return the arrays of observations and map. An unknown covariance becomes `UNKNOWN_SIGMA` in each direction."""
+    """Return the arrays of observations and map."""
     n = len(observations)
     labels = np.array([canonical_label(one.label) for one in observations], dtype=object)
     unknown = UNKNOWN_SIGMA**2 * np.eye(2)
@@ -93,9 +74,8 @@ def scene_of(observations: Sequence[Observation], semantic_map: SemanticMap) -> 
 def pairs_of_matches(scene: Scene, gate: float = DISTANCE_GATE) -> tuple[np.ndarray, np.ndarray]:
     """Return pairs of matches that can both be right: indices `(h, 2)` of observations and of landmarks.
 
-    Like classes, landmarks `MIN_DISTANCE` apart (so distinct ones), and | |z_i - z_k| - |m_j - m_l| | <= gate sigma,
-    with sigma^2 = u^T (C_i + C_k) u along the line u between the observations. A distance does not change with the
-    pose, so no pose is needed yet.
+    Like classes, landmarks `MIN_DISTANCE` apart, and | |z_i - z_k| - |m_j - m_l| | <= gate sigma, with sigma^2 = u^T
+    (C_i + C_k) u along the line u between the observations.
     """
     i, j = np.nonzero(scene.like)
     first, second = np.nonzero(i[:, None] < i[None])
@@ -112,11 +92,7 @@ def pairs_of_matches(scene: Scene, gate: float = DISTANCE_GATE) -> tuple[np.ndar
 
 
 def pair_poses(scene: Scene, gate: float = DISTANCE_GATE) -> PairPoses:
-    """The pose of every pair of matches (`pairs_of_matches`), with its covariance.
-
-    min over x, y, theta of sum_{k=1,2} r_k^T (R C_k R^T)^-1 r_k,  r_k = R z_k + t - m_k: `fit_poses`, begun where the
-    line between the observations lies on the line between the landmarks.
-    """
+    """Return the pose of every pair of matches with its covariance, by `fit_poses`, begun line on line."""
     observations, landmarks = pairs_of_matches(scene, gate)
     places, targets = scene.places[observations], scene.semantic_map.positions[landmarks]
     seen, true = places[:, 1] - places[:, 0], targets[:, 1] - targets[:, 0]
@@ -128,18 +104,13 @@ def pair_poses(scene: Scene, gate: float = DISTANCE_GATE) -> PairPoses:
 
 
 def fit_poses(
-    start: np.ndarray,
-    places: np.ndarray,
-    targets: np.ndarray,
-    covariances: np.ndarray,
-    used: np.ndarray | None = None,
+    start: np.ndarray, places: np.ndarray, targets: np.ndarray, covariances: np.ndarray, used: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Anisotropic fits of many poses at once: poses `(h, 3)` and their covariances `(h, 3, 3)`.
+    """Return the anisotropic fits of many poses at once: poses `(h, 3)` and their covariances `(h, 3, 3)`.
 
-    Gauss-Newton steps from `start` `(h, 3)` on sum_k r_k^T (R C_k R^T + `MAP_SIGMA`^2 I)^-1 r_k. places, targets:
-    `(h, k, 2)` in the body frame and on the map; covariances: `(h, k, 2, 2)` in the body frame; used: `(h, k)` bool,
-    the matches that count (None: all), two or more of each pose. A stereo camera knows an object's bearing to
-    centimetres and its distance to decimetres. Counted alike, as in the paper's fit, the distances spoil the bearings.
+    Gauss-Newton steps from `start` `(h, 3)` on sum_k r_k^T (R C_k R^T + `MAP_SIGMA`^2 I)^-1 r_k, r_k = R z_k + t - m_k.
+    places, targets: `(h, k, 2)`. covariances: `(h, k, 2, 2)`, body frame. used: `(h, k)` bool, two or more of each
+    pose.
     """
     poses = np.array(start, dtype=np.float64).reshape(-1, 3)
     normal = np.tile(np.eye(3), (len(poses), 1, 1))
@@ -157,11 +128,7 @@ def fit_poses(
 
 
 def seen_from(poses: np.ndarray, places: np.ndarray, covariances: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Observations as they lie on the map, seen from each pose `(h, 3)`: places `(h, k, 2)`, their derivative with
-    respect to the pose `(h, k, 2, 3)`, and their covariances R C R^T `(h, k, 2, 2)`.
-
-    places `(h or 1, k, 2)`, covariances `(h or 1, k, 2, 2)`: body frame.
-    """
+    """Return places `(h, k, 2)` on the map, their derivative by the pose `(h, k, 2, 3)`, and R C R^T `(h, k, 2, 2)`."""
     rotation = rotations(poses[:, 2])[:, None]
     turned = (rotation @ places[..., None])[..., 0]
     jacobians = np.zeros((*turned.shape, 3))

@@ -26,9 +26,7 @@ def associate_hungarian(
 ) -> Association:
     """Return one-to-one pairs with the smallest sum of the object, hue and saturation terms of eq. (1).
 
-    This is the best that can be done without geometry, and worse than the greedy search with its blunt distance term,
-    because colour is noise where objects look alike. Called as `associate_greedy`; distance_term serves for the table
-    only. Raises `AssociationError` as `penalty_table` does.
+    Called as `associate_greedy`; distance_term serves for the table only.
     """
     table = penalty_table(observations, semantic_map, weights, distance_term)
     chosen = linear_sum_assignment(table.object + table.hue + table.saturation)

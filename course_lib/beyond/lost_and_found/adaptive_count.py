@@ -17,10 +17,7 @@ PROBABILITY = 0.99
 
 
 def kld_count(bins: int, least: int, most: int, error: float = ERROR, probability: float = PROBABILITY) -> int:
-    """Return the number of particles, from `least` to `most`, for a distribution that occupies so many bins.
-
-    error: epsilon, nats. Raises `ValueError` if the bounds are in the wrong order, or error or probability is invalid.
-    """
+    """Return the number of particles, from `least` to `most`, for a distribution that occupies so many bins."""
     if not 1 <= least <= most:
         raise ValueError(f"least and most must be in order, at least 1; got {least} and {most}")
     if not (error > 0 and 0 < probability < 1):
@@ -33,10 +30,7 @@ def kld_count(bins: int, least: int, most: int, error: float = ERROR, probabilit
 
 
 def occupied_bins(poses: np.ndarray, size: float, angle: float) -> int:
-    """Return how many bins camera-to-world poses `(N, 4, 4)` fall into.
-
-    Bins are cubes of `size` metres for the position, and cubes of `angle` (radians, as a chord) for the forward axis.
-    """
+    """Return how many bins poses `(N, 4, 4)` fall into: cubes of `size` metres, and of `angle` for the forward axis."""
     if len(poses) == 0:
         return 0
     cells = np.floor(np.concatenate([poses[:, :3, 3] / size, poses[:, :3, 2] / angle], axis=1)).astype(int)

@@ -39,10 +39,7 @@ class FreeSpace:
         return free if self.small else free & (np.isfinite(distances).mean(axis=1) >= ENCLOSED)
 
     def distances(self, positions: np.ndarray) -> np.ndarray:
-        """Return the distances `(N, 32)` in metres from positions `(N, 3)` to the map in 32 directions.
-
-        `inf` where nothing is hit.
-        """
+        """Return the distances `(N, 32)` in metres from positions `(N, 3)` to the map in 32 directions; `inf`: none."""
         origins = np.repeat(positions - self._map.origin, _DIRECTIONS, axis=0)
         distances = self._caster.cast(origins, np.tile(self._directions, (len(positions), 1)))[0]
         return distances.reshape(len(positions), _DIRECTIONS)

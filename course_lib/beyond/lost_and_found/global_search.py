@@ -5,12 +5,8 @@
         candidates = search.step(depth, gravity)
         if candidates.status == "found": ...
 
-Every frame draws new particles from anywhere and refines the best of them. It also follows the candidates of earlier
-frames, each with a small cloud of its own. A candidate lives as long as its images agree with the map. The answer is
-one pose only if no other pose explains the frames as well; where a building repeats itself, the answer is several.
-
-Gravity is known, because every phone and depth camera with an accelerometer measures it. So only four of the six
-degrees of freedom have to be searched.
+The answer is one pose only if no other pose explains the frames as well; where a building repeats itself, it is
+several. Gravity is known (an accelerometer measures it), so only four degrees of freedom have to be searched.
 """
 
 from __future__ import annotations
@@ -52,26 +48,18 @@ CLEAR_GAP = 0.08  # of evidence, between the best candidate and the next elsewhe
 class PoseCandidate(NamedTuple):
     """A pose that the camera may have."""
 
-    state: np.ndarray
-    """`(6,)`."""
-    evidence: float
-    """Running mean of agreeing - 3 through over its frames: 1 at best."""
-    frames: int
-    """How many frames it has explained."""
+    state: np.ndarray  # `(6,)`.
+    evidence: float  # Running mean of agreeing - 3 through over its frames: 1 at best.
+    frames: int  # How many frames it has explained.
 
 
 class PoseCandidates(NamedTuple):
     """The answer of a search after the frames so far."""
 
-    status: Literal["found", "several", "searching"]
-    """"found": one pose explains the frames, and no other nearly as well. "several": more than one does. "searching":
-    none for long enough."""
-    poses: list[PoseCandidate]
-    """Best first; no two are at the same place."""
-    particles: int
-    """How many poses were drawn from free space in this frame."""
-    renders: int
-    """How many images were drawn in this frame."""
+    status: Literal["found", "several", "searching"]  # one pose explains the frames; more than one; none long enough
+    poses: list[PoseCandidate]  # Best first; no two are at the same place.
+    particles: int  # How many poses were drawn from free space in this frame.
+    renders: int  # How many images were drawn in this frame.
 
 
 class _Followed(MotionPrediction):
@@ -88,10 +76,8 @@ class _Followed(MotionPrediction):
 
 
 class GlobalSearch:
-    """Looks for the camera in all free space of a map.
-
-    renderer: draws the map for the camera. seed: of all draws. least, most: bounds on the number of poses that are
-    drawn from free space in a frame; KLD-sampling chooses between them.
+    """Looks for the camera in all free space of a map. least, most: bounds on the poses drawn in a frame
+    (KLD-sampling).
     """
 
     def __init__(self, renderer: DepthRenderer, *, seed: int = 0, least: int = 1_000, most: int = 10_000) -> None:
@@ -119,9 +105,8 @@ class GlobalSearch:
     ) -> PoseCandidates:
         """Return the candidates after a depth image `(H, W)` in metres.
 
-        gravity: `(3,)` down, in the camera's optical frame, any length, known to within `tilt_sigma` radians.
-        suggested: a state `(6,)` where the camera may be; it is judged like every other candidate.
-        Raises `ValueError` for gravity that is not three finite numbers, or zero.
+        gravity: `(3,)` down, in the camera's optical frame, known to within `tilt_sigma` radians. suggested: a state
+        `(6,)` where the camera may be; it is judged like every other candidate.
         """
         gravity = np.asarray(gravity, dtype=np.float64)
         if gravity.shape != (3,) or not np.isfinite(gravity).all() or not gravity.any():

@@ -31,15 +31,11 @@ UNKNOWN_TILT_SIGMA = np.deg2rad(15.0)
 class RecoveryEstimate(NamedTuple):
     """What one frame gave."""
 
-    estimate: AnnealedEstimate
-    """Of the filter; its status says what it is worth."""
-    mode: Literal["following", "searching", "found again"]
-    """"found again" in the frame in which the search set the filter to a new place."""
-    candidates: PoseCandidates | None
-    """The answer of the search, while there is one."""
+    estimate: AnnealedEstimate  # Of the filter; its status says what it is worth.
+    mode: Literal["following", "searching", "found again"]  # the last where the search set the filter to a new place
+    candidates: PoseCandidates | None  # The answer of the search, while there is one.
     short: float
-    long: float
-    """The two means of the raw score."""
+    long: float  # The two means of the raw score.
 
 
 class RecoveringLocalizer:
@@ -66,8 +62,7 @@ class RecoveringLocalizer:
     ) -> RecoveryEstimate:
         """Return where the camera is, from a depth image; arguments and errors as in `AnnealedLocalizer.step`.
 
-        gravity: `(3,)` down in the camera's optical frame, from an accelerometer; without it a search assumes the last
-        tilt.
+        gravity: `(3,)` down in the camera's optical frame; without it a search assumes the last tilt.
         """
         estimate = self.localizer.step(depth, increment)
         if estimate.status == "no measurement":

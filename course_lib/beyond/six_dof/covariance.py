@@ -1,12 +1,8 @@
 """How far off a refined pose may be: the image answers for some directions, the prediction for the others.
 
-The inverse of the normal equations' matrix would be the covariance if the pixels were independent: tenths of a
-millimetre. But errors of the map and the camera, and things that moved, shift thousands of pixels at once. So the whole
-image counts as a small number of independent pixels, calibrated on development recordings.
-
-We decide direction by direction what an image shows (`fused`). What it does not show (along a smooth wall) keeps the
-prediction's variance, which grows from frame to frame. Otherwise a bare wall is a trap: the map's roughness seems to
-show something along it, the pose slides, and the prediction takes the slide for a motion.
+Errors of the map and the camera shift thousands of pixels at once, so the whole image counts as a small number of
+independent pixels. What an image does not show (along a smooth wall) keeps the prediction's variance. Otherwise a bare
+wall is a trap: the pose slides on its roughness, and the prediction takes the slide for a motion.
 """
 
 from __future__ import annotations
@@ -35,13 +31,9 @@ def pose_information(measured: np.ndarray, image: np.ndarray, camera: DepthCamer
 
     I = n (sum w J K' + K J') / (2 sum w s^2),    s^2 = sum w r^2 / sum w
 
-    J = (n, p x n) with the normals n of the map, K = (m, p x m) with the normals m of the measured surface. Roughness
-    that only one of them shows is noise, and it adds nothing on average; J J' would take a rough map of a bare wall for
-    a view full of corners. A direction u counts only if it reaches `SIGNIFICANT` times what independent normals would
-    give by chance, sqrt(sum (w J.u K.u)^2); else its information is 0.
-
-    measured, image: `(H, W)` depth, of the camera and of the map from the pose. Small images serve best, because their
-    normals are less rough. The factor n is `INDEPENDENT_PIXELS`. The result is zero if no pixel has a surface in both.
+    J = (n, p x n) with the normals n of the map, K = (m, p x m) with the normals m of the measured surface; roughness
+    that only one of them shows adds nothing on average. A direction u below `SIGNIFICANT` sqrt(sum (w J.u K.u)^2) has
+    information 0. n is `INDEPENDENT_PIXELS`. measured, image: `(H, W)` depth.
     """
     p = camera.points(measured)
     (q,), (n,) = surface_normals(image[None].astype(np.float64), camera)
@@ -64,14 +56,10 @@ def pose_information(measured: np.ndarray, image: np.ndarray, camera: DepthCamer
 def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, spread: np.ndarray) -> np.ndarray:
     """Return the covariance `(6, 6)` of the predicted pose, along and about its own axes.
 
-    (1 + a) P + (1 + 1/a) Q,    a^2 = mean of Q's variances over P's
+    (1 + a) P + (1 + 1/a) Q, a^2 = mean of Q's variances over P's: covers any dependence of the two errors
 
-    covariance: of the pose before, about its axes. motion: `(6,)` predicted, in that pose's frame. spread: `(6,)` of
-    the cloud about the prediction; the prediction's own standard deviations (covariance Q) are `PREDICTED` times that.
-
-    P is the given covariance, carried along: T Exp(x) M = T M Exp(A x), with A x = (R' (v + w x t), R' w). So a
-    direction that was not seen stays where it is in the world while the camera turns. A wrong velocity is wrong in the
-    same way frame after frame, so the sum above covers any dependence between the two errors.
+    P: the given covariance, carried along: T Exp(x) M = T M Exp(A x), A x = (R' (v + w x t), R' w). motion: `(6,)`
+    predicted, in that pose's frame. spread: `(6,)` of the cloud; the standard deviations of Q are `PREDICTED` times it.
     """
     turned_back = rotation_exp(motion[3:]).T
     carry = np.zeros((6, 6))
@@ -84,13 +72,10 @@ def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, spread: np.
 
 
 def fused(prior: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the covariance `(6, 6)` of prediction and image together, and the gain `(6, 6)`.
+    """Return the covariance `(6, 6)` of prediction and image together, and the gain `(6, 6)` from prediction to image.
 
-    The gain says how much of the way to go from the predicted pose to the image's pose. prior: P, covariance of the
-    prediction. information: I, inverse covariance of the image's pose; it may be singular.
-    The eigenvectors of L' I L (with P = L L') are directions in which the two are independent. Along each of them we
-    believe the surer one alone. Kalman's gain would average, and it would become surer with every frame; but an image's
-    errors are mostly the map's errors, and they are the same in the next frame.
+    Along each eigenvector of L' I L (P = L L' the prior, I the image's information) the surer one alone is believed.
+    Kalman's gain would become surer with every frame, but an image's errors are mostly the map's, the same in the next.
     """
     lower = np.linalg.cholesky(prior)
     share, directions = np.linalg.eigh(lower.T @ information @ lower)
@@ -104,9 +89,7 @@ def fused(prior: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, np.nd
 def with_rivals(covariance: np.ndarray, pose: np.ndarray, rivals: Sequence[Rival]) -> np.ndarray:
     """Return the covariance `(6, 6)` about a pose `(4, 4)` if a rival, and not this pose, may be the right one.
 
-    P + sum_k p_k d_k d_k',    p_k = exp(evidence_k / RIVAL_SCALE) / 2
-
-    d: motion from the pose to the rival. A rival that fits equally well counts one half.
+    P + sum_k p_k d_k d_k', p_k = exp(evidence_k / RIVAL_SCALE) / 2, d: motion from the pose to the rival
     """
     for rival in rivals:
         apart = local(pose, rival.pose)
@@ -115,8 +98,7 @@ def with_rivals(covariance: np.ndarray, pose: np.ndarray, rivals: Sequence[Rival
 
 
 def in_world_and_body(covariance: np.ndarray, pose: np.ndarray) -> np.ndarray:
-    """Return a covariance `(6, 6)`, given in the camera's axes, in metres along the world's axes and radians about the
-    body's, as estimates have it. pose: camera-to-world `(4, 4)`, optical."""
+    """Return a covariance `(6, 6)` of the camera's axes in metres along the world's and radians about the body's."""
     turn = np.zeros((6, 6))
     turn[:3, :3] = pose[:3, :3]
     turn[3:, 3:] = BODY_FROM_OPTICAL

@@ -26,14 +26,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import (
-    NOTHING_MEASURED,
-    Agreement,
-    TrackJudge,
-    TrackStatus,
-    agreement,
-    judge_refined,
-)
+from course_lib.beyond.being_lost import NOTHING_MEASURED, Agreement, TrackJudge, TrackStatus, agreement, judge_refined
 from course_lib.beyond.six_dof.covariance import (
     fused,
     in_world_and_body,
@@ -44,13 +37,12 @@ from course_lib.beyond.six_dof.covariance import (
 from course_lib.beyond.six_dof.poses import distinct, local, retract
 from course_lib.beyond.six_dof.prediction import MAX_SPREAD, START_SPREAD, WIDER, MotionPrediction, Rival
 from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, Layer, Step, pyramid
-from course_lib.depth_mcl.likelihood import DepthImageError, valid_pixels
+from course_lib.depth_mcl.likelihood import checked_image, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.particle_filter import resample
 from course_lib.depth_mcl.uncertainty import Tempered, temper
 from course_lib.geometry import optical_pose, state_from_optical_pose
-from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 
 # All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th; what
@@ -64,29 +56,17 @@ RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
 class AnnealedEstimate(NamedTuple):
     """What one frame gave: the same as `Estimate`, and how it was reached."""
 
-    state: np.ndarray
-    """`(6,)` the best refined pose."""
-    covariance: np.ndarray
-    """`(6, 6)` of the last layer's weighted particles about the state, metres along the world's axes and radians about
-    the body's: how wide the search was."""
-    score: float
-    """Raw score of the refined pose, eq. (8) as a mean over pixels of the finest image; NaN without a measurement."""
-    ess: float
-    """Effective sample size of the last layer's weights."""
-    particles: np.ndarray
-    """`(N, 6)` of the last layer."""
-    weights: np.ndarray
-    """`(N,)` of these particles."""
-    status: TrackStatus | Literal["no measurement"]
-    """What being_lost.py says of the state, after a second look if the first was doubtful."""
-    error_covariance: np.ndarray
-    """`(6, 6)`, the same units and axes: of the error to expect while the status is "tracked"."""
-    agreement: Agreement
-    """How the measured image agrees with the map as seen from the state."""
-    layers: tuple[Tempered, ...]
-    """Weights, sharpness and effective sample size of every layer, in order."""
-    renders: int
-    """How many images were drawn."""
+    state: np.ndarray  # `(6,)` the best refined pose.
+    covariance: np.ndarray  # `(6, 6)` of the last particles, metres in world axes, radians in body axes
+    score: float  # raw score of the refined pose: eq. (8) as a mean over pixels of the finest image
+    ess: float  # Effective sample size of the last layer's weights.
+    particles: np.ndarray  # `(N, 6)` of the last layer.
+    weights: np.ndarray  # `(N,)` of these particles.
+    status: TrackStatus | Literal["no measurement"]  # what being_lost.py says of the state
+    error_covariance: np.ndarray  # `(6, 6)`, the same units and axes: of the error to expect while "tracked"
+    agreement: Agreement  # How the measured image agrees with the map as seen from the state.
+    layers: tuple[Tempered, ...]  # Weights, sharpness and effective sample size of every layer, in order.
+    renders: int  # How many images were drawn.
 
 
 class _Found(NamedTuple):
@@ -103,12 +83,9 @@ class _Found(NamedTuple):
 class AnnealedLocalizer:
     """Annealed particle filter with Gauss-Newton refinement, for a depth camera that moves freely.
 
-    renderer: draws the map for the camera. n_particles: of a layer whose share is 1. seed: of the one generator that
-    all draws come from. layers: of the first look at a frame. second_look: layers of the look after a doubtful one
-    (empty: none). steps: of the refinement (empty: the best particle is the estimate). rivals: how many other poses are
-    kept beside the best. fuse: joins the prediction and the image. prediction: made from the first pose, says where the
-    camera may be next.
-    Raises `ValueError` for a bad number of particles or rivals, a bad seed, or no layer.
+    n_particles: of a layer whose share is 1. seed: of all draws. second_look: layers after a doubtful look (empty:
+    none). steps: of the refinement (empty: the best particle). rivals: how many other poses are kept. fuse: joins
+    prediction and image. prediction: made from the first pose. Raises `ValueError` for bad numbers, or no layer.
     """
 
     def __init__(
@@ -142,9 +119,8 @@ class AnnealedLocalizer:
         self._covariance: np.ndarray | None = None
 
     def initialize(self, state0: np.ndarray) -> None:
-        """Say where the camera is before the first frame, to within some decimetres and degrees (`START_SPREAD`).
-
-        state0: `(6,)`. Raises `ValueError` for a state that is not finite or lies more than a metre outside the map.
+        """Say where the camera `(6,)` is before the first frame, to within some decimetres and degrees
+        (`START_SPREAD`).
         """
         self._prediction = self._new_prediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
         self._judge = TrackJudge()
@@ -153,10 +129,9 @@ class AnnealedLocalizer:
     def step(self, depth: np.ndarray, increment: np.ndarray | None = None) -> AnnealedEstimate:
         """Return where the camera is, from a depth image `(H, W)` in metres, NaN = no measurement.
 
-        increment: motion `(6,)` since the last frame as an odometer or an IMU has it, metres along and radians about
-        the camera's own axes (optical: right, down, forward); None without one.
-        A frame without any measurement warns (`NoMeasurementWarning`), and the state is then the prediction. Raises
-        `DepthImageError` for an image of another size, `RuntimeError` before `initialize`.
+        increment: motion `(6,)` since the last frame by an odometer or an IMU, metres along and radians about the
+        camera's own optical axes. A frame without any measurement warns (`NoMeasurementWarning`): the state is then the
+        prediction.
         """
         prediction = self._prediction
         if prediction is None:
@@ -174,8 +149,9 @@ class AnnealedLocalizer:
         return self._estimate(found, status)
 
     def _look_twice(self, spread: np.ndarray, increment: np.ndarray | None) -> tuple[_Found, np.ndarray]:
-        """The best pose in a cloud as wide as the motion may be long and the last pose wrong; if it agrees less than
-        usual, the best pose in a wider cloud. Also the spread of the motion that was believed."""
+        """Return the best pose of a cloud, or of a wider one if it agrees less than usual, and the spread that was
+        believed.
+        """
         not_known = 0.0 if self._covariance is None else np.sqrt(np.diag(self._covariance))
         cloud = np.minimum(np.hypot(spread, not_known), np.repeat(MAX_SPREAD, 3))
         found = self._look(self.layers, cloud, increment)
@@ -290,13 +266,3 @@ class AnnealedLocalizer:
             found.layers,
             sum(level.renders for level in self.levels),
         )
-
-
-def checked_image(depth: np.ndarray, camera: DepthCamera) -> np.ndarray:
-    """Return a depth image `(H, W)` as an array. Raises `DepthImageError` if it has another size than the camera's."""
-    depth = np.asarray(depth)
-    if depth.shape != camera.shape:
-        raise DepthImageError(
-            f"the depth image has shape {depth.shape}; the camera gives {camera.shape} (height, width)"
-        )
-    return depth

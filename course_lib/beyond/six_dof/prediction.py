@@ -1,10 +1,8 @@
 """Where the camera may be when the next image comes: as it has moved before, or as an odometer says.
 
-The paper's system noise is set by hand: too small for a camera that is swung round, too large for one that hardly
-moves. Here it follows the camera. Without an odometer we predict that the last motion goes on, from not at all to a
-little more than before, in a cloud as wide as recent motions were long. With the increments of an odometer or an IMU,
-the centre is theirs and the cloud is as wide as a share of them. If another pose explained the last frame nearly as
-well, the cloud also starts from this rival.
+The paper's system noise is set by hand; here it follows the camera. Without an odometer the last motion goes on, in a
+cloud as wide as recent motions were long. With one, the centre is its increment. If another pose explained the last
+frame nearly as well, the cloud also starts from this rival.
 """
 
 from __future__ import annotations
@@ -35,22 +33,16 @@ GROWTH = 1.5  # of the spread, for every frame in which the camera was not found
 class Rival(NamedTuple):
     """Another pose that the camera may have."""
 
-    pose: np.ndarray
-    """Camera-to-world `(4, 4)`."""
-    evidence: float
-    """Score of its image less the score of the best pose's image: 0 or less."""
+    pose: np.ndarray  # Camera-to-world `(4, 4)`.
+    evidence: float  # Score of its image less the score of the best pose's image: 0 or less.
 
 
 class MotionPrediction:
-    """The camera's last pose, its last motion, and how long the last motions were.
-
-    pose: camera-to-world `(4, 4)` of the start, optical convention.
-    """
+    """The camera's last pose (camera-to-world `(4, 4)`, optical), its motion, and how long the last motions were."""
 
     def __init__(self, pose: np.ndarray) -> None:
         self.pose = np.array(pose, dtype=np.float64)
-        self.rivals: list[Rival] = []
-        """Other poses of the last frame; half the cloud starts from them."""
+        self.rivals: list[Rival] = []  # other poses of the last frame; half the cloud starts from them
         self.motion = np.zeros(6)
         self._started = self._not_found = False
         self._lengths: list[np.ndarray] = []
@@ -70,8 +62,7 @@ class MotionPrediction:
     ) -> np.ndarray:
         """Draw poses `(n, 4, 4)` where the camera may be now. If there are rivals, half of the poses start from them.
 
-        The first two poses have no noise: one at rest, one going on. spread: `(6,)`. increment: the motion `(6,)` since
-        the last frame in the camera's own frame, from an odometer or an IMU; None without one.
+        The first two poses have no noise: one at rest, one going on. spread: `(6,)`. increment: `(6,)`, or None.
         """
         starts = np.tile(self.pose, (n, 1, 1))
         for k, rival in enumerate(self.rivals):
@@ -85,20 +76,16 @@ class MotionPrediction:
     def preference(self, poses: np.ndarray, spread: np.ndarray, increment: np.ndarray | None = None) -> np.ndarray:
         """Return what the prediction says of poses `(N, 4, 4)`, in units of the raw score: `(N,)`, at most 0.
 
-        max_k  PRIOR_SHARE (-d_k^2 / 2) + CARRIED evidence_k,    over the last pose and its rivals k
+        max_k PRIOR_SHARE (-d_k^2 / 2) + CARRIED evidence_k, over the last pose and its rivals k
 
         d: distance from the nearest motion between rest and going on (or from the odometer's), in units of the spread.
-        This decides where the image cannot tell, for example along a bare wall.
         """
         return np.max([preference for preference, _ in self._ways(poses, spread, increment)], axis=0)
 
     def origin(
         self, pose: np.ndarray, spread: np.ndarray, increment: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the pose that the camera came from if it is now at `pose` `(4, 4)`, and the pose predicted from there.
-
-        It is the last pose or the rival that the prediction prefers, with its nearest motion between rest and going on.
-        """
+        """Return the pose that the camera came from if it is now at `pose`, and the pose predicted from there."""
         ways = self._ways(pose[None], spread, increment)
         likeliest = max(range(len(ways)), key=lambda k: ways[k][0][0])
         return self._last_poses()[likeliest].pose, ways[likeliest][1][0]
@@ -124,9 +111,8 @@ class MotionPrediction:
         return ways
 
     def found(self, pose: np.ndarray, seen: bool = True, rivals: Sequence[Rival] = ()) -> None:
-        """Tell that the camera is at `pose`, or at one of the rivals. In the first frame no motion is learned.
-
-        seen: False if the image leaves a direction open; then the length of the motion is not learned.
+        """Tell that the camera is at `pose`. seen: False if the image leaves a direction open; then no length is
+        learned.
         """
         if self._started:
             before = min(self._last_poses(), key=lambda last: float(np.linalg.norm(local(last.pose, pose))))
@@ -137,10 +123,7 @@ class MotionPrediction:
         self.pose, self.rivals = np.array(pose, dtype=np.float64), list(rivals)
 
     def not_found(self, pose: np.ndarray, spread: np.ndarray, rivals: Sequence[Rival] = ()) -> None:
-        """Tell that the camera may be at `pose`, at a rival, or at its last pose.
-
-        spread: `(6,)` of this frame's cloud; the next one is wider.
-        """
+        """Tell that the camera may be at `pose`, at a rival, or at its last pose. spread: `(6,)` of this cloud."""
         self._started = self._not_found = True
         self.motion, self.rivals = np.zeros(6), [Rival(np.array(pose, dtype=np.float64), 0.0), *rivals]
         self._lengths = [spread[[0, 3]] * GROWTH / SPREAD_OF_MOTION]

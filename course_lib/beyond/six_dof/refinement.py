@@ -39,19 +39,15 @@ LONGEST_STEP = (0.2, 0.3)  # metres, radians: the first order is not valid beyon
 class NormalEquations(NamedTuple):
     """The system of one Gauss-Newton step for `N` poses; sums over pixels."""
 
-    matrices: np.ndarray
-    """`(N, 6, 6)` sum w J J'."""
-    vectors: np.ndarray
-    """`(N, 6)` sum w J r."""
-    weights: np.ndarray
-    """`(N,)` sum w: how many pixels took part."""
+    matrices: np.ndarray  # `(N, 6, 6)` sum w J J'.
+    vectors: np.ndarray  # `(N, 6)` sum w J r.
+    weights: np.ndarray  # `(N,)` sum w: how many pixels took part.
 
 
 def surface_normals(images: np.ndarray, camera: DepthCamera) -> tuple[np.ndarray, np.ndarray]:
     """Return points `(N, H, W, 3)` of depth images `(N, H, W)` in the optical frame, and the unit normals there.
 
-    n ~ (q_right - q_left) x (q_below - q_above); NaN on the image's border, at a miss, and beside an edge, where the
-    neighbours belong to another surface.
+    n ~ (q_right - q_left) x (q_below - q_above); NaN on the image's border, at a miss, and beside an edge.
     """
     points = camera.rays() * np.where(np.isfinite(images), images, np.nan)[..., None]
     normals = np.full(points.shape, np.nan)
@@ -153,10 +149,7 @@ def _sums(points, images, rays, scale, edge):
 
 
 def solve(system: NormalEquations, damping: float = DAMPING) -> np.ndarray:
-    """Return the motions `(N, 6)` that solve the normal equations, none longer than `LONGEST_STEP`.
-
-    The system is damped as Levenberg does it, so a direction in which no pixel changes stays as it is.
-    """
+    """Return the motions `(N, 6)` that solve the damped normal equations, none longer than `LONGEST_STEP`."""
     pixels = np.maximum(system.weights, 1.0)
     mean = system.matrices / pixels[:, None, None] + damping * np.eye(6)
     motions = -np.linalg.solve(mean, (system.vectors / pixels[:, None])[..., None])[..., 0]
@@ -167,18 +160,12 @@ def solve(system: NormalEquations, damping: float = DAMPING) -> np.ndarray:
 def gauss_newton_step(
     measured: np.ndarray, images: np.ndarray, camera: DepthCamera, poses: np.ndarray, scale: float
 ) -> np.ndarray:
-    """Return camera-to-world poses `(N, 4, 4)` after one step; `images` `(N, H, W)` were rendered from `poses`.
-
-    Other arguments as in `normal_equations`.
-    """
+    """Return camera-to-world poses `(N, 4, 4)` after one step; `images` `(N, H, W)` were rendered from `poses`."""
     return retract(poses, solve(compiled_normal_equations(measured, images, camera, scale)))
 
 
 def refine(renderer: DepthRenderer, measured: np.ndarray, poses: np.ndarray, scales: Sequence[float]) -> np.ndarray:
-    """Return poses `(N, 4, 4)` (camera to world, optical) after one Gauss-Newton step for each of `scales`, in metres.
-
-    measured: `(H, W)` depth of the renderer's camera. Every step costs N renders.
-    """
+    """Return camera-to-world poses `(N, 4, 4)` after one Gauss-Newton step for each of `scales`, in metres."""
     for scale in scales:
         poses = gauss_newton_step(measured, renderer.render_poses(poses), renderer.camera, poses, scale)
     return poses

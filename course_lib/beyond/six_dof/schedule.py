@@ -1,7 +1,4 @@
-"""How a frame is searched: on images of which size, in which layers of particles, by which steps of refinement.
-
-Most particles are compared on few pixels, the last few poses on many.
-"""
+"""How a frame is searched: on images of which size, in which layers of particles, by which steps of refinement."""
 
 from __future__ import annotations
 
@@ -49,10 +46,7 @@ class Level:
 
 
 def pyramid(renderer: DepthRenderer) -> list[Level]:
-    """Return the three levels for the renderer's map and camera, coarse first, none larger than the camera's image.
-
-    Where a level has the camera's own size, the renderer itself serves.
-    """
+    """Return the three levels for the renderer's map and camera, coarse first, none larger than the camera's image."""
     camera, weighting = renderer.camera, paper_weighting()
     levels = []
     for pixels in (COARSE, MIDDLE, FINE):
@@ -68,23 +62,17 @@ def pyramid(renderer: DepthRenderer) -> list[Level]:
 class Layer(NamedTuple):
     """One round of drawing, weighing and resampling within a frame, on coarse images."""
 
-    particles: float
-    """Number of particles, as a share of the filter's `n_particles`."""
-    spread: float
-    """Standard deviation of the noise, as a share of the prediction's spread."""
-    survivors: float
-    """Effective sample size that the weights leave, as a share of the layer's particles."""
+    particles: float  # Number of particles, as a share of the filter's `n_particles`.
+    spread: float  # Standard deviation of the noise, as a share of the prediction's spread.
+    survivors: float  # Effective sample size that the weights leave, as a share of the layer's particles.
 
 
 class Step(NamedTuple):
     """One Gauss-Newton step for the poses that are left."""
 
-    level: Literal[0, 1, 2]
-    """Index into the pyramid: coarse, middle, fine."""
-    scale: float
-    """Metres: a residual of this size counts a quarter."""
-    hypotheses: int
-    """How many poses are kept, the best that differ."""
+    level: Literal[0, 1, 2]  # Index into the pyramid: coarse, middle, fine.
+    scale: float  # Metres: a residual of this size counts a quarter.
+    hypotheses: int  # How many poses are kept, the best that differ.
 
 
 # All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th.

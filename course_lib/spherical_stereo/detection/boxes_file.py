@@ -29,16 +29,14 @@ VERSION = 1
 
 @dataclass(frozen=True)
 class LabelledBox:
-    """A box drawn by hand: canonical label, box with 0 <= u_min < width, and the object's name, if it was given."""
-
-    label: str
-    box: tuple[float, float, float, float]
+    label: str  # canonical
+    box: tuple[float, float, float, float]  # 0 <= u_min < width
     name: str | None = None
 
 
 @dataclass(frozen=True)
 class StereoBoxes:
-    """The boxes of both images. width, height: of the images that they were drawn on, pixels."""
+    """The boxes of both images, and the size in pixels of the images that they were drawn on."""
 
     width: int
     height: int
@@ -51,10 +49,7 @@ class StereoBoxes:
         return [(item.name, index, lower[item.name]) for index, item in enumerate(self.upper) if item.name in lower]
 
     def on(self, upper_image: np.ndarray | View, lower_image: np.ndarray | View) -> tuple[View, View]:
-        """Return both panoramas with the boxes as detections of score 1; hue and saturation come from the images.
-
-        Raises `DetectionError` for images of another size than the boxes', and `PanoramaError` as `open_pair`.
-        """
+        """Return both panoramas with the boxes as detections of score 1; hue and saturation come from the images."""
         upper, lower = open_pair(upper_image, lower_image)
         if upper.size != (self.width, self.height):
             raise DetectionError(
@@ -70,11 +65,7 @@ class StereoBoxes:
 
 
 def read_stereo_boxes(path: str | Path) -> StereoBoxes:
-    """Read a boxes file (format: see the module).
-
-    Raises `DetectionError` if the file is missing or not JSON, has another version, a field that is missing or of the
-    wrong kind, a box that leaves the image, or a name that is given twice on one side or to two classes.
-    """
+    """Read a boxes file (format: see the module)."""
     content = read_json(Path(path), "boxes file", DetectionError)
     if not isinstance(content, dict) or content.get("version") != VERSION:
         version = content.get("version") if isinstance(content, dict) else None

@@ -1,8 +1,6 @@
-"""Hue and saturation of an object in a panorama (paper 2, 2.2): means over part of its box.
+"""Hue and saturation of an object in a panorama (paper 2, 2.2): means over the central half of its box.
 
-The part is the central half of the box in each direction: near its edges a box shows what stands behind the object.
-Hue is an angle, so its mean is taken on the circle: red at 350 and at 10 degrees has mean hue 0, not 180. A pale pixel
-says little about hue, so each pixel weighs as much as its saturation.
+Hue is an angle, so its mean is taken on the circle, and each pixel weighs as much as its saturation.
 """
 
 import cv2
@@ -11,24 +9,15 @@ import numpy as np
 from course_lib.geometry import circular_mean
 from course_lib.spherical_stereo.detection.detected_object import DetectionError
 
-GREY_SATURATION_PERCENT = 10.0
-"""Mean saturation below which a thing counts as grey: a white balance that is off by as much gives white this tint."""
-
-MIXED_HUES_RESULTANT = 0.2
-"""Length of the mean hue vector (1: all hues equal, 0: all directions alike) below which there is no mean hue."""
-
-DARKEST_VALUE = 1 / 16
-"""Brightness (0 to 1) below which a pixel has no say in hue: one grey level of noise may turn it by 60 degrees."""
+GREY_SATURATION_PERCENT = 10.0  # mean saturation below which a thing is grey: a wrong white balance gives as much
+MIXED_HUES_RESULTANT = 0.2  # length of the mean hue vector (1: all hues equal) below which there is no mean hue
+DARKEST_VALUE = 1 / 16  # brightness (0 to 1) below which a pixel has no say: a grey level turns its hue by 60 degrees
 
 Box = tuple[float, float, float, float]
 
 
 def central_half(box: Box) -> Box:
-    """The box with the same centre and half the width and half the height.
-
-    Box (u_min, v_min, u_max, v_max), edge coordinates; its u_max may pass the width, and so may the result's.
-    Source: paper 2, section 2.2 ("a part of the region in the box").
-    """
+    """Return the box with the same centre, half the width and half the height. Source: paper 2, section 2.2."""
     u_min, v_min, u_max, v_max = box
     quarter_width, quarter_height = (u_max - u_min) / 4, (v_max - v_min) / 4
     return (u_min + quarter_width, v_min + quarter_height, u_max - quarter_width, v_max - quarter_height)
@@ -37,16 +26,12 @@ def central_half(box: Box) -> Box:
 def mean_hue_saturation(
     image_bgr: np.ndarray, box: Box | None = None, mask: np.ndarray | None = None
 ) -> tuple[float, float]:
-    """Mean hue (degrees in [0, 360), NaN when grey) and mean saturation (percent) of part of an image.
+    """Return mean hue (degrees in [0, 360), NaN for grey) and mean saturation (percent) of part of an image.
 
-        hue = direction of sum_i s_i (cos h_i, sin h_i)         saturation = mean of s_i
+    hue = direction of sum_i s_i (cos h_i, sin h_i), saturation = mean of s_i
 
     over the pixels i of the central half of `box`, of `mask` (bool, (H, W)), of both together, or of the whole image.
-    The box may cross the seam. Hue is NaN when the mean saturation is below GREY_SATURATION_PERCENT or when hues point
-    in all directions (MIXED_HUES_RESULTANT). The paper takes plain means of H; on the circle that has no meaning.
-
-    image_bgr: (H, W, 3) uint8. Raises `DetectionError`: no such image, a mask of another shape, or no pixel left.
-    Source: paper 2, section 2.2.
+    The paper takes plain means of H. Source: paper 2, section 2.2.
     """
     image_bgr = np.asarray(image_bgr)
     if image_bgr.ndim != 3 or image_bgr.shape[2] != 3 or image_bgr.dtype != np.uint8:

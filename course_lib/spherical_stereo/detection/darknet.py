@@ -1,17 +1,11 @@
 """A Darknet detector of the YOLOv4 family, run by OpenCV (paper 2, section 2.2), and its three files.
 
-A `.cfg` is text, sections of options in the order of the layers; everything after # or ; is a comment:
-
-    [convolutional]
-    filters=32
-
-A `.weights` file is a header (major, minor, revision as int32; images seen so far as int64, or int32 before version
-0.2) and then float32 only, layer by layer. A convolution has
+A `.cfg` is text, sections of options in the order of the layers. A `.weights` file is a header (major, minor, revision
+as int32; images seen as int64, or int32 before version 0.2) and then float32, for every convolution
 
     filters biases [+ filters scales, means, variances]  and  filters * channels / groups * size^2 kernel values
 
-with the bracket if `batch_normalize=1`. Nothing else in the YOLOv4 family has weights. OpenCV takes a truncated file
-without an error and then detects nonsense, so the floats are counted here first.
+with the bracket if `batch_normalize=1`. OpenCV takes a truncated file without an error, so the floats are counted here.
 """
 
 from __future__ import annotations
@@ -30,8 +24,7 @@ DETECTION_KINDS = ("yolo", "region")
 LAYER_KINDS = ("convolutional", "route", "reorg", "scale_channels", "maxpool", "avgpool", "upsample", "dropout",
                "softmax", "shortcut", "sam", *DETECTION_KINDS)  # fmt: skip
 """Layers whose channels are known. An unknown one would make the count of weights wrong."""
-MAX_INPUT_PIXELS = 1 << 24
-"""Pixels of a network's input, 4096 x 4096. YOLOv4 has 608 x 608, and needs a hundred times as many numbers inside."""
+MAX_INPUT_PIXELS = 1 << 24  # 4096 x 4096; YOLOv4 has 608 x 608
 
 
 class DetectorError(ValueError):
@@ -47,13 +40,13 @@ class Section:
     line: int
 
     def integer(self, key: str, default: int | None = None) -> int:
-        """Return the option as a whole number. Raises `DetectorError` if it is none, or missing with no default."""
+        """Return the option as a whole number."""
         if key not in self.options and default is not None:
             return default
         return self.integers(key)[0]
 
     def integers(self, key: str) -> list[int]:
-        """Return the option as whole numbers, separated by commas. Raises `DetectorError`."""
+        """Return the option as whole numbers, separated by commas."""
         try:
             return [int(part) for part in self.options[key].split(",")]
         except (KeyError, ValueError):
@@ -65,12 +58,12 @@ class Section:
 
 
 def read_cfg(path: str | Path) -> list[Section]:
-    """Read a Darknet cfg: the `[net]` section first, then one section for each layer. Raises `DetectorError`."""
+    """Read a Darknet cfg: the `[net]` section first, then one section for each layer."""
     return parse_cfg(read_text(path, "cfg file", DetectorError), str(path))
 
 
 def parse_cfg(text: str, name: str = "cfg") -> list[Section]:
-    """Return the sections of a cfg given as text. Raises `DetectorError` with `name` and the line."""
+    """Return the sections of a cfg given as text."""
     sections: list[Section] = []
     for number, raw in enumerate(text.splitlines(), start=1):
         line = raw.split("#", 1)[0].split(";", 1)[0].strip()
@@ -97,10 +90,7 @@ def render_cfg(sections: list[Section]) -> str:
 
 
 def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
-    """Return (channels in, channels out) of every layer, that is of every section after `[net]`.
-
-    Raises `DetectorError` for a layer that points to one that does not come before it, and groups that do not divide.
-    """
+    """Return (channels in, channels out) of every layer, that is of every section after `[net]`."""
     channels: list[tuple[int, int]] = []
 
     def source(section: Section, number: int) -> int:
@@ -136,12 +126,7 @@ def _share(section: Section, channels: int) -> int:
 
 
 def expected_weight_floats(sections: list[Section]) -> int:
-    """Return how many float32 values the `.weights` file of this cfg holds after its header.
-
-        sum over convolutions of  filters * (4 if batch_normalize else 1) + filters * channels / groups * size^2
-
-    Raises `DetectorError` as `layer_channels` does. Source: paper 2, section 2.2 (YOLOv4).
-    """
+    """Return how many float32 values the `.weights` file of this cfg holds after its header."""
     floats = 0
     for section, (incoming, filters) in zip(sections[1:], layer_channels(sections), strict=True):
         if section.kind == "convolutional":
@@ -151,10 +136,7 @@ def expected_weight_floats(sections: list[Section]) -> int:
 
 
 def check_weights(cfg: str | Path | list[Section], weights: str | Path) -> None:
-    """Check that a `.weights` file holds exactly the floats that its cfg implies, and only finite numbers.
-
-    cfg: a path, or its sections. Raises `DetectorError` with both counts. Source: paper 2, section 2.2 (YOLOv4).
-    """
+    """Check that a `.weights` file holds exactly the floats that its cfg implies, and only finite numbers."""
     expected = expected_weight_floats(cfg if isinstance(cfg, list) else read_cfg(cfg))
     require_file(Path(weights), "weights file", DetectorError)
     data = Path(weights).read_bytes()
@@ -177,7 +159,7 @@ def header_bytes(start: bytes) -> int:
 
 
 def class_count(sections: list[Section]) -> int:
-    """Return the number of classes of the detection layers. Raises `DetectorError` if there are none or several."""
+    """Return the number of classes of the detection layers."""
     counts = {section.integer("classes") for section in sections if section.kind in DETECTION_KINDS}
     if len(counts) != 1:
         raise DetectorError(f"the cfg's [yolo] or [region] sections must agree on classes; they have {sorted(counts)}")
@@ -185,10 +167,7 @@ def class_count(sections: list[Section]) -> int:
 
 
 def read_names(path: str | Path) -> list[str]:
-    """Return the class names of a `.names` file, one a line. Empty lines at the end do not count.
-
-    Raises `DetectorError` for a file that is missing or not text, and for an empty line between names.
-    """
+    """Return the class names of a `.names` file, one a line. Empty lines at the end do not count."""
     names = [line.strip() for line in read_text(path, "names file", DetectorError).rstrip().splitlines()]
     if not names or not all(names):
         where = f", line {names.index('') + 1}," if names else ""
@@ -205,11 +184,7 @@ def check_names(n_classes: int, names: list[str], path: str | Path) -> None:
 
 
 class Network:
-    """A network of OpenCV that runs one blob at a time. Its subclasses are Darknet's and ONNX's.
-
-    OpenCV keeps input and results inside the network, so of two threads at once one would get the other's boxes. They
-    take turns here. A network that is pickled takes its arguments along, and opens its files again where it arrives.
-    """
+    """A network of OpenCV that runs one blob at a time. It is pickled as its arguments."""
 
     def __init__(self, net: cv2.dnn.Net, told: str, input_size: tuple[int, int], *arguments: object) -> None:
         """Run the network once, so that what does not fit is found now. told: the files, for messages."""
@@ -221,10 +196,9 @@ class Network:
         return type(self), self._arguments
 
     def infer(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return boxes `(n, 4)` in edge coordinates of the input and scores `(n, classes)`.
+        """Return boxes `(n, 4)` in edge coordinates of the input and scores `(n, classes)`, nothing suppressed.
 
-        blob: `(1, 3, H, W)`, RGB, 0 to 1. Nothing is thresholded or suppressed. Raises `DetectorError` if OpenCV fails,
-        and for results of another shape or that are NaN. Source: paper 2, section 2.2.
+        blob: `(1, 3, H, W)`, RGB, 0 to 1.
         """
         try:
             with self._turn:
@@ -247,11 +221,7 @@ class DarknetNetwork(Network):
     """A loaded network of a `.cfg` and its `.weights`."""
 
     def __init__(self, cfg: str | Path, weights: str | Path, size: tuple[int, int] | None = None) -> None:
-        """Check and load a network.
-
-        size: (width, height) of the input in pixels instead of the cfg's; YOLOv4 takes any multiples of 32.
-        Raises `DetectorError` for files that do not fit, and a size that the network does not take.
-        """
+        """Check and load a network. size: (width, height) of the input in pixels instead of the cfg's."""
         cfg, weights = Path(cfg).absolute(), Path(weights).absolute()
         sections = read_cfg(cfg)
         try:

@@ -1,7 +1,7 @@
 """What a detector says about one object of a panorama (paper 2, section 2.2): its class, its box and its colour.
 
-An unrolled panorama is a cylinder. A box is (u_min, v_min, u_max, v_max) in edge coordinates, pixels. Its left edge
-lies in [0, width). Its right edge passes the width if the box crosses the seam.
+A box is (u_min, v_min, u_max, v_max) in edge coordinates, pixels, 0 <= u_min < width. If it crosses the seam, u_max
+passes the width.
 """
 
 from __future__ import annotations
@@ -14,24 +14,18 @@ import numpy as np
 
 from course_lib.spherical_stereo.panorama import View
 
+# Labels of the maps, rooms and network of this project.
 CANONICAL_LABELS = ("sofa", "chair", "table", "television", "potted plant", "refrigerator", "cabinet")
-"""Labels of the maps, rooms and network of this project."""
-
-ALIASES = {
-    "couch": "sofa",
-    "settee": "sofa",
-    "diningtable": "table",
-    "dining table": "table",
-    "desk": "table",
-    "tv": "television",
-    "tvmonitor": "television",
-    "tv monitor": "television",
-    "pottedplant": "potted plant",
-    "houseplant": "potted plant",
-    "fridge": "refrigerator",
-    "cupboard": "cabinet",
+# Names that COCO, VOC and people use for these classes, in lower case with single spaces.
+_OTHER_NAMES = {
+    "sofa": ("couch", "settee"),
+    "table": ("diningtable", "dining table", "desk"),
+    "television": ("tv", "tvmonitor", "tv monitor"),
+    "potted plant": ("pottedplant", "houseplant"),
+    "refrigerator": ("fridge",),
+    "cabinet": ("cupboard",),
 }
-"""Names that COCO, VOC and people use for these classes, in lower case with single spaces -> canonical label."""
+ALIASES = {name: label for label, names in _OTHER_NAMES.items() for name in names}
 
 
 class DetectionError(ValueError):
@@ -41,8 +35,7 @@ class DetectionError(ValueError):
 def canonical_label(label: str) -> str:
     """Return the label that the semantic map uses for a detector's class name: a "couch" is a "sofa".
 
-    Case does not matter, and underscores and hyphens count as spaces. A name without an alias is its own label. Raises
-    `DetectionError` for a label that is empty or no text. Source: paper 2, section 2.2 (the class c of an object).
+    Case, underscores and hyphens do not matter. Source: paper 2, section 2.2 (the class c of an object).
     """
     plain = " ".join(re.split(r"[\s_-]+", label.lower())).strip() if isinstance(label, str) else ""
     if not plain:
@@ -109,7 +102,7 @@ class Detection:
 
 
 def checked_boxes(boxes: np.ndarray, width: float, name: str = "boxes") -> np.ndarray:
-    """Return boxes `(..., 4)` as float64. Raises `DetectionError` for another shape, NaN, wrong order, too wide."""
+    """Return boxes `(..., 4)` as float64."""
     array = np.asarray(boxes, dtype=np.float64)
     if array.size == 0:
         return array.reshape(0, 4)
@@ -129,10 +122,7 @@ def checked_boxes(boxes: np.ndarray, width: float, name: str = "boxes") -> np.nd
 
 
 def boxes_on(view: View, name: str) -> np.ndarray:
-    """Return the boxes `(n, 4)` of a panorama's detections.
-
-    Raises `DetectionError`, with `name` in the message, for boxes that cannot be or that lie outside the panorama.
-    """
+    """Return the boxes `(n, 4)` of a panorama's detections."""
     boxes = checked_boxes([one.box for one in view.detections], view.width, f"boxes of the {name} image")
     # A millionth of a pixel, because boxes come from sums and remainders, which round.
     low, right, bottom = -1e-6, view.width + 1e-6, view.height + 1e-6
@@ -146,7 +136,7 @@ def boxes_on(view: View, name: str) -> np.ndarray:
 
 
 def wrapped_box(box: np.ndarray, width: float) -> np.ndarray:
-    """Return boxes `(..., 4)` moved by whole turns so that 0 <= u_min < width. Raises `DetectionError`."""
+    """Return boxes `(..., 4)` moved by whole turns so that 0 <= u_min < width."""
     box = checked_boxes(box, width)
     moved = box - (np.floor(box[..., 0] / width) * width)[..., None] * np.array([1.0, 0.0, 1.0, 0.0])
     # The remainder of a tiny negative number rounds up to the width itself, which is one turn too far.
@@ -155,9 +145,8 @@ def wrapped_box(box: np.ndarray, width: float) -> np.ndarray:
 
 
 def box_centre(box: np.ndarray) -> np.ndarray:
-    """Return centres `(..., 2)` (u, v) of boxes `(..., 4)`, the mean of opposite edges, in pixels.
-
-    u may pass the width as the box does. Its direction is the same. Source: paper 2, section 2.4.
+    """Return centres `(..., 2)` (u, v) of boxes `(..., 4)`, in pixels. u may pass the width. Source: paper 2, section
+    2.4.
     """
     box = np.asarray(box, dtype=np.float64)
     return 0.5 * (box[..., :2] + box[..., 2:])
@@ -169,23 +158,14 @@ def box_area(box: np.ndarray) -> np.ndarray:
 
 
 def box_iou(boxes_a: np.ndarray, boxes_b: np.ndarray, width: float) -> np.ndarray:
-    """Return intersection over union `(n, m)` of boxes `(n, 4)` and `(m, 4)` on the circle of columns.
-
-    IoU = |A and B| / (|A| + |B| - |A and B|)
-
-    Raises `DetectionError` for boxes that cannot be.
-    """
+    """Return |A and B| / |A or B| `(n, m)` of boxes `(n, 4)` and `(m, 4)` on the circle of columns."""
     shared = shared_area(boxes_a, boxes_b, width)
     areas_a, areas_b = (box_area(np.asarray(boxes, np.float64).reshape(-1, 4)) for boxes in (boxes_a, boxes_b))
     return shared / (areas_a[:, None] + areas_b[None, :] - shared)
 
 
 def shared_area(boxes_a: np.ndarray, boxes_b: np.ndarray, width: float) -> np.ndarray:
-    """Return the area `(n, m)`, square pixels, that boxes `(n, 4)` and `(m, 4)` share on the circle of columns.
-
-    B is laid against A where it is and one turn to either side, so boxes on both sides of the seam meet, and two very
-    wide boxes may overlap at both ends. Raises `DetectionError` for boxes that cannot be.
-    """
+    """Return the area `(n, m)`, square pixels, that boxes `(n, 4)` and `(m, 4)` share on the circle of columns."""
     a, b = wrapped_box(boxes_a, width).reshape(-1, 1, 4), wrapped_box(boxes_b, width).reshape(1, -1, 4)
     across = sum(
         np.maximum(0.0, np.minimum(a[..., 2], b[..., 2] + shift) - np.maximum(a[..., 0], b[..., 0] + shift))

@@ -1,9 +1,4 @@
-"""Objects in a panorama (paper 2, section 2.2): a YOLOv4-family network, the seam, and the colour of each object.
-
-The order: extend the panorama past its seam (`seam`), letterbox it into the network's input, run the network
-(`darknet`, `onnx_network`), suppress repeated boxes (`suppression`), count every object once on the circle (`seam`),
-and measure its colour (`colour`).
-"""
+"""Objects in panoramas (paper 2, section 2.2): a YOLOv4-family network, the seam, and the colour of each object."""
 
 from __future__ import annotations
 
@@ -28,16 +23,13 @@ from course_lib.spherical_stereo.detection.seam import extend_seam, select_on_ci
 from course_lib.spherical_stereo.detection.suppression import VOTE_SCORE, suppress_in_image, vote_on_boxes
 from course_lib.spherical_stereo.panorama import View, open_view
 
-MAX_CANDIDATES = 1000
-"""Boxes kept before suppression, the best by score: a bound on time if the threshold is very low."""
-PADDING_GREY = 127
-"""Grey level of the letterbox's padding. Darknet fills with 0.5."""
+MAX_CANDIDATES = 1000  # Boxes kept before suppression, the best by score: a bound on time if the threshold is very low.
+PADDING_GREY = 127  # Grey level of the letterbox's padding. Darknet fills with 0.5.
 
 
 def find_objects(view: View, detector) -> View:
-    """Return the panorama with the objects that a detector finds in it (section 2.2).
-
-    detector: anything with `detect(image_bgr)` that gives detections. Source: paper 2, section 2.2.
+    """Return the panorama with the objects that a detector finds in it (section 2.2). detector: anything with
+    `detect(image_bgr)` that gives detections. Source: paper 2, section 2.2.
     """
     # Our own detector takes the view, which was checked already; any other takes the image.
     return view.replace(detections=detector.detect(view if isinstance(detector, YoloDetector) else view.image))
@@ -57,12 +49,10 @@ class YoloDetector:
     ) -> None:
         """Check the three files against each other and load the network.
 
-        input_size: (width, height) in pixels, multiples of 32, instead of the cfg's. YOLOv4 as published has a square
-        input, in which a panorama fills two fifths; (1280, 512) suits better.
-        thresholds: score_threshold (0.5), below which detections are left out; iou_threshold (0.45, Darknet's value)
-        for suppression within a class; use_seam_extension (True): False shows what happens at the seam without it.
-        Raises `DetectorError` for a file that is missing, malformed or does not fit, and a threshold outside [0, 1].
-        Source: paper 2, section 2.2.
+        input_size: (width, height) in pixels, multiples of 32, instead of the cfg's; (1280, 512) suits a panorama.
+        thresholds: score_threshold (0.5); iou_threshold (0.45, Darknet's) for suppression within a class;
+        use_seam_extension (True). Raises `DetectorError` for a file that is missing or does not fit, and a threshold
+        outside [0, 1]. Source: paper 2, section 2.2.
         """
         class_names = read_names(names)
         network = DarknetNetwork(cfg, weights, input_size)
@@ -86,9 +76,7 @@ class YoloDetector:
     def load(cls, folder: str | Path, **options) -> YoloDetector:
         """Return a detector from a folder with one `.cfg`, one `.weights` and one `.names`.
 
-        options: as in the constructor. The score threshold is the one that training chose on its validation images,
-        `score_threshold` of a `training.json` beside them, unless `options` have another. Raises `DetectorError` if
-        there is no folder or not exactly one file of each kind, and the constructor's errors.
+        options: as in the constructor. The score threshold is that of a `training.json` beside them, if there is one.
         """
         folder = Path(folder)
         if not folder.is_dir():
@@ -104,11 +92,8 @@ class YoloDetector:
         if "score_threshold" not in options and is_given(report):
             trained = read_json(report, "training report", DetectorError)
             threshold = trained.get("score_threshold") if isinstance(trained, dict) else None
-            if isinstance(threshold, bool) or not isinstance(threshold, (int, float)) or not 0 <= threshold <= 1:
-                raise DetectorError(
-                    f"{report} must have a score_threshold between 0 and 1; got {threshold!r}. Mend or remove the "
-                    "file, or give score_threshold yourself"
-                )
+            if type(threshold) not in (int, float) or not 0 <= threshold <= 1:
+                raise DetectorError(f"{report} must have a score_threshold between 0 and 1; got {threshold!r}")
             options["score_threshold"] = threshold
         return cls(*paths, **options)
 
@@ -153,11 +138,9 @@ class YoloDetector:
         ]
 
     def detect_in_plane(self, image_bgr: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what the network sees in an image taken as flat, repeated boxes suppressed, whatever its shape.
+        """Return what the network sees in an image `(H, W, 3)` taken as flat, repeated boxes suppressed.
 
-        image_bgr: (H, W, 3) uint8. Returns boxes (n, 4) in edge coordinates, clipped to the image, scores (n,), and
-        indices (n,) into `labels`, the greatest score first. A box is the mean of those that it suppresses
-        (`vote_on_boxes`). Source: paper 2, section 2.2.
+        Boxes (n, 4) in edge coordinates, scores (n,), and indices (n,) into `labels`, the greatest score first.
         """
         padded, letterbox = letterbox_image(image_bgr, self._network.input_size)
         boxes, scores = self._network.infer(cv2.dnn.blobFromImage(padded, 1 / 255, swapRB=True))
@@ -178,11 +161,7 @@ class YoloDetector:
 
 @dataclass(frozen=True)
 class Letterbox:
-    """Where an image lies inside a network's input. All in pixels; sizes are (width, height).
-
-    inner_size: of the scaled image. offset: columns of padding at the left, rows at the top. Whole pixels are needed,
-    so the scales across and down can differ by a rounding, and boxes go back by the scale that was really used.
-    """
+    """Where an image lies inside a network's input. All in pixels; sizes are (width, height)."""
 
     image_size: tuple[int, int]
     input_size: tuple[int, int]
@@ -198,9 +177,7 @@ class Letterbox:
 def letterbox_image(image: np.ndarray, input_size: tuple[int, int]) -> tuple[np.ndarray, Letterbox]:
     """Return the image (H, W, 3) uint8 scaled and padded to `input_size` (width, height), and where it lies.
 
-        scale = min(input width / image width, input height / image height)
-
-    It is scaled down by area averaging, because AKAZE-sized textures would alias otherwise, and up linearly.
+    scale = min(input width / image width, input height / image height), down by area averaging, up linearly.
     """
     size = (image.shape[1], image.shape[0])
     scale = min(input_size[0] / size[0], input_size[1] / size[1])

@@ -33,11 +33,7 @@ for image in (numpy.zeros(shape, "f4"), numpy.linspace(0, 1, numpy.prod(shape), 
 def decode_onnx(
     outputs: list[np.ndarray], layout: str, n_classes: int, input_size: tuple[int, int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return boxes `(n, 4)` in edge coordinates of the input and scores `(n, classes)` from a network's outputs.
-
-    layout: see the module. input_size: (width, height) in pixels. Raises `DetectorError` for an unknown layout, and
-    for outputs whose number or shapes do not fit it. Source: paper 2, section 2.2.
-    """
+    """Return boxes `(n, 4)` in edge coordinates of the input and scores `(n, classes)` from a network's outputs."""
     if layout not in LAYOUTS:
         raise DetectorError(f"layout {layout!r} is not known; known are {', '.join(LAYOUTS)}")
     shapes = [output.shape for output in outputs]
@@ -67,11 +63,7 @@ class OnnxNetwork(Network):
     """A loaded network of an ONNX file."""
 
     def __init__(self, path: str | Path, layout: str, n_classes: int, input_size: tuple[int, int]) -> None:
-        """Load a network and run it once, so that what does not fit is found now.
-
-        input_size: (width, height) in pixels that it was exported for. Raises `DetectorError` for a file that is
-        missing or unreadable, for an input size that it does not take, and what `decode_onnx` refuses.
-        """
+        """Load a network and run it once. input_size: (width, height) in pixels that it was exported for."""
         path = Path(path).absolute()
         require_file(path, "ONNX file", DetectorError)
         size = (int(input_size[0]), int(input_size[1]))

@@ -1,15 +1,12 @@
 """The seam of a panorama (paper 2, figure 3): every object whole once, and counted once.
 
-A panorama is cut behind the camera, and an object there is cut in two. So the left quarter is appended at the right.
-Now every object up to a quarter wide is whole somewhere, but those of the appended quarter are there twice. A range of
-W columns decides which copy counts, by its centre:
+A panorama is cut behind the camera, so the left quarter is appended at the right. Now every object up to a quarter wide
+is whole somewhere, but those of the appended quarter are there twice. The copy whose centre lies in this range counts:
 
     W/8 <= centre < W/8 + W
 
-An object with its centre in there and a width up to W/4 is whole. Centres jitter by a few pixels from one copy to the
-other, so one copy at 1 px before the range and the other at 1 px past it would be lost; hence a margin on the range
-and, against the duplicates that a margin lets in, suppression on the circle.
-Source: paper 2, section 2.2.
+Centres jitter by a few pixels from one copy to the other. So the range has a margin, and the duplicates that it lets in
+are suppressed on the circle. Source: paper 2, section 2.2.
 """
 
 import numpy as np
@@ -17,32 +14,24 @@ import numpy as np
 from course_lib.spherical_stereo.detection.detected_object import box_area, box_iou, shared_area, wrapped_box
 from course_lib.spherical_stereo.detection.suppression import limit_by_class, suppress
 
-MARGIN = 1 / 32
-"""Margin of the valid range at either end, as a share of the panorama's width (11 degrees). A cut copy that it lets in
-shows at least 3/4 of its object, enough for the whole copy to suppress it."""
-
-EDGE_TOLERANCE = 1 / 64
-"""How near to an end of the extended image a box counts as cut by it, as a share of the panorama's width."""
+# Shares of the panorama's width. A cut copy that the margin lets in shows at least 3/4 of its object, enough for the
+# whole copy to suppress it.
+MARGIN = 1 / 32  # of the valid range at either end (11 degrees)
+EDGE_TOLERANCE = 1 / 64  # how near to an end of the extended image a box counts as cut by it
 
 
 def appended_columns(width: int) -> int:
-    """Columns appended at the right: a quarter of the panorama's width, rounded. Source: paper 2, section 2.2."""
+    """Return how many columns are appended at the right: a quarter of the panorama's width, rounded."""
     return round(width / 4)
 
 
 def extend_seam(image: np.ndarray) -> np.ndarray:
-    """The panorama (H, W, ...) with its left quarter appended at the right: (H, 1.25 W, ...).
-
-    Source: paper 2, section 2.2.
-    """
+    """Return the panorama (H, W, ...) with its left quarter added: (H, 1.25 W, ...). Source: paper 2, section 2.2."""
     return np.concatenate([image, image[:, : appended_columns(image.shape[1])]], axis=1)
 
 
 def valid_range(width: int) -> tuple[float, float]:
-    """The columns [start, stop) of the extended image in which a centre counts: [W/8, W/8 + W).
-
-    Source: paper 2, section 2.2 ("a range in which objects can be detected"; the paper does not print it).
-    """
+    """Return the columns [start, stop) of the extended image in which a centre counts: [W/8, W/8 + W)."""
     start = appended_columns(width) / 2
     return start, start + width
 
@@ -59,10 +48,7 @@ def join_cut_pairs(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Put together objects wider than a quarter that both ends of the extended image cut.
 
-    Such an object fills the whole quarter at the left end and the whole quarter at the right end, once cut at its left
-    and once at its right. Two boxes of one class that do so, at overlapping heights, are one: from the right one's
-    start to the left one's end, with the greater score. Boxes (n, 4) in the extended image, scores (n,),
-    classes (n,); returns the three.
+    Boxes (n, 4) in the extended image, scores (n,), classes (n,); returns the three.
     """
     quarter, tolerance = appended_columns(width), EDGE_TOLERANCE * width
     at_left = (boxes[:, 0] <= tolerance) & (boxes[:, 2] >= quarter - tolerance)
@@ -87,19 +73,12 @@ def join_cut_pairs(
 def select_on_circle(
     boxes: np.ndarray, scores: np.ndarray, classes: np.ndarray, width: int, iou_threshold: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """From detections on the extended image to one per object, with 0 <= u_min < W.
+    """Return one detection per object, 0 <= u_min < W, the greatest score first, from those on the extended image.
 
-    Objects cut at both ends are put together; centres outside the valid range (with its margin) go; of boxes of one
-    class that overlap on the circle by more than `iou_threshold` one stays: a whole one before one that an end of the
-    extended image cuts, one with its centre inside the range before one in the margin, then the greater score. The
-    overlap of a cut box is taken of its own area instead of the union: it may be a part of the other.
-
-    The one that stays keeps its box and takes the greatest score among itself and those that it replaces, with that
-    one's class: they show one object, and the network was that sure of it once. So a faint copy in the range does not
-    hide a clear one in the margin, and the result of a low score threshold holds that of a higher one.
-
-    boxes (n, 4), scores (n,), classes (n,) integers. Returns the three, the greatest score first.
-    Source: paper 2, section 2.2.
+    Of boxes of one class that overlap on the circle by more than `iou_threshold` one stays: a whole one before a cut
+    one, one with its centre inside the range before one in the margin, then the greater score. It takes the greatest
+    score, with its class, of those that it replaces. boxes (n, 4), scores (n,), classes (n,) integers. Source: paper 2,
+    section 2.2.
     """
     tolerance = EDGE_TOLERANCE * width
     boxes, scores, classes = join_cut_pairs(boxes, scores, classes, width)

@@ -1,13 +1,8 @@
 """The epipolar constraint on the sphere, and the feature matches that obey it (paper 2, 2.3).
 
-Two cameras and a point span a plane. With both cameras on one vertical axis it is a vertical plane through the axis, so
-both cameras see the point at one azimuth: on the two panoramas its column is the same. In general, with the baseline
-along z,
+With both cameras on one vertical axis, both see a point at one azimuth, and the lower camera at a higher elevation:
 
-    z . (x_upper x x_lower) = cos e_u cos e_l sin(a_l - a_u) = 0,   and a_l - a_u is not pi.
-
-The lower camera sees every point at a higher elevation: e_l > e_u. A tilt of the whole rig changes neither
-statement, as the baseline tilts along.
+    z . (x_upper x x_lower) = cos e_u cos e_l sin(a_l - a_u) = 0,   a_l - a_u is not pi,   e_l > e_u
 """
 
 from __future__ import annotations
@@ -22,32 +17,25 @@ from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_differen
 if TYPE_CHECKING:
     from course_lib.spherical_stereo.matching.features import PanoramaFeatures
 
+# Radians on the sphere by which a match may miss its epipolar half-circle: 3 columns at 1280 (chosen: AKAZE's own noise
+# is about one column, and a lower camera turned by half a degree is still let through).
 EPIPOLAR_TOLERANCE = 0.015
-"""Radians on the sphere by which a match may miss its epipolar half-circle: 3 columns at 1280 (chosen: AKAZE's own
-noise is about one column, and a lower camera turned by half a degree against the upper one is still let through)."""
-MIN_RANGE = 0.3
-"""Metres. No object's surface is nearer to the rig's axis (chosen; the paper's places keep 0.3 m clear)."""
-MAX_HAMMING = 120
-"""Bits of 486 in which the descriptors of one point may differ (chosen from a real pair)."""
-RATIO = 0.8
-"""Hamming distance of the best candidate over that of the second best, at most (Lowe's value for distances)."""
+MIN_RANGE = 0.3  # metres: no surface is nearer to the rig's axis (chosen; the paper's places keep 0.3 m clear)
+MAX_HAMMING = 120  # Bits of 486 in which the descriptors of one point may differ (chosen from a real pair).
+RATIO = 0.8  # Hamming distance of the best candidate over that of the second best, at most (Lowe's value)
 
 _BIT_COUNT = np.array([bin(byte).count("1") for byte in range(256)], dtype=np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
 class EpipolarPairs:
-    """Pairs of features that the epipolar constraint allows: arrays `(n,)`, one element a pair.
+    """Pairs of features that the epipolar constraint allows: arrays `(n,)`, one element a pair."""
 
-    upper, lower: indices into the features. distance: Hamming distance of the descriptors, bits. disparity: e_l - e_u,
-    radians, of either sign. slope: tan e_l - tan e_u, which is baseline / horizontal range for a true pair.
-    """
-
-    upper: np.ndarray
+    upper: np.ndarray  # index into the features
     lower: np.ndarray
-    distance: np.ndarray
-    disparity: np.ndarray
-    slope: np.ndarray
+    distance: np.ndarray  # Hamming distance of the descriptors, bits
+    disparity: np.ndarray  # e_l - e_u, radians, of either sign
+    slope: np.ndarray  # tan e_l - tan e_u, which is baseline / horizontal range for a true pair
 
     def __len__(self) -> int:
         return len(self.upper)
@@ -60,9 +48,8 @@ class EpipolarPairs:
 def epipolar_residual(azimuth_upper, elevation_upper, azimuth_lower, elevation_lower) -> np.ndarray:
     """Return how far two directions are from obeying the epipolar constraint, radians on the sphere, in [0, pi/2].
 
-    Each direction has a distance to the other's epipolar half-circle, the meridian of its azimuth:
-    asin(cos e |sin da|), or pi/2 - |e|, the way to the pole, when da is beyond a right angle. The larger of the two is
-    returned. Angles in radians, broadcast together. Source: paper 2, section 2.3.
+    asin(max cos e |sin da|), the larger distance to the other's meridian; to the pole beyond a right angle. Source:
+    paper 2, section 2.3.
     """
     gap = np.abs(azimuth_difference(azimuth_lower, azimuth_upper))
     cosine = np.maximum(np.cos(elevation_upper), np.cos(elevation_lower))
@@ -76,9 +63,7 @@ def epipolar_pairs(
     max_hamming: int = MAX_HAMMING,
 ) -> EpipolarPairs:
     """Return the pairs within `tolerance` (radians) of the epipolar constraint and `max_hamming` bits of each other.
-
-    For each upper feature only the few lower ones near its azimuth are looked at, so the cost is n log n.
-    Raises `PanoramaError` for a tolerance outside (0, pi/2). Source: paper 2, section 2.3.
+    Source: paper 2, section 2.3.
     """
     if not 0 < tolerance < np.pi / 2:
         raise PanoramaError(f"tolerance must be an angle between 0 and pi/2 radians; got {tolerance!r}")
@@ -123,17 +108,14 @@ def hamming(first: np.ndarray, second: np.ndarray, rows: np.ndarray, columns: np
 def allowed_by_rig(pairs: EpipolarPairs, baseline: float, min_range: float = MIN_RANGE) -> np.ndarray:
     """Return bool `(n,)`: can a pair be one point around the rig, 0 < tan e_l - tan e_u <= baseline / min_range?
 
-    The horizontal range is baseline / (tan e_l - tan e_u): it must be positive and at least `min_range` metres.
     Source: paper 2, section 2.3.
     """
     return (pairs.disparity > 0) & (pairs.slope > 0) & (pairs.slope <= baseline / min_range)
 
 
 def best_pairs(pairs: EpipolarPairs, ratio: float = RATIO) -> EpipolarPairs:
-    """Return the pairs in which each feature is clearly the other's nearest. They are one-to-one.
-
-    A pair stays when its Hamming distance is the smallest of both its features (equal ones: none stays) and at most
-    `ratio` times the second smallest of the upper feature.
+    """Return the pairs in which each feature is clearly the other's nearest (the upper one by `ratio`). They are
+    one-to-one.
     """
     if len(pairs) == 0:
         return pairs

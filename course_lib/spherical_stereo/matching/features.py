@@ -1,11 +1,7 @@
 """AKAZE features on panoramas, and what two whole panoramas say about each other before any object is known (2.3).
 
-AKAZE is made for flat images. An equirectangular image stretches everything sideways by 1 / cos(elevation): twice at 60
-degrees, without limit at the poles. Between two cameras of one vertical rig a point moves along its column, from one
-stretch to another, so features above about 60 degrees up or down match less often. Furniture rarely stands there.
-
-The descriptors are the upright ones. The cameras of a rig stand upright side by side, so nothing is turned between
-their images, and leaving rotation out tells more features apart (a fifth more matches on a real pair).
+AKAZE is made for flat images, and an equirectangular one is stretched sideways by 1 / cos(elevation), so features above
+about 60 degrees up or down match less often. The descriptors are the upright ones, because both cameras stand upright.
 """
 
 from __future__ import annotations
@@ -25,17 +21,14 @@ from course_lib.spherical_stereo.panorama import (
     open_view,
 )
 
+# Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
+# 1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none.
 AKAZE_THRESHOLD = 2e-4
-"""Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
-1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none, for half as much time again; on a real pair as
-large a share of the weaker features obeys the epipolar constraint."""
-AKAZE_OCTAVES = 3
-"""Octaves of scale. A fourth adds nothing on panoramas about 1,000 pixels wide."""
+AKAZE_OCTAVES = 3  # Octaves of scale. A fourth adds nothing on panoramas about 1,000 pixels wide.
+# Columns repeated at both sides of the image: the descriptor of AKAZE's coarsest feature in three octaves reaches
+# 10 sqrt(2) x 1.6 x 2^2.75 = 152 pixels, and must not leave the image.
 SEAM_MARGIN = 160
-"""Columns repeated at both sides of the image, pixels: the descriptor of AKAZE's coarsest feature in three octaves
-reaches 10 sqrt(2) x 1.6 x 2^2.75 = 152 pixels, and a feature whose descriptor would leave the image is not found."""
-MIN_DISPARITY = 0.0025
-"""Radians, half a row at a height of 640. A smaller disparity does not tell which camera is higher."""
+MIN_DISPARITY = 0.0025  # radians, half a row at a height of 640: a smaller one does not tell which camera is higher
 
 
 class SwappedImagesError(PanoramaError):
@@ -44,15 +37,11 @@ class SwappedImagesError(PanoramaError):
 
 @dataclass(frozen=True, eq=False)
 class PanoramaFeatures:
-    """AKAZE features of one panorama.
+    """AKAZE features of one panorama."""
 
-    keypoints: `(n, 2)` float64, edge coordinates (u, v), pixels, u in [0, width). descriptors: `(n, 61)` uint8, 486
-    bits compared by Hamming distance. width, height: the panorama's size, pixels.
-    """
-
-    keypoints: np.ndarray
-    descriptors: np.ndarray
-    width: int
+    keypoints: np.ndarray  # `(n, 2)` float64, edge coordinates (u, v), pixels, u in [0, width)
+    descriptors: np.ndarray  # `(n, 61)` uint8, 486 bits compared by Hamming distance
+    width: int  # of the panorama, pixels
     height: int
 
     def __len__(self) -> int:
@@ -63,30 +52,25 @@ class PanoramaFeatures:
         return azimuth_elevation_of_pixel(self.keypoints, self.width, self.height)
 
 
-def detect_features(
-    image: np.ndarray, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES
-) -> PanoramaFeatures:
-    """Return the features of an image, uint8 BGR `(H, W, 3)`. Raises `PanoramaError` as `find_features` does."""
-    return find_features(open_view(image), threshold, octaves).features
+def detect_features(image: np.ndarray) -> PanoramaFeatures:
+    """Return the features of an image, uint8 BGR `(H, W, 3)`."""
+    return find_features(open_view(image)).features
 
 
-def find_features(view: View, threshold: float = AKAZE_THRESHOLD, octaves: int = AKAZE_OCTAVES) -> View:
+def find_features(view: View) -> View:
     """Return the panorama with its AKAZE features. If it has some already, they stay.
 
-    threshold: smallest response, lower means more and weaker features. The image is extended by its own other end on
-    both sides, so that a feature on the seam is found whole. Its copy in the extension is left out.
-    Raises `PanoramaError` for a threshold that is not positive or octaves below one. Source: paper 2, section 2.3.
+    The image is extended by its own other end on both sides, so that a feature on the seam is found whole. Source:
+    paper 2, section 2.3.
     """
     if view.features is not None:
         return view
-    if not threshold > 0 or int(octaves) != octaves or octaves < 1:
-        raise PanoramaError(f"threshold must be positive and octaves at least 1; got {threshold!r} and {octaves!r}")
     image, height, width = view.image, view.height, view.width
     margin = min(SEAM_MARGIN, width // 2)
     grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
     extended = np.concatenate([grey[:, -margin:], grey, grey[:, :margin]], axis=1)
     akaze = cv2.AKAZE_create(
-        descriptor_type=cv2.AKAZE_DESCRIPTOR_MLDB_UPRIGHT, threshold=float(threshold), nOctaves=int(octaves)
+        descriptor_type=cv2.AKAZE_DESCRIPTOR_MLDB_UPRIGHT, threshold=AKAZE_THRESHOLD, nOctaves=AKAZE_OCTAVES
     )
     keypoints, descriptors = akaze.detectAndCompute(extended, None)
     if not keypoints:
@@ -99,10 +83,7 @@ def find_features(view: View, threshold: float = AKAZE_THRESHOLD, octaves: int =
 
 
 def inside_box(points: np.ndarray, box: np.ndarray, width: int) -> np.ndarray:
-    """Return bool `(n,)`: does a point `(n, 2)` lie in a box (u_min, v_min, u_max, v_max) on the circle of columns?
-
-    A point is inside when (u - u_min) mod W < u_max - u_min and v_min <= v < v_max, so a box may cross the seam.
-    """
+    """Return bool `(n,)`: does a point `(n, 2)` lie in a box (u_min, v_min, u_max, v_max), which may cross the seam?"""
     points = np.asarray(points, dtype=np.float64).reshape(-1, 2)
     u_min, v_min, u_max, v_max = np.asarray(box, dtype=np.float64)
     across = (points[:, 0] - u_min) % width < u_max - u_min
@@ -111,19 +92,14 @@ def inside_box(points: np.ndarray, box: np.ndarray, width: int) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class FeatureMatches:
-    """Matches of features over two whole panoramas, one row a match, before the epipolar constraint is applied.
+    """Matches of features over two whole panoramas, one row a match, before the epipolar constraint is applied."""
 
-    keypoints_upper, keypoints_lower: `(n, 2)` edge coordinates, pixels. azimuth_difference: a_lower - a_upper `(n,)`,
-    radians. vertical_disparity: e_lower - e_upper `(n,)`, radians, positive for a true match. epipolar: bool `(n,)`,
-    which matches obey the epipolar constraint within `tolerance` radians on the sphere.
-    """
-
-    keypoints_upper: np.ndarray
+    keypoints_upper: np.ndarray  # `(n, 2)` edge coordinates, pixels
     keypoints_lower: np.ndarray
-    azimuth_difference: np.ndarray
-    vertical_disparity: np.ndarray
-    epipolar: np.ndarray
-    tolerance: float
+    azimuth_difference: np.ndarray  # a_lower - a_upper `(n,)`, radians
+    vertical_disparity: np.ndarray  # e_lower - e_upper `(n,)`, radians, positive for a true match
+    epipolar: np.ndarray  # bool `(n,)`: which obey the epipolar constraint within `tolerance`
+    tolerance: float  # radians on the sphere
 
     def __len__(self) -> int:
         return len(self.epipolar)
@@ -139,9 +115,7 @@ def match_features(
 ) -> FeatureMatches:
     """Match the features of two whole panoramas without the epipolar constraint, and then test them by it.
 
-    Nearest neighbour in Hamming distance, mutual and with the ratio test (`RATIO`). As the constraint has no part in
-    the search, the share that obeys it tells how well the images are aligned.
-    Raises `SwappedImagesError`, and `PanoramaError` for unlike sizes. Source: paper 2, section 2.3.
+    The share that obeys it tells how well the images are aligned. Source: paper 2, section 2.3.
     """
     open_pair(View(upper.width, upper.height), View(lower.width, lower.height))
     matches = nearest_features(upper, lower, tolerance)
@@ -183,9 +157,7 @@ def _mutual_matches(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, 
 def check_not_swapped(disparity: np.ndarray) -> None:
     """Raise `SwappedImagesError` if vertical disparities (radians, `(n,)`) say that upper and lower are swapped.
 
-    For a true pair they are positive; unrelated images give either sign like a coin. The images count as swapped when
-    negative signs lead by more than 3 sqrt(n), three standard deviations of a coin. Disparities below
-    `MIN_DISPARITY` (far things, one image given twice) do not count. Source: paper 2, section 2.3.
+    That is, if negative signs lead by more than 3 sqrt(n), three standard deviations of a coin.
     """
     told = disparity[np.abs(disparity) > MIN_DISPARITY]
     negative = int((told < 0).sum())

@@ -1,8 +1,7 @@
 """Which object of the upper image is which object of the lower one (paper 2, section 2.3).
 
-For every two boxes of one class the AKAZE features inside them are matched under the epipolar constraint, in all
-combinations. The combination with most matches is one object. Repeating that until nothing is left pairs the objects
-one-to-one. An object without a match, or with two partners that have equally many, is left unmatched and says why.
+For every two boxes of one class the AKAZE features inside them are matched under the epipolar constraint. The
+combination with most matches is one object, and so on until nothing is left.
 """
 
 from __future__ import annotations
@@ -16,17 +15,15 @@ import numpy as np
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, boxes_on, canonical_label
 from course_lib.spherical_stereo.matching.alignment import Alignment, camera_alignment
 from course_lib.spherical_stereo.matching.epipolar import (
-    EPIPOLAR_TOLERANCE,
     EpipolarPairs,
     allowed_by_rig,
     best_pairs,
     epipolar_pairs,
 )
 from course_lib.spherical_stereo.matching.features import check_not_swapped, find_features, inside_box
-from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, open_pair
+from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 
-MIN_FEATURES = 3
-"""Matched features that make one object, where one alone may be an accident (the paper asks for no number)."""
+MIN_FEATURES = 3  # matched features that make one object; one alone may be an accident (the paper has no number)
 
 # Reasons why an object has no partner.
 CLASS_NOT_IN_OTHER = "class not in the other image"
@@ -38,18 +35,13 @@ PARTNER_TAKEN = "partner taken"  # all with which it shares features went to bet
 
 @dataclass(frozen=True, eq=False)
 class ObjectMatch:
-    """One object seen in both images.
+    """One object seen in both images."""
 
-    upper, lower: indices into the two lists of detections. label: its class, canonical.
-    keypoints_upper, keypoints_lower: `(k, 2)` edge coordinates (pixels) of the features matched inside the two boxes;
-    row i of one belongs to row i of the other.
-    """
-
-    upper: int
+    upper: int  # index into the upper image's detections
     lower: int
-    label: str
-    keypoints_upper: np.ndarray
-    keypoints_lower: np.ndarray
+    label: str  # its class, canonical
+    keypoints_upper: np.ndarray  # `(k, 2)` edge coordinates, pixels, of the features matched inside the two boxes
+    keypoints_lower: np.ndarray  # row by row those of `keypoints_upper`
 
     @property
     def n_matches(self) -> int:
@@ -81,7 +73,6 @@ def match_objects(
     lower_image: np.ndarray,
     lower_detections: Sequence,
     rig: StereoRig,
-    tolerance: float = EPIPOLAR_TOLERANCE,
 ) -> list[ObjectMatch]:
     """Return the objects seen in both images. `match_views` says also what is left over, and why.
 
@@ -90,29 +81,18 @@ def match_objects(
     """
     upper, lower = open_pair(upper_image, lower_image)
     upper, lower = upper.replace(detections=upper_detections), lower.replace(detections=lower_detections)
-    return match_views(upper, lower, rig, tolerance).matches
+    return match_views(upper, lower, rig).matches
 
 
 def match_views(
-    upper: View,
-    lower: View,
-    rig: StereoRig,
-    tolerance: float = EPIPOLAR_TOLERANCE,
-    min_features: int = 1,
-    check_alignment: bool = False,
+    upper: View, lower: View, rig: StereoRig, min_features: int = 1, check_alignment: bool = False
 ) -> StereoMatching:
     """Pair the objects of two panoramas: same class, most AKAZE matches under the epipolar constraint, one-to-one.
 
-    upper, lower: panoramas with their detections. Features that they lack are found. tolerance: radians on the sphere
-    by which a match may miss its epipolar half-circle. min_features: how many matched features make one object.
-    check_alignment: True asks first how the cameras stand to each other; if they are turned, or the images are of
-    different moments, nothing is matched, and `alignment` says why. The paper asks neither.
-    Raises `DetectionError` for boxes that cannot be, `SwappedImagesError`, and `PanoramaError` for unlike sizes or
-    min_features below one. Source: paper 2, section 2.3.
+    min_features: how many matched features make one object. check_alignment: match nothing if the cameras are turned or
+    the images of different moments. The paper asks neither. Source: paper 2, section 2.3.
     """
     open_pair(upper, lower)
-    if min_features < 1:
-        raise PanoramaError(f"min_features must be at least 1; got {min_features!r}")
     boxes = boxes_on(upper, "upper"), boxes_on(lower, "lower")
     labels = [[canonical_label(d.label) for d in view.detections] for view in (upper, lower)]
     counts = np.zeros((len(boxes[0]), len(boxes[1])), dtype=int)
@@ -124,7 +104,7 @@ def match_views(
             alignment = camera_alignment(upper.features, lower.features)
             if not (alignment.of_one_moment and alignment.is_upright):
                 return StereoMatching([], [], alignment)
-        pairs = epipolar_pairs(upper.features, lower.features, tolerance)
+        pairs = epipolar_pairs(upper.features, lower.features)
         check_not_swapped(best_pairs(pairs).disparity)
         in_upper, in_lower = (
             [inside_box(view.features.keypoints, box, view.width)[index] for box in of_view]
@@ -158,10 +138,7 @@ def match_views(
 
 
 def matched_indices(matches: Sequence, upper: View, lower: View) -> list[tuple[int, int]]:
-    """Return the indices (upper, lower) of the detections that matches join: `ObjectMatch`es, or such pairs.
-
-    Raises `DetectionError` for a match that names no detection, or one twice, or joins two classes.
-    """
+    """Return the indices (upper, lower) of the detections that matches join: `ObjectMatch`es, or such pairs."""
     pairs = []
     for match in matches:
         try:
@@ -184,9 +161,8 @@ def matched_indices(matches: Sequence, upper: View, lower: View) -> list[tuple[i
 def pair_by_most_matches(counts: np.ndarray) -> tuple[list[tuple[int, int]], set[int], set[int]]:
     """Return one-to-one pairs by repeated maximum of the counts `(n, m)`, and the rows and columns left out by a tie.
 
-    The largest count among the rows and columns still free makes a pair, and both leave; zero pairs nothing. Where the
-    largest count stands twice in one row or column, all rows and columns joined by such counts are left out: any choice
-    among them would be a guess. The order of rows and columns has no influence. Source: paper 2, section 2.3.
+    Where the largest count stands twice in one row or column, all that it joins are left out, because any choice would
+    be a guess. Source: paper 2, section 2.3.
     """
     counts = np.array(counts, dtype=int)
     pairs: list[tuple[int, int]] = []

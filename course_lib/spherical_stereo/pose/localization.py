@@ -33,59 +33,36 @@ UNMAPPED = "class not on the map"
 
 
 class PlacedObject(NamedTuple):
-    """One object seen in both images.
+    """One object seen in both images."""
 
-    upper, lower: indices of its detections. outcome: "ok", or why there is no position (`ObjectPosition`). position:
-    X = d x_hat `(3,)`, metres, body frame with the origin at the upper camera; NaN without a position. observation: its
-    index among the observations; None without a position, or if the map has no such class.
-    """
-
-    upper: int
+    upper: int  # index of its detection
     lower: int
     label: str
-    outcome: str
-    position: np.ndarray
-    observation: int | None
+    outcome: str  # "ok", or why there is no position (`ObjectPosition`)
+    position: np.ndarray  # X = d x_hat `(3,)`, metres, body frame, origin at the upper camera; NaN without a position
+    observation: int | None  # its index among the observations, if it is one
 
 
 @dataclass(frozen=True, eq=False)
 class Localization:
-    """Result of `SemanticLocalizer`. It is also the record that walks through its steps, each of which fills in a part.
+    """Result of `SemanticLocalizer`: the record that walks through its steps, each of which fills in a part."""
 
-    Source: paper 2, figure 2 (its sections 2.2 to 2.6 in order).
-    """
-
-    pose: Pose2D | None = None
-    """s = [x, y, theta], or None."""
-    status: Status = UNABLE
-    """ "ok" or "unable"."""
-    reason: str | None = None
-    """Why there is no pose, one of the names above; None if there is one."""
-    explanation: str = ""
-    """The reason in a sentence, with its numbers."""
-    matches: Sequence = ()
-    """2.3: objects seen in both images, as given or found."""
-    covariance: np.ndarray | None = None
-    """2.6: `(3, 3)` of [x, y, theta], metres and radians, squared; None without a pose or the observations' own."""
-    upper: View | None = None
-    """The upper panorama with its detections (2.2). Its image and features are left out at the end of the walk."""
+    pose: Pose2D | None = None  # s = [x, y, theta], or None.
+    status: Status = UNABLE  # "ok" or "unable".
+    reason: str | None = None  # Why there is no pose, one of the names above; None if there is one.
+    explanation: str = ""  # The reason in a sentence, with its numbers.
+    matches: Sequence = ()  # 2.3: objects seen in both images, as given or found.
+    covariance: np.ndarray | None = None  # 2.6: `(3, 3)` of [x, y, theta], metres and radians, squared
+    upper: View | None = None  # With its detections (2.2). At the end its image and features are left out.
     lower: View | None = None
-    unmatched: Sequence = ()
-    """2.3: detections without partner in the other image, each with its reason; empty if the matches were given."""
-    objects: tuple[PlacedObject, ...] = ()
-    """2.4: one for every match, in their order."""
-    observations: tuple[Observation, ...] = ()
-    """2.4: objects with a position whose class is on the map."""
-    association: Association | None = None
-    """2.5: how the observations were matched to the map; None without observations."""
-    residuals: np.ndarray | None = None
-    """2.6: `(n, 2)` metres, world: where the used observations land, minus their landmarks."""
-    statistics: Residuals | None = None
-    """How large the residuals may be under the observations' covariances; None without these."""
-    rejected_pose: Pose2D | None = None
-    """The pose that was fitted, if the reason is "implausible"; None otherwise."""
-    turn: np.ndarray | None = None
-    """`(3,)` radians about x, y, z: of the lower camera against the upper one, as the images tell; None if unknown."""
+    unmatched: Sequence = ()  # 2.3: detections without partner in the other image, each with its reason
+    objects: tuple[PlacedObject, ...] = ()  # 2.4: one for every match, in their order.
+    observations: tuple[Observation, ...] = ()  # 2.4: objects with a position whose class is on the map.
+    association: Association | None = None  # 2.5: how the observations were matched to the map
+    residuals: np.ndarray | None = None  # 2.6: `(n, 2)` metres, world: the used observations minus their landmarks
+    statistics: Residuals | None = None  # how large the residuals may be under the observations' covariances
+    rejected_pose: Pose2D | None = None  # The pose that was fitted, if the reason is "implausible"; None otherwise.
+    turn: np.ndarray | None = None  # `(3,)` radians about x, y, z: of the lower camera against the upper one
 
     def unable(self, reason: str, explanation: str, **found: Any) -> Localization:
         """Return the same with a reason why there is no pose, unless an earlier step gave one."""
@@ -127,7 +104,3 @@ class Localization:
     def used_pairs(self) -> tuple[tuple[int, int], ...]:
         """The pairs that the pose is fitted to: those of like classes."""
         return () if self.association is None else self.association.usable_pairs
-
-    def upper_detection_of(self, observation: int) -> int | None:
-        """Return the index of the upper detection behind an observation; None if observations were given directly."""
-        return next((one.upper for one in self.objects if one.observation == observation), None)

@@ -1,10 +1,7 @@
 """The pose from matched points: Umeyama's least-squares fit in the plane with scale one (paper 2, section 2.6).
 
-source: points in the body frame; target: the same points in the world. The fit's rotation and translation are then
-the pose of the body in the world.
-
-A least-squares fit always answers. If the pairs are wrong, or a length was given in millimetres, the points do not land
-on their targets. `residual_statistics` compares by how much they miss with their covariances. The paper does not ask.
+source: points in the body frame; target: the same points in the world. A least-squares fit always answers, even if the
+pairs are wrong; `residual_statistics` asks if the residuals can be those of a right pose. The paper does not ask.
 """
 
 from __future__ import annotations
@@ -17,16 +14,11 @@ from scipy.stats import chi2
 
 from course_lib.geometry import wrap_angle
 
-MIN_SPREAD = 1e-3
-"""Metres, root mean square about the centroid. Points nearer together give no heading."""
-MIN_WIDTH = 0.2
-"""Width over length of a point set. A narrower set counts as a line, on which a mirror image does not show."""
-MIRROR_ADVANTAGE = 3.0
-"""A set counts as mirrored if the fit with a reflection leaves a residual smaller by this factor. Noise on points near
-a line can favour the reflection a little, but seldom this much."""
+MIN_SPREAD = 1e-3  # Metres, root mean square about the centroid. Points nearer together give no heading.
+MIN_WIDTH = 0.2  # width over length: a narrower point set counts as a line, on which a mirror image does not show
+MIRROR_ADVANTAGE = 3.0  # mirrored: the fit with a reflection leaves a residual smaller by this factor
 GAUSS_NEWTON_STEPS = 10
-DOUBT = 0.001
-"""Share of the right poses that may be called implausible, if the covariances are exact."""
+DOUBT = 0.001  # Share of the right poses that may be called implausible, if the covariances are exact.
 NOISE_FACTOR = 1.5
 """How much larger than their covariances say the errors may be (chosen beforehand, and looked at on generated rooms,
 seeds 10,000 to 10,011, from exact boxes and from images: of 66 right poses none is rejected, of 54 wrong ones 50)."""
@@ -35,12 +27,9 @@ seeds 10,000 to 10,011, from exact boxes and from images: of 66 right poses none
 class Pose2D(NamedTuple):
     """Pose of the body in the world: s = [x, y, theta]. Source: paper 2, section 2.6."""
 
-    x: float
-    """Metres."""
-    y: float
-    """Metres."""
-    theta: float
-    """Radians, [-pi, pi), from world x to body x, counterclockwise."""
+    x: float  # Metres.
+    y: float  # Metres.
+    theta: float  # Radians, [-pi, pi), from world x to body x, counterclockwise.
 
     def apply(self, points: np.ndarray) -> np.ndarray:
         """World coordinates `(..., 2)` of points `(..., 2)` in the body frame: R(theta) p + [x, y]."""
@@ -65,12 +54,9 @@ class RigidFitError(ValueError):
 class Residuals(NamedTuple):
     """How large the residuals of a fit are, and how large they may be under the points' covariances."""
 
-    expected_rms: float
-    """Metres: the root mean square that the covariances let expect."""
-    chi_square: float
-    """Least sum of r^T C^-1 r over all poses: of 2 n - 3 numbers, and their mean, when the covariances are right."""
-    degrees_of_freedom: int
-    """2 n - 3."""
+    expected_rms: float  # Metres: the root mean square that the covariances let expect.
+    chi_square: float  # Least sum of r^T C^-1 r over all poses.
+    degrees_of_freedom: int  # 2 n - 3.
 
     @property
     def max_chi_square(self) -> float:
@@ -95,23 +81,16 @@ def rotation_2d(theta: float) -> np.ndarray:
 
 
 def fit_rigid_2d(
-    source: np.ndarray,
-    target: np.ndarray,
-    weights: np.ndarray | None = None,
-    covariances: np.ndarray | None = None,
+    source: np.ndarray, target: np.ndarray, weights: np.ndarray | None = None, covariances: np.ndarray | None = None
 ) -> Pose2D:
     """Return the pose that takes the source points nearest to the target points, in the least-squares sense.
 
     min over R, t of sum_i w_i |R s_i + t - m_i|^2:
     U D V^T = svd(sum_i w_i (m_i - m_G)(s_i - s_G)^T),  R = U diag(1, det U det V) V^T,  t = m_G - R s_G
 
-    source: `(n, 2)` body frame, target: `(n, 2)` world, metres. weights: `(n,)`, not negative; a pair of weight 0 is
-    left out. covariances: `(n, 2, 2)` of the source points in the body frame; then sum_i r_i^T (R C_i R^T)^-1 r_i is
-    made small by Gauss-Newton steps from the closed form. Each step keeps R C_i R^T of the step before, so the result
-    is close to the minimum, not exactly there. The paper uses neither weights nor covariances.
-    Raises `RigidFitError`, whose reason is `TOO_FEW_PAIRS`, `COINCIDENT`, `MIRRORED` (three or more pairs that are no
-    line, and the fit with a reflection clearly better), `UNDETERMINED`, or `NO_POINTS` for shapes that do not fit and
-    for NaN. Source: paper 2, section 2.6.
+    source: `(n, 2)` body frame, target: `(n, 2)` world, metres. weights: `(n,)`, 0 leaves a pair out. covariances: `(n,
+    2, 2)` of the source points, body frame; then Gauss-Newton steps make sum_i r_i^T (R C_i R^T)^-1 r_i small. The
+    paper uses neither. Raises `RigidFitError`, whose reason is one of the names above. Source: paper 2, section 2.6.
     """
     source, target, w, covariances = _checked_pairs(source, target, weights, covariances)
     start_weights = w if covariances is None else w / np.trace(covariances, axis1=1, axis2=2)
@@ -188,11 +167,8 @@ def fit_covariance(
 
     C = A^-1 (sum J^T W N W J) A^-1,  A = sum J^T W J:  J the residuals' derivative, W what the fit weighed with
 
-    pose, source, target, weights, covariances: as given to, and returned by, `fit_rigid_2d`. noise: `(n, 2, 2)`
-    covariances N of the source points in the body frame. Without it they are the covariances the fit used; without
-    those either, one variance for all, taken from the residuals: sum w |r|^2 / (2 n - 3) (two pairs leave one number
-    to judge by: then it is little more than a guess). Raises `RigidFitError` as `fit_rigid_2d` does.
-    Source: paper 2, section 2.6 gives none.
+    noise: `(n, 2, 2)` covariances N of the source points, body frame. Without it they are the covariances that the fit
+    used. Without both it is one variance for all, from the residuals: sum w |r|^2 / (2 n - 3). Beyond the paper.
     """
     if noise is None:
         noise = covariances
@@ -209,21 +185,13 @@ def fit_covariance(
 
 
 def residual_statistics(
-    pose: Pose2D,
-    source: np.ndarray,
-    target: np.ndarray,
-    noise: np.ndarray,
-    covariances: np.ndarray | None = None,
+    pose: Pose2D, source: np.ndarray, target: np.ndarray, noise: np.ndarray, covariances: np.ndarray | None = None
 ) -> Residuals:
     """Return how large the residuals r_i = R s_i + t - m_i of a fit may be, and how large they are.
 
     r = (I - J A^-1 J^T W) e, e ~ N:  expected_rms^2 = trace cov(r) / n,  chi_square = min_x (r - J x)^T N^-1 (r - J x)
 
-    with J, W and A as in `fit_covariance`. pose, source, target, covariances: as given to, and returned by,
-    `fit_rigid_2d`. noise: `(n, 2, 2)` covariances N of the source points in the body frame, the map taken as exact.
-    The statistic asks if any pose near this one explains the pairs, however the fit weighted them. Two pairs leave one
-    number, the difference of the two distances. Raises `RigidFitError` as `fit_rigid_2d`.
-    Source: paper 2, section 2.6 gives none.
+    with J, W, A and the arguments as in `fit_covariance`, the map taken as exact. Beyond the paper.
     """
     source, target, w, covariances = _checked_pairs(source, target, None, covariances)
     n = len(source)
@@ -265,12 +233,10 @@ def _checked_pairs(
 
 
 def _checked_covariances(covariances: np.ndarray, kept: np.ndarray) -> np.ndarray:
-    """Return the `(n, 2, 2)` covariances of the kept pairs. Raises `RigidFitError` unless symmetric and positive."""
+    """Return the `(n, 2, 2)` covariances of the kept pairs."""
     array = np.asarray(covariances, dtype=np.float64)
-    if array.shape != (len(kept), 2, 2):
-        raise RigidFitError(f"covariances must be one (2, 2) matrix a pair; got shape {array.shape}")
-    if not np.isfinite(array).all():
-        raise RigidFitError("covariances must be finite; got NaN or infinity")
+    if array.shape != (len(kept), 2, 2) or not np.isfinite(array).all():
+        raise RigidFitError(f"covariances must be one finite (2, 2) matrix a pair; got shape {array.shape}")
     array = array[kept]
     if not np.allclose(array, np.swapaxes(array, 1, 2)) or (np.linalg.eigvalsh(array) <= 0).any():
         raise RigidFitError("every covariance must be symmetric with positive eigenvalues (square metres)")

@@ -1,7 +1,5 @@
-"""Where matched objects are (paper 2, section 2.4): X = d x_hat.
-
-d comes from the box centres, which is the paper's way, or from the features inside the boxes. Each match gets an
-outcome, a position and a covariance.
+"""Where matched objects are (paper 2, section 2.4): X = d x_hat, d from the box centres (the paper's way) or the
+features.
 """
 
 from __future__ import annotations
@@ -13,7 +11,6 @@ import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, box_centre, canonical_label
 from course_lib.spherical_stereo.panorama import (
-    PanoramaError,
     StereoRig,
     View,
     azimuth_elevation,
@@ -30,16 +27,11 @@ from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_dis
 
 Distance = Literal["box_centre", "disparity"]
 DISTANCES: tuple[Distance, ...] = ("box_centre", "disparity")
-BOX_CENTRE_SIGMA = 0.0075
-"""Radians, standard deviation of a box centre's azimuth and elevation (chosen: 1.5 pixels at a width of 1280)."""
-CENTROID_SIGMA = 0.1
-"""Metres, standard deviation in each direction of the object's centroid about the point that its box's centre shows,
-because a box is of the visible side (chosen). Without it, objects close by would seem certain to a centimetre."""
-SURFACE_SIGMA = 0.15
-"""Metres, standard deviation of the distance from an object's centroid to the surface that its features lie on (chosen:
-about a quarter of a sofa's depth). The disparities know nothing of the inside, so it is added to what they say."""
-TOO_FAR = "too far"
-"""Outcome of an object beyond `max_range`."""
+# Standard deviations, all chosen.
+BOX_CENTRE_SIGMA = 0.0075  # radians, of a box centre's azimuth and elevation: 1.5 pixels at a width of 1280
+CENTROID_SIGMA = 0.1  # metres, of the object's centroid about the point that its box's centre shows
+SURFACE_SIGMA = 0.15  # metres, from the centroid to the surface that the features lie on: a quarter of a sofa's depth
+TOO_FAR = "too far"  # Outcome of an object beyond `max_range`.
 
 
 class Noise(NamedTuple):
@@ -53,12 +45,9 @@ class Noise(NamedTuple):
 class ObjectPosition(NamedTuple):
     """Position of one object, body frame with the origin at the upper camera."""
 
-    outcome: str
-    """ "ok", "parallel", "diverging", "azimuth gap", "too few matches" or "too far"."""
-    position: np.ndarray
-    """X `(3,)`, metres; NaN unless the outcome is "ok"."""
-    covariance: np.ndarray
-    """`(2, 2)` of its horizontal part, square metres; NaN unless the outcome is "ok"."""
+    outcome: str  # "ok", "parallel", "diverging", "azimuth gap", "too few matches" or "too far".
+    position: np.ndarray  # X `(3,)`, metres; NaN unless the outcome is "ok".
+    covariance: np.ndarray  # `(2, 2)` of its horizontal part, square metres; NaN unless the outcome is "ok".
 
     @property
     def distance_m(self) -> float:
@@ -92,8 +81,7 @@ class MeasuredObject(NamedTuple):
 def max_range(baseline: float) -> float:
     """Return the horizontal range in metres at which one standard deviation of the parallax is all of it.
 
-    rho = baseline / (sqrt(2) s), s = `BOX_CENTRE_SIGMA`; 28 m at a baseline of 0.3 m. The distance of an object that
-    seems further away is not known. Source: paper 2, section 2.4 (which draws no line).
+    rho = baseline / (sqrt(2) s), s = `BOX_CENTRE_SIGMA`; 28 m at a baseline of 0.3 m. The paper draws no line.
     """
     return baseline / (2**0.5 * BOX_CENTRE_SIGMA)
 
@@ -110,10 +98,8 @@ def position_objects(
 ) -> list[ObjectPosition]:
     """Return the position of every match: X = d x_hat, x_hat the direction of the box centre in the upper image.
 
-    pairs: indices (upper, lower) of the matches' detections (`matched_indices`). distance: "box_centre", d from both
-    box centres, or "disparity", d from the matched features, for which the matches must carry them (else
-    `DetectionError`). furthest: metres, horizontal; an object that seems further away has the outcome "too far".
-    Source: paper 2, section 2.4.
+    pairs: indices (upper, lower) of the matches' detections. furthest: metres, horizontal; beyond it an object is "too
+    far". Source: paper 2, section 2.4.
     """
     if not pairs:
         return []
@@ -134,12 +120,8 @@ def measure_objects(
 ) -> list[MeasuredObject]:
     """Return every matched object with both its distances, in the order of the upper detections.
 
-    matches: `ObjectMatch`es. sigma_pixels: standard deviation of a box centre's u and v, pixels. That of the
-    disparities comes from the spread of the features. The distance to the unknown centroid is left out here.
-    Raises `PanoramaError` for a sigma that is negative. Source: paper 2, section 2.4.
+    sigma_pixels: standard deviation of a box centre's u and v, pixels. Source: paper 2, section 2.4.
     """
-    if not sigma_pixels >= 0:
-        raise PanoramaError(f"sigma_pixels must not be negative; got {sigma_pixels!r}")
     matches = sorted(matches, key=lambda m: m.upper)
     pairs = [(match.upper, match.lower) for match in matches]
     noise = Noise(2 * np.pi / upper.width * sigma_pixels, 0.0, 0.0)

@@ -1,14 +1,13 @@
 """From two directions to a position: X = d x_hat, how sure it is, and when there is none (paper 2, section 2.4).
 
-Seen from the rig's vertical axis, upper camera, lower camera and point make a triangle. Its angle at the point is the
-parallax e_l - e_u, its angle at the lower camera pi/2 - e_l, so the law of sines gives
+Upper camera, lower camera and point make a triangle. Its angle at the point is the parallax e_l - e_u, its angle at the
+lower camera pi/2 - e_l, so the law of sines gives
 
     d = baseline cos e_l / sin(e_l - e_u)          (along the upper camera's direction)
     rho = d cos e_u = baseline / (tan e_l - tan e_u)          (horizontal range)
 
-The centres of two boxes around one object differ a little in azimuth too, so the two rays do not meet. The distance
-comes from the elevations alone, because the baseline is vertical, and the azimuth is the upper camera's. A large
-difference in azimuth means that the boxes do not show one object, and has its own outcome.
+The rays of two box centres do not quite meet. The distance comes from the elevations, the azimuth from the upper
+camera.
 """
 
 from __future__ import annotations
@@ -18,12 +17,10 @@ import numpy as np
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, azimuth_elevation, direction_from_angles
 
-PARALLEL_TOLERANCE = 1e-3
-"""Parallax (e_l - e_u), radians, below which rays count as parallel: a fifth of a row at 1280 x 640, where the smallest
-error of a box makes any distance; 300 m at a baseline of 0.3 m."""
+PARALLEL_TOLERANCE = 1e-3  # radians of parallax below which rays count as parallel: 300 m at a baseline of 0.3 m
+# Epipolar residual, radians, above which two box centres are not one object's (chosen: 20 columns at 1280, 0.6 of the
+# width of a chair three metres away).
 AZIMUTH_GAP_TOLERANCE = 0.1
-"""Epipolar residual, radians on the sphere, above which two box centres are not one object's: 20 columns at 1280
-(chosen: 0.6 of the width of a chair three metres away)."""
 
 OK, PARALLEL, DIVERGING, AZIMUTH_GAP = "ok", "parallel", "diverging", "azimuth gap"
 
@@ -36,48 +33,32 @@ class TriangulationError(ValueError):
         self.outcome = outcome
 
 
-def triangulation_outcome(
-    direction_upper: np.ndarray,
-    direction_lower: np.ndarray,
-    parallel_tolerance: float = PARALLEL_TOLERANCE,
-    azimuth_gap_tolerance: float = AZIMUTH_GAP_TOLERANCE,
-) -> np.ndarray:
+def triangulation_outcome(direction_upper: np.ndarray, direction_lower: np.ndarray) -> np.ndarray:
     """Return the outcomes `(...)` of two directions `(..., 3)`: "ok", "parallel", "diverging" or "azimuth gap".
 
-    "azimuth gap": the epipolar residual is above `azimuth_gap_tolerance`; else "diverging": e_l - e_u is below
-    -`parallel_tolerance`; else "parallel": it is at most `parallel_tolerance`, or a direction is within that of
-    straight up or down, along the baseline. Tolerances in radians. Raises `PanoramaError` for directions that are
-    none.
-    Source: paper 2, section 2.4.
+    A direction straight up or down counts as parallel. Source: paper 2, section 2.4.
     """
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
     parallax = lower - upper
-    upright = np.pi / 2 - np.maximum(np.abs(upper), np.abs(lower)) <= parallel_tolerance
+    upright = np.pi / 2 - np.maximum(np.abs(upper), np.abs(lower)) <= PARALLEL_TOLERANCE
     return np.select(
-        [residual > azimuth_gap_tolerance, parallax < -parallel_tolerance, (parallax <= parallel_tolerance) | upright],
+        [residual > AZIMUTH_GAP_TOLERANCE, parallax < -PARALLEL_TOLERANCE, (parallax <= PARALLEL_TOLERANCE) | upright],
         [AZIMUTH_GAP, DIVERGING, PARALLEL],
         OK,
     )
 
 
-def triangulate(
-    direction_upper: np.ndarray,
-    direction_lower: np.ndarray,
-    baseline: float,
-    parallel_tolerance: float = PARALLEL_TOLERANCE,
-    azimuth_gap_tolerance: float = AZIMUTH_GAP_TOLERANCE,
-) -> np.ndarray:
+def triangulate(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
     """Return distances d `(...)` in metres along the upper camera's directions: the object is at X = d x_hat_upper.
 
     d = baseline cos e_l / sin(e_l - e_u)
 
-    Directions `(..., 3)` in the body frame, broadcast together; baseline in metres. A rotation about the vertical
-    leaves d as it is. Raises `TriangulationError` when any pair of directions has another outcome than "ok"
-    (`triangulation_outcome` tells which), `PanoramaError` for directions that are none, or a baseline that is not
+    Directions `(..., 3)` in the body frame, broadcast together; baseline in metres. Raises `TriangulationError` if any
+    pair has another outcome than "ok", `PanoramaError` for directions that are none, or a baseline that is not
     positive. Source: paper 2, section 2.4.
     """
     baseline = StereoRig(baseline).baseline
-    outcome = triangulation_outcome(direction_upper, direction_lower, parallel_tolerance, azimuth_gap_tolerance)
+    outcome = triangulation_outcome(direction_upper, direction_lower)
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
     hint = {
         AZIMUTH_GAP: "the directions do not show one object; match the objects first",
@@ -94,13 +75,12 @@ def triangulate(
                 f"{gap:.2f} degrees apart across the epipolar half-circle: {hint[name]}",
                 name,
             )
-    return _distance(upper, lower, baseline)
+    return baseline * np.cos(lower) / np.sin(lower - upper)
 
 
 def object_position(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
     """Return positions X = d x_hat `(..., 3)` in metres, in the frame of the upper camera (x forward, y left, z up).
-
-    Raises what `triangulate` raises. Source: paper 2, section 2.4.
+    Source: paper 2, section 2.4.
     """
     distance = triangulate(direction_upper, direction_lower, baseline)
     azimuth, elevation = azimuth_elevation(direction_upper)
@@ -121,11 +101,7 @@ def triangulation_covariance(
     X(a, e_u, e_l) = rho (cos a, sin a, tan e_u),      rho = baseline / (tan e_l - tan e_u)
     d rho / d e_u = rho^2 sec^2 e_u / baseline,        d rho / d e_l = -rho^2 sec^2 e_l / baseline
 
-    The standard deviation along the ray grows with d^2 / baseline, the one across with d only. sigma_azimuth: of the
-    upper camera's azimuth, sigma_elevation: of either camera's elevation, radians, taken as independent; sigma pixels
-    are 2 pi sigma / W and pi sigma / H. The two errors of box centres around one object are alike in part. This is not
-    used, so the covariance is rather too large.
-    Raises what `triangulate` raises, and `PanoramaError` for a sigma that is negative or not finite.
+    sigma_azimuth: of the upper camera's azimuth, sigma_elevation: of either camera's elevation, radians, independent.
     Source: paper 2, section 2.4.
     """
     for name, sigma in (("sigma_azimuth", sigma_azimuth), ("sigma_elevation", sigma_elevation)):
@@ -144,10 +120,6 @@ def triangulation_covariance(
     jacobian = np.stack([by_azimuth, by_upper, by_lower], axis=-1)
     variance = np.stack([sigma_azimuth, sigma_elevation, sigma_elevation], axis=-1) ** 2
     return (jacobian * variance[..., None, :]) @ np.swapaxes(jacobian, -1, -2)
-
-
-def _distance(elevation_upper: np.ndarray, elevation_lower: np.ndarray, baseline: float) -> np.ndarray:
-    return baseline * np.cos(elevation_lower) / np.sin(elevation_lower - elevation_upper)
 
 
 def _angles(direction_upper, direction_lower):

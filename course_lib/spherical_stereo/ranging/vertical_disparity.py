@@ -1,13 +1,8 @@
 """A second distance of an object, from the vertical disparity of its matched features (paper 2, 2.3 and 2.4).
 
-The paper takes the centres of two boxes as one point of the object. A box's edge is uncertain by some pixels, and
-cameras at two heights see another part of the object, so the parallax of the centres is rough. The features that
-paired the boxes are true points of the object's surface, matched to about a pixel, and each gives a horizontal range
-of its own.
-
-They measure the *visible surface*. The map's centroid lies behind it by about half the object's depth, which is not
-added here, because it is not in the images. Some features in a box belong to something in front of the object or behind
-it, so the median of the features' inverse ranges is taken, which a minority of strangers does not move.
+The parallax of two box centres is rough. The features that paired the boxes are true points of the visible surface,
+matched to about a pixel. Some belong to something in front or behind, so the median of their inverse ranges is taken.
+The map's centroid lies behind that surface by about half the object's depth, which is not added here.
 """
 
 from __future__ import annotations
@@ -26,8 +21,7 @@ from course_lib.spherical_stereo.panorama import (
 from course_lib.spherical_stereo.ranging.triangulation import OK, PARALLEL, PARALLEL_TOLERANCE
 
 TOO_FEW_MATCHES = "too few matches"
-MIN_MATCHES = 3
-"""With fewer matches a median says nothing about its own spread."""
+MIN_MATCHES = 3  # With fewer matches a median says nothing about its own spread.
 # Standard deviation of a normal distribution over its median absolute deviation.
 _NORMAL_OVER_MAD = 1.4826
 # Standard deviation of the median over that of the mean, of normally distributed numbers: sqrt(pi / 2).
@@ -36,26 +30,16 @@ _MEDIAN_OVER_MEAN = 1.2533
 
 @dataclass(frozen=True)
 class DisparityDistance:
-    """Horizontal range of one object from its matched features.
+    """Horizontal range of one object from its matched features."""
 
-    outcome: "ok", "too few matches", or "parallel" (no usable disparity); the numbers are nan unless it is "ok".
-    horizontal_range: metres from the rig's axis, the median over the matches. spread: robust standard deviation of
-    single matches' ranges, metres; it contains the object's own depth. sigma: standard deviation of the median, metres.
-    n_matches: how many matches there were.
-    """
-
-    outcome: str
-    horizontal_range: float
-    spread: float
-    sigma: float
+    outcome: str  # "ok", "too few matches", or "parallel"; the numbers are nan unless it is "ok"
+    horizontal_range: float  # metres from the rig's axis, the median over the matches
+    spread: float  # metres, robust standard deviation of single matches' ranges, the object's depth included
+    sigma: float  # metres, standard deviation of the median
     n_matches: int
 
     def position(self, direction_upper: np.ndarray) -> np.ndarray:
-        """Return the position `(3,)` at this range in the direction of the box centre; upper camera's frame, metres.
-
-        X = rho (cos a, sin a, tan e), where a and e are the direction's; nan unless the outcome is "ok".
-        Raises `PanoramaError` for a direction that is none.
-        """
+        """Return X = rho (cos a, sin a, tan e) `(3,)` in the direction of the box centre, upper camera, metres."""
         azimuth, elevation = azimuth_elevation(direction_upper)
         return self.horizontal_range / np.cos(elevation)[..., None] * direction_from_angles(azimuth, elevation)
 
@@ -65,8 +49,7 @@ def horizontal_ranges(
 ) -> np.ndarray:
     """Return horizontal ranges `(k,)` in metres of matched features `(k, 2)`: rho = baseline / (tan e_l - tan e_u).
 
-    Edge coordinates, pixels. A match whose disparity is not positive gives infinity. Raises `PanoramaError`
-    for a baseline that is not positive, keypoints of two numbers or outside the image. Source: paper 2, section 2.4.
+    A match whose disparity is not positive gives infinity. Source: paper 2, section 2.4.
     """
     slope = _slopes(keypoints_upper, keypoints_lower, width, height)
     return np.where(slope > 0, StereoRig(baseline).baseline / np.where(slope > 0, slope, 1.0), np.inf)
@@ -75,11 +58,8 @@ def horizontal_ranges(
 def disparity_distance(match, width: int, height: int, baseline: float) -> DisparityDistance:
     """Return the horizontal range of a matched object from the vertical disparities of its features, robustly.
 
-    rho = baseline / median(tan e_l - tan e_u)
-
-    match: an `ObjectMatch`. width, height: of the panoramas, pixels. baseline: metres. The median is taken of the
-    slopes, which the noise of pixels moves evenly to both sides, and not of the ranges, which it does not.
-    Raises `PanoramaError` as `horizontal_ranges` does. Source: paper 2, section 2.4.
+    rho = baseline / median(tan e_l - tan e_u): noise of pixels moves the slopes evenly to both sides, the ranges not.
+    Source: paper 2, section 2.4.
     """
     baseline = StereoRig(baseline).baseline
     slope = _slopes(match.keypoints_upper, match.keypoints_lower, width, height)

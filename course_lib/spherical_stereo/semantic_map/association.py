@@ -1,9 +1,7 @@
 """Which observed object is which on the map: the penalty of eq. (1) and the paper's greedy search (section 2.5).
 
-The distances of eq. (1) are to a centroid: x_G.camera of the *observed* objects on one side, x_G.map of *all* objects
-of the map on the other. They are the same place only if everything on the map is seen. Every unseen object, and every
-false detection, moves them apart, and the distance term is then wrong for every pair. So the term needs no pose, but it
-is blunt.
+Eq. (1) measures distances to the centroid of the *observed* objects on one side and of *all* objects of the map on the
+other. They are one place only if everything on the map is seen, so the term needs no pose, but it is blunt.
 """
 
 from __future__ import annotations
@@ -17,11 +15,8 @@ from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
 DISTANCE_TERMS = ("absolute", "as_printed")
-MIN_DISTANCE = 0.1
-"""Metres: the smallest |dx_m| that eq. (1) divides by. An object at the map's centroid would otherwise cost infinitely
-much, or 0/0. The centroid of a piece of furniture is known to about a decimetre."""
-TIE = 1e-9
-"""Penalties nearer than this are equal, because rounding must not choose between two objects that are alike."""
+MIN_DISTANCE = 0.1  # metres: the smallest |dx_m| that eq. (1) divides by, or an object at the map's centroid gives 0/0
+TIE = 1e-9  # Penalties nearer than this are equal, because rounding must not choose between two objects that are alike.
 
 
 class AssociationError(ValueError):
@@ -29,36 +24,26 @@ class AssociationError(ValueError):
 
 
 class Observation(NamedTuple):
-    """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame.
-
-    label: class; "couch" and "sofa" are one. x (forward), y (left): centroid, metres. hue: degrees [0, 360), NaN for
-    grey. saturation: percent [0, 100]. covariance: `(2, 2)` of x and y, square metres; None if nothing is known.
-    """
+    """One detected and triangulated object, Z of the paper: the map's fields, but in the body frame."""
 
     label: str
-    x: float
-    y: float
-    hue: float
-    saturation: float
-    covariance: np.ndarray | None = None
+    x: float  # centroid, metres: forward
+    y: float  # left
+    hue: float  # degrees [0, 360), NaN for grey
+    saturation: float  # percent [0, 100]
+    covariance: np.ndarray | None = None  # `(2, 2)` of x and y, square metres; None if nothing is known
 
 
 class PenaltyWeights(NamedTuple):
     """The four weights of eq. (1), "set by hand" in the paper, which gives no numbers.
 
-    The defaults are plain: one for each of the three comparisons, so that opposite hues cost half, fully different
-    saturations one, and a distance wrong by itself one. The object weight is above all that the other terms can add up
-    to (`min_object_weight`): with a guard of 0.1 m, 100 is enough for objects up to 9.8 m from the observed centroid.
+    Each comparison weighs one. p_obj is above all that they can add up to, up to 9.8 m from the observed centroid.
     """
 
-    p_obj: float = 100.0
-    """Cost of unlike classes."""
-    p_h: float = 1.0
-    """Weight of the hue difference over 360 degrees; on the circle none exceeds 180, so at most half of it counts."""
-    p_s: float = 1.0
-    """Weight of the saturation difference over 100 percent."""
-    p_d: float = 1.0
-    """Weight of the relative difference of the distances to the centroids."""
+    p_obj: float = 100.0  # Cost of unlike classes.
+    p_h: float = 1.0  # Weight of the hue difference over 360 degrees; at most half of it counts, because of the circle.
+    p_s: float = 1.0  # Weight of the saturation difference over 100 percent.
+    p_d: float = 1.0  # Weight of the relative difference of the distances to the centroids.
 
 
 class Penalty(NamedTuple):
@@ -84,28 +69,16 @@ class AssociationStep(NamedTuple):
 class Association(NamedTuple):
     """Result of a matcher: pairs of indices (observation, landmark), and how they came about."""
 
-    pairs: tuple[tuple[int, int], ...]
-    """In the order in which they were chosen."""
-    penalties: tuple[Penalty, ...]
-    """Of the pairs."""
-    same_class: tuple[bool, ...]
-    """True if a pair's classes agree. One-to-one matching goes on until one side is used up, so at the end it may join
-    a chair to a plant. Such a pair is never used for the fit."""
-    unassigned: tuple[int, ...]
-    """Observations without a partner."""
-    table: Penalty
-    """Every observation with every landmark, `(n_observations, n_landmarks)` arrays."""
-    steps: tuple[AssociationStep, ...] = ()
-    """The rounds of the greedy search."""
-    hypotheses: tuple = ()
-    """A matcher beyond the paper may weigh whole poses against each other. Then these are they, best first, each with
-    `pose`, `covariance` and `share`."""
-    confidence: float | None = None
-    """How sure the best of them is, 0 to 1; None from a matcher that weighs no poses."""
-    reason: str | None = None
-    """Why the best of them should not be given out; None if it should."""
-    explanation: str = ""
-    """The reason in a sentence."""
+    pairs: tuple[tuple[int, int], ...]  # In the order in which they were chosen.
+    penalties: tuple[Penalty, ...]  # Of the pairs.
+    same_class: tuple[bool, ...]  # False for a pair of unlike classes, which is never used for the fit
+    unassigned: tuple[int, ...]  # Observations without a partner.
+    table: Penalty  # Every observation with every landmark, `(n_observations, n_landmarks)` arrays.
+    steps: tuple[AssociationStep, ...] = ()  # The rounds of the greedy search.
+    hypotheses: tuple = ()  # the poses that a matcher beyond the paper weighed, best first
+    confidence: float | None = None  # How sure the best of them is, 0 to 1; None from a matcher that weighs no poses.
+    reason: str | None = None  # Why the best of them should not be given out; None if it should.
+    explanation: str = ""  # The reason in a sentence.
 
     @property
     def usable_pairs(self) -> tuple[tuple[int, int], ...]:
@@ -132,13 +105,10 @@ def penalty(
     penalty = p_obj + p_h dh / 360 + p_s ds / 100 + p_d (|dx_c| - |dx_m|) / |dx_m|
 
     p_obj counts only if the classes differ. dh: degrees on the circle, at most 180, so its term is at most half of p_h;
-    if either side is grey, it is 0. ds: percent. dx_c = x_c - x_G.camera in the body frame, dx_m = x_m - x_G.map in the
-    world, horizontal, metres; the divisor is at least `MIN_DISTANCE`.
-    distance_term: "absolute" takes the absolute value of the distance term. "as_printed" does not, so that the term
-    falls below zero for an object that looks too near the centroid, and the nearer it looks the better it fits.
-    observed_centroid, map_centroid: `(2,)`. The fields of observed and landmark may be arrays that broadcast, and then
-    so do the terms. Raises `AssociationError` for weights, centroids, options, labels, positions and colours that
-    cannot be. Source: paper 2, eq. (1).
+    0 if either side is grey. ds: percent. dx_c, dx_m: horizontal, metres, from the centroids; the divisor is at least
+    `MIN_DISTANCE`. distance_term: "absolute" takes the absolute value of the distance term; "as_printed" falls below
+    zero for an object that looks too near the centroid. Fields may be arrays that broadcast, and then so do the terms.
+    Raises `AssociationError` for values that cannot be. Source: paper 2, eq. (1).
     """
     _check_options(weights, distance_term)
     observed_centroid, map_centroid = _centroid(observed_centroid, "observed"), _centroid(map_centroid, "map")
@@ -167,8 +137,7 @@ def penalty_table(
 ) -> Penalty:
     """Return every term for every observation with every landmark: arrays `(n_observations, n_landmarks)`.
 
-    x_G.camera is the mean of the observations given, x_G.map that of the whole map. Raises `AssociationError` as
-    `penalty` does. Source: paper 2, section 2.5 ("all combinations").
+    Source: paper 2, section 2.5 ("all combinations").
     """
     if len(observations) == 0:
         _check_options(weights, distance_term)
@@ -194,11 +163,8 @@ def min_object_weight(
 ) -> float:
     """Return the p_obj above which no pair of unlike classes is cheaper than one of like classes, here.
 
-    p_obj > max over like pairs - min over unlike pairs, of the sum of the other three terms.
-
-    The distance term has no upper limit (an observation far out, an object of the map near its centroid), so no p_obj
-    is large enough for all worlds; the limit for |dx_c| <= D is p_h / 2 + p_s + p_d D / `MIN_DISTANCE`, and p_d more
-    with the distance term as printed, which can fall to -p_d.
+    p_obj > max over like pairs - min over unlike pairs, of the sum of the other three terms. No p_obj is large enough
+    for all worlds, because the distance term has no upper limit.
     """
     table = penalty_table(observations, semantic_map, weights, distance_term)
     others = table.hue + table.saturation + table.distance
@@ -217,10 +183,8 @@ def associate_greedy(
 ) -> Association:
     """Pair observations with landmarks as the paper does: take the cheapest open combination until a side is used up.
 
-    A choice is never taken back. Among equal penalties (within `TIE`) the first observation is taken, then the first
-    landmark, so that one input has one result.
-    No observations give an association without pairs. Raises `AssociationError` as `penalty_table` does.
-    Source: paper 2, section 2.5.
+    Among equal penalties (within `TIE`) the first observation is taken, then the first landmark. Raises
+    `AssociationError` as `penalty_table` does. Source: paper 2, section 2.5.
     """
     table = penalty_table(observations, semantic_map, weights, distance_term)
     open_cost = table.total.copy()

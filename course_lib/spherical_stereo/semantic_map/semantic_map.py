@@ -32,8 +32,7 @@ import numpy as np
 from course_lib.files import atomic_write, read_json, read_text
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, canonical_label
 
-DUPLICATE_DISTANCE = 0.01
-"""Metres. Two objects of one class whose centroids are nearer are one object written twice."""
+DUPLICATE_DISTANCE = 0.01  # Metres. Two objects of one class whose centroids are nearer are one object written twice.
 VERSION = 1
 _FIELDS = ("label", "x", "y", "hue", "saturation")
 _CSV_FIRST_LINE = f"# semantic map, version {VERSION}"
@@ -45,17 +44,13 @@ class SemanticMapError(ValueError):
 
 @dataclass(frozen=True)
 class Landmark:
-    """One object of the map. Raises `SemanticMapError` for values out of range. Source: paper 2, section 2.5.
+    """One object of the map. Raises `SemanticMapError` for values out of range. Source: paper 2, section 2.5."""
 
-    label: class, kept as its canonical label. x, y: centroid, world frame, metres. hue, saturation: means of the whole
-    object, degrees [0, 360), NaN for grey, and percent [0, 100].
-    """
-
-    label: str
-    x: float
+    label: str  # class, kept as its canonical label
+    x: float  # centroid, world frame, metres
     y: float
-    hue: float
-    saturation: float
+    hue: float  # mean of the whole object, degrees [0, 360), NaN for grey
+    saturation: float  # mean, percent [0, 100]
 
     def __post_init__(self):
         try:
@@ -68,26 +63,22 @@ class Landmark:
             if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
                 raise SemanticMapError(f"{name} of this {self.label} must be a number; got {value!r}")
             object.__setattr__(self, name, float(value))
-        if not (math.isfinite(self.x) and math.isfinite(self.y)):
-            raise SemanticMapError(f"x and y of this {self.label} must be finite metres; got {self.x}, {self.y}")
-        if not (math.isnan(self.hue) or 0 <= self.hue < 360):
-            raise SemanticMapError(
-                f"hue of this {self.label} must lie in [0, 360) degrees, or be NaN for grey (null in JSON, empty in "
-                f"CSV); got {self.hue}"
-            )
-        if not 0 <= self.saturation <= 100:
-            raise SemanticMapError(
-                f"saturation of this {self.label} must lie in [0, 100] percent; got {self.saturation}"
-            )
+        hue_exists = math.isnan(self.hue) or 0 <= self.hue < 360
+        rules = {
+            "x and y must be finite metres": math.isfinite(self.x) and math.isfinite(self.y),
+            "hue must lie in [0, 360) degrees (grey: null in JSON, empty in CSV)": hue_exists,
+            "saturation must lie in [0, 100] percent": 0 <= self.saturation <= 100,
+        }
+        for rule, holds in rules.items():
+            if not holds:
+                raise SemanticMapError(f"{rule}; got {self}")
 
 
 class SemanticMap:
     """Landmarks, and for drawings the walls around them. It never changes once made.
 
-    landmarks: at least one. walls: `(k, 2)` corners of the room in order, world frame, metres, the last joined to the
-    first. name: of the map in figures and results.
-    Raises `SemanticMapError` for no landmarks, one object written twice (same class, centroids within 1 cm), or
-    walls that are not at least three finite corners. Source: paper 2, section 2.5.
+    walls: `(k, 2)` corners of the room in order, world frame, metres. Raises `SemanticMapError` for no landmarks, one
+    object written twice, or walls that are not at least three finite corners. Source: paper 2, section 2.5.
     """
 
     def __init__(self, landmarks: Sequence[Landmark], walls: np.ndarray | None = None, name: str = ""):
@@ -97,8 +88,7 @@ class SemanticMap:
         self.walls = None if walls is None else _checked_walls(walls)
         self.name = str(name)
         self.labels = tuple(landmark.label for landmark in self.landmarks)
-        self.positions = _read_only([[landmark.x, landmark.y] for landmark in self.landmarks])
-        """`(n, 2)` centroids, world frame, metres."""
+        self.positions = _read_only([[landmark.x, landmark.y] for landmark in self.landmarks])  # `(n, 2)`, metres
         self.hues = _read_only([landmark.hue for landmark in self.landmarks])
         self.saturations = _read_only([landmark.saturation for landmark in self.landmarks])
         for i, first in enumerate(self.landmarks):
@@ -123,10 +113,8 @@ class SemanticMap:
 
     @classmethod
     def load(cls, path: str | Path) -> SemanticMap:
-        """Read the map in a `.json` or `.csv` file (format: see the module).
-
-        Raises `SemanticMapError`, with the file's name, for a file that cannot be read, is not JSON or CSV, has another
-        version, lacks fields, or holds values that no map may have.
+        """Read the map in a `.json` or `.csv` file (format: see the module). Raises `SemanticMapError` with the file's
+        name.
         """
         path = Path(path)
         if path.suffix.lower() not in (".json", ".csv"):

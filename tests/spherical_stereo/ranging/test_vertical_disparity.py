@@ -6,7 +6,6 @@ import pytest
 from course_lib.spherical_stereo.matching.features import find_features
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_views
 from course_lib.spherical_stereo.panorama import (
-    PanoramaError,
     StereoRig,
     View,
     direction_from_angles,
@@ -99,8 +98,6 @@ def test_box_centres_without_a_distance_keep_the_name_of_their_outcome(rng):
     (measured,) = measure_objects([match], boxed(-0.3), boxed(-0.4), rig)
     assert (measured.box_centre.outcome, measured.disparity.outcome) == ("diverging", "ok")
     assert np.isnan(measured.box_centre.distance_m)
-    with pytest.raises(PanoramaError, match="sigma_pixels"):
-        measure_objects([match], boxed(-0.4), boxed(-0.3), rig, -1.0)
 
 
 def test_the_sigma_of_a_range_is_that_of_the_pixels():
