@@ -43,11 +43,7 @@ MOST_LEVELS = 50
 
 
 def read_bytes(
-    path: str | Path,
-    what: str,
-    error: type[Exception],
-    most: int = MOST_BYTES,
-    missing: type[Exception] | None = None,
+    path: str | Path, what: str, error: type[Exception], most: int = MOST_BYTES, missing: type[Exception] | None = None
 ) -> bytes:
     """Everything in a file, at most `most` bytes. A pipe or device, which may never end, is refused."""
     path = Path(path)
@@ -92,11 +88,7 @@ def require_file(path: Path, what: str, error: type[Exception]) -> None:
 
 
 def read_text(
-    path: str | Path,
-    what: str,
-    error: type[Exception],
-    most: int = MOST_TEXT,
-    missing: type[Exception] | None = None,
+    path: str | Path, what: str, error: type[Exception], most: int = MOST_TEXT, missing: type[Exception] | None = None
 ) -> str:
     """The text of a UTF-8 file, with or without a byte order mark, with the line ends of any system."""
     data = read_bytes(path, what, error, most, missing)
@@ -115,11 +107,7 @@ def read_text(
 
 
 def read_json(
-    path: str | Path,
-    what: str,
-    error: type[Exception],
-    most: int = MOST_TEXT,
-    missing: type[Exception] | None = None,
+    path: str | Path, what: str, error: type[Exception], most: int = MOST_TEXT, missing: type[Exception] | None = None
 ) -> object:
     """What a JSON file holds: numbers finite, no name twice in one object, at most `MOST_LEVELS` levels."""
     text = read_text(path, what, error, most, missing)
@@ -173,14 +161,11 @@ def _levels(text: str) -> int:
 class ImageHeader(NamedTuple):
     """What an image file says of itself before it is unpacked."""
 
-    kind: str
-    """"PNG" or "JPEG"."""
+    kind: str  # "PNG" or "JPEG"
     width: int
     height: int
-    frames: int
-    """More than one for an animated PNG."""
-    pixel_bytes: int
-    """Bytes of one pixel in memory."""
+    frames: int  # More than one for an animated PNG
+    pixel_bytes: int  # Bytes of one pixel in memory
 
 
 def read_image(

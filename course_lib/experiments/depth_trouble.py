@@ -59,12 +59,7 @@ def half_covered(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng
     """One half, upper, lower, left or right, without returns: a hand before the lens is too near for any."""
     covered = image.copy()
     height, width = image.shape
-    halves = (
-        np.s_[: height // 2],
-        np.s_[height // 2 :],
-        np.s_[:, : width // 2],
-        np.s_[:, width // 2 :],
-    )
+    halves = (np.s_[: height // 2], np.s_[height // 2 :], np.s_[:, : width // 2], np.s_[:, width // 2 :])
     covered[halves[rng.integers(4)]] = np.nan
     return covered
 

@@ -27,28 +27,20 @@ class DetectionScoreError(ValueError):
 class Boxes:
     """The detections, or the objects, of one panorama."""
 
-    labels: Sequence[str]
-    """n class names."""
-    boxes: np.ndarray
-    """(n, 4) u_min, v_min, u_max, v_max, edge coordinates; u_max may pass the width at the seam."""
-    scores: np.ndarray | None = None
-    """(n,) scores; objects have none."""
+    labels: Sequence[str]  # n class names
+    boxes: np.ndarray  # (n, 4) u_min, v_min, u_max, v_max, edge coordinates; u_max may pass the width at the seam
+    scores: np.ndarray | None = None  # (n,) scores; objects have none
 
 
 @dataclass(frozen=True)
 class Matching:
     """What became of the detections of one panorama."""
 
-    scores: np.ndarray
-    """(k,) scores of the detections that count, ignored ones left out."""
-    correct: np.ndarray
-    """(k,) boolean: found an object that no better detection had found."""
-    object_index: np.ndarray
-    """(k,) which object, -1 for a false alarm."""
-    detection_index: np.ndarray
-    """(k,) which detection of those given."""
-    n_objects: int
-    """Objects to be found."""
+    scores: np.ndarray  # (k,) scores of the detections that count, ignored ones left out
+    correct: np.ndarray  # (k,) boolean: found an object that no better detection had found
+    object_index: np.ndarray  # (k,) which object, -1 for a false alarm
+    detection_index: np.ndarray  # (k,) which detection of those given
+    n_objects: int  # Objects to be found
 
 
 def match_detections(

@@ -69,14 +69,10 @@ class Answer(NamedTuple):
     experiment: int
     name: str
     method: str
-    kind: str
-    """ "correct", "wrong" or "unanswered"."""
-    confidence: float
-    """0 to 1; of a method that has none, 1 for what is given out."""
-    best_is_right: bool
-    """Whether the most believed pose is right, given out or not."""
-    dx_m: float
-    """Absolute error of the pose given out; NaN without one."""
+    kind: str  # "correct", "wrong" or "unanswered"
+    confidence: float  # 0 to 1; of a method that has none, 1 for what is given out
+    best_is_right: bool  # Whether the most believed pose is right, given out or not
+    dx_m: float  # Absolute error of the pose given out; NaN without one
     dy_m: float
     dtheta_deg: float
     all_matches_right: bool | None
@@ -106,9 +102,7 @@ def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None,
 
 
 def answers_of_rooms(
-    rooms: Sequence[dict],
-    methods: Sequence[str] = tuple(ASSOCIATIONS),
-    progress: Callable = iter,
+    rooms: Sequence[dict], methods: Sequence[str] = tuple(ASSOCIATIONS), progress: Callable = iter
 ) -> list[Answer]:
     """Every pose of every room by every matcher, one view each; none is rejected by its residuals."""
     answers = []
@@ -133,10 +127,7 @@ def answers_of_rooms(
 
 
 def answers_of_evidence(
-    rooms: Sequence[dict],
-    variants: dict[str, Evidence] = ABLATION,
-    wrong_map: bool = False,
-    progress: Callable = iter,
+    rooms: Sequence[dict], variants: dict[str, Evidence] = ABLATION, wrong_map: bool = False, progress: Callable = iter
 ) -> list[Answer]:
     """Localize every pose of every room by the consistent matcher, its evidence switched off in parts.
 

@@ -39,8 +39,7 @@ class Network(NamedTuple):
     """A detector as a point of `kept_rows` names it."""
 
     folder: str
-    checksum: str
-    """Of the files: observations of another network are not used again."""
+    checksum: str  # Of the files: observations of another network are not used again
     input_size: tuple[int, int] | None = None
     score_threshold: float | None = None
 
@@ -150,10 +149,8 @@ class ViewSequence(NamedTuple):
 
     experiment: int
     name: str
-    poses: np.ndarray
-    """`(n, 3)` [x, y, heading] where the rig really stood."""
-    observations: tuple[list[Observation], ...]
-    """What was seen from each."""
+    poses: np.ndarray  # `(n, 3)` [x, y, heading] where the rig really stood
+    observations: tuple[list[Observation], ...]  # What was seen from each
 
 
 def stored_sequences(room: dict, views: Sequence[dict]) -> list[ViewSequence]:

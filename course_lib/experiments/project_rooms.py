@@ -40,18 +40,14 @@ POSES = 4  # at each of the paper's two heights
 class ProjectView(NamedTuple):
     """What one pair of panoramas showed, and where it was taken."""
 
-    upper: tuple[Detection, ...]
-    """Detections of the upper image."""
+    upper: tuple[Detection, ...]  # Detections of the upper image
     lower: tuple[Detection, ...]
     observations: tuple[Observation, ...]
     """Objects with a place, body frame: matched by the photographs' features (section 2.3), triangulated (2.4)."""
-    shows: tuple[int, ...]
-    """For every observation the landmark that it really shows; -1: none of the map."""
-    pose: tuple[float, float, float]
-    """The truth: x, y in metres, theta in radians."""
+    shows: tuple[int, ...]  # For every observation the landmark that it really shows; -1: none of the map
+    pose: tuple[float, float, float]  # The truth: x, y in metres, theta in radians
     rig: StereoRig
-    size: tuple[int, int]
-    """Width and height of both panoramas, pixels."""
+    size: tuple[int, int]  # Width and height of both panoramas, pixels
 
 
 class ProjectRoom(NamedTuple):
@@ -59,8 +55,7 @@ class ProjectRoom(NamedTuple):
 
     seed: int
     semantic_map: SemanticMap
-    look_alike: str
-    """Class of the objects of one shape and one colour."""
+    look_alike: str  # Class of the objects of one shape and one colour
     views: tuple[ProjectView, ...]
 
 

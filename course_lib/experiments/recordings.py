@@ -38,28 +38,19 @@ class Run(NamedTuple):
     """What the filter made of a recording, frame by frame."""
 
     frames: list[int]
-    states: np.ndarray
-    """`(T, 6)` estimates, in the world of the map that was used."""
-    camera_to_world: np.ndarray
-    """`(T, 4, 4)` estimates in the recording's own world, optical convention."""
-    scores: np.ndarray
-    """`(T,)` raw score of the best particle; NaN where the frame held no measurement."""
-    ess: np.ndarray
-    """`(T,)` effective sample size."""
-    agreements: list[Agreement]
-    """How each frame's image agrees with the map as seen from its estimate."""
-    statuses: list[TrackStatus]
-    """Whether the filter believes itself on the track, frame by frame."""
+    states: np.ndarray  # `(T, 6)` estimates, in the world of the map that was used
+    camera_to_world: np.ndarray  # `(T, 4, 4)` estimates in the recording's own world, optical convention
+    scores: np.ndarray  # `(T,)` raw score of the best particle; NaN where the frame held no measurement
+    ess: np.ndarray  # `(T,)` effective sample size
+    agreements: list[Agreement]  # How each frame's image agrees with the map as seen from its estimate
+    statuses: list[TrackStatus]  # Whether the filter believes itself on the track, frame by frame
     normalized_errors: np.ndarray
     """`(T,)` squared error in units of the covariance; NaN with too few particles; empty where no truth is known."""
     deviations: np.ndarray
     """`(T, 6)` the true states from the estimates, as the motion measures them; empty where no truth is known."""
-    error_sigmas: np.ndarray
-    """`(T, 6)` how far off the filter expects to be in each, one sigma."""
-    renders: np.ndarray
-    """`(T,)` how many images were drawn to find each estimate."""
-    ms_per_frame: float
-    """Milliseconds, the mean over steps; reading the images is not counted."""
+    error_sigmas: np.ndarray  # `(T, 6)` how far off the filter expects to be in each, one sigma
+    renders: np.ndarray  # `(T,)` how many images were drawn to find each estimate
+    ms_per_frame: float  # Milliseconds, the mean over steps; reading the images is not counted
     frames_without_measurement: int
     faults: tuple[Fault | None, ...] = ()
     """Why frames were not used (guarded_frames.py), None where they were; empty where nobody looked."""

@@ -54,24 +54,19 @@ class PairResult(NamedTuple):
     pair: StereoPair
     localization: Localization
     outcome: PoseOutcome
-    true_landmarks: tuple[int, ...]
-    """For every observation the landmark it shows; `NO_OBJECT` for none."""
+    true_landmarks: tuple[int, ...]  # For every observation the landmark it shows; `NO_OBJECT` for none
     upper_identity: tuple[int, ...]
     """For every detection of the upper image the number of the object it shows; `NO_OBJECT` for none."""
-    lower_identity: tuple[int, ...]
-    """The same for the lower image."""
-    size: tuple[int, int]
-    """(width, height) of the panoramas, pixels."""
-    seconds: float
-    """From two images in memory to the pose."""
+    lower_identity: tuple[int, ...]  # The same for the lower image
+    size: tuple[int, int]  # (width, height) of the panoramas, pixels
+    seconds: float  # From two images in memory to the pose
 
 
 class Record(NamedTuple):
     """Both experiments, for figures."""
 
     semantic_map: SemanticMap
-    results: dict[str, dict[str, list[PairResult]]]
-    """By experiment ("experiment_1") and source."""
+    results: dict[str, dict[str, list[PairResult]]]  # By experiment ("experiment_1") and source
 
 
 def run(
@@ -250,10 +245,7 @@ def localize_pair(pair: StereoPair, localizer: SemanticLocalizer, source: str = 
 
 
 def run_experiment(
-    recording: StereoRecording,
-    localizer: SemanticLocalizer,
-    source: str = "images",
-    progress: Callable = iter,
+    recording: StereoRecording, localizer: SemanticLocalizer, source: str = "images", progress: Callable = iter
 ) -> list[PairResult]:
     """Localize every pair of a recording. Source: paper 2, section 3."""
     return [localize_pair(pair, localizer, source) for pair in progress(recording.pairs)]

@@ -27,14 +27,10 @@ NO_OBJECT = -1
 class PoseOutcome(NamedTuple):
     """One pose judged by table 2."""
 
-    kind: str
-    """ "correct", "incorrect" or "unable"."""
-    dx_m: float
-    """|x - true x|, metres; NaN when unable, as are the others."""
-    dy_m: float
-    """|y - true y|, metres."""
-    dtheta_deg: float
-    """|theta - true theta| on the circle, degrees [0, 180]."""
+    kind: str  # "correct", "incorrect" or "unable"
+    dx_m: float  # |x - true x|, metres; NaN when unable, as are the others
+    dy_m: float  # |y - true y|, metres
+    dtheta_deg: float  # |theta - true theta| on the circle, degrees [0, 180]
 
 
 def outcome(localization: Localization, true_pose: Sequence[float], true_landmarks: Sequence[int]) -> PoseOutcome:

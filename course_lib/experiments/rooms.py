@@ -14,13 +14,7 @@ import numpy as np
 
 from course_lib.experiments.intervals import bootstrap_percent, wilson_percent
 from course_lib.experiments.look_alikes import answer_tables, answers_summary
-from course_lib.experiments.observed_rooms import (
-    Network,
-    room_record,
-    stored_map,
-    stored_observations,
-    views_record,
-)
+from course_lib.experiments.observed_rooms import Network, room_record, stored_map, stored_observations, views_record
 from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
 from course_lib.experiments.room import SOURCES, pose_columns
 from course_lib.experiments.room_evaluation import (

@@ -21,16 +21,12 @@ from joblib import Parallel, cpu_count, delayed
 class Outcome(NamedTuple):
     """What an experiment gives to the command that runs it."""
 
-    summary: dict
-    """The numbers, for JSON."""
-    text: str
-    """The table."""
+    summary: dict  # The numbers, for JSON
+    text: str  # The table
     files: dict[str, tuple[dict, list[dict] | None]]
     """Results to be written, by the JSON file's name: numbers, and rows for a CSV file beside it."""
-    figures: str = ""
-    """Which function of `commands.demo_figures` draws the figures; none where it is empty."""
-    drawn: object = None
-    """What they are drawn from."""
+    figures: str = ""  # Which function of `commands.demo_figures` draws the figures; none where it is empty
+    drawn: object = None  # What they are drawn from
 
 
 def no_bar(text: str, unit: str = "") -> Callable[[Iterable], Iterable]:
@@ -41,12 +37,9 @@ def no_bar(text: str, unit: str = "") -> Callable[[Iterable], Iterable]:
 class Runner(NamedTuple):
     """Where an experiment runs."""
 
-    folder: Path
-    """Of the files of rows."""
-    temporary: Path
-    """An empty folder, which is removed when the figures are drawn."""
-    processes: int | None = None
-    """At a time; None: one for each processor."""
+    folder: Path  # Of the files of rows
+    temporary: Path  # An empty folder, which is removed when the figures are drawn
+    processes: int | None = None  # At a time; None: one for each processor
     bar: Callable[..., Callable[[Iterable], Iterable]] = no_bar
     """Makes a wrapper of a loop that draws a progress bar, from words and the unit that is counted."""
 

@@ -25,11 +25,7 @@ from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
 
 METHODS = ("annealed", "paper", "floor")
-NAMES = {
-    "annealed": "annealed and refined",
-    "paper": "the paper's filter",
-    "floor": "floor: refined from the truth",
-}
+NAMES = {"annealed": "annealed and refined", "paper": "the paper's filter", "floor": "floor: refined from the truth"}
 """How the table calls them; other methods are called as they are."""
 
 

@@ -29,10 +29,8 @@ Spoil = Callable[[object, object, object, np.random.Generator], object]
 class Arrival(NamedTuple):
     """What came when a frame was due."""
 
-    image: object
-    """Of the sensor: a depth image, or a pair of panoramas; None: nothing came."""
-    time: float
-    """Seconds, as the frame's stamp says."""
+    image: object  # Of the sensor: a depth image, or a pair of panoramas; None: nothing came
+    time: float  # Seconds, as the frame's stamp says
 
 
 def troubled_runs(n_frames: int, share: float, length: int, rng: np.random.Generator) -> list[tuple[int, int]]:

@@ -28,17 +28,13 @@ class RolledPair(NamedTuple):
     """What the method made of one pair as it was, and of the same images rolled by `columns`."""
 
     columns: int
-    width: int
-    """of the images, pixels"""
+    width: int  # of the images, pixels
     straight: Localization
     rolled: Localization
 
 
 def turn_the_rig(
-    results: Sequence[PairResult],
-    localizer: SemanticLocalizer,
-    columns: Sequence[int],
-    progress: Callable = iter,
+    results: Sequence[PairResult], localizer: SemanticLocalizer, columns: Sequence[int], progress: Callable = iter
 ) -> list[RolledPair]:
     """Localize every pair of an experiment again, with its images rolled by each number of columns.
 
