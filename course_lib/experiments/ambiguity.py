@@ -82,11 +82,8 @@ def ambiguity_map(
 ) -> AmbiguityMap:
     """Return the belief at every free place of a grid over the map, averaged over `draws` of what would be seen.
 
-    step: metres between places. association: the matcher whose confusions are asked for. Raises `ValueError` for a step
-    that is not positive or no draw.
+    step: metres between places. association: the matcher whose confusions are asked for.
     """
-    if not step > 0 or draws < 1:
-        raise ValueError(f"step must be positive and draws at least 1; got {step!r} and {draws!r}")
     outline = semantic_map.positions if semantic_map.walls is None else semantic_map.walls
     low, high = outline.min(axis=0), outline.max(axis=0)
     x, y = (np.arange(a + step / 2, b, step) for a, b in zip(low, high, strict=True))

@@ -49,21 +49,10 @@ def match_detections(
     """Pairs the detections of one panorama with its objects, best score first, each object at most once.
 
     A detection takes the free object of its class that it overlaps most, if IoU >= `iou_threshold`. One that finds
-    none is left out of the count when it overlaps an ignored object of its class that much; else it is a false alarm:
-    another class, or a small box inside a large ignored object, says what is not so. `width` is the panorama's, in
-    pixels. Raises `DetectionScoreError` for detections without scores or lists of unequal length, `DetectionError`
-    for what is no box.
+    none is left out of the count when it overlaps an ignored object of its class that much; else it is a false alarm.
+    width: of the panorama, pixels.
     """
-    for name, given in (("detections", detections), ("objects", objects), ("ignored", ignored)):
-        if len(given.labels) != len(given.boxes):
-            raise DetectionScoreError(
-                f"{name}: {len(given.labels)} labels and {len(given.boxes)} boxes; one label for each box is needed"
-            )
-    if detections.scores is None or len(detections.scores) != len(detections.labels):
-        raise DetectionScoreError("detections need one score each, to say which comes first")
     scores = np.asarray(detections.scores, dtype=np.float64)
-    if not np.isfinite(scores).all():
-        raise DetectionScoreError("detections: scores must be finite; got NaN or infinity")
     overlap = _overlaps_in_class(detections, objects, width)
     excused = (_overlaps_in_class(detections, ignored, width) >= iou_threshold).any(axis=1)
     free = np.ones(len(objects.labels), dtype=bool)

@@ -18,7 +18,7 @@ from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import rotations
 from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS, matcher
 from course_lib.beyond.several_views import Motion, SemanticTracker
-from course_lib.experiments.intervals import bootstrap_percent, wilson_percent
+from course_lib.experiments.intervals import share_intervals, wilson_percent
 from course_lib.experiments.observed_rooms import stored_map, stored_observations, stored_sequences
 from course_lib.experiments.room import PairResult
 from course_lib.experiments.room_evaluation import NO_OBJECT
@@ -170,10 +170,7 @@ def measured_motion(
 
 
 def answers_of_sequences(rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable = iter) -> list[Answer]:
-    """Follow every sequence of views with odometry and without; the answer after the last view is judged.
-
-    views: records of `observe_views`, in the order of the rooms.
-    """
+    """Follow every sequence of views (`observe_views`) with odometry and without, and judge the last answer."""
     return [
         answer
         for where, semantic_map, sequence, number in _sequences(rooms, views, progress)
@@ -242,10 +239,7 @@ def answers_table(answers: Sequence[Answer]) -> dict:
     for kind in KINDS:
         hits = np.array([one.kind == kind for one in answers])
         table[f"{kind}_percent"] = 100.0 * float(hits.mean())
-        table[f"{kind}_wilson_percent"] = wilson_percent(int(hits.sum()), n)
-        table[f"{kind}_rooms_percent"] = bootstrap_percent(
-            np.array([hits[seeds == seed].mean() for seed in np.unique(seeds)])
-        )
+        table |= share_intervals(kind, hits, seeds)
     for name in ("all_matches_right", "best_is_right"):
         hits = [getattr(one, name) for one in answers]
         known = None not in hits
@@ -267,10 +261,7 @@ def tables_by_method(answers: Sequence[Answer]) -> dict[str, dict]:
 
 
 def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
-    """Return what a threshold on the confidence buys: share answered, and share of the answered that is wrong, percent.
-
-    One point for every different confidence above 0, from the surest on; the threshold is the least one answered.
-    """
+    """Return what a threshold on the confidence buys: share answered, and of the answered wrong, in percent."""
     confidence = np.array([one.confidence for one in answers])
     wrong = ~np.array([one.best_is_right for one in answers], dtype=bool)
     thresholds = np.unique(confidence[confidence > 0])[::-1]
@@ -283,7 +274,7 @@ def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
 
 
 def why_not_answered(rooms: Sequence[dict], answers: Sequence[Answer]) -> dict[str, float | None]:
-    """Return observations of landmarks a pose, of answered poses and of the others: too few, or enough and alike?"""
+    """Return the mean number of observed landmarks of a pose, by the kind of its answer."""
     seen = {
         (room["seed"], pose["experiment"], pose["name"]): sum(
             landmark != NO_OBJECT for landmark in pose["sources"]["images"]["true_landmarks"]

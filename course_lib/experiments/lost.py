@@ -1,8 +1,7 @@
 """Lost and found: kidnap the camera, start it anywhere, leave it in peace, and count how often it finds itself.
 
-In the corridor every seed makes a recording of its own, carried by hand. A recording of your own needs its truth, to be
-judged by. A kidnapping is made of a recording: it is played to some frame, then nothing is seen for a while, and it
-goes on from a frame in another place. Gravity is what an accelerometer would say: the truth's, with a degree of noise.
+A recording is played to some frame, then nothing is seen for a while, and it goes on from a frame in another place:
+a kidnapping. Gravity is what an accelerometer would say: the truth's, with a degree of noise.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """The rooms of projects P2 and P3: what two spherical cameras saw in each, once detected, and where they stood.
 
-What takes long, photographs, detection and stereo matching, is done once for each room by `tools.make_projects`. P2
-starts at the boxes of both images, P3 at the observations that sections 2.2 to 2.4 make of them. Students work on the
-practice rooms; the hidden rooms are for the score alone.
+`tools.make_projects` makes them once. P2 starts at the boxes of both images, P3 at the observations that sections 2.2
+to 2.4 make of them. Students work on the practice rooms; the hidden rooms are for the score alone.
 """
 
 from __future__ import annotations
@@ -65,10 +64,7 @@ def made_room(seed: int, detector: str) -> dict:
 
 
 def record_room(seed: int, poses: int, models: RecordingModels, detector) -> dict:
-    """Make a room, photograph and survey it, and note what the method sees from each pose; for JSON.
-
-    detector: anything with `detect(image_bgr)`. Source: paper 2, sections 2.2 to 2.4 and 3.
-    """
+    """Make a room, photograph and survey it, and note what the method sees from each pose; for JSON."""
     room, semantic_map = surveyed_room(seed, models)
     views = []
     for _, localizer, pair in photographed_pairs(room, semantic_map, seed, poses, models, detector):
