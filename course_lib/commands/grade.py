@@ -16,35 +16,26 @@ TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
+    add = parser.add_argument
+    add(
         "folder",
         type=Path,
         metavar="FOLDER",
         help="what the students handed in: FOLDER/alice/06_....ipynb or FOLDER/alice_06.ipynb, notebooks or .py files",
     )
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="where the results go (default: FOLDER with -grades after its name)"
-    )
-    parser.add_argument(
+    add("--out", type=Path, metavar="DIR", help="where the results go (default: FOLDER with -grades after its name)")
+    add(
         "--seed",
         type=int,
         help="draws the hidden inputs; keep it to yourself (default: a new one, which the page tells: with it the "
         "results come again)",
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="answers at a time (default: one a processor)")
-    parser.add_argument(
-        "--seconds", type=float, default=60.0, metavar="S", help="all calls of one answer (default: %(default)g)"
-    )
-    parser.add_argument(
-        "--call-seconds", type=float, default=20.0, metavar="S", help="one call of an answer (default: %(default)g)"
-    )
-    parser.add_argument(
-        "--memory", type=int, default=1000, metavar="MB", help="memory of one answer (default: %(default)d)"
-    )
-    parser.add_argument(
-        "--scores", action="store_true", help="also run the projects' last functions: minutes for each submission"
-    )
-    parser.add_argument(
+    add("--jobs", type=int, metavar="N", help="answers at a time (default: one a processor)")
+    add("--seconds", type=float, default=60.0, metavar="S", help="all calls of one answer (default: %(default)g)")
+    add("--call-seconds", type=float, default=20.0, metavar="S", help="one call of an answer (default: %(default)g)")
+    add("--memory", type=int, default=1000, metavar="MB", help="memory of one answer (default: %(default)d)")
+    add("--scores", action="store_true", help="also run the projects' last functions: minutes for each submission")
+    add(
         "--trusted",
         action="store_true",
         help="grade although this machine cannot keep strangers' code in: only where you trust every file",

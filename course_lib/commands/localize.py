@@ -253,10 +253,7 @@ def _numbers(text: str) -> list[float]:
 def _found_start(
     arguments: argparse.Namespace, scene_map: SceneMap, sequence: DepthSequence, up: str
 ) -> tuple[DepthSequence, np.ndarray, dict]:
-    """Return the recording from the frame in which its place was found, the pose there, and what the results tell.
-
-    Raises `ValueError` where no place was found, or several that nobody can tell apart.
-    """
+    """Return the recording from the frame in which its place was found, the pose there, and what the results tell."""
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.recordings import find_start
 

@@ -36,18 +36,17 @@ def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
     add_pair_arguments(parser)
-    parser.add_argument(
+    add(
         "--boxes",
         type=Path,
         metavar="JSON",
         help="boxes in both images, as a JSON file in the format below (default: features alone, no distances)",
     )
-    parser.add_argument(
-        "--sigma-pixels", type=float, default=1.0, metavar="PX", help="standard deviation of a box centre (default: 1)"
-    )
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help="write figures and results here (default: nowhere)")
-    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+    add("--sigma-pixels", type=float, default=1.0, metavar="PX", help="standard deviation of a box centre (default: 1)")
+    add("--out", type=Path, metavar="FOLDER", help="write figures and results here (default: nowhere)")
+    add("--json", action="store_true", help="print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,15 +1,13 @@
 """Run paper 2's room experiment: 20 poses at each of two heights, from images to poses; print tables 1 to 5.
 
-The stereo panoramas are those of data/room. Another seed renders the same room again with other rig tilts, exposures
-and noise, which takes some minutes more. "images" is the whole method: detector, stereo matching, triangulation, map
-matching, fit. "exact boxes" starts after a perfect detector and a perfect stereo matching: it tells how much of the
-error is the method's own.
+The stereo panoramas are those of data/room; another seed renders the same room again. "images" is the whole method.
+"exact boxes" starts after a perfect detector and a perfect stereo matching: it tells how much of the error is the
+method's own.
 """
 
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -84,10 +82,7 @@ def run(
     from course_lib.experiments import look_alikes, room_tables, turned_rig  # they import this module
 
     if seed is not None and data is not None:
-        raise ValueError(
-            f"--seed {seed} takes new photographs, and --data {data} holds some that were taken already, with a seed "
-            "of their own: give one of the two"
-        )
+        raise ValueError(f"--seed {seed} takes new photographs, and --data {data} holds others: give one of the two")
     if 0 in roll:
         raise ValueError("--roll must not be 0: images that are not rolled are the experiment itself")
     if association not in ASSOCIATIONS:
@@ -102,9 +97,6 @@ def run(
     record, summaries, rolled = Record(semantic_map, {}), {}, {"alike": [], "by_covariance": []}
     for number in (1, 2):
         recording = read_stereo_recording(folder / f"experiment_{number}")
-        if poses is not None and poses > len(recording.pairs):
-            told = f"--poses {poses}: experiment {number} has {len(recording.pairs)}, and all are taken"
-            warnings.warn(told, stacklevel=2)
         recording = replace(recording, pairs=recording.pairs[:poses])
         localizer = SemanticLocalizer(
             recording.rig,
@@ -114,12 +106,10 @@ def run(
             image_size=(recording.width, recording.height),
             reject_implausible=False,  # the paper's method
         )
-        results = {
-            source: run_experiment(
-                recording, localizer, source, runner.bar(f"experiment {number}, {source.replace('_', ' ')}", "pose")
-            )
-            for source in SOURCES
-        }
+        results = {}
+        for source in SOURCES:
+            bar = runner.bar(f"experiment {number}, {source.replace('_', ' ')}", "pose")
+            results[source] = run_experiment(recording, localizer, source, bar)
         if roll:
             bar = runner.bar(f"experiment {number}, rolled images", "pose")
             pairs = turned_rig.turn_the_rig(results["images"], localizer, roll, bar)
@@ -252,7 +242,7 @@ def run_experiment(
 
 
 def experiment_summary(results: Sequence[PairResult]) -> dict:
-    """Tables 3 to 5 of one experiment as `evaluation.summary` gives them. Source: paper 2, tables 3 to 5."""
+    """Return tables 3 to 5 of one experiment (`room_evaluation.summary`)."""
     return summary([result.outcome for result in results])
 
 
@@ -274,12 +264,8 @@ def fitted_by_covariance(found: Localization, localizer: SemanticLocalizer) -> L
 
 def weighted_summary(results: Sequence[PairResult], localizer: SemanticLocalizer) -> dict:
     """`experiment_summary` of the same observations and associations, with pairs weighted by their covariances."""
-    return summary(
-        [
-            outcome(fitted_by_covariance(one.localization, localizer), one.pair.pose, one.true_landmarks)
-            for one in results
-        ]
-    )
+    fitted = [fitted_by_covariance(one.localization, localizer) for one in results]
+    return summary([outcome(a, one.pair.pose, one.true_landmarks) for a, one in zip(fitted, results, strict=True)])
 
 
 def matching_rates(results: Sequence[PairResult]) -> dict[str, float]:
@@ -309,8 +295,8 @@ def range_errors(
 ) -> np.ndarray:
     """Return relative errors `(n,)` of the horizontal distances to the objects' centroids on the map, below 4 m.
 
-    |rho - rho_true| / rho_true for every match that joins two views of one object; one without a distance counts
-    as infinite. distance: "box_centre" or "disparity" (of matches with features). Source: paper 2, section 2.4.
+    |rho - rho_true| / rho_true for every right match; infinite without a distance. distance: "box_centre", "disparity".
+    Source: paper 2, section 2.4.
     """
     errors = []
     for result in results:
@@ -333,11 +319,8 @@ def failures(result: PairResult, semantic_map: SemanticMap) -> list[str]:
     for observation, landmark, shown in wrong_pairs(result.localization, result.true_landmarks):
         label = result.localization.observations[observation].label
         x, y = semantic_map.positions[landmark]
-        truth = (
-            "nothing"
-            if shown == NO_OBJECT
-            else "the {} at ({:.1f}, {:.1f})".format(semantic_map.labels[shown], *semantic_map.positions[shown])
-        )
+        at = "the {} at ({:.1f}, {:.1f})".format(semantic_map.labels[shown], *semantic_map.positions[shown])
+        truth = "nothing" if shown == NO_OBJECT else at
         lines.append(f"the {label} that shows {truth} was taken for the one at ({x:.1f}, {y:.1f})")
     return lines
 

@@ -57,10 +57,9 @@ def kept_rows(
 ) -> list:
     """Return `function(**point)` of every point, in their order; points that the file at `path` holds are not run.
 
-    function: of a module, so that other processes find it; its result is what JSON can hold. A result is written to
-    the file as soon as it is there, so that a run that was stopped goes on where it was. processes: calls at a time
-    (None: one for each processor); within `joblib.parallel_config` its backend runs them. progress: wraps the loop over
-    the points that are still to be run. Raises `RuntimeError` where another process writes the file, or a call fails.
+    function: of a module; its result is what JSON can hold. A result is written as soon as it is there, so that a run
+    that was stopped goes on where it was. processes: calls at a time (None: one for each processor).
+    Raises `RuntimeError` where another process writes the file, or a call fails.
     """
     keys = [_key(point) for point in points]
     path.parent.mkdir(parents=True, exist_ok=True)
