@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+from course_lib.beyond.look_alikes.matchers import matcher
 from course_lib.experiments.room_evaluation import (
     INCORRECT,
     NO_OBJECT,
@@ -85,8 +85,7 @@ def run(
         raise ValueError(f"--seed {seed} takes new photographs, and --data {data} holds others: give one of the two")
     if 0 in roll:
         raise ValueError("--roll must not be 0: images that are not rolled are the experiment itself")
-    if association not in ASSOCIATIONS:
-        raise ValueError(f"--association must be one of {', '.join(ASSOCIATIONS)}; got {association!r}")
+    matched_by = matcher(association)
     if views > 1 and association != "consistent":
         raise ValueError(f"--views {views} needs --association consistent; got {association}")
     folder = data or data_path("room")
@@ -102,7 +101,7 @@ def run(
             recording.rig,
             semantic_map,
             detector,
-            association=association,
+            association=matched_by,
             image_size=(recording.width, recording.height),
             reject_implausible=False,  # the paper's method
         )

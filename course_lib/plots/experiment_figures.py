@@ -37,14 +37,9 @@ def covariance_figure(
         share = 100 * np.arange(1, len(errors) + 1) / len(errors)
         label = f"{name}: {100 * within.mean():.1f} % within three sigma"
         axes.step(errors, share, where="post", **line_style(index) | {"marker": "", "label": label})
-    axes.set(
-        title=title,
-        xlabel="squared error in units of its covariance, e' C$^{-1}$ e / 6",
-        ylabel="frames with at most this error [%]",
-        xscale="log",
-        xlim=(MIN_ERROR, MAX_ERROR),
-        ylim=(0, 101),
-    )
+    axes.set(title=title, xscale="log", xlim=(MIN_ERROR, MAX_ERROR), ylim=(0, 101))
+    axes.set_xlabel("squared error in units of its covariance, e' C$^{-1}$ e / 6")
+    axes.set_ylabel("frames with at most this error [%]")
     figure.legend(loc="outside lower left", fontsize=8)
     return figure
 

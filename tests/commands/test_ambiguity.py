@@ -40,6 +40,7 @@ def test_what_is_confused_is_told_with_its_places(map_file, tmp_path, capsys):
         "ambiguity.json",
         "ambiguity_consistent.png",
         "ambiguity_greedy.png",
+        "run.json",
     ]
 
 

@@ -151,7 +151,6 @@ def test_words_that_do_not_fit_are_told_in_one_sentence_that_says_where_the_opti
             ["make-data", "room"],
             "there is no command 'make-data room' any more; it is a tool now: .venv/bin/python -m to",
         ),
-        (["fuzz"], "there is no command 'fuzz' any more; the tests try damaged files"),
         (["zzzzzz"], "there is no command 'zzzzzz'; the commands are: lab, "),
     ],
 )

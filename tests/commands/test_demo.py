@@ -180,7 +180,7 @@ def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypa
         ("room --data nowhere", "nowhere"),
         ("room --data elsewhere --seed 7", "give one of the two"),
         ("room --seed 7 --detector nowhere", "no detector folder nowhere"),
-        ("room --seed 7 --association psychic", "--association must be one of"),
+        ("room --seed 7 --association psychic", "association must be one of"),
         ("room --seed 7 --score-threshold 2", "--score-threshold"),
         ("rooms --views 0", "--views must be at least 1"),
         ("rooms --view-poses 21", "--view-poses between 1 and --poses (20)"),
