@@ -26,20 +26,11 @@ from course_lib.paths import REPOSITORY
 
 MEGABYTE = 1_000_000
 
-MOST_TEXT = 64 * MEGABYTE
-"""Bytes of a text or JSON file: 500,000 rows of poses are 40 MB."""
-
-MOST_BYTES = 2_000 * MEGABYTE
-"""Bytes of any file: a scanned building of 40 million triangles."""
-
-MOST_PIXELS = 100_000_000
-"""Pixels of an image: a panorama of 14,000 x 7,000. A bomb of 0.8 MB held four times as many, and took 3.4 GB."""
-
-MOST_IMAGE = 3 * MOST_PIXELS
-"""Bytes of an image in memory: that panorama in three colours. With 8 bytes a pixel a bomb took 1.7 GB."""
-
-MOST_LEVELS = 50
-"""Lists and objects inside each other in JSON; our own formats have four."""
+MOST_TEXT = 64 * MEGABYTE  # of a text or JSON file: 500,000 rows of poses are 40 MB
+MOST_BYTES = 2_000 * MEGABYTE  # of any file: a scanned building of 40 million triangles
+MOST_PIXELS = 100_000_000  # of an image: a panorama of 14,000 x 7,000
+MOST_IMAGE = 3 * MOST_PIXELS  # bytes of an image in memory: that panorama in three colours
+MOST_LEVELS = 50  # lists and objects inside each other in JSON; our own formats have four
 
 
 def read_bytes(

@@ -1,7 +1,6 @@
 """Show where in a semantic map a stereo rig would confuse which of its objects, before any run.
 
-Only the map is needed. At every place of a grid the command draws several times what the rig would see there, and a
-matcher says where it believes the rig to be.
+At every place of a grid the command draws what the rig would see there, and a matcher says where it believes it is.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Compare filters in six degrees of freedom on a recording with its truth: errors, thinned frames, being lost said.
 
-Every `--every`-th frame, from every offset, is as if the camera had been moved so much faster. Each run is written to
-the results file when it is done; called again, the command runs what is missing.
+Every `--every`-th frame, from every offset, is as if the camera had been moved so much faster. Called again, the
+command runs what is missing.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Open the lessons in JupyterLab, on this computer only.
 
-The student's own copies open, from `work/` (course_lib/commands/working_copies.py). The server listens on 127.0.0.1
-with its token on. Its settings, the student's own included, live in a folder of the environment (`.venv/course-lab`),
-so that nothing in the user's home is read or changed.
+The student's own copies open, from `work/` (working_copies.py). The server listens on 127.0.0.1 with its token on. Its
+settings live in `.venv/course-lab`, so that nothing in the user's home is read or changed.
 """
 
 from __future__ import annotations

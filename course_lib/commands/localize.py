@@ -125,10 +125,7 @@ def run(arguments: argparse.Namespace) -> int:
     warn_of_fewer("--frames", arguments.frames, len(sequence.frames), f"{arguments.sequence} has")
     up = arguments.up or sequence.up or "unknown"
     if arguments.dof == "xyyaw" and up == "unknown":
-        raise ValueError(
-            "--dof xyyaw moves the camera on a horizontal plane, and which way is up in this world is unknown; give "
-            "--up AXIS (x, -x, y, -y, z, -z) if you know it, else use --dof 6"
-        )
+        raise ValueError("--dof xyyaw: which way is up in this world is unknown; give --up AXIS, or use --dof 6")
     scene_map = SceneMap.load(arguments.map, drop_far=arguments.drop_far)
     searched = {}
     if arguments.start == "unknown":
@@ -207,10 +204,7 @@ def _checked(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
         if given is None:
             continue
         if method == "annealed":
-            raise ValueError(
-                f"--sigma-{name} goes with --method paper: the annealed filter takes its noise from how far the camera "
-                "has been moving"
-            )
+            raise ValueError(f"--sigma-{name} goes with --method paper: the annealed filter finds its noise itself")
         if not 0 <= given <= limit:
             raise ValueError(f"--sigma-{name} must be between 0 and {limit} {unit} a frame; got {given:g}")
         sigma[index] = given

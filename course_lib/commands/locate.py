@@ -65,12 +65,8 @@ def run(arguments: argparse.Namespace) -> int:
     association = matcher(arguments.association)
     if arguments.out:
         require_output_folder(arguments.out)
-    localizer = SemanticLocalizer(
-        StereoRig(arguments.baseline),
-        SemanticMap.load(arguments.map),
-        association=association,
-        reject_implausible=not arguments.paper,
-    )
+    options = {"association": association, "reject_implausible": not arguments.paper}
+    localizer = SemanticLocalizer(StereoRig(arguments.baseline), SemanticMap.load(arguments.map), **options)
     views = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
     detector = None
     if arguments.boxes:

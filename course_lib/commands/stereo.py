@@ -173,20 +173,13 @@ def _write(folder: Path, summary: dict, views, features, objects) -> None:
     from course_lib.experiments.results import write_results
     from course_lib.plots.stereo_figures import disparity_figure, distances_figure, room_figure
 
-    rows = [
-        {
-            "name": row["name"],
-            "label": row["label"],
-            "matches": row["matches"],
-            "azimuth_deg": round(row["azimuth_deg"], 3),
-            **{
-                f"{way}_{name}": value if isinstance(value, str) else round(value, 4)
-                for way in WAYS
-                for name, value in row[way].items()
-            },
-        }
-        for row in summary["objects"]
-    ]
+    rows = []
+    for row in summary["objects"]:
+        rows.append({name: row[name] for name in ("name", "label", "matches")})
+        rows[-1]["azimuth_deg"] = round(row["azimuth_deg"], 3)
+        for way in WAYS:
+            for name, value in row[way].items():
+                rows[-1][f"{way}_{name}"] = value if isinstance(value, str) else round(value, 4)
     write_results(folder / "stereo.json", _nan_to_none(summary), rows)
     disparity_figure(views[0].image, features).savefig(folder / "disparity.png", dpi=130)
     if objects:

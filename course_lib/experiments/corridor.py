@@ -312,17 +312,12 @@ def over_recordings(
 ) -> dict[str, dict[str, dict]]:
     """Return what `tell` makes of every number of every row over seeds, for "methods" and "methods_by_hand"."""
     summaries = list(summaries)
-    return {
-        part: {
-            key: {
-                "name": row["name"],
-                **{name: tell([summary[part][key][name] for summary in summaries]) for name in TOLD},
-            }
-            for key, row in summaries[0][part].items()
-        }
-        for part in ("methods", "methods_by_hand")
-        if all(part in summary for summary in summaries)
-    }
+    result: dict = {}
+    for part in ("methods", "methods_by_hand"):
+        for key, row in summaries[0].get(part, {}).items():
+            told = {name: tell([summary[part][key][name] for summary in summaries]) for name in TOLD}
+            result.setdefault(part, {})[key] = {"name": row["name"], **told}
+    return result
 
 
 def table_1(summary: dict) -> str:
@@ -337,8 +332,7 @@ def table_1(summary: dict) -> str:
         sigma_text = "n/a" if sigma is None else f"{sigma:.2f}"
         lines.append(f"{'paper: ' + name:36} {median:>10.2f} {sigma_text:>10} {within:>9.0f} %  {'-':>10}  {'-':>9}")
     lines += [_line(row) for row in summary["methods"].values()]
-    # Only a recording of the seed's own has one by hand beside it.
-    if "methods_by_hand" in summary:
+    if "methods_by_hand" in summary:  # only a recording of the seed's own has one by hand beside it
         lines += ["", BY_HAND_TITLE, *(_line(row) for row in summary["methods_by_hand"].values())]
     lines += [
         "",

@@ -251,13 +251,13 @@ def summarize(places: Sequence[dict]) -> dict[str, float | None]:
         "looked_again": sum(place.get("views", 1) > 1 for place in places),
         "left_open": sum(place.get("status") == "open" for place in places),
         "wrong_called_tracked": sum(not p["reached"] and p.get("status") == "tracked" for p in places),
-        **{
-            f"median_{name}": float(np.median([place[name] for place in places if name in place]))
-            if any(name in place for place in places)
-            else None
-            for name in ("semantic_m", "position_m", "rotation_deg")
-        },
+        **{f"median_{name}": _median(places, name) for name in ("semantic_m", "position_m", "rotation_deg")},
     }
+
+
+def _median(places: Sequence[dict], name: str) -> float | None:
+    values = [place[name] for place in places if name in place]
+    return float(np.median(values)) if values else None
 
 
 def finale_text(result: dict) -> str:

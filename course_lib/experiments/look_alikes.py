@@ -34,10 +34,8 @@ MAX_ERROR_M, MAX_TURN_DEG = 0.5, 10.0
 ODOMETRY_STREAM = 0x0D0  # joins a room's seed
 THINNING_STREAM = 0x7117  # likewise
 LEFT_OUT = 0.5  # share of the observations, drawn one by one; chosen
-HEAD = (
-    f"  {'':24}{'n':>5}{'correct':>20}{'wrong':>18}{'unanswered':>20}{'all matches right':>22}"
-    f"{'dx [m]':>9}{'dy [m]':>9}{'dtheta [deg]':>14}"
-)
+HEADS = ("n", *KINDS, "all matches right", "dx [m]", "dy [m]", "dtheta [deg]")
+WIDTHS = (5, 20, 18, 20, 22, 9, 9, 14)  # of the table's columns
 SAME_PLACE = 0.05  # m, within which two poses of a recording are one place
 # Without each part in turn: what it is worth.
 ABLATION: dict[str, Evidence] = {
@@ -138,11 +136,8 @@ def answers_of_evidence(
         semantic_map = stored_map(rooms[(number + 1) % len(rooms)] if wrong_map else room)
         for pose in room["poses"]:
             entry = pose["sources"]["images"]
-            kept = [
-                pair
-                for pair in zip(stored_observations(entry), entry["true_landmarks"], strict=True)
-                if pair[0].label in semantic_map.labels
-            ]
+            pairs = zip(stored_observations(entry), entry["true_landmarks"], strict=True)
+            kept = [pair for pair in pairs if pair[0].label in semantic_map.labels]
             observations, truth = [one for one, _ in kept], [landmark for _, landmark in kept]
             true_pose = (np.inf, np.inf, 0.0) if wrong_map else pose["pose"]
             for name, evidence in variants.items():
@@ -275,13 +270,11 @@ def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
 
 def why_not_answered(rooms: Sequence[dict], answers: Sequence[Answer]) -> dict[str, float | None]:
     """Return the mean number of observed landmarks of a pose, by the kind of its answer."""
-    seen = {
-        (room["seed"], pose["experiment"], pose["name"]): sum(
-            landmark != NO_OBJECT for landmark in pose["sources"]["images"]["true_landmarks"]
-        )
-        for room in rooms
-        for pose in room["poses"]
-    }
+    seen = {}
+    for room in rooms:
+        for pose in room["poses"]:
+            shown = pose["sources"]["images"]["true_landmarks"]
+            seen[room["seed"], pose["experiment"], pose["name"]] = sum(landmark != NO_OBJECT for landmark in shown)
     counts: dict[str, list[int]] = {kind: [] for kind in KINDS}
     for one in answers:
         counts[one.kind].append(seen[one.seed, one.experiment, one.name])
@@ -343,7 +336,11 @@ def _several(found: dict) -> list[str]:
 
 
 def _group(title: str, tables: dict) -> list[str]:
-    return ["", title, HEAD, *(_row(name, table) for name, table in tables.items())]
+    return ["", title, _line("", HEADS), *(_row(name, table) for name, table in tables.items())]
+
+
+def _line(name: str, cells: Sequence) -> str:
+    return f"  {name:24}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, WIDTHS, strict=True))
 
 
 def _row(name: str, table: dict) -> str:
@@ -351,10 +348,7 @@ def _row(name: str, table: dict) -> str:
     right = _share(table, "all_matches_right") if table["all_matches_right_percent"] is not None else "-"
     errors = [table[f"mean_{error}"] for error in ("dx_m", "dy_m", "dtheta_deg")]
     texts = ["-" if error is None else f"{error:.3f}" for error in errors]
-    return (
-        f"  {name.replace('_', ' '):24}{table['n']:5d}{shares[0]:>20}{shares[1]:>18}{shares[2]:>20}{right:>22}"
-        f"{texts[0]:>9}{texts[1]:>9}{texts[2]:>14}"
-    )
+    return _line(name.replace("_", " "), (table["n"], *shares, right, *texts))
 
 
 def _share(table: dict, kind: str) -> str:

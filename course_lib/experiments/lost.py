@@ -145,13 +145,12 @@ def start_anywhere(map_file: str, sequence: str, seed: int) -> dict:
             particles, renders, frames = particles + candidates.particles, renders + candidates.renders, frames + 1
             if candidates.status == "found":
                 break
-    right = bool(candidates.poses) and _right(candidates.poses[0].state, pose)
-    several = [_right(one.state, pose) for one in candidates.poses]
+    right = [_right(one.state, pose) for one in candidates.poses]
     return {
         "frame": first,
         "status": candidates.status,
-        "right": right,
-        "right_among_places": any(several),
+        "right": any(right[:1]),
+        "right_among_places": any(right),
         "frames": frames,
         "particles": particles,
         "renders": renders,

@@ -117,7 +117,7 @@ def project_rooms(path: Path) -> tuple[ProjectRoom, ...]:
     """The rooms in one of the files of `make_project_rooms`."""
     rooms = json.loads(Path(path).read_text())["rooms"]
     return tuple(
-        ProjectRoom(room["seed"], stored_map(room), room["look_alike"], tuple(_view(one) for one in room["views"]))
+        ProjectRoom(room["seed"], stored_map(room), room["look_alike"], tuple(map(_view, room["views"])))
         for room in rooms
     )
 

@@ -107,13 +107,8 @@ def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callabl
             position.append(float(off[0]))
             rotation.append(float(np.rad2deg(off[1])))
             statuses.append(judge_refined(agreement(fine.measured, fine.renderer.render_poses(refined)[0])))
-    return {
-        "position_m": position,
-        "rotation_deg": rotation,
-        "status": statuses,
-        "renders": [len(FLOOR_SCALES)] * len(position),
-        "score": scores,
-    }
+    renders = [len(FLOOR_SCALES)] * len(position)
+    return {"position_m": position, "rotation_deg": rotation, "status": statuses, "renders": renders, "score": scores}
 
 
 def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:

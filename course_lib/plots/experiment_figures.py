@@ -63,10 +63,8 @@ def trouble_figure(results: Mapping[str, dict]) -> Figure:
             beside = [100 * row["undisturbed"] / row["judged"] for _, row in chosen]
             axes.barh(places, back, height, color=f"C{k}", label=f"{100 * share:g} % of frames")
             axes.plot(beside, places, "k|", markersize=7, label="undisturbed" if k == 0 else None)
-        axes.set(
-            yticks=range(len(troubles)), yticklabels=troubles, xlim=(0, 104), xlabel="within the usual error [%]",
-            title=_TITLES.get(name, name),
-        )  # fmt: skip
+        axes.set(yticks=range(len(troubles)), yticklabels=troubles, title=_TITLES.get(name, name))
+        axes.set(xlim=(0, 104), xlabel="within the usual error [%]")
         axes.invert_yaxis()
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)

@@ -96,9 +96,7 @@ def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") 
     """
     title, alt, legend = (" ".join(text.split()) for text in (title, alt, legend))
     if not title or len(alt.split()) < 4:
-        raise SceneError(
-            f"a scene has a title, and an alternative text that says what it shows; got {title!r}, {alt!r}"
-        )
+        raise SceneError(f"a scene has a title, and a text that says what it shows; got {title!r}, {alt!r}")
     if not plotter.actors:
         raise SceneError("the scene is empty: add something with plotter.add_mesh(...)")
     script = _SCRIPT.search(_viewer())

@@ -77,9 +77,7 @@ def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = 
         mesh = mesh.clip(normal="z", origin=(0.0, 0.0, float(below))).triangulate()
         if mesh.n_cells == 0:
             low, high = scene_map.bounds[:, 2]
-            raise SceneError(
-                f"nothing of the map lies below {below:g} m: its heights go from {low:.2f} to {high:.2f} m"
-            )
+            raise SceneError(f"nothing of the map lies below {below:g} m: heights go from {low:.2f} to {high:.2f} m")
     if mesh.n_cells > faces:
         mesh = mesh.clean().decimate(1 - faces / mesh.n_cells)
     mesh.clear_data()
@@ -151,10 +149,7 @@ def ellipsoid(mean: np.ndarray, covariance: np.ndarray, sigmas: float = 3.0) -> 
     """
     covariance = _finite(covariance, "covariance")
     if covariance.shape[-2:] != (3, 3):
-        raise SceneError(
-            f"covariance must have shape (..., 3, 3), of x, y, z in square metres; got {covariance.shape}. "
-            "Of a state's: covariance[:3, :3]"
-        )
+        raise SceneError(f"covariance must have shape (..., 3, 3); got {covariance.shape}. Of a state's: [:3, :3]")
     covariance = covariance.reshape(-1, 3, 3)
     mean = _finite(mean, "mean").reshape(-1, 3)
     variances, axes = np.linalg.eigh(covariance)
@@ -176,14 +171,11 @@ def depth_surface(
     """A depth image as a surface in the world: neighbouring pixels joined, with the point data "depth" in metres.
 
     depth: `(H, W)` metres, NaN or infinite where nothing was hit. state: `(6,)` of the camera. every: takes each
-    so-many-th row and column. jump: pixels are not joined where their depths differ by more than this share of the
-    smaller one: there a near thing stands before a far one. With `add_mesh(..., style="points")` it is a cloud.
+    so-many-th row and column. jump: pixels whose depths differ by more than this share are not joined.
     """
     depth = np.asarray(depth, dtype=np.float64)
     if depth.shape != camera.shape:
-        raise SceneError(
-            f"the depth image must have the camera's shape {camera.shape} (height, width); got {depth.shape}"
-        )
+        raise SceneError(f"the depth image must have the camera's shape {camera.shape}; got {depth.shape}")
     points = camera.points(np.where(np.isfinite(depth), depth, 0.0))[::every, ::every]
     z = np.where(np.isfinite(depth) & (depth > 0), depth, np.inf)[::every, ::every]
     index = np.arange(z.size).reshape(z.shape)
