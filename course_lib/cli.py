@@ -1,10 +1,9 @@
 """The course's command line: a table of commands, each a module of `course_lib.commands`.
 
 A command module has `add_arguments(parser)` and `run(arguments) -> int` (the exit code). The first line of its
-docstring is the description that `--help` shows. It is imported only when it is called: the list of commands never
-waits for VTK.
-A module with `join_words(words)` may mend what argparse would misread (`--up -y`).
-A module with `PASSES_ARGUMENTS_ON = True` gets what its parser does not know as the list `arguments.passed_on`.
+docstring is the description that `--help` shows. It is imported only when it is called. A module with
+`join_words(words)` may mend what argparse would misread (`--up -y`). One with `PASSES_ARGUMENTS_ON = True` gets what
+its parser does not know as the list `arguments.passed_on`.
 """
 
 from __future__ import annotations
@@ -53,10 +52,9 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 }
 COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items()}
 
-# Commands of version 0.1 that are maintainers' tools now, and those that are no more.
+# Commands of version 0.1 that are maintainers' tools now.
 TOOLS = ("sweep", "bench", "refresh", "train-detector", "score-detector")
 TOOLS += tuple(f"make-data {what}" for what in ("corridor", "room", "finale", "projects", "training-rooms"))
-LEFT = ("fuzz", "interrupt")
 
 EXIT_BAD_INPUT = 2
 EXIT_FAULT = 1
@@ -112,8 +110,6 @@ def what_instead(words: list[str]) -> str:
         if words[: len(old.split())] == old.split():
             module = old.replace("make-data ", "make_").replace("-", "_")
             return f" any more; it is a tool now: .venv/bin/python -m tools.{module} --help"
-    if words[0] in LEFT:
-        return " any more; the tests try damaged files and stopped writers instead: python3 course.py test"
     longer = [name for name in COMMANDS if name.split()[0] == words[0]]
     # A higher bar for two words: the first alone makes demo corridor and demo room alike.
     like = meant(" ".join(words[:2]), COMMANDS, 0.8) if len(words) > 1 else ""

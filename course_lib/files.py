@@ -26,28 +26,15 @@ from course_lib.paths import REPOSITORY
 
 MEGABYTE = 1_000_000
 
-MOST_TEXT = 64 * MEGABYTE
-"""Bytes of a text or JSON file: 500,000 rows of poses are 40 MB."""
-
-MOST_BYTES = 2_000 * MEGABYTE
-"""Bytes of any file: a scanned building of 40 million triangles."""
-
-MOST_PIXELS = 100_000_000
-"""Pixels of an image: a panorama of 14,000 x 7,000. A bomb of 0.8 MB held four times as many, and took 3.4 GB."""
-
-MOST_IMAGE = 3 * MOST_PIXELS
-"""Bytes of an image in memory: that panorama in three colours. With 8 bytes a pixel a bomb took 1.7 GB."""
-
-MOST_LEVELS = 50
-"""Lists and objects inside each other in JSON; our own formats have four."""
+MOST_TEXT = 64 * MEGABYTE  # of a text or JSON file: 500,000 rows of poses are 40 MB
+MOST_BYTES = 2_000 * MEGABYTE  # of any file: a scanned building of 40 million triangles
+MOST_PIXELS = 100_000_000  # of an image: a panorama of 14,000 x 7,000
+MOST_IMAGE = 3 * MOST_PIXELS  # bytes of an image in memory: that panorama in three colours
+MOST_LEVELS = 50  # lists and objects inside each other in JSON; our own formats have four
 
 
 def read_bytes(
-    path: str | Path,
-    what: str,
-    error: type[Exception],
-    most: int = MOST_BYTES,
-    missing: type[Exception] | None = None,
+    path: str | Path, what: str, error: type[Exception], most: int = MOST_BYTES, missing: type[Exception] | None = None
 ) -> bytes:
     """Everything in a file, at most `most` bytes. A pipe or device, which may never end, is refused."""
     path = Path(path)
@@ -92,11 +79,7 @@ def require_file(path: Path, what: str, error: type[Exception]) -> None:
 
 
 def read_text(
-    path: str | Path,
-    what: str,
-    error: type[Exception],
-    most: int = MOST_TEXT,
-    missing: type[Exception] | None = None,
+    path: str | Path, what: str, error: type[Exception], most: int = MOST_TEXT, missing: type[Exception] | None = None
 ) -> str:
     """The text of a UTF-8 file, with or without a byte order mark, with the line ends of any system."""
     data = read_bytes(path, what, error, most, missing)
@@ -115,11 +98,7 @@ def read_text(
 
 
 def read_json(
-    path: str | Path,
-    what: str,
-    error: type[Exception],
-    most: int = MOST_TEXT,
-    missing: type[Exception] | None = None,
+    path: str | Path, what: str, error: type[Exception], most: int = MOST_TEXT, missing: type[Exception] | None = None
 ) -> object:
     """What a JSON file holds: numbers finite, no name twice in one object, at most `MOST_LEVELS` levels."""
     text = read_text(path, what, error, most, missing)
@@ -173,14 +152,11 @@ def _levels(text: str) -> int:
 class ImageHeader(NamedTuple):
     """What an image file says of itself before it is unpacked."""
 
-    kind: str
-    """"PNG" or "JPEG"."""
+    kind: str  # "PNG" or "JPEG"
     width: int
     height: int
-    frames: int
-    """More than one for an animated PNG."""
-    pixel_bytes: int
-    """Bytes of one pixel in memory."""
+    frames: int  # More than one for an animated PNG
+    pixel_bytes: int  # Bytes of one pixel in memory
 
 
 def read_image(

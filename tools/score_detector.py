@@ -10,7 +10,7 @@ import json
 import sys
 from pathlib import Path
 
-from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+from course_lib.commands.arguments import add_detector_arguments, chosen_detector
 from course_lib.files import temporary_folder
 from tools.make_training_rooms import (
     FIRST_TEST_ROOM,

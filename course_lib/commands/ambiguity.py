@@ -1,7 +1,6 @@
 """Show where in a semantic map a stereo rig would confuse which of its objects, before any run.
 
-Only the map is needed. At every place of a grid the command draws several times what the rig would see there, and a
-matcher says where it believes the rig to be.
+At every place of a grid the command draws what the rig would see there, and a matcher says where it believes it is.
 """
 
 from __future__ import annotations
@@ -23,22 +22,19 @@ MIN_SHARE = 0.001  # of the belief, below which a pair is not listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
-    parser.add_argument(
+    add = parser.add_argument
+    add("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
+    add(
         "--association",
         default="greedy,consistent",
         metavar="NAMES",
         help="the matchers to ask, with commas (default: greedy,consistent)",
     )
-    parser.add_argument(
-        "--step", type=float, default=0.5, metavar="METRES", help="distance between places (default: 0.5)"
-    )
-    parser.add_argument("--draws", type=int, default=4, metavar="N", help="views drawn at each place (default: 4)")
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the views (default: 1)")
-    parser.add_argument(
-        "--out", type=Path, default=Path("results/ambiguity"), metavar="FOLDER", help="for the pictures and numbers"
-    )
-    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+    add("--step", type=float, default=0.5, metavar="METRES", help="distance between places (default: 0.5)")
+    add("--draws", type=int, default=4, metavar="N", help="views drawn at each place (default: 4)")
+    add("--seed", type=int, default=1, metavar="N", help="seed of the views (default: 1)")
+    add("--out", type=Path, default=Path("results/ambiguity"), metavar="FOLDER", help="for the pictures and numbers")
+    add("--json", action="store_true", help="print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:

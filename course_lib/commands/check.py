@@ -1,7 +1,7 @@
 """Look at the environment: one line a dependency, OpenGL, and a rendered depth image compared with its closed form.
 
 Every line reads OK, or FAIL with the cure. What can crash (a package's import, an OpenGL driver) runs in a process of
-its own and becomes a FAIL like any other. Exit code 0 only if every line is OK.
+its own. Exit code 0 only if every line is OK.
 """
 
 from __future__ import annotations
@@ -92,10 +92,7 @@ def plain(name: str) -> str:
 
 
 def import_names() -> dict[str, list[str]]:
-    """Return distribution -> modules that it brings, such as scikit_image -> skimage.
-
-    Of several modules, the one named as the distribution stands for all: beside it lie parts, such as `mpl_toolkits`.
-    """
+    """Return distribution -> modules that it brings; of several, the one named as the distribution stands for all."""
     found: dict[str, list[str]] = {}
     for module, distributions in importlib.metadata.packages_distributions().items():
         for distribution in distributions:
@@ -150,8 +147,7 @@ def check_depth_images() -> Iterator[Finding]:
 def render_plane(backend: str) -> tuple[str, float, int]:
     """Render a tilted plane: the renderer's name, the largest error in millimetres, the number of pixels.
 
-    The plane n . X = d, seen along the pixel ray r (forward component one), has depth d / (n . r). A pixel that hit
-    nothing has an infinite error. Raises what `DepthRenderer` raises.
+    The plane n . X = d, seen along the pixel ray r (forward component one), has depth d / (n . r).
     """
     import numpy as np
 

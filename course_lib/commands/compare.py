@@ -1,7 +1,7 @@
 """Compare filters in six degrees of freedom on a recording with its truth: errors, thinned frames, being lost said.
 
-Every `--every`-th frame, from every offset, is as if the camera had been moved so much faster. Each run is written to
-the results file when it is done; called again, the command runs what is missing.
+Every `--every`-th frame, from every offset, is as if the camera had been moved so much faster. Called again, the
+command runs what is missing.
 """
 
 from __future__ import annotations
@@ -19,12 +19,10 @@ from course_lib.paths import REPOSITORY
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options of `compare`."""
-    parser.add_argument("--map", required=True, type=Path, metavar="MESH", help="mesh in metres (PLY, OBJ, STL, GLB)")
-    parser.add_argument(
-        "--sequence", required=True, type=Path, metavar="FOLDER", help="folder of the recording, with its poses.txt"
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("--map", required=True, type=Path, metavar="MESH", help="mesh in metres (PLY, OBJ, STL, GLB)")
+    add("--sequence", required=True, type=Path, metavar="FOLDER", help="folder of the recording, with its poses.txt")
+    add(
         "--methods",
         default="annealed,paper,floor",
         metavar="NAMES",
@@ -32,23 +30,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "truth, every frame, once); all: the annealed filter with one idea switched off, too (default: "
         "annealed,paper,floor)",
     )
-    parser.add_argument(
-        "--every", default="1", metavar="NUMBERS", help="thin the recording: 1,2,4,8 runs each (default: 1)"
-    )
-    parser.add_argument("--seeds", default="1", metavar="A-B", help="seeds of the filters (default: 1)")
-    parser.add_argument(
+    add("--every", default="1", metavar="NUMBERS", help="thin the recording: 1,2,4,8 runs each (default: 1)")
+    add("--seeds", default="1", metavar="A-B", help="seeds of the filters (default: 1)")
+    add(
         "--out",
         type=Path,
         default=Path("results/compare"),
         metavar="FOLDER",
         help="for compare.jsonl, compare.json, covariance.png",
     )
-    parser.add_argument(
+    add(
         "--icp",
         action="store_true",
         help="beside them, point-to-plane ICP of each frame against the map: Open3D, installed as for bench",
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+    add("--json", action="store_true", help="print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -11,6 +11,8 @@ from pathlib import Path
 from course_lib.commands.arguments import (
     MAX_PARTICLES,
     add_backend_argument,
+    add_detector_arguments,
+    chosen_detector,
     parse_numbers,
     parse_seeds,
     require_count,
@@ -18,7 +20,6 @@ from course_lib.commands.arguments import (
     require_processes,
     require_seed,
 )
-from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
 from course_lib.commands.progress import progress_bar
 from course_lib.files import run_folder, temporary_folder
 from course_lib.paths import REPOSITORY, data_path
@@ -95,34 +96,20 @@ def _room(parser: argparse.ArgumentParser) -> None:
     _text(parser, "--association", "NAME", told, "greedy")
     told = "2: with --association consistent, also follow the two views of every place as the rig turns there"
     _choice(parser, "--views", f"{told}, with and without odometry (default: 1)", (1, 2), 1)
-    told = (
-        "also localize from the images rolled by K columns, as if the rig had turned, and print how far the pose moves"
-    )
-    parser.add_argument("--roll", type=int, nargs="+", metavar="K", default=[], help=f"{told} (default: not)")
+    told = "also localize from the images rolled by K columns, and print how far the pose moves (default: not)"
+    parser.add_argument("--roll", type=int, nargs="+", metavar="K", default=[], help=told)
 
 
 def _rooms(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "of the rooms", "1-20")
     _number(parser, "--poses", "poses in each room at each height (default: the paper's 20)", 20)
-    told = (
-        "also run the same rooms with the lower camera tilted by exactly DEG degrees against the upper one, and print"
-    )
-    told += " the errors (default: not at all), for example 0 0.1 0.3 1"
+    told = "also run the same rooms with the lower camera tilted by DEG degrees, such as 0 0.1 0.3 1 (default: not)"
     parser.add_argument("--tilts", type=float, nargs="+", default=[], metavar="DEG", help=told)
-    all_of_them = ["greedy", "hungarian", "consistent"]
-    told = "matchers whose answers within 0.5 m and 10 degrees are counted: greedy (the paper's), hungarian, consistent"
-    parser.add_argument(
-        "--association",
-        choices=all_of_them,
-        nargs="+",
-        default=all_of_them,
-        metavar="NAME",
-        help=f"{told} (default: all)",
-    )
-    told = (
-        "also take N - 1 further views, a few steps on from the first poses, and follow them with and without odometry"
-    )
-    _number(parser, "--views", f"{told} (default: 1, one view)", 1)
+    names = ["greedy", "hungarian", "consistent"]
+    told = "matchers whose answers are counted: greedy (the paper's), hungarian, consistent (default: all)"
+    parser.add_argument("--association", choices=names, nargs="+", default=names, metavar="NAME", help=told)
+    told = "also take N - 1 further views a few steps on, and follow them with and without odometry (default: 1)"
+    _number(parser, "--views", told, 1)
     told = "from how many poses of a room further views are taken, at the two heights by turns (default: --poses)"
     _number(parser, "--view-poses", told)
     told = "also switch off each part of the consistent matcher's evidence, on the right map and on a wrong one"

@@ -8,7 +8,7 @@ import sys
 import time
 from pathlib import Path
 
-from course_lib.commands.arguments import require_output_folder, require_processes
+from course_lib.commands.arguments import require_output_folder, require_positive, require_processes, require_seed
 from course_lib.commands.progress import progress_bar
 from course_lib.files import run_folder
 
@@ -16,35 +16,26 @@ TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
+    add = parser.add_argument
+    add(
         "folder",
         type=Path,
         metavar="FOLDER",
         help="what the students handed in: FOLDER/alice/06_....ipynb or FOLDER/alice_06.ipynb, notebooks or .py files",
     )
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="where the results go (default: FOLDER with -grades after its name)"
-    )
-    parser.add_argument(
+    add("--out", type=Path, metavar="DIR", help="where the results go (default: FOLDER with -grades after its name)")
+    add(
         "--seed",
         type=int,
         help="draws the hidden inputs; keep it to yourself (default: a new one, which the page tells: with it the "
         "results come again)",
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="answers at a time (default: one a processor)")
-    parser.add_argument(
-        "--seconds", type=float, default=60.0, metavar="S", help="all calls of one answer (default: %(default)g)"
-    )
-    parser.add_argument(
-        "--call-seconds", type=float, default=20.0, metavar="S", help="one call of an answer (default: %(default)g)"
-    )
-    parser.add_argument(
-        "--memory", type=int, default=1000, metavar="MB", help="memory of one answer (default: %(default)d)"
-    )
-    parser.add_argument(
-        "--scores", action="store_true", help="also run the projects' last functions: minutes for each submission"
-    )
-    parser.add_argument(
+    add("--jobs", type=int, metavar="N", help="answers at a time (default: one a processor)")
+    add("--seconds", type=float, default=60.0, metavar="S", help="all calls of one answer (default: %(default)g)")
+    add("--call-seconds", type=float, default=20.0, metavar="S", help="one call of an answer (default: %(default)g)")
+    add("--memory", type=int, default=1000, metavar="MB", help="memory of one answer (default: %(default)d)")
+    add("--scores", action="store_true", help="also run the projects' last functions: minutes for each submission")
+    add(
         "--trusted",
         action="store_true",
         help="grade although this machine cannot keep strangers' code in: only where you trust every file",
@@ -64,13 +55,11 @@ def run(arguments: argparse.Namespace) -> int:
 
     out = results_folder(arguments.folder, arguments.out)
     require_processes("--jobs", arguments.jobs)
-    for name, value in (("--seconds", arguments.seconds), ("--memory", arguments.memory)):
-        if value is not None and not value > 0:
-            raise ValueError(f"{name} {value}: it must be more than 0")
-    if arguments.seed is not None and arguments.seed < 0:
-        raise ValueError(f"--seed {arguments.seed}: it must be 0 or more")
-    require_output_folder(out)
+    require_positive("--seconds", arguments.seconds, "seconds")
+    require_positive("--memory", arguments.memory, "MB")
     seed = secrets.randbelow(2**48) if arguments.seed is None else arguments.seed
+    require_seed(seed)
+    require_output_folder(out)
     limits = Limits(arguments.call_seconds, arguments.seconds, arguments.memory)
     started = time.monotonic()
     jobs, trusted, scores = arguments.jobs or cpu_count(), arguments.trusted, arguments.scores
@@ -78,7 +67,9 @@ def run(arguments: argparse.Namespace) -> int:
     results = grade_folder(arguments.folder, seed, jobs, limits, trusted, scores, bar)
     pages = {TABLE: answers_table(results), TOTALS: totals_table(results), PAGE: grade_page(results)}
     print(summary(results, time.monotonic() - started), flush=True)  # before the disk can be full
-    write(out, pages)
+    with run_folder(out, "grade") as new:  # the table and the page are of one grading
+        for name, text in pages.items():
+            (new / name).write_bytes(text.encode("utf-8"))
     print("\n".join(f"{out / name}" for name in pages))
     return 0
 
@@ -89,13 +80,6 @@ def results_folder(folder: Path, out: Path | None) -> Path:
     if found.resolve().is_relative_to(folder.resolve()):
         raise ValueError(f"--out {found} lies among the submissions: results would be handed back as somebody's work")
     return found
-
-
-def write(out: Path, pages: dict[str, str]) -> None:
-    """Put all the files in the place of an earlier grading's: the table and the page are of one grading."""
-    with run_folder(out, "grade") as new:
-        for name, text in pages.items():
-            (new / name).write_bytes(text.encode("utf-8"))
 
 
 def summary(results, seconds: float) -> str:

@@ -16,34 +16,29 @@ SEED_BITS = 62
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "lessons", nargs="*", metavar="NN", help="lessons and projects, such as 03 or P1 (default: all)"
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("lessons", nargs="*", metavar="NN", help="lessons and projects, such as 03 or P1 (default: all)")
+    add(
         "--out",
         type=Path,
         metavar="DIR",
         help="where the folder goes: new, empty, or a handout that is replaced as a whole (default: handout/ in the "
         "course's folder, which git ignores)",
     )
-    parser.add_argument(
-        "--solved", action="store_true", help="put the solved lessons into the teacher's folder, too: for the screen"
-    )
-    parser.add_argument(
+    add("--solved", action="store_true", help="put the solved lessons into the teacher's folder, too: for the screen")
+    add(
         "--seed",
         type=int,
         help="the secret seed of the graded tests, to make the same folder again (default: drawn by the system)",
     )
-    parser.add_argument(
+    add(
         "--try",
         dest="trial",
         action="store_true",
         help="make nothing; send a solved, an untouched and a mistaken submission of each lesson through nbgrader, and "
         "print their points and what leaked (a minute a lesson)",
     )
-    parser.add_argument(
-        "--whole", action="store_true", help="with --try: run every cell of the lessons, not the answers alone"
-    )
+    add("--whole", action="store_true", help="with --try: run every cell of the lessons, not the answers alone")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,8 +1,7 @@
 """Open the lessons in JupyterLab, on this computer only.
 
-The student's own copies open, from `work/` (course_lib/commands/working_copies.py). The server listens on 127.0.0.1
-with its token on. Its settings, the student's own included, live in a folder of the environment (`.venv/course-lab`),
-so that nothing in the user's home is read or changed.
+The student's own copies open, from `work/` (working_copies.py). The server listens on 127.0.0.1 with its token on. Its
+settings live in `.venv/course-lab`, so that nothing in the user's home is read or changed.
 """
 
 from __future__ import annotations
@@ -48,14 +47,15 @@ SETTINGS = {
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--port", type=int, help="port to listen on (default: 8888, or the next one that is free)")
-    parser.add_argument("--no-browser", action="store_true", help="open no browser, only print the address")
-    parser.add_argument(
+    add = parser.add_argument
+    add("--port", type=int, help="port to listen on (default: 8888, or the next one that is free)")
+    add("--no-browser", action="store_true", help="open no browser, only print the address")
+    add(
         "--notebook",
         metavar="PATH",
         help="the notebook to open: 06, P1 or a path; of a lesson it is your copy in work/ (default: lesson 00)",
     )
-    parser.add_argument(
+    add(
         "--fresh",
         nargs="+",
         default=[],
@@ -97,10 +97,9 @@ def lab_command(
 ) -> tuple[list[str], dict[str, str]]:
     """Write the settings of the lessons' JupyterLab, and return its command and environment variables.
 
-    port: None takes 8888 or the next free one; a given port is taken or the start fails. notebook: path below `root`.
-    state_folder: where settings, workspaces and the kernel's history are kept (None: `.venv/course-lab`). root: the
-    folder that JupyterLab shows, with notebooks/ and work/ in it; predictions and checks are recorded in its
-    work/record. JUPYTER_TOKEN in the environment, where it is set, is the token; else a random one is printed.
+    port: None takes 8888 or the next free one. notebook: path below `root`. state_folder: for settings, workspaces and
+    the kernel's history (None: `.venv/course-lab`). root: the folder that JupyterLab shows. JUPYTER_TOKEN in the
+    environment, where it is set, is the token; else a random one is printed.
     """
     state = Path(state_folder) if state_folder is not None else Path(sys.prefix) / "course-lab"
     write_settings(state)
@@ -164,11 +163,7 @@ def write_settings(state: Path) -> None:
 
 
 def trust_lessons(state: Path, root: Path) -> None:
-    """Sign the lessons, so that their stored 3D scenes show before a cell is run: they come with the course's code.
-
-    The content is signed. A copy in work/ is trusted for as long as it is the lesson's, and JupyterLab signs what a
-    student runs and saves. A file that somebody put into work/ is not trusted.
-    """
+    """Sign the lessons' content, so that their stored 3D scenes, and those of unchanged copies, show at once."""
     from nbformat import read
     from nbformat.reader import NotJSONError
     from nbformat.sign import NotebookNotary

@@ -125,10 +125,7 @@ def run(arguments: argparse.Namespace) -> int:
     warn_of_fewer("--frames", arguments.frames, len(sequence.frames), f"{arguments.sequence} has")
     up = arguments.up or sequence.up or "unknown"
     if arguments.dof == "xyyaw" and up == "unknown":
-        raise ValueError(
-            "--dof xyyaw moves the camera on a horizontal plane, and which way is up in this world is unknown; give "
-            "--up AXIS (x, -x, y, -y, z, -z) if you know it, else use --dof 6"
-        )
+        raise ValueError("--dof xyyaw: which way is up in this world is unknown; give --up AXIS, or use --dof 6")
     scene_map = SceneMap.load(arguments.map, drop_far=arguments.drop_far)
     searched = {}
     if arguments.start == "unknown":
@@ -207,10 +204,7 @@ def _checked(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
         if given is None:
             continue
         if method == "annealed":
-            raise ValueError(
-                f"--sigma-{name} goes with --method paper: the annealed filter takes its noise from how far the camera "
-                "has been moving"
-            )
+            raise ValueError(f"--sigma-{name} goes with --method paper: the annealed filter finds its noise itself")
         if not 0 <= given <= limit:
             raise ValueError(f"--sigma-{name} must be between 0 and {limit} {unit} a frame; got {given:g}")
         sigma[index] = given
@@ -253,10 +247,7 @@ def _numbers(text: str) -> list[float]:
 def _found_start(
     arguments: argparse.Namespace, scene_map: SceneMap, sequence: DepthSequence, up: str
 ) -> tuple[DepthSequence, np.ndarray, dict]:
-    """Return the recording from the frame in which its place was found, the pose there, and what the results tell.
-
-    Raises `ValueError` where no place was found, or several that nobody can tell apart.
-    """
+    """Return the recording from the frame in which its place was found, the pose there, and what the results tell."""
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.recordings import find_start
 

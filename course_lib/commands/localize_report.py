@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,19 +21,15 @@ def believed(frames: list[int], statuses: list[str]) -> str:
         return f"tracked in all {total} frames"
     if not lost:
         return f"tracked in {tracked} of {total} frames, doubtful in {total - tracked}"
-    stretches = []  # first and last index of every stretch of lost frames
-    for index in (i for i, status in enumerate(statuses) if status == "lost"):
-        if stretches and stretches[-1][1] == index - 1:
-            stretches[-1][1] = index
-        else:
-            stretches.append([index, index])
-    first, last = stretches[0][0], stretches[-1][1]
+    indices = [index for index, status in enumerate(statuses) if status == "lost"]
+    first, last = indices[0], indices[-1]
+    stretches = 1 + sum(b - a > 1 for a, b in pairwise(indices))
     if "tracked" not in statuses[first:]:
         where = f"from frame {frames[first]} on" if first else "from the first frame on"
-    elif len(stretches) == 1:
+    elif stretches == 1:
         where = f"from frame {frames[first]} to {frames[last]}"
     else:
-        where = f"in {len(stretches)} stretches between frames {frames[first]} and {frames[last]}"
+        where = f"in {stretches} stretches between frames {frames[first]} and {frames[last]}"
     return f"lost {where} ({lost} of {total} frames; tracked {tracked}, doubtful {total - tracked - lost})"
 
 

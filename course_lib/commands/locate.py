@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+from course_lib.commands.arguments import add_detector_arguments, chosen_detector
 from course_lib.commands.stereo import add_pair_arguments
 from course_lib.files import run_folder
 
@@ -23,31 +23,30 @@ if TYPE_CHECKING:  # imported where they are used, so that --help does not wait 
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
     add_pair_arguments(parser)
-    parser.add_argument("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
-    parser.add_argument(
+    add("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
+    add(
         "--boxes",
         type=Path,
         metavar="JSON",
         help="objects drawn by hand on both images, in the format below (default: a detector finds them)",
     )
     add_detector_arguments(parser)
-    parser.add_argument(
-        "--association", default="greedy", metavar="NAME", help="how objects are matched to the map (default: greedy)"
-    )
-    parser.add_argument(
+    add("--association", default="greedy", metavar="NAME", help="how objects are matched to the map (default: greedy)")
+    add(
         "--paper",
         action="store_true",
         help="the paper's method as it is: it also gives a pose that its own residuals contradict (default: not)",
     )
-    parser.add_argument(
+    add(
         "--out",
         type=Path,
         metavar="FOLDER",
         help="write locate.json, .csv and .png here, and locate.html: map, rays and pose, to be turned in a browser "
         "(default: nowhere)",
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the tables")
+    add("--json", action="store_true", help="print one JSON object instead of the tables")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -66,12 +65,8 @@ def run(arguments: argparse.Namespace) -> int:
     association = matcher(arguments.association)
     if arguments.out:
         require_output_folder(arguments.out)
-    localizer = SemanticLocalizer(
-        StereoRig(arguments.baseline),
-        SemanticMap.load(arguments.map),
-        association=association,
-        reject_implausible=not arguments.paper,
-    )
+    options = {"association": association, "reject_implausible": not arguments.paper}
+    localizer = SemanticLocalizer(StereoRig(arguments.baseline), SemanticMap.load(arguments.map), **options)
     views = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
     detector = None
     if arguments.boxes:

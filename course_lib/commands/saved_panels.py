@@ -1,9 +1,8 @@
 """What a saved notebook keeps of its widgets: pictures and words, which show without a kernel.
 
-JupyterLab saves an output with all its forms. The form of a widget is only the name of an object in a running kernel:
-opened on the next day, or exported, it says "Error displaying widget: model not found". So this hook takes it out of
-what is written; the document that is open keeps its moving panel. `course.py lab` sets it; on a hub it is one line of
-the server's configuration:
+A saved widget is only the name of an object in a running kernel, so opened on the next day it says "Error displaying
+widget". This hook takes it out of what is written; the open document keeps its moving panel. `course.py lab` sets it;
+on a hub it is one line of the server's configuration:
 
     c.FileContentsManager.pre_save_hook = "course_lib.commands.saved_panels.keep_pictures"
 """

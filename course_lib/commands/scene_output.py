@@ -11,11 +11,7 @@ if TYPE_CHECKING:  # imported where it is used, so that --help does not wait for
 
 
 def write_scene(path: Path, title: str, make: Callable[[], tuple[pyvista.Plotter, str]]) -> str:
-    """Write the scene that `make` gives, with the words that say what is to be seen; what was written, in words.
-
-    A command's numbers do not depend on its page: without PyVista, or where nothing can be drawn, the reason is told
-    instead of the file's name.
-    """
+    """Write the scene that `make` gives, and return the file's name, or the reason why there is no page."""
     from course_lib.plots.scene_page import ScenePageError, write_page
     from course_lib.rendering.renderer import OpenGLError
 

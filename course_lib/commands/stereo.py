@@ -36,18 +36,17 @@ def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
     add_pair_arguments(parser)
-    parser.add_argument(
+    add(
         "--boxes",
         type=Path,
         metavar="JSON",
         help="boxes in both images, as a JSON file in the format below (default: features alone, no distances)",
     )
-    parser.add_argument(
-        "--sigma-pixels", type=float, default=1.0, metavar="PX", help="standard deviation of a box centre (default: 1)"
-    )
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help="write figures and results here (default: nowhere)")
-    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
+    add("--sigma-pixels", type=float, default=1.0, metavar="PX", help="standard deviation of a box centre (default: 1)")
+    add("--out", type=Path, metavar="FOLDER", help="write figures and results here (default: nowhere)")
+    add("--json", action="store_true", help="print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -174,20 +173,13 @@ def _write(folder: Path, summary: dict, views, features, objects) -> None:
     from course_lib.experiments.results import write_results
     from course_lib.plots.stereo_figures import disparity_figure, distances_figure, room_figure
 
-    rows = [
-        {
-            "name": row["name"],
-            "label": row["label"],
-            "matches": row["matches"],
-            "azimuth_deg": round(row["azimuth_deg"], 3),
-            **{
-                f"{way}_{name}": value if isinstance(value, str) else round(value, 4)
-                for way in WAYS
-                for name, value in row[way].items()
-            },
-        }
-        for row in summary["objects"]
-    ]
+    rows = []
+    for row in summary["objects"]:
+        rows.append({name: row[name] for name in ("name", "label", "matches")})
+        rows[-1]["azimuth_deg"] = round(row["azimuth_deg"], 3)
+        for way in WAYS:
+            for name, value in row[way].items():
+                rows[-1][f"{way}_{name}"] = value if isinstance(value, str) else round(value, 4)
     write_results(folder / "stereo.json", _nan_to_none(summary), rows)
     disparity_figure(views[0].image, features).savefig(folder / "disparity.png", dpi=130)
     if objects:

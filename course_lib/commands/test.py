@@ -21,13 +21,9 @@ from course_lib.paths import REPOSITORY
 
 PASSES_ARGUMENTS_ON = True
 
-# pytest's exit code when it found no test: an empty run proves nothing, so it counts as a failure.
-NO_TESTS = 5
-# Only what hangs takes so long: no test may fail because the machine has other work to do.
-HANGS_S = 1800
-
-# Tests of what only the notebooks use; a quick run leaves them out with the lessons.
-LESSON_TESTS = ("tests/lessons", "tests/notebooks")
+NO_TESTS = 5  # pytest's exit code when it found no test: an empty run proves nothing
+HANGS_S = 1800  # only what hangs takes so long
+LESSON_TESTS = ("tests/lessons", "tests/notebooks")  # a quick run leaves them out with the lessons
 
 # Runs in the kernel before the first cell: a lesson that reaches for the network fails here, not at a student's.
 OFFLINE_STARTUP = """

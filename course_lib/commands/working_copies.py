@@ -1,8 +1,7 @@
 """A student's own copies of the lessons, in `work/`, which git ignores: `git pull` meets nothing that a student wrote.
 
-Every lesson, and what the lessons lean on (glossary, pictures, scenes), is copied when it is missing. A copy that
-nobody has changed follows the course. A changed copy belongs to the student, and nothing here writes to it again.
-`work/.copies.json` remembers which version each copy was made of.
+Every lesson, and what the lessons lean on, is copied when it is missing. A copy that nobody has changed follows the
+course; nothing here writes to a changed one. `work/.copies.json` remembers which version each copy was made of.
 """
 
 from __future__ import annotations
@@ -40,10 +39,9 @@ def as_number(word: str) -> str:
 
 
 def copy_of(notebook: str, root: Path) -> str:
-    """Return the path below `root` that opens for `notebook`: for a lesson its copy, else the file itself.
+    """Return the path below `root` that opens for a number ("06") or path: for a lesson its copy, else the file itself.
 
-    notebook: a number ("06"), or a path, below `root` or absolute. Raises `ValueError` for a path that is not there or
-    lies outside, because JupyterLab shows what is below `root`.
+    Raises `ValueError` for a path that is not there or lies outside.
     """
     numbers = lessons(root)
     named = numbers.get(as_number(notebook))

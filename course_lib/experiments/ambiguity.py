@@ -27,15 +27,12 @@ RIG = StereoRig(0.3, 1.32)  # the paper's, at its lower height
 class AmbiguityMap(NamedTuple):
     """k places of a grid, and what would be believed there."""
 
-    places: np.ndarray
-    """`(k, 2)` metres, on the map; only where a rig can stand."""
+    places: np.ndarray  # `(k, 2)` metres, on the map; only where a rig can stand
     confidence: np.ndarray
     """`(k,)` mean confidence of the right pose, 0 where it is not the most believed one. Of a matcher without
     confidence, the share of draws in which all its matches are right."""
-    confused: np.ndarray
-    """`(k, m, m)` share of the belief by which landmark i is taken for landmark j."""
-    step: float
-    """Metres between neighbours."""
+    confused: np.ndarray  # `(k, m, m)` share of the belief by which landmark i is taken for landmark j
+    step: float  # Metres between neighbours
 
     def most_confused(self, n: int = 5) -> list[tuple[int, int, float]]:
         """The n pairs of landmarks that are confused most, (i, j, mean share over all places), i < j."""
@@ -85,11 +82,8 @@ def ambiguity_map(
 ) -> AmbiguityMap:
     """Return the belief at every free place of a grid over the map, averaged over `draws` of what would be seen.
 
-    step: metres between places. association: the matcher whose confusions are asked for. Raises `ValueError` for a step
-    that is not positive or no draw.
+    step: metres between places. association: the matcher whose confusions are asked for.
     """
-    if not step > 0 or draws < 1:
-        raise ValueError(f"step must be positive and draws at least 1; got {step!r} and {draws!r}")
     outline = semantic_map.positions if semantic_map.walls is None else semantic_map.walls
     low, high = outline.min(axis=0), outline.max(axis=0)
     x, y = (np.arange(a + step / 2, b, step) for a, b in zip(low, high, strict=True))

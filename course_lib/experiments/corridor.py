@@ -1,9 +1,8 @@
 """Run paper 1's experiment on the simulated corridor: estimate x, y and yaw, print table 1, save figures 5 and 6.
 
-Every seed makes a recording of its own: another day in the building of the map (doors, things in the way), another run
-of the wagon, other noise. A second recording of each seed is pushed by hand, with the usual errors of calibration and
-mount; the filter is told the nominal values both times. The map and its planar simplification are those of
-data/corridor. Fallon's scoring runs on the same recordings, with the same motion noise and number of particles.
+Every seed makes a recording of its own: another day in the building of the map, another run of the wagon, other noise.
+A second recording of each seed is pushed by hand, with the usual errors of calibration and mount. Fallon's scoring runs
+on the same recordings, with the same motion noise and number of particles.
 """
 
 from __future__ import annotations
@@ -31,8 +30,7 @@ from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, Hardship,
 
 IDEALIZATION_SEEDS = [10001, 10002, 10003]
 IDEALIZATION_SIZE = (44, 36)  # pixels: a quarter of the SR4000's each way, so that 21 runs take minutes
-BY_HAND = "_by_hand"
-"""Ends the names of the rows on the recording that is pushed by hand."""
+BY_HAND = "_by_hand"  # ends the names of the rows on the recording that is pushed by hand
 BY_HAND_TITLE = "with calibration and mount errors, pushed by hand:"
 # The numbers of a row that are told over seeds.
 TOLD = ("median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "median_effective_sample_size")
@@ -66,7 +64,6 @@ class Maps(NamedTuple):
 
     @classmethod
     def load(cls, data: Path) -> Maps:
-        """Read the two maps of a folder of corridor data."""
         return cls(SceneMap.load(data / "map.ply"), SceneMap.load(data / "planar_map.ply"))
 
 
@@ -198,7 +195,7 @@ def table_1_of_seed(seed: int, **settings: object) -> dict:
 def own_recordings(
     data: Path, folder: Path, seed: int, frames: int | None = None, bar: Callable = no_bar
 ) -> tuple[DepthSequence, DepthSequence]:
-    """Make the two recordings of a seed, even and by hand, below `folder`, in the building whose map lies in `data`."""
+    """Make the two recordings of a seed, even and by hand, in the building whose map lies in `data`."""
     building = building_of_data(data)
     for name, hardships in (("even", ()), ("by hand", HARDSHIPS)):
         progress = bar(f"recording seed {seed}, {name}", "frame")
@@ -214,7 +211,7 @@ def run_rows(
     bar: Callable = no_bar,
     **options: object,
 ) -> dict[str, Row]:
-    """Return every row of table 1; names of those pushed by hand end in BY_HAND. options: `run_sequence`'s."""
+    """Return every row of table 1. options: `run_sequence`'s."""
     rows = {key: _row(key, maps, even, bar(METHODS[key].name, "frame"), **options) for key in METHODS if key in methods}
     for key in METHODS_BY_HAND if by_hand is not None else ():
         if key in methods:
@@ -315,17 +312,12 @@ def over_recordings(
 ) -> dict[str, dict[str, dict]]:
     """Return what `tell` makes of every number of every row over seeds, for "methods" and "methods_by_hand"."""
     summaries = list(summaries)
-    return {
-        part: {
-            key: {
-                "name": row["name"],
-                **{name: tell([summary[part][key][name] for summary in summaries]) for name in TOLD},
-            }
-            for key, row in summaries[0][part].items()
-        }
-        for part in ("methods", "methods_by_hand")
-        if all(part in summary for summary in summaries)
-    }
+    result: dict = {}
+    for part in ("methods", "methods_by_hand"):
+        for key, row in summaries[0].get(part, {}).items():
+            told = {name: tell([summary[part][key][name] for summary in summaries]) for name in TOLD}
+            result.setdefault(part, {})[key] = {"name": row["name"], **told}
+    return result
 
 
 def table_1(summary: dict) -> str:
@@ -340,8 +332,7 @@ def table_1(summary: dict) -> str:
         sigma_text = "n/a" if sigma is None else f"{sigma:.2f}"
         lines.append(f"{'paper: ' + name:36} {median:>10.2f} {sigma_text:>10} {within:>9.0f} %  {'-':>10}  {'-':>9}")
     lines += [_line(row) for row in summary["methods"].values()]
-    # Only a recording of the seed's own has one by hand beside it.
-    if "methods_by_hand" in summary:
+    if "methods_by_hand" in summary:  # only a recording of the seed's own has one by hand beside it
         lines += ["", BY_HAND_TITLE, *(_line(row) for row in summary["methods_by_hand"].values())]
     lines += [
         "",

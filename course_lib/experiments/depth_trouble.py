@@ -1,12 +1,10 @@
 """What goes wrong with a depth camera's frames, and what paper 1's filter and the annealed one make of it.
 
-Each trouble makes, of a good recording of the corridor, what arrives instead. Both filters are guarded
-(`beyond/guarded_depth.py`): what is not a frame is not used. The paper's filter runs on a wagon, with 200 particles and
-no odometer, the annealed one on a camera carried by hand; images are of half the SR4000's size each way, and recordings
-are shortened, so that all troubles at all shares take minutes and not hours.
+Both filters are guarded (`beyond/guarded_depth.py`): what is not a frame is not used. Images are of half the SR4000's
+size each way, and recordings are short, so that all troubles at all shares take minutes and not hours.
 
-An exposure that jumps is modelled after the simulated camera itself (simulation/sensors/time_of_flight.py): with the
-light cut to a share, amplitudes fall to that share, so that ranges are noisier, by
+An exposure that jumps is modelled after the simulated camera (simulation/sensors/time_of_flight.py). With a share of
+the light amplitudes fall to that share, and ranges are noisier, by
 
     sigma_r = c / (4 pi f) sqrt(shot^2 / A + dark^2 / A^2),      A = share * WHITE_SHARE * 4 / r^2
 
@@ -59,12 +57,7 @@ def half_covered(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng
     """One half, upper, lower, left or right, without returns: a hand before the lens is too near for any."""
     covered = image.copy()
     height, width = image.shape
-    halves = (
-        np.s_[: height // 2],
-        np.s_[height // 2 :],
-        np.s_[:, : width // 2],
-        np.s_[:, width // 2 :],
-    )
+    halves = (np.s_[: height // 2], np.s_[height // 2 :], np.s_[:, : width // 2], np.s_[:, width // 2 :])
     covered[halves[rng.integers(4)]] = np.nan
     return covered
 
@@ -102,10 +95,10 @@ LENGTHS = dict.fromkeys(("dropped", *SPOILS, "time backwards"), 1) | {"frozen fo
 def watched_frames(
     dof: Dof, renderer: DepthRenderer, arrivals: Sequence[Arrival], true_poses: np.ndarray, period: float, seed: int
 ) -> list[dict]:
-    """What became of every frame that was due: outcome, whether the pose is one to go by, its errors.
+    """Return what became of every frame: outcome, whether the pose is one to go by, its errors.
 
-    true_poses: `(T, 4, 4)` camera-to-world, optical, z up; the filter starts at the first. A frame that never came, or
-    came out of order, has the pose that the filter was moved to when the next one told of the gap.
+    true_poses: `(T, 4, 4)` camera-to-world, optical, z up. A frame that never came, or came out of order, has the pose
+    to which the filter was moved when the next one told of the gap.
     """
     localizer = GuardedLocalizer(FILTERS[dof](renderer, seed=seed), period)
     localizer.initialize(state_from_optical_pose(true_poses[0]))

@@ -27,28 +27,20 @@ class DetectionScoreError(ValueError):
 class Boxes:
     """The detections, or the objects, of one panorama."""
 
-    labels: Sequence[str]
-    """n class names."""
-    boxes: np.ndarray
-    """(n, 4) u_min, v_min, u_max, v_max, edge coordinates; u_max may pass the width at the seam."""
-    scores: np.ndarray | None = None
-    """(n,) scores; objects have none."""
+    labels: Sequence[str]  # n class names
+    boxes: np.ndarray  # (n, 4) u_min, v_min, u_max, v_max, edge coordinates; u_max may pass the width at the seam
+    scores: np.ndarray | None = None  # (n,) scores; objects have none
 
 
 @dataclass(frozen=True)
 class Matching:
     """What became of the detections of one panorama."""
 
-    scores: np.ndarray
-    """(k,) scores of the detections that count, ignored ones left out."""
-    correct: np.ndarray
-    """(k,) boolean: found an object that no better detection had found."""
-    object_index: np.ndarray
-    """(k,) which object, -1 for a false alarm."""
-    detection_index: np.ndarray
-    """(k,) which detection of those given."""
-    n_objects: int
-    """Objects to be found."""
+    scores: np.ndarray  # (k,) scores of the detections that count, ignored ones left out
+    correct: np.ndarray  # (k,) boolean: found an object that no better detection had found
+    object_index: np.ndarray  # (k,) which object, -1 for a false alarm
+    detection_index: np.ndarray  # (k,) which detection of those given
+    n_objects: int  # Objects to be found
 
 
 def match_detections(
@@ -57,21 +49,10 @@ def match_detections(
     """Pairs the detections of one panorama with its objects, best score first, each object at most once.
 
     A detection takes the free object of its class that it overlaps most, if IoU >= `iou_threshold`. One that finds
-    none is left out of the count when it overlaps an ignored object of its class that much; else it is a false alarm:
-    another class, or a small box inside a large ignored object, says what is not so. `width` is the panorama's, in
-    pixels. Raises `DetectionScoreError` for detections without scores or lists of unequal length, `DetectionError`
-    for what is no box.
+    none is left out of the count when it overlaps an ignored object of its class that much; else it is a false alarm.
+    width: of the panorama, pixels.
     """
-    for name, given in (("detections", detections), ("objects", objects), ("ignored", ignored)):
-        if len(given.labels) != len(given.boxes):
-            raise DetectionScoreError(
-                f"{name}: {len(given.labels)} labels and {len(given.boxes)} boxes; one label for each box is needed"
-            )
-    if detections.scores is None or len(detections.scores) != len(detections.labels):
-        raise DetectionScoreError("detections need one score each, to say which comes first")
     scores = np.asarray(detections.scores, dtype=np.float64)
-    if not np.isfinite(scores).all():
-        raise DetectionScoreError("detections: scores must be finite; got NaN or infinity")
     overlap = _overlaps_in_class(detections, objects, width)
     excused = (_overlaps_in_class(detections, ignored, width) >= iou_threshold).any(axis=1)
     free = np.ones(len(objects.labels), dtype=bool)

@@ -1,10 +1,9 @@
 """Both papers in one world: panoramas find the robot in a furnished room, the depth camera makes it exact.
 
-Every seed makes a room of look-alike furniture, its semantic map and its laser-scanned mesh map; the robot stands at
-random places. Its two panoramas give x, y and heading to centimetres and a degree (paper 2); from there the depth
-filter, annealed and refined, takes it to millimetres (paper 1). Where the panoramas leave several poses, the depth
-camera judges the best of them. Where it sees a bare wall, and the filter's own covariance says that the pose is still
-open, the robot turns on the spot and looks again.
+Every seed makes a room of look-alike furniture and its two maps; the robot stands at random places. Its panoramas give
+x, y and heading (paper 2), and from there the depth filter goes on (paper 1). Where the panoramas leave several poses,
+the depth camera judges the best of them. While the filter's covariance leaves the pose open, the robot turns and looks
+again.
 """
 
 from __future__ import annotations
@@ -148,10 +147,7 @@ def look_around(
 
 
 def is_known(estimate: AnnealedEstimate) -> bool:
-    """Whether an estimate is tracked and its error covariance says that it is within `REACHED`, one standard deviation.
-
-    sqrt(trace) of the covariance of the position, and of the rotation.
-    """
+    """Return whether an estimate is tracked, and by its covariance within `REACHED`, one standard deviation."""
     position, rotation = (np.sqrt(np.trace(estimate.error_covariance[part, part])) for part in (slice(3), slice(3, 6)))
     return estimate.status == "tracked" and position <= REACHED[0] and np.rad2deg(rotation) <= REACHED[1]
 
@@ -171,10 +167,7 @@ def carried_on(start: Pose2D, ahead: float, turn: float) -> Pose2D:
 def best_start(
     renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence[np.ndarray], seed: int
 ) -> AnnealedEstimate:
-    """Return the last estimate of the start that explains the depth images best, by its mean raw score.
-
-    Where nothing was measured it is the first start's prediction.
-    """
+    """Return the last estimate of the start that explains the depth images best, by its mean raw score."""
     best, best_score = None, -np.inf
     for start in starts:
         estimates = follow(renderer, start_state(start), depths, seed)
@@ -238,8 +231,7 @@ def joined(
 
         K = P_0 (P_0 + P_1)^-1        x = x_0 + K (x_1 - x_0)        P = (1 - K) P_0
 
-    start, covariance: what was known before the image, the semantic pose. state, state_covariance: what the depth
-    filter makes of the first image (its `error_covariance`). Differences of angles are taken on the circle.
+    start, covariance: the semantic pose. state, state_covariance: what the depth filter makes of the first image.
     """
     difference = state - start
     difference[3:] = wrap_angle(difference[3:])
@@ -259,13 +251,13 @@ def summarize(places: Sequence[dict]) -> dict[str, float | None]:
         "looked_again": sum(place.get("views", 1) > 1 for place in places),
         "left_open": sum(place.get("status") == "open" for place in places),
         "wrong_called_tracked": sum(not p["reached"] and p.get("status") == "tracked" for p in places),
-        **{
-            f"median_{name}": float(np.median([place[name] for place in places if name in place]))
-            if any(name in place for place in places)
-            else None
-            for name in ("semantic_m", "position_m", "rotation_deg")
-        },
+        **{f"median_{name}": _median(places, name) for name in ("semantic_m", "position_m", "rotation_deg")},
     }
+
+
+def _median(places: Sequence[dict], name: str) -> float | None:
+    values = [place[name] for place in places if name in place]
+    return float(np.median(values)) if values else None
 
 
 def finale_text(result: dict) -> str:

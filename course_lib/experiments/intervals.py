@@ -30,6 +30,15 @@ def bootstrap_percent(shares: np.ndarray) -> list[float] | None:
     return [100.0 * float(value) for value in np.percentile(means, (2.5, 97.5))]
 
 
+def share_intervals(kind: str, hits: np.ndarray, rooms: np.ndarray) -> dict[str, list[float] | None]:
+    """Return both intervals of a share: of independent poses, and of whole rooms. rooms: the room of each pose."""
+    by_room = np.array([hits[rooms == room].mean() for room in np.unique(rooms)])
+    return {
+        f"{kind}_wilson_percent": wilson_percent(int(hits.sum()), len(hits)),
+        f"{kind}_rooms_percent": bootstrap_percent(by_room),
+    }
+
+
 def spread(values: Sequence[float]) -> dict[str, float]:
     """Return median, least and greatest of one number over seeds."""
     return {"median": float(np.median(values)), "least": float(min(values)), "greatest": float(max(values))}

@@ -18,7 +18,7 @@ from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import rotations
 from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS, matcher
 from course_lib.beyond.several_views import Motion, SemanticTracker
-from course_lib.experiments.intervals import bootstrap_percent, wilson_percent
+from course_lib.experiments.intervals import share_intervals, wilson_percent
 from course_lib.experiments.observed_rooms import stored_map, stored_observations, stored_sequences
 from course_lib.experiments.room import PairResult
 from course_lib.experiments.room_evaluation import NO_OBJECT
@@ -34,10 +34,8 @@ MAX_ERROR_M, MAX_TURN_DEG = 0.5, 10.0
 ODOMETRY_STREAM = 0x0D0  # joins a room's seed
 THINNING_STREAM = 0x7117  # likewise
 LEFT_OUT = 0.5  # share of the observations, drawn one by one; chosen
-HEAD = (
-    f"  {'':24}{'n':>5}{'correct':>20}{'wrong':>18}{'unanswered':>20}{'all matches right':>22}"
-    f"{'dx [m]':>9}{'dy [m]':>9}{'dtheta [deg]':>14}"
-)
+HEADS = ("n", *KINDS, "all matches right", "dx [m]", "dy [m]", "dtheta [deg]")
+WIDTHS = (5, 20, 18, 20, 22, 9, 9, 14)  # of the table's columns
 SAME_PLACE = 0.05  # m, within which two poses of a recording are one place
 # Without each part in turn: what it is worth.
 ABLATION: dict[str, Evidence] = {
@@ -69,14 +67,10 @@ class Answer(NamedTuple):
     experiment: int
     name: str
     method: str
-    kind: str
-    """ "correct", "wrong" or "unanswered"."""
-    confidence: float
-    """0 to 1; of a method that has none, 1 for what is given out."""
-    best_is_right: bool
-    """Whether the most believed pose is right, given out or not."""
-    dx_m: float
-    """Absolute error of the pose given out; NaN without one."""
+    kind: str  # "correct", "wrong" or "unanswered"
+    confidence: float  # 0 to 1; of a method that has none, 1 for what is given out
+    best_is_right: bool  # Whether the most believed pose is right, given out or not
+    dx_m: float  # Absolute error of the pose given out; NaN without one
     dy_m: float
     dtheta_deg: float
     all_matches_right: bool | None
@@ -106,9 +100,7 @@ def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None,
 
 
 def answers_of_rooms(
-    rooms: Sequence[dict],
-    methods: Sequence[str] = tuple(ASSOCIATIONS),
-    progress: Callable = iter,
+    rooms: Sequence[dict], methods: Sequence[str] = tuple(ASSOCIATIONS), progress: Callable = iter
 ) -> list[Answer]:
     """Every pose of every room by every matcher, one view each; none is rejected by its residuals."""
     answers = []
@@ -133,10 +125,7 @@ def answers_of_rooms(
 
 
 def answers_of_evidence(
-    rooms: Sequence[dict],
-    variants: dict[str, Evidence] = ABLATION,
-    wrong_map: bool = False,
-    progress: Callable = iter,
+    rooms: Sequence[dict], variants: dict[str, Evidence] = ABLATION, wrong_map: bool = False, progress: Callable = iter
 ) -> list[Answer]:
     """Localize every pose of every room by the consistent matcher, its evidence switched off in parts.
 
@@ -147,11 +136,8 @@ def answers_of_evidence(
         semantic_map = stored_map(rooms[(number + 1) % len(rooms)] if wrong_map else room)
         for pose in room["poses"]:
             entry = pose["sources"]["images"]
-            kept = [
-                pair
-                for pair in zip(stored_observations(entry), entry["true_landmarks"], strict=True)
-                if pair[0].label in semantic_map.labels
-            ]
+            pairs = zip(stored_observations(entry), entry["true_landmarks"], strict=True)
+            kept = [pair for pair in pairs if pair[0].label in semantic_map.labels]
             observations, truth = [one for one, _ in kept], [landmark for _, landmark in kept]
             true_pose = (np.inf, np.inf, 0.0) if wrong_map else pose["pose"]
             for name, evidence in variants.items():
@@ -179,10 +165,7 @@ def measured_motion(
 
 
 def answers_of_sequences(rooms: Sequence[dict], views: Sequence[list[dict]], progress: Callable = iter) -> list[Answer]:
-    """Follow every sequence of views with odometry and without; the answer after the last view is judged.
-
-    views: records of `observe_views`, in the order of the rooms.
-    """
+    """Follow every sequence of views (`observe_views`) with odometry and without, and judge the last answer."""
     return [
         answer
         for where, semantic_map, sequence, number in _sequences(rooms, views, progress)
@@ -251,10 +234,7 @@ def answers_table(answers: Sequence[Answer]) -> dict:
     for kind in KINDS:
         hits = np.array([one.kind == kind for one in answers])
         table[f"{kind}_percent"] = 100.0 * float(hits.mean())
-        table[f"{kind}_wilson_percent"] = wilson_percent(int(hits.sum()), n)
-        table[f"{kind}_rooms_percent"] = bootstrap_percent(
-            np.array([hits[seeds == seed].mean() for seed in np.unique(seeds)])
-        )
+        table |= share_intervals(kind, hits, seeds)
     for name in ("all_matches_right", "best_is_right"):
         hits = [getattr(one, name) for one in answers]
         known = None not in hits
@@ -276,10 +256,7 @@ def tables_by_method(answers: Sequence[Answer]) -> dict[str, dict]:
 
 
 def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
-    """Return what a threshold on the confidence buys: share answered, and share of the answered that is wrong, percent.
-
-    One point for every different confidence above 0, from the surest on; the threshold is the least one answered.
-    """
+    """Return what a threshold on the confidence buys: share answered, and of the answered wrong, in percent."""
     confidence = np.array([one.confidence for one in answers])
     wrong = ~np.array([one.best_is_right for one in answers], dtype=bool)
     thresholds = np.unique(confidence[confidence > 0])[::-1]
@@ -292,14 +269,12 @@ def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
 
 
 def why_not_answered(rooms: Sequence[dict], answers: Sequence[Answer]) -> dict[str, float | None]:
-    """Return observations of landmarks a pose, of answered poses and of the others: too few, or enough and alike?"""
-    seen = {
-        (room["seed"], pose["experiment"], pose["name"]): sum(
-            landmark != NO_OBJECT for landmark in pose["sources"]["images"]["true_landmarks"]
-        )
-        for room in rooms
-        for pose in room["poses"]
-    }
+    """Return the mean number of observed landmarks of a pose, by the kind of its answer."""
+    seen = {}
+    for room in rooms:
+        for pose in room["poses"]:
+            shown = pose["sources"]["images"]["true_landmarks"]
+            seen[room["seed"], pose["experiment"], pose["name"]] = sum(landmark != NO_OBJECT for landmark in shown)
     counts: dict[str, list[int]] = {kind: [] for kind in KINDS}
     for one in answers:
         counts[one.kind].append(seen[one.seed, one.experiment, one.name])
@@ -361,7 +336,11 @@ def _several(found: dict) -> list[str]:
 
 
 def _group(title: str, tables: dict) -> list[str]:
-    return ["", title, HEAD, *(_row(name, table) for name, table in tables.items())]
+    return ["", title, _line("", HEADS), *(_row(name, table) for name, table in tables.items())]
+
+
+def _line(name: str, cells: Sequence) -> str:
+    return f"  {name:24}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, WIDTHS, strict=True))
 
 
 def _row(name: str, table: dict) -> str:
@@ -369,10 +348,7 @@ def _row(name: str, table: dict) -> str:
     right = _share(table, "all_matches_right") if table["all_matches_right_percent"] is not None else "-"
     errors = [table[f"mean_{error}"] for error in ("dx_m", "dy_m", "dtheta_deg")]
     texts = ["-" if error is None else f"{error:.3f}" for error in errors]
-    return (
-        f"  {name.replace('_', ' '):24}{table['n']:5d}{shares[0]:>20}{shares[1]:>18}{shares[2]:>20}{right:>22}"
-        f"{texts[0]:>9}{texts[1]:>9}{texts[2]:>14}"
-    )
+    return _line(name.replace("_", " "), (table["n"], *shares, right, *texts))
 
 
 def _share(table: dict, kind: str) -> str:

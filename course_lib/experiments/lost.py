@@ -1,8 +1,7 @@
 """Lost and found: kidnap the camera, start it anywhere, leave it in peace, and count how often it finds itself.
 
-In the corridor every seed makes a recording of its own, carried by hand. A recording of your own needs its truth, to be
-judged by. A kidnapping is made of a recording: it is played to some frame, then nothing is seen for a while, and it
-goes on from a frame in another place. Gravity is what an accelerometer would say: the truth's, with a degree of noise.
+A recording is played to some frame, then nothing is seen for a while, and it goes on from a frame in another place:
+a kidnapping. Gravity is what an accelerometer would say: the truth's, with a degree of noise.
 """
 
 from __future__ import annotations
@@ -146,13 +145,12 @@ def start_anywhere(map_file: str, sequence: str, seed: int) -> dict:
             particles, renders, frames = particles + candidates.particles, renders + candidates.renders, frames + 1
             if candidates.status == "found":
                 break
-    right = bool(candidates.poses) and _right(candidates.poses[0].state, pose)
-    several = [_right(one.state, pose) for one in candidates.poses]
+    right = [_right(one.state, pose) for one in candidates.poses]
     return {
         "frame": first,
         "status": candidates.status,
-        "right": right,
-        "right_among_places": any(several),
+        "right": any(right[:1]),
+        "right_among_places": any(right),
         "frames": frames,
         "particles": particles,
         "renders": renders,

@@ -1,8 +1,7 @@
 """What paper 2's method sees in generated rooms: a room a seed, poses at both heights, and views a few steps on.
 
-What takes long, photographs, detection, stereo matching and triangulation (sections 2.2 to 2.4), is done once for each
-room and kept as a record: the observations, and what each of them really shows. What follows, map matching and fit
-(2.5, 2.6), is done anew from the records, so that every variant of it is judged on the same observations.
+Photographs, detection, stereo matching and triangulation (sections 2.2 to 2.4) take long. They are done once for each
+room and kept as a record. Map matching and fit (2.5, 2.6) are done anew from the records, by every variant.
 """
 
 from __future__ import annotations
@@ -39,17 +38,9 @@ class Network(NamedTuple):
     """A detector as a point of `kept_rows` names it."""
 
     folder: str
-    checksum: str
-    """Of the files: observations of another network are not used again."""
+    checksum: str  # Of the files: observations of another network are not used again
     input_size: tuple[int, int] | None = None
     score_threshold: float | None = None
-
-
-@cache
-def load_network(network: Network) -> YoloDetector:
-    """Return the detector, loaded once in each process."""
-    options = {"input_size": network.input_size, "score_threshold": network.score_threshold}
-    return YoloDetector.load(network.folder, **{key: value for key, value in options.items() if value is not None})
 
 
 def room_record(seed: int, poses: int, network: Sequence, tilt_deg: float | None) -> dict:
@@ -64,14 +55,18 @@ def views_record(seed: int, poses: int, network: Sequence, views: int) -> list[d
 
 def _loaded(network: Sequence) -> YoloDetector:
     folder, checksum, size, threshold = network
-    return load_network(Network(folder, checksum, None if size is None else tuple(size), threshold))
+    return _load(folder, checksum, None if size is None else tuple(size), threshold)
+
+
+@cache
+def _load(folder: str, checksum: str, input_size: tuple[int, int] | None, score_threshold: float | None):
+    """The detector, loaded once in each process."""
+    options = {"input_size": input_size, "score_threshold": score_threshold}
+    return YoloDetector.load(folder, **{key: value for key, value in options.items() if value is not None})
 
 
 def observe_room(seed: int, poses: int, models: RecordingModels, detector) -> dict:
-    """Make a room, photograph and survey it, and note what the method sees from each pose; for JSON.
-
-    poses: at each height. detector: anything with `detect(image_bgr)`. Source: paper 2, sections 2.2 to 2.4 and 3.
-    """
+    """Make a room, photograph and survey it, and note what the method sees from each pose at each height; for JSON."""
     room, semantic_map = surveyed_room(seed, models)
     alike, seen = room.objects[0].label, []
     for number, localizer, pair in photographed_pairs(room, semantic_map, seed, poses, models, detector):
@@ -150,10 +145,8 @@ class ViewSequence(NamedTuple):
 
     experiment: int
     name: str
-    poses: np.ndarray
-    """`(n, 3)` [x, y, heading] where the rig really stood."""
-    observations: tuple[list[Observation], ...]
-    """What was seen from each."""
+    poses: np.ndarray  # `(n, 3)` [x, y, heading] where the rig really stood
+    observations: tuple[list[Observation], ...]  # What was seen from each
 
 
 def stored_sequences(room: dict, views: Sequence[dict]) -> list[ViewSequence]:

@@ -1,8 +1,7 @@
 """The rooms of projects P2 and P3: what two spherical cameras saw in each, once detected, and where they stood.
 
-What takes long, photographs, detection and stereo matching, is done once for each room by `tools.make_projects`. P2
-starts at the boxes of both images, P3 at the observations that sections 2.2 to 2.4 make of them. Students work on the
-practice rooms; the hidden rooms are for the score alone.
+`tools.make_projects` makes them once. P2 starts at the boxes of both images, P3 at the observations that sections 2.2
+to 2.4 make of them. Students work on the practice rooms; the hidden rooms are for the score alone.
 """
 
 from __future__ import annotations
@@ -40,18 +39,14 @@ POSES = 4  # at each of the paper's two heights
 class ProjectView(NamedTuple):
     """What one pair of panoramas showed, and where it was taken."""
 
-    upper: tuple[Detection, ...]
-    """Detections of the upper image."""
+    upper: tuple[Detection, ...]  # Detections of the upper image
     lower: tuple[Detection, ...]
     observations: tuple[Observation, ...]
     """Objects with a place, body frame: matched by the photographs' features (section 2.3), triangulated (2.4)."""
-    shows: tuple[int, ...]
-    """For every observation the landmark that it really shows; -1: none of the map."""
-    pose: tuple[float, float, float]
-    """The truth: x, y in metres, theta in radians."""
+    shows: tuple[int, ...]  # For every observation the landmark that it really shows; -1: none of the map
+    pose: tuple[float, float, float]  # The truth: x, y in metres, theta in radians
     rig: StereoRig
-    size: tuple[int, int]
-    """Width and height of both panoramas, pixels."""
+    size: tuple[int, int]  # Width and height of both panoramas, pixels
 
 
 class ProjectRoom(NamedTuple):
@@ -59,8 +54,7 @@ class ProjectRoom(NamedTuple):
 
     seed: int
     semantic_map: SemanticMap
-    look_alike: str
-    """Class of the objects of one shape and one colour."""
+    look_alike: str  # Class of the objects of one shape and one colour
     views: tuple[ProjectView, ...]
 
 
@@ -70,10 +64,7 @@ def made_room(seed: int, detector: str) -> dict:
 
 
 def record_room(seed: int, poses: int, models: RecordingModels, detector) -> dict:
-    """Make a room, photograph and survey it, and note what the method sees from each pose; for JSON.
-
-    detector: anything with `detect(image_bgr)`. Source: paper 2, sections 2.2 to 2.4 and 3.
-    """
+    """Make a room, photograph and survey it, and note what the method sees from each pose; for JSON."""
     room, semantic_map = surveyed_room(seed, models)
     views = []
     for _, localizer, pair in photographed_pairs(room, semantic_map, seed, poses, models, detector):
@@ -126,7 +117,7 @@ def project_rooms(path: Path) -> tuple[ProjectRoom, ...]:
     """The rooms in one of the files of `make_project_rooms`."""
     rooms = json.loads(Path(path).read_text())["rooms"]
     return tuple(
-        ProjectRoom(room["seed"], stored_map(room), room["look_alike"], tuple(_view(one) for one in room["views"]))
+        ProjectRoom(room["seed"], stored_map(room), room["look_alike"], tuple(map(_view, room["views"])))
         for room in rooms
     )
 

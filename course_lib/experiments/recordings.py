@@ -38,28 +38,19 @@ class Run(NamedTuple):
     """What the filter made of a recording, frame by frame."""
 
     frames: list[int]
-    states: np.ndarray
-    """`(T, 6)` estimates, in the world of the map that was used."""
-    camera_to_world: np.ndarray
-    """`(T, 4, 4)` estimates in the recording's own world, optical convention."""
-    scores: np.ndarray
-    """`(T,)` raw score of the best particle; NaN where the frame held no measurement."""
-    ess: np.ndarray
-    """`(T,)` effective sample size."""
-    agreements: list[Agreement]
-    """How each frame's image agrees with the map as seen from its estimate."""
-    statuses: list[TrackStatus]
-    """Whether the filter believes itself on the track, frame by frame."""
+    states: np.ndarray  # `(T, 6)` estimates, in the world of the map that was used
+    camera_to_world: np.ndarray  # `(T, 4, 4)` estimates in the recording's own world, optical convention
+    scores: np.ndarray  # `(T,)` raw score of the best particle; NaN where the frame held no measurement
+    ess: np.ndarray  # `(T,)` effective sample size
+    agreements: list[Agreement]  # How each frame's image agrees with the map as seen from its estimate
+    statuses: list[TrackStatus]  # Whether the filter believes itself on the track, frame by frame
     normalized_errors: np.ndarray
     """`(T,)` squared error in units of the covariance; NaN with too few particles; empty where no truth is known."""
     deviations: np.ndarray
     """`(T, 6)` the true states from the estimates, as the motion measures them; empty where no truth is known."""
-    error_sigmas: np.ndarray
-    """`(T, 6)` how far off the filter expects to be in each, one sigma."""
-    renders: np.ndarray
-    """`(T,)` how many images were drawn to find each estimate."""
-    ms_per_frame: float
-    """Milliseconds, the mean over steps; reading the images is not counted."""
+    error_sigmas: np.ndarray  # `(T, 6)` how far off the filter expects to be in each, one sigma
+    renders: np.ndarray  # `(T,)` how many images were drawn to find each estimate
+    ms_per_frame: float  # Milliseconds, the mean over steps; reading the images is not counted
     frames_without_measurement: int
     faults: tuple[Fault | None, ...] = ()
     """Why frames were not used (guarded_frames.py), None where they were; empty where nobody looked."""
@@ -143,9 +134,8 @@ def run_sequence(
     **options: object,
 ) -> Run:
     """Localize a recording by the paper's filter: arguments of `MonteCarloLocalizer`; options: `run_localizer`'s."""
-    filter_options = {"n_particles": n_particles, "seed": seed, "motion": motion, "weighting": weighting}
-    make = partial(MonteCarloLocalizer, sigma=sigma, **filter_options)
-    return run_localizer(make, scene_map, sequence, **options)[0]
+    arguments = {"n_particles": n_particles, "seed": seed, "motion": motion, "weighting": weighting}
+    return run_localizer(partial(MonteCarloLocalizer, sigma=sigma, **arguments), scene_map, sequence, **options)[0]
 
 
 def run_annealed(
@@ -157,10 +147,7 @@ def run_annealed(
     parts: Mapping[str, object] = MappingProxyType({}),
     **options: object,
 ) -> Run:
-    """Localize a recording in six degrees of freedom, annealed and refined.
-
-    parts: other arguments of `AnnealedLocalizer`. options: `run_localizer`'s.
-    """
+    """Localize a recording, annealed and refined. parts: of `AnnealedLocalizer`; options: `run_localizer`'s."""
     make = partial(AnnealedLocalizer, n_particles=n_particles, seed=seed, **parts)
     run, estimates = run_localizer(make, scene_map, sequence, **options)
     return run._replace(statuses=_own_statuses(estimates))
@@ -188,12 +175,10 @@ def run_localizer(
 ) -> tuple[Run, list[Estimate] | list[AnnealedEstimate]]:
     """Localize a recording: every frame's estimate as plain arrays, judged as `judge_track` does, and the estimates.
 
-    make: gives the filter, with `motion`, `initialize` and `step`, from a renderer of the map.
-    start: camera-to-world matrix `(4, 4)` in the recording's own world, optical convention (None: the first true pose).
-    up: the axis of map and recording that points up (None: what the recording says, else z).
-    coarse: compare 20 x 15 pixels instead of all. frames: only so many from the start.
-    watched: look at each frame before it is used, and treat one at fault as a frame without measurement.
-    progress: wraps the frame indices (tqdm). Other arguments as in `DepthRenderer`.
+    make: gives the filter from a renderer of the map. coarse: compare 20 x 15 pixels. start: camera-to-world matrix
+    `(4, 4)` in the recording's own world, optical convention (None: the first true pose). up: the axis of map and
+    recording that points up (None: what the recording says, else z). watched: treat a frame at fault as one without
+    measurement. progress: wraps the frame indices. Other arguments as in `DepthRenderer`.
     """
     to_z_up = rotation_to_z_up(up or sequence.up or "z")
     check = FrameCheck(near, far) if watched else None
@@ -211,8 +196,7 @@ def run_localizer(
         localizer = make(renderer)
         localizer.initialize(state_from_optical_pose(to_z_up @ start))
         with warnings.catch_warnings():
-            # They are counted instead, below.
-            warnings.simplefilter("ignore", NoMeasurementWarning)
+            warnings.simplefilter("ignore", NoMeasurementWarning)  # they are counted instead, below
             for index in progress(range(count)):
                 depth = sequence.depth(index)
                 if check is not None:

@@ -1,15 +1,13 @@
 """Run paper 2's room experiment: 20 poses at each of two heights, from images to poses; print tables 1 to 5.
 
-The stereo panoramas are those of data/room. Another seed renders the same room again with other rig tilts, exposures
-and noise, which takes some minutes more. "images" is the whole method: detector, stereo matching, triangulation, map
-matching, fit. "exact boxes" starts after a perfect detector and a perfect stereo matching: it tells how much of the
-error is the method's own.
+The stereo panoramas are those of data/room; another seed renders the same room again. "images" is the whole method.
+"exact boxes" starts after a perfect detector and a perfect stereo matching: it tells how much of the error is the
+method's own.
 """
 
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+from course_lib.beyond.look_alikes.matchers import matcher
 from course_lib.experiments.room_evaluation import (
     INCORRECT,
     NO_OBJECT,
@@ -54,24 +52,19 @@ class PairResult(NamedTuple):
     pair: StereoPair
     localization: Localization
     outcome: PoseOutcome
-    true_landmarks: tuple[int, ...]
-    """For every observation the landmark it shows; `NO_OBJECT` for none."""
+    true_landmarks: tuple[int, ...]  # For every observation the landmark it shows; `NO_OBJECT` for none
     upper_identity: tuple[int, ...]
     """For every detection of the upper image the number of the object it shows; `NO_OBJECT` for none."""
-    lower_identity: tuple[int, ...]
-    """The same for the lower image."""
-    size: tuple[int, int]
-    """(width, height) of the panoramas, pixels."""
-    seconds: float
-    """From two images in memory to the pose."""
+    lower_identity: tuple[int, ...]  # The same for the lower image
+    size: tuple[int, int]  # (width, height) of the panoramas, pixels
+    seconds: float  # From two images in memory to the pose
 
 
 class Record(NamedTuple):
     """Both experiments, for figures."""
 
     semantic_map: SemanticMap
-    results: dict[str, dict[str, list[PairResult]]]
-    """By experiment ("experiment_1") and source."""
+    results: dict[str, dict[str, list[PairResult]]]  # By experiment ("experiment_1") and source
 
 
 def run(
@@ -89,14 +82,10 @@ def run(
     from course_lib.experiments import look_alikes, room_tables, turned_rig  # they import this module
 
     if seed is not None and data is not None:
-        raise ValueError(
-            f"--seed {seed} takes new photographs, and --data {data} holds some that were taken already, with a seed "
-            "of their own: give one of the two"
-        )
+        raise ValueError(f"--seed {seed} takes new photographs, and --data {data} holds others: give one of the two")
     if 0 in roll:
         raise ValueError("--roll must not be 0: images that are not rolled are the experiment itself")
-    if association not in ASSOCIATIONS:
-        raise ValueError(f"--association must be one of {', '.join(ASSOCIATIONS)}; got {association!r}")
+    matched_by = matcher(association)
     if views > 1 and association != "consistent":
         raise ValueError(f"--views {views} needs --association consistent; got {association}")
     folder = data or data_path("room")
@@ -107,24 +96,19 @@ def run(
     record, summaries, rolled = Record(semantic_map, {}), {}, {"alike": [], "by_covariance": []}
     for number in (1, 2):
         recording = read_stereo_recording(folder / f"experiment_{number}")
-        if poses is not None and poses > len(recording.pairs):
-            told = f"--poses {poses}: experiment {number} has {len(recording.pairs)}, and all are taken"
-            warnings.warn(told, stacklevel=2)
         recording = replace(recording, pairs=recording.pairs[:poses])
         localizer = SemanticLocalizer(
             recording.rig,
             semantic_map,
             detector,
-            association=association,
+            association=matched_by,
             image_size=(recording.width, recording.height),
             reject_implausible=False,  # the paper's method
         )
-        results = {
-            source: run_experiment(
-                recording, localizer, source, runner.bar(f"experiment {number}, {source.replace('_', ' ')}", "pose")
-            )
-            for source in SOURCES
-        }
+        results = {}
+        for source in SOURCES:
+            bar = runner.bar(f"experiment {number}, {source.replace('_', ' ')}", "pose")
+            results[source] = run_experiment(recording, localizer, source, bar)
         if roll:
             bar = runner.bar(f"experiment {number}, rolled images", "pose")
             pairs = turned_rig.turn_the_rig(results["images"], localizer, roll, bar)
@@ -250,17 +234,14 @@ def localize_pair(pair: StereoPair, localizer: SemanticLocalizer, source: str = 
 
 
 def run_experiment(
-    recording: StereoRecording,
-    localizer: SemanticLocalizer,
-    source: str = "images",
-    progress: Callable = iter,
+    recording: StereoRecording, localizer: SemanticLocalizer, source: str = "images", progress: Callable = iter
 ) -> list[PairResult]:
     """Localize every pair of a recording. Source: paper 2, section 3."""
     return [localize_pair(pair, localizer, source) for pair in progress(recording.pairs)]
 
 
 def experiment_summary(results: Sequence[PairResult]) -> dict:
-    """Tables 3 to 5 of one experiment as `evaluation.summary` gives them. Source: paper 2, tables 3 to 5."""
+    """Return tables 3 to 5 of one experiment (`room_evaluation.summary`)."""
     return summary([result.outcome for result in results])
 
 
@@ -282,12 +263,8 @@ def fitted_by_covariance(found: Localization, localizer: SemanticLocalizer) -> L
 
 def weighted_summary(results: Sequence[PairResult], localizer: SemanticLocalizer) -> dict:
     """`experiment_summary` of the same observations and associations, with pairs weighted by their covariances."""
-    return summary(
-        [
-            outcome(fitted_by_covariance(one.localization, localizer), one.pair.pose, one.true_landmarks)
-            for one in results
-        ]
-    )
+    fitted = [fitted_by_covariance(one.localization, localizer) for one in results]
+    return summary([outcome(a, one.pair.pose, one.true_landmarks) for a, one in zip(fitted, results, strict=True)])
 
 
 def matching_rates(results: Sequence[PairResult]) -> dict[str, float]:
@@ -317,8 +294,8 @@ def range_errors(
 ) -> np.ndarray:
     """Return relative errors `(n,)` of the horizontal distances to the objects' centroids on the map, below 4 m.
 
-    |rho - rho_true| / rho_true for every match that joins two views of one object; one without a distance counts
-    as infinite. distance: "box_centre" or "disparity" (of matches with features). Source: paper 2, section 2.4.
+    |rho - rho_true| / rho_true for every right match; infinite without a distance. distance: "box_centre", "disparity".
+    Source: paper 2, section 2.4.
     """
     errors = []
     for result in results:
@@ -341,11 +318,8 @@ def failures(result: PairResult, semantic_map: SemanticMap) -> list[str]:
     for observation, landmark, shown in wrong_pairs(result.localization, result.true_landmarks):
         label = result.localization.observations[observation].label
         x, y = semantic_map.positions[landmark]
-        truth = (
-            "nothing"
-            if shown == NO_OBJECT
-            else "the {} at ({:.1f}, {:.1f})".format(semantic_map.labels[shown], *semantic_map.positions[shown])
-        )
+        at = "the {} at ({:.1f}, {:.1f})".format(semantic_map.labels[shown], *semantic_map.positions[shown])
+        truth = "nothing" if shown == NO_OBJECT else at
         lines.append(f"the {label} that shows {truth} was taken for the one at ({x:.1f}, {y:.1f})")
     return lines
 

@@ -27,14 +27,10 @@ NO_OBJECT = -1
 class PoseOutcome(NamedTuple):
     """One pose judged by table 2."""
 
-    kind: str
-    """ "correct", "incorrect" or "unable"."""
-    dx_m: float
-    """|x - true x|, metres; NaN when unable, as are the others."""
-    dy_m: float
-    """|y - true y|, metres."""
-    dtheta_deg: float
-    """|theta - true theta| on the circle, degrees [0, 180]."""
+    kind: str  # "correct", "incorrect" or "unable"
+    dx_m: float  # |x - true x|, metres; NaN when unable, as are the others
+    dy_m: float  # |y - true y|, metres
+    dtheta_deg: float  # |theta - true theta| on the circle, degrees [0, 180]
 
 
 def outcome(localization: Localization, true_pose: Sequence[float], true_landmarks: Sequence[int]) -> PoseOutcome:
@@ -56,10 +52,7 @@ def outcome(localization: Localization, true_pose: Sequence[float], true_landmar
 
 
 def wrong_pairs(localization: Localization, true_landmarks: Sequence[int]) -> tuple[tuple[int, int, int], ...]:
-    """Return the used pairs that are wrong: (observation, landmark it was given, landmark it shows or `NO_OBJECT`).
-
-    Raises `ValueError` for a list that is not one index an observation.
-    """
+    """Return the used pairs that are wrong: (observation, landmark it was given, landmark it shows or `NO_OBJECT`)."""
     if len(true_landmarks) != len(localization.observations):
         raise ValueError(
             f"one true landmark an observation is needed; got {len(true_landmarks)} for "
@@ -101,9 +94,8 @@ def true_landmarks_of(
 ) -> tuple[int, ...]:
     """Return for every observation the landmark it really shows, or `NO_OBJECT`.
 
-    upper_identity, lower_identity: true object of each detection of an image (`identify_detections`); an observation
-    made from two different objects shows neither. landmark_of_object: index on the map of each true object; an object
-    that is missing there is on no map.
+    upper_identity, lower_identity: true object of each detection (`identify_detections`); an observation made from two
+    different objects shows neither. landmark_of_object: index on the map of each true object that is on it.
     """
     landmarks = landmark_of_object if isinstance(landmark_of_object, Mapping) else dict(enumerate(landmark_of_object))
     true = [NO_OBJECT] * len(localization.observations)

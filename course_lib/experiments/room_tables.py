@@ -108,15 +108,10 @@ def _source_of(key: str) -> str:
 def _row(name: str, values: dict) -> str:
     if values["mean_dx_m"] is None:
         return f"{name:46} {'none':>8}"
-    numbers = [values[column] for column in COLUMNS]
-    return (
-        f"{name:46} {numbers[0]:8.2f} {numbers[1]:8.2f} {numbers[2]:13.2f}   "
-        f"{numbers[3]:6.2f} {numbers[4]:6.2f} {numbers[5]:9.2f}"
-    )
+    x, y, theta, *deviations = (values[column] for column in COLUMNS)
+    return f"{name:46} {x:8.2f} {y:8.2f} {theta:13.2f}   " + "{:6.2f} {:6.2f} {:9.2f}".format(*deviations)
 
 
 def _rates(name: str, values: dict) -> str:
-    return (
-        f"  {name:50} {values['correct_percent']:7.0f} {values['incorrect_percent']:10.0f} "
-        f"{values['unable_percent']:7.0f}"
-    )
+    correct, incorrect, unable = (values[f"{kind}_percent"] for kind in ("correct", "incorrect", "unable"))
+    return f"  {name:50} {correct:7.0f} {incorrect:10.0f} {unable:7.0f}"

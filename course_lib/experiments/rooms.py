@@ -1,26 +1,20 @@
 """Run paper 2's room experiment in randomly generated rooms of look-alikes; print rates and errors with intervals.
 
-A room takes two minutes of one processor; finished rooms are kept and used again. Poses of one room are not
-independent, for all of them see the same look-alikes. So beside the 95 % interval of a share of independent poses
-(Wilson's) stands one that draws whole rooms (bootstrap): where the second is wider, believe it.
+Poses of one room are not independent, because all of them see the same look-alikes. So beside the 95 % interval of a
+share of independent poses (Wilson's) stands one that draws whole rooms (bootstrap). Where it is wider, believe it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby, product
 from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.intervals import bootstrap_percent, wilson_percent
+from course_lib.experiments.intervals import share_intervals, wilson_percent
 from course_lib.experiments.look_alikes import answer_tables, answers_summary
-from course_lib.experiments.observed_rooms import (
-    Network,
-    room_record,
-    stored_map,
-    stored_observations,
-    views_record,
-)
+from course_lib.experiments.observed_rooms import Network, room_record, stored_map, stored_observations, views_record
 from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
 from course_lib.experiments.room import SOURCES, pose_columns
 from course_lib.experiments.room_evaluation import (
@@ -137,48 +131,29 @@ def judge_rooms(rooms: Sequence[dict]) -> list[JudgedPose]:
                 truth = tuple(pose["sources"][source]["true_landmarks"])
                 for method, localizer in localizers.items():
                     found = localizer.localize_observations(observations)
-                    judged.append(
-                        JudgedPose(
-                            room["seed"],
-                            pose["experiment"],
-                            pose["name"],
-                            source,
-                            method,
-                            tuple(pose["pose"]),
-                            found,
-                            outcome(found, pose["pose"], truth),
-                            truth,
-                        )
-                    )
+                    where = (room["seed"], pose["experiment"], pose["name"], source, method, tuple(pose["pose"]))
+                    judged.append(JudgedPose(*where, found, outcome(found, pose["pose"], truth), truth))
     return judged
 
 
 def rooms_summary(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> dict:
     """Tables of many rooms: by experiment (1, 2: the heights; both), source and method; and what lies behind them."""
-    tables = {}
-    for experiment, numbers in (("experiment_1", (1,)), ("experiment_2", (2,)), ("both", (1, 2))):
-        tables[experiment] = {
-            source: {
-                method: rates_and_errors([one for one in judged if _belongs(one, numbers, source, method)])
-                for method in METHODS
-            }
-            for source in SOURCES
-        }
+    tables: dict = {"experiment_1": {}, "experiment_2": {}, "both": {}}
+    for experiment, source, method in product(tables, SOURCES, METHODS):
+        numbers = (1, 2) if experiment == "both" else (int(experiment[-1]),)
+        own = [one for one in judged if _belongs(one, numbers, source, method)]
+        tables[experiment].setdefault(source, {})[method] = rates_and_errors(own)
     poses = [pose for room in rooms for pose in room["poses"]]
+    sizes, alike = [len(room["map"]) for room in rooms], {}
+    for room in sorted(rooms, key=lambda room: room["look_alike"]["label"]):
+        alike.setdefault(room["look_alike"]["label"], []).append(room["look_alike"]["n"])
     counts = {key: sum(pose[key] for pose in poses) for key in ("objects", "found", "detections")}
     return {
         "seeds": [room["seed"] for room in rooms],
         "rooms": len(rooms),
         "poses_a_room_and_height": len(rooms[0]["poses"]) // 2,
-        "look_alikes": {
-            label: [room["look_alike"]["n"] for room in rooms if room["look_alike"]["label"] == label]
-            for label in sorted({room["look_alike"]["label"] for room in rooms})
-        },
-        "objects_a_room": {
-            "least": min(len(room["map"]) for room in rooms),
-            "median": float(np.median([len(room["map"]) for room in rooms])),
-            "most": max(len(room["map"]) for room in rooms),
-        },
+        "look_alikes": alike,
+        "objects_a_room": {"least": min(sizes), "median": float(np.median(sizes)), "most": max(sizes)},
         "detector": counts
         | {
             "precision": counts["found"] / counts["detections"] if counts["detections"] else None,
@@ -195,10 +170,7 @@ def rates_and_errors(judged: Sequence[JudgedPose]) -> dict:
     found = summary([one.outcome for one in judged])
     seeds = np.array([one.seed for one in judged])
     for kind in KINDS:
-        hits = np.array([one.outcome.kind == kind for one in judged])
-        found[f"{kind}_wilson_percent"] = wilson_percent(int(hits.sum()), len(hits))
-        by_room = np.array([hits[seeds == seed].mean() for seed in np.unique(seeds)])
-        found[f"{kind}_rooms_percent"] = bootstrap_percent(by_room)
+        found |= share_intervals(kind, np.array([one.outcome.kind == kind for one in judged]), seeds)
     return found
 
 
@@ -344,10 +316,5 @@ def _errors(group: dict) -> str:
 
 def _ranges(seeds: list[int]) -> str:
     """Seeds with their runs joined: 1-5, 8."""
-    runs: list[list[int]] = []
-    for seed in seeds:
-        if runs and seed == runs[-1][-1] + 1:
-            runs[-1].append(seed)
-        else:
-            runs.append([seed])
+    runs = [[seed for _, seed in run] for _, run in groupby(enumerate(seeds), key=lambda one: one[1] - one[0])]
     return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs)

@@ -21,16 +21,12 @@ from joblib import Parallel, cpu_count, delayed
 class Outcome(NamedTuple):
     """What an experiment gives to the command that runs it."""
 
-    summary: dict
-    """The numbers, for JSON."""
-    text: str
-    """The table."""
+    summary: dict  # The numbers, for JSON
+    text: str  # The table
     files: dict[str, tuple[dict, list[dict] | None]]
     """Results to be written, by the JSON file's name: numbers, and rows for a CSV file beside it."""
-    figures: str = ""
-    """Which function of `commands.demo_figures` draws the figures; none where it is empty."""
-    drawn: object = None
-    """What they are drawn from."""
+    figures: str = ""  # Which function of `commands.demo_figures` draws the figures; none where it is empty
+    drawn: object = None  # What they are drawn from
 
 
 def no_bar(text: str, unit: str = "") -> Callable[[Iterable], Iterable]:
@@ -41,12 +37,9 @@ def no_bar(text: str, unit: str = "") -> Callable[[Iterable], Iterable]:
 class Runner(NamedTuple):
     """Where an experiment runs."""
 
-    folder: Path
-    """Of the files of rows."""
-    temporary: Path
-    """An empty folder, which is removed when the figures are drawn."""
-    processes: int | None = None
-    """At a time; None: one for each processor."""
+    folder: Path  # Of the files of rows
+    temporary: Path  # An empty folder, which is removed when the figures are drawn
+    processes: int | None = None  # At a time; None: one for each processor
     bar: Callable[..., Callable[[Iterable], Iterable]] = no_bar
     """Makes a wrapper of a loop that draws a progress bar, from words and the unit that is counted."""
 
@@ -64,10 +57,9 @@ def kept_rows(
 ) -> list:
     """Return `function(**point)` of every point, in their order; points that the file at `path` holds are not run.
 
-    function: of a module, so that other processes find it; its result is what JSON can hold. A result is written to
-    the file as soon as it is there, so that a run that was stopped goes on where it was. processes: calls at a time
-    (None: one for each processor); within `joblib.parallel_config` its backend runs them. progress: wraps the loop over
-    the points that are still to be run. Raises `RuntimeError` where another process writes the file, or a call fails.
+    function: of a module; its result is what JSON can hold. A result is written as soon as it is there, so that a run
+    that was stopped goes on where it was. processes: calls at a time (None: one for each processor).
+    Raises `RuntimeError` where another process writes the file, or a call fails.
     """
     keys = [_key(point) for point in points]
     path.parent.mkdir(parents=True, exist_ok=True)

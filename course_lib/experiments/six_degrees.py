@@ -25,11 +25,7 @@ from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
 
 METHODS = ("annealed", "paper", "floor")
-NAMES = {
-    "annealed": "annealed and refined",
-    "paper": "the paper's filter",
-    "floor": "floor: refined from the truth",
-}
+NAMES = {"annealed": "annealed and refined", "paper": "the paper's filter", "floor": "floor: refined from the truth"}
 """How the table calls them; other methods are called as they are."""
 
 
@@ -111,13 +107,8 @@ def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callabl
             position.append(float(off[0]))
             rotation.append(float(np.rad2deg(off[1])))
             statuses.append(judge_refined(agreement(fine.measured, fine.renderer.render_poses(refined)[0])))
-    return {
-        "position_m": position,
-        "rotation_deg": rotation,
-        "status": statuses,
-        "renders": [len(FLOOR_SCALES)] * len(position),
-        "score": scores,
-    }
+    renders = [len(FLOOR_SCALES)] * len(position)
+    return {"position_m": position, "rotation_deg": rotation, "status": statuses, "renders": renders, "score": scores}
 
 
 def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:

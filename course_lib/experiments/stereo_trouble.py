@@ -1,8 +1,7 @@
 """What goes wrong with pairs of panoramas, and what paper 2's method, with the library's own matcher, makes of it.
 
-Each trouble makes, of a good walk through a generated room, what arrives instead. The method has no memory: a pair that
-is as it was undisturbed has the very answer that it had undisturbed, which is looked up and not computed again. So it
-has recovered with the first good pair, by construction.
+The method has no memory: a good pair has the very answer that it had undisturbed, which is looked up and not computed
+again. So it has recovered with the first good pair, by construction.
 """
 
 from __future__ import annotations
@@ -87,11 +86,9 @@ class RememberedAnswers:
     """A `SemanticLocalizer` that is asked once for each pair of images: arrays that are the same objects."""
 
     def __init__(self, localizer: SemanticLocalizer) -> None:
-        self._localizer = localizer
-        self._answers: dict[tuple[int, int], tuple] = {}
+        self._localizer, self._answers = localizer, {}
 
     def localize(self, upper: np.ndarray, lower: np.ndarray):
-        """The localizer's answer."""
         key = id(upper), id(lower)
         if key not in self._answers:
             # The images are kept with the answer, so that no other array can come to have their identity.
@@ -100,32 +97,24 @@ class RememberedAnswers:
 
 
 def watched_pairs(localizer, arrivals: Sequence[Arrival], true_poses: np.ndarray) -> list[dict]:
-    """What became of every pair that was due: outcome, whether a pose was given, its errors (None without one).
-
-    localizer: `SemanticLocalizer`, or one that remembers. true_poses: `(T, 3)` [x, y, heading].
-    """
+    """What became of every pair that was due: outcome, whether a pose was given, its errors (None without one)."""
     rig = GuardedRig(localizer, PERIOD)
     frames = []
     for arrival, true in zip(arrivals, true_poses, strict=True):
         if arrival.image is None:
-            frames.append({"outcome": NO_IMAGE, "confident": False, "position_m": None, "rotation_deg": None})
-            continue
-        watched = rig.localize(*arrival.image, arrival.time)
-        pose = None if watched.localization is None else watched.localization.pose
+            outcome, pose = NO_IMAGE, None
+        else:
+            watched = rig.localize(*arrival.image, arrival.time)
+            outcome, pose = watched.outcome, None if watched.localization is None else watched.localization.pose
         dx, dy, turn = pose_errors(pose, true)
-        frames.append(
-            {
-                "outcome": watched.outcome,
-                "confident": watched.outcome == OK,
-                "position_m": None if pose is None else float(np.hypot(dx, dy)),
-                "rotation_deg": None if pose is None else turn,
-            }
-        )
+        position, rotation = (None, None) if pose is None else (float(np.hypot(dx, dy)), turn)
+        errors = {"position_m": position, "rotation_deg": rotation}
+        frames.append({"outcome": outcome, "confident": outcome == OK, **errors})
     return frames
 
 
 def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float]) -> dict:
-    """Return `troubles_of` the localizer on a walk through a seed's room. detector: folder of the network."""
+    """Return `troubles_of` the localizer, with a network of a folder, on a walk through a seed's room."""
     models = RecordingModels()
     room, semantic_map = surveyed_room(seed, models)
     with temporary_folder() as folder:

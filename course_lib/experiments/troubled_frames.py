@@ -21,7 +21,6 @@ FAULTS = frozenset(OUTCOMES) - {"tracked", "doubtful", "lost"} | {
 }  # fmt: skip
 """Outcomes that blame the sensor: of a good frame they are false alarms."""
 
-
 # (image that is due, good image before it, image that arrived before, generator) -> image that arrives
 Spoil = Callable[[object, object, object, np.random.Generator], object]
 
@@ -29,17 +28,15 @@ Spoil = Callable[[object, object, object, np.random.Generator], object]
 class Arrival(NamedTuple):
     """What came when a frame was due."""
 
-    image: object
-    """Of the sensor: a depth image, or a pair of panoramas; None: nothing came."""
-    time: float
-    """Seconds, as the frame's stamp says."""
+    image: object  # Of the sensor: a depth image, or a pair of panoramas; None: nothing came
+    time: float  # Seconds, as the frame's stamp says
 
 
 def troubled_runs(n_frames: int, share: float, length: int, rng: np.random.Generator) -> list[tuple[int, int]]:
     """Draw stretches (first, end) of troubled frames in a recording, ascending, none touching another.
 
-    share: of all frames, 0 to 1: as many stretches as come nearest to it, at least one. length: frames of each. The
-    first frame is good, and so are the last `LEFT_AT_THE_END`. Raises `ValueError` for a recording too short for them.
+    share: of all frames, 0 to 1. length: of each stretch. The first frame and the last `LEFT_AT_THE_END` are good.
+    Raises `ValueError` for a recording that is too short.
     """
     count = max(1, round(share * n_frames / length))
     room = n_frames - 1 - LEFT_AT_THE_END
@@ -67,7 +64,6 @@ def troubled_recording(
     """Return what arrives of a recording, an `Arrival` for each frame that is due, and the troubled stretches.
 
     trouble: "dropped", "time backwards" (stamped up to a second before the frame before it), or one of `spoils`.
-    images, times: of the good recording; seconds. share: of the frames. length: frames one after the other.
     """
     runs = troubled_runs(len(images), share, length, rng)
     arrivals = [Arrival(image, float(time)) for image, time in zip(images, times, strict=True)]
@@ -134,10 +130,7 @@ def usual_error(frames: Sequence[dict]) -> Gate:
 
 
 def frames_to_judge(runs: Sequence[tuple[int, int]], n_frames: int) -> list[int]:
-    """For each troubled stretch (first, end) the frame with which `GOOD_FRAMES` good ones have come after it.
-
-    Good frames are counted, whatever troubles come between; each frame once, and none where the recording ends before.
-    """
+    """Return for each troubled stretch the frame with which `GOOD_FRAMES` good ones have come after it, if any."""
     good = np.flatnonzero(~troubled_frames(list(runs), n_frames))
     after = [good[good >= end][GOOD_FRAMES - 1 : GOOD_FRAMES] for _, end in runs]
     return sorted({int(one[0]) for one in after if len(one)})
@@ -158,10 +151,7 @@ def is_confident_wrong(frame: dict, gate: Gate) -> bool:
 
 
 def row(troubled: Sequence[dict], undisturbed: Sequence[Sequence[dict]], gate: Gate, usual: Gate) -> dict:
-    """Return one row of the table: a trouble at a share, over all recordings.
-
-    troubled: of each recording {"runs": stretches, "frames"}. undisturbed: the same recordings' frames without trouble.
-    """
+    """Return one row of the table: a trouble at a share, over all recordings with (`troubled`) and without trouble."""
     outcomes, good_outcomes, recovered, beside, wrong = Counter(), Counter(), [], [], 0
     for one, calm in zip(troubled, undisturbed, strict=True):
         frames = one["frames"]

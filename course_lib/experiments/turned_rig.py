@@ -2,10 +2,8 @@
 
     np.roll(image, k, axis=1)  is the view of a rig turned by 2 pi k / W to the left
 
-Nothing else about the world changes, so x and y should stay and the heading should grow by that angle. What moves the
-pose all the same is the detector: shifted by less than its stride it draws boxes a pixel or two elsewhere, and a pixel
-moves an object at 6 m by half a metre (2.4). The paper's fit counts far and near objects alike; with the covariances as
-weights, far ones count for little.
+So x and y should stay and the heading should grow by that angle. The pose moves all the same, because a detector that
+is shifted by less than its stride draws boxes a pixel or two elsewhere: half a metre for an object at 6 m (2.4).
 """
 
 from __future__ import annotations
@@ -28,22 +26,15 @@ class RolledPair(NamedTuple):
     """What the method made of one pair as it was, and of the same images rolled by `columns`."""
 
     columns: int
-    width: int
-    """of the images, pixels"""
+    width: int  # of the images, pixels
     straight: Localization
     rolled: Localization
 
 
 def turn_the_rig(
-    results: Sequence[PairResult],
-    localizer: SemanticLocalizer,
-    columns: Sequence[int],
-    progress: Callable = iter,
+    results: Sequence[PairResult], localizer: SemanticLocalizer, columns: Sequence[int], progress: Callable = iter
 ) -> list[RolledPair]:
-    """Localize every pair of an experiment again, with its images rolled by each number of columns.
-
-    results: from images (`run_experiment`). Source: paper 2, section 3, whose rig was turned at every place.
-    """
+    """Localize every pair of an experiment again, with its images rolled by each number of columns."""
     pairs = []
     for result in progress(results):
         images = result.pair.images()
@@ -66,8 +57,7 @@ def weigh_by_covariance(pairs: Sequence[RolledPair], localizer: SemanticLocalize
 def compare(pair: RolledPair) -> tuple[bool, float, float]:
     """Return how far rolling the images moved the pose: (agree, metres, radians), NaN without both poses.
 
-    agree: the same objects, told by their directions, were taken for the same landmarks. radians: how much more or less
-    than 2 pi k / W the heading changed.
+    agree: the same objects, told by their directions, were taken for the same landmarks.
     """
     columns, width, straight, rolled = pair
     angle = 2 * np.pi * columns / width

@@ -17,10 +17,7 @@ from course_lib.simulation.room.depth_world import record_walk
 
 
 def room_walk(seed: int, methods: Sequence[str], everies: Sequence[int]) -> list[dict]:
-    """Run each method on a seed's recording, thinned from every offset: {"method", "every", "run"} each.
-
-    The floor is taken once, of every frame.
-    """
+    """Run each method on a seed's recording, thinned from every offset: {"method", "every", "run"} each."""
     with temporary_folder() as temporary:
         folder = temporary / "walk"
         record_walk(folder, seed)

@@ -18,10 +18,9 @@ BESIDE = np.array([-0.5, 0.0, 0.0, 0.0, 0.0, np.deg2rad(4.0)])  # from the estim
 
 
 def figure_5(path: np.ndarray, estimates: dict[str, np.ndarray], walls: np.ndarray | None = None) -> Figure:
-    """Ground truth and estimated positions from above.
+    """Ground truth and estimated positions from above; y is drawn enlarged.
 
-    path: `(P, 2 or 3)` the line on the floor, metres. estimates: name -> `(T, 2 or 3)` positions. walls: `(M, 2)` map
-    points at one height, drawn as a floor plan. The corridor is long and narrow: y is drawn enlarged.
+    path: `(P, 2 or 3)` metres. estimates: name -> `(T, 2 or 3)`. walls: `(M, 2)` map points at one height.
     """
     figure, axes = new_figure(size=(8.0, 3.4))
     if walls is not None:
@@ -41,10 +40,7 @@ def figure_5(path: np.ndarray, estimates: dict[str, np.ndarray], walls: np.ndarr
 
 
 def figure_6(frames: np.ndarray, errors: dict[str, np.ndarray], title: str | None = None) -> Figure:
-    """Error of every frame, on a logarithmic axis, with the paper's three sigma.
-
-    frames: `(T,)` numbers. errors: name -> `(T,)` metres.
-    """
+    """Error of every frame, name -> `(T,)` metres, on a logarithmic axis, with the paper's three sigma."""
     figure, axes = new_figure(size=(8.0, 3.4))
     for index, (name, values) in enumerate(errors.items()):
         style = line_style(index) | {"marker": "", "linewidth": 1.2}

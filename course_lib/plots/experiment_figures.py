@@ -37,14 +37,9 @@ def covariance_figure(
         share = 100 * np.arange(1, len(errors) + 1) / len(errors)
         label = f"{name}: {100 * within.mean():.1f} % within three sigma"
         axes.step(errors, share, where="post", **line_style(index) | {"marker": "", "label": label})
-    axes.set(
-        title=title,
-        xlabel="squared error in units of its covariance, e' C$^{-1}$ e / 6",
-        ylabel="frames with at most this error [%]",
-        xscale="log",
-        xlim=(MIN_ERROR, MAX_ERROR),
-        ylim=(0, 101),
-    )
+    axes.set(title=title, xscale="log", xlim=(MIN_ERROR, MAX_ERROR), ylim=(0, 101))
+    axes.set_xlabel("squared error in units of its covariance, e' C$^{-1}$ e / 6")
+    axes.set_ylabel("frames with at most this error [%]")
     figure.legend(loc="outside lower left", fontsize=8)
     return figure
 
@@ -68,10 +63,8 @@ def trouble_figure(results: Mapping[str, dict]) -> Figure:
             beside = [100 * row["undisturbed"] / row["judged"] for _, row in chosen]
             axes.barh(places, back, height, color=f"C{k}", label=f"{100 * share:g} % of frames")
             axes.plot(beside, places, "k|", markersize=7, label="undisturbed" if k == 0 else None)
-        axes.set(
-            yticks=range(len(troubles)), yticklabels=troubles, xlim=(0, 104), xlabel="within the usual error [%]",
-            title=_TITLES.get(name, name),
-        )  # fmt: skip
+        axes.set(yticks=range(len(troubles)), yticklabels=troubles, title=_TITLES.get(name, name))
+        axes.set(xlim=(0, 104), xlabel="within the usual error [%]")
         axes.invert_yaxis()
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)

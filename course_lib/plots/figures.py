@@ -1,9 +1,8 @@
 """One style for every figure that lessons and commands draw, and their pictures as PNG.
 
-Colours are those of Okabe and Ito ("Color Universal Design", 2008), told apart by readers with any common form of
-colour blindness; marker and line style change along with the colour. Depth is coloured with cividis (Nunez, Anderton,
-Renslow, PLOS ONE 13(7), 2018), which runs evenly from dark to light. Figures are drawn with Agg and never through
-matplotlib's global state, so no lesson leaves a window or an open figure behind.
+Colours are those of Okabe and Ito ("Color Universal Design", 2008), for readers with any common form of colour
+blindness; marker and line style change along with the colour. Depth is coloured with cividis (Nunez, Anderton, Renslow,
+PLOS ONE 13(7), 2018). Figures are drawn with Agg and never through matplotlib's global state.
 """
 
 from __future__ import annotations

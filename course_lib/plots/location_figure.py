@@ -21,11 +21,10 @@ _DEVIATIONS = 2  # standard deviations of the ellipse around the place
 def location_figure(
     images: Sequence[np.ndarray], semantic_map: SemanticMap, found: Localization, lines: Sequence[str], title: str
 ) -> Figure:
-    """Both panoramas, one above the other, with numbered boxes, and below them the map.
+    """Draw both panoramas with numbered boxes, and below them the map.
 
-    images: upper and lower, `(H, W, 3)` BGR. lines: one for each of `found.objects`, for the list of numbers. On the
-    map every observation stands where the pose puts it, joined to the landmark that it was taken for; a pose that was
-    rejected is drawn dashed and so called.
+    images: upper and lower, `(H, W, 3)` BGR. lines: one for each of `found.objects`, for the list of numbers. A
+    pose that was rejected is drawn dashed.
     """
     figure, rows = new_figure(3, 1, size=SIZE)
     labels = [one.label for one in found.objects]
@@ -34,13 +33,8 @@ def location_figure(
     for axes, image, side in zip(rows, images, ("upper", "lower"), strict=False):
         panorama(axes, image, f"{side.capitalize()} camera: {len(getattr(found, f'{side}_detections'))} objects")
     if lines:
-        add_list(
-            figure,
-            lines,
-            2,
-            "number, object, matched features, azimuth, range [m], landmark at [m], off by [m]",
-            labels,
-        )
+        title = "number, object, matched features, azimuth, range [m], landmark at [m], off by [m]"
+        add_list(figure, lines, 2, title, labels)
     for axes, image, side in zip(rows, images, ("upper", "lower"), strict=False):
         detections, width = getattr(found, f"{side}_detections"), image.shape[1]
         for one in detections:

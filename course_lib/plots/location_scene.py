@@ -28,9 +28,7 @@ def location_scene(
 ) -> tuple[pyvista.Plotter, str]:
     """Return the scene, and in a sentence what it shows; heights are measured from the upper camera.
 
-    Landmarks are posts, since the map says nothing of heights. From the pose, or the one that was rejected, a ray goes
-    to every object that was placed, an ellipse tells how sure its place is, and a line joins it to the landmark that
-    it was taken for. true_pose: `(3,)` [x, y, theta], metres and radians, where it is known.
+    Landmarks are posts, since the map says nothing of heights. true_pose: `(3,)` [x, y, theta], where it is known.
     """
     heights = [one.position[2] for one in found.objects if one.observation is not None]
     floor = min([-_BELOW, *heights])

@@ -28,28 +28,13 @@ def ambiguity_figure(semantic_map: SemanticMap, found: AmbiguityMap, title: str 
 def draw_ambiguity(axes: Axes, semantic_map: SemanticMap, found: AmbiguityMap, title: str) -> PathCollection:
     """`ambiguity_figure` on axes that are there; returns the squares, for a colour bar."""
     map_axes(axes, semantic_map, title)
-    squares = axes.scatter(
-        *found.places.T,
-        c=1.0 - found.confidence,
-        cmap="cividis_r",
-        vmin=0.0,
-        vmax=1.0,
-        marker="s",
-        s=(found.step * 46) ** 2,
-        zorder=0,
-    )
+    squares = {"marker": "s", "s": (found.step * 46) ** 2, "zorder": 0}
+    squares = axes.scatter(*found.places.T, c=1.0 - found.confidence, cmap="cividis_r", vmin=0.0, vmax=1.0, **squares)
     for i, j, share in found.most_confused(CONFUSIONS_DRAWN):
         if share >= MIN_SHARE:
             (x1, y1), (x2, y2) = semantic_map.positions[[i, j]]
             axes.plot([x1, x2], [y1, y2], "--", color=VERMILION, linewidth=0.8 + 5.0 * min(share, 0.6))
-            axes.text(
-                x1 + LABEL_AT * (x2 - x1),
-                y1 + LABEL_AT * (y2 - y1),
-                f"{100 * share:.0f} %",
-                color=VERMILION,
-                fontsize=9,
-                ha="center",
-                va="center",
-                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},  # readable on dark squares
-            )
+            at = x1 + LABEL_AT * (x2 - x1), y1 + LABEL_AT * (y2 - y1)
+            ground = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5}  # readable on dark squares
+            axes.text(*at, f"{100 * share:.0f} %", color=VERMILION, fontsize=9, ha="center", va="center", bbox=ground)
     return squares

@@ -59,10 +59,9 @@ def draw_box(axes: Axes, box: Sequence[float], width: int, label: str, text: str
 
 
 def draw_numbers(axes: Axes, boxes: Sequence[Sequence[float]], labels: Sequence[str], width: int) -> None:
-    """Number boxes from 1 on, each number on an edge of its box, in its class's colour, where it covers no other.
+    """Number boxes from 1 on, each number on an edge of its box, where it covers no other.
 
-    boxes: (u_min, v_min, u_max, v_max), pixels. width: the panorama's. Call it when the figure is otherwise finished:
-    how many pixels a number covers follows from the layout.
+    Call it when the figure is otherwise finished: how many pixels a number covers follows from the layout.
     """
     axes.figure.draw_without_rendering()
     (left, bottom), (right, top) = axes.transData.transform([(0.0, 1.0), (1.0, 0.0)])
@@ -84,19 +83,10 @@ def add_list(
     """A list below everything else of a figure, a line an object; labels: with their classes' colours and markers."""
     styles = [class_style(label) for label in labels] if labels is not None else [("none", "")] * len(lines)
     handles = [Line2D([], [], linestyle="none", color=colour, marker=marker) for colour, marker in styles]
-    figure.legend(
-        handles,
-        lines,
-        loc="outside lower center",
-        ncols=columns,
-        title=title,
-        prop={"family": ["DejaVu Sans Mono", *OTHER_FONTS], "size": 7.5},
-        title_fontsize=8,
-        handletextpad=0.2,
-        handlelength=None if labels is not None else 0,
-        columnspacing=1.4,
-        frameon=False,
-    )
+    letters = {"prop": {"family": ["DejaVu Sans Mono", *OTHER_FONTS], "size": 7.5}, "title_fontsize": 8}
+    space = {"handletextpad": 0.2, "handlelength": None if labels is not None else 0, "columnspacing": 1.4}
+    place = {"loc": "outside lower center", "ncols": columns, "frameon": False}
+    figure.legend(handles, lines, title=title, **place, **letters, **space)
 
 
 def _spots(box: Sequence[float], wide: float, high: float, width: int) -> list[tuple[float, float]]:
@@ -111,14 +101,6 @@ def _common_area(a: Sequence[float], b: Sequence[float]) -> float:
 
 
 def _write(axes: Axes, u: float, v: float, text: str, colour: str, vertical: str, horizontal: str = "left") -> None:
-    axes.text(
-        u,
-        v,
-        text,
-        color="white",
-        fontsize=_NUMBER_SIZE,
-        verticalalignment=vertical,
-        horizontalalignment=horizontal,
-        bbox={"facecolor": colour, "edgecolor": "none", "pad": 0.8},
-        clip_on=True,
-    )
+    ground = {"facecolor": colour, "edgecolor": "none", "pad": 0.8}
+    style = {"verticalalignment": vertical, "horizontalalignment": horizontal, "bbox": ground, "clip_on": True}
+    axes.text(u, v, text, color="white", fontsize=_NUMBER_SIZE, **style)

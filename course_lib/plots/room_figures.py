@@ -38,10 +38,7 @@ def matches_figure(upper_bgr: np.ndarray, lower_bgr: np.ndarray, localization) -
     width = upper_bgr.shape[1]
     matches = localization.matches
     labels = [localization.upper_detections[match.upper].label for match in matches]
-    lines = [
-        f"{n:2d} {label:12} {match.n_matches:3d}"
-        for n, (label, match) in enumerate(zip(labels, matches, strict=True), start=1)
-    ]
+    lines = [f"{n:2d} {label:12} {matches[n - 1].n_matches:3d}" for n, label in enumerate(labels, start=1)]
     for axes, image, side in zip(rows, (upper_bgr, lower_bgr), ("Upper", "Lower"), strict=True):
         panorama(axes, _faded(image), f"{side} camera: {len(matches)} matched objects, dots are AKAZE features")
     add_list(figure, lines, 4, "number, class, matched features", labels)
@@ -73,13 +70,8 @@ def map_axes(axes: Axes, semantic_map: SemanticMap, title: str) -> None:
 def draw_pose(axes: Axes, x: float, y: float, theta: float, colour: str, label: str | None = None) -> None:
     """A pose as a dot and an arrow half a metre long."""
     axes.plot(x, y, "o", color=colour, markersize=6, label=label, zorder=5)
-    axes.annotate(
-        "",
-        (x + 0.5 * np.cos(theta), y + 0.5 * np.sin(theta)),
-        (x, y),
-        arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.6},
-        zorder=5,
-    )
+    end, arrow = (x + 0.5 * np.cos(theta), y + 0.5 * np.sin(theta)), {"arrowstyle": "-|>", "linewidth": 1.6}
+    axes.annotate("", end, (x, y), arrowprops=arrow | {"color": colour}, zorder=5)
 
 
 def pose_figure(semantic_map: SemanticMap, result, title: str) -> Figure:
@@ -125,13 +117,10 @@ def _draw_result(axes: Axes, semantic_map: SemanticMap, result) -> None:
         ray = np.stack([(found.pose.x, found.pose.y), points[observation]])
         axes.plot(*ray.T, color="0.75", linewidth=0.8, zorder=1, label=None if named else "object used")
         # From where the object was measured to the landmark it was taken for: two that were swapped cross.
-        axes.plot(
-            *zip(points[observation], semantic_map.positions[landmark], strict=True),
-            color=GREEN if right else VERMILION,
-            linestyle="-" if right else "--",
-            linewidth=1.1,
-            label=None if right in named else f"taken for, {'right' if right else 'wrong'}ly",
-        )
+        ends = np.stack([points[observation], semantic_map.positions[landmark]]).T
+        label = None if right in named else f"taken for, {'right' if right else 'wrong'}ly"
+        colour, line = (GREEN, "-") if right else (VERMILION, "--")
+        axes.plot(*ends, color=colour, linestyle=line, linewidth=1.1, label=label)
         named.add(right)
     for point, observation in zip(points, found.observations, strict=True):
         axes.plot(*point, "x", color=class_style(observation.label)[0], markersize=7, markeredgewidth=1.6)

@@ -1,21 +1,22 @@
 """One offline HTML page of a PyVista scene: to be turned with the mouse, without a kernel, a network or a program.
 
-The same as PyVista's `plotter.export_html`: the viewer vtk.js and the scene in one file, both from trame-vtk. But
-PyVista starts a web server for it, which trame-vtk's part that writes down a scene does not need. The page gets a
-title, words for those who cannot see it and a line that says how to turn it; its viewer is packed, and the browser
-unpacks it. The same scene gives the same bytes, and the page forbids itself the network.
+PyVista's `plotter.export_html` does the same, but starts a web server for it. This page has a title, words for those
+who cannot see it, and a line that says how to turn it. The browser unpacks the viewer. The same scene gives the same
+bytes, and the page forbids itself the network.
 """
 
 from __future__ import annotations
 
 import base64
 import html
+import importlib
 import io
 import json
 import re
 import zipfile
 import zlib
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -95,9 +96,7 @@ def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") 
     """
     title, alt, legend = (" ".join(text.split()) for text in (title, alt, legend))
     if not title or len(alt.split()) < 4:
-        raise SceneError(
-            f"a scene has a title, and an alternative text that says what it shows; got {title!r}, {alt!r}"
-        )
+        raise SceneError(f"a scene has a title, and a text that says what it shows; got {title!r}, {alt!r}")
     if not plotter.actors:
         raise SceneError("the scene is empty: add something with plotter.add_mesh(...)")
     script = _SCRIPT.search(_viewer())
@@ -121,19 +120,19 @@ def same_scene(page: str, other: str) -> bool:
 
 def _viewer() -> str:
     """The page of the viewer, without a scene, as trame-vtk ships it."""
+    return _trame("tools.vtksz2html").HTML_VIEWER_PATH.read_text(encoding="utf-8")
+
+
+def _trame(module: str) -> ModuleType:
     try:
-        from trame_vtk.tools.vtksz2html import HTML_VIEWER_PATH
+        return importlib.import_module(f"trame_vtk.{module}")
     except ImportError as error:
         raise ScenePageError(f"PyVista lacks what writes pages ({error}): {CURE}") from error
-    return HTML_VIEWER_PATH.read_text(encoding="utf-8")
 
 
 def _scene_of(plotter: pyvista.Plotter) -> dict:
     """The parts of a plotter's scene and the arrays in them, as the viewer reads them."""
-    try:
-        from trame_vtk.modules.vtk import serializers
-    except ImportError as error:
-        raise ScenePageError(f"PyVista lacks what writes pages ({error}): {CURE}") from error
+    serializers = _trame("modules.vtk.serializers")
     plotter.render()
     window = plotter.render_window
     camera = window.GetRenderers().GetFirstRenderer().GetActiveCamera()
@@ -166,15 +165,11 @@ def _archive(scene: dict) -> str:
     return base64.b64encode(file.getvalue()).decode("ascii")
 
 
-def _index(data: str) -> dict:
-    with zipfile.ZipFile(io.BytesIO(base64.b64decode(data))) as archive:
-        return json.loads(archive.read("index.json"))
-
-
 def _scene(page: str) -> dict:
     """What a page shows: its parts, and its arrays in their order, for their names depend on the last digit."""
     found = _DATA.search(page)
-    index = _index(found[1] if found else "")
+    with zipfile.ZipFile(io.BytesIO(base64.b64decode(found[1] if found else ""))) as archive:
+        index = json.loads(archive.read("index.json"))
     text = json.dumps(index["scene"])
     for number, name in enumerate(index["hashes"]):
         text = text.replace(name, f"array {number}")

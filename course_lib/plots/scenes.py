@@ -9,8 +9,8 @@ Every function returns a `pyvista.PolyData` in the world frame (metres, z up), t
 
 `scene_page.write_page` makes one HTML file of a plotter, a lesson's `show_scene` shows it. What the page's viewer
 (vtk.js) does not draw is not used here: labels on the screen, scalar bars and lines with a width that follows the zoom.
-PyVista is imported when a scene is made: that takes a second, and most commands draw none. `SceneError` is raised for
-wrong shapes, for values that are not finite, and for lengths that are not positive.
+PyVista is imported when a scene is made, because that takes a second. Wrong shapes and values that are not finite raise
+`ValueError`.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _LETTERS = (
 
 
 class SceneError(ValueError):
-    """Something that cannot be drawn in a scene: a wrong shape, values that are not finite, no such covariance."""
+    """Something that cannot be drawn in a scene: a wrong shape, or values that are not finite."""
 
 
 def new_plotter(
@@ -54,15 +54,12 @@ def new_plotter(
     whole scene is seen from a corner above. size: pixels (width, height) of its picture.
     Raises `OpenGLError` where nothing can be drawn.
     """
-    if (viewpoint is None) != (focus is None):
-        raise SceneError("new_plotter needs both viewpoint and focus, or neither of them")
     pyvista = _pyvista()
     theme = pyvista.themes.DocumentTheme()  # white, whatever the reader's own theme is
     theme.cmap, theme.show_scalar_bar = "cividis", False  # the colours of the figures; a page cannot show the bar
     theme.lighting_params.ambient, theme.lighting_params.diffuse = 0.35, 0.65  # no wall is black, no floor white
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size), theme=theme)
     if viewpoint is not None:
-        viewpoint, focus = _finite(viewpoint, "viewpoint", (3,)), _finite(focus, "focus", (3,))
         plotter.camera_position = [tuple(viewpoint), tuple(focus), (0.0, 0.0, 1.0)]
     return plotter
 
@@ -72,8 +69,6 @@ def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = 
 
     Where the map has more, surfaces are merged (quadric decimation): fit to be looked at, not to be measured in.
     """
-    if faces < 100:
-        raise SceneError(f"faces must be at least 100, or no map is left; got {faces}")
     from course_lib.rendering.simplification import simplified
 
     fewer = simplified(scene_map)
@@ -82,9 +77,7 @@ def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = 
         mesh = mesh.clip(normal="z", origin=(0.0, 0.0, float(below))).triangulate()
         if mesh.n_cells == 0:
             low, high = scene_map.bounds[:, 2]
-            raise SceneError(
-                f"nothing of the map lies below {below:g} m: its heights go from {low:.2f} to {high:.2f} m"
-            )
+            raise SceneError(f"nothing of the map lies below {below:g} m: heights go from {low:.2f} to {high:.2f} m")
     if mesh.n_cells > faces:
         mesh = mesh.clean().decimate(1 - faces / mesh.n_cells)
     mesh.clear_data()
@@ -98,15 +91,13 @@ def frustum(camera: DepthCamera, state: np.ndarray, far: float | None = None) ->
     Edges are those of the image, half a pixel outside the outermost pixel centres.
     """
     far = camera.far if far is None else float(far)
-    if not (np.isfinite(far) and far > camera.near):
-        raise SceneError(f"far must lie beyond the near plane at {camera.near:g} m; got {far}")
     u = np.array([-0.5, camera.width - 0.5, camera.width - 0.5, -0.5])
     v = np.array([-0.5, -0.5, camera.height - 0.5, camera.height - 0.5])
     corners = np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones(4)], axis=-1)
     points = np.vstack([np.zeros(3), camera.near * corners, far * corners])
     edges = [(0, 5 + k) for k in range(4)]
     edges += [(first + k, first + (k + 1) % 4) for first in (1, 5) for k in range(4)]
-    return _lines(_placed(points, optical_pose(_one_state(state))), edges)
+    return _lines(_placed(points, optical_pose(state)), edges)
 
 
 def body_axes(state: np.ndarray, length: float = 0.5) -> pyvista.PolyData:
@@ -114,7 +105,7 @@ def body_axes(state: np.ndarray, length: float = 0.5) -> pyvista.PolyData:
 
     state: `(6,)`, metres and radians; length: metres. Colours are point data: draw with `add_mesh(axes, rgb=True)`.
     """
-    matrix, length = pose_matrix(_one_state(state)), _positive(length, "length")
+    matrix = pose_matrix(as_states(state))
     points, edges, colours = [], [], []
     for k, axis in enumerate(np.eye(3)):
         # The letter stands upright at the axis' end, for one who looks along x, to whose right -y lies.
@@ -137,14 +128,12 @@ def arrows(states: np.ndarray, length: float = 0.3, weights: np.ndarray | None =
     states: `(N, 6)`, metres and radians, the position at the arrow's middle; length: metres. weights: `(N,)`, they
     become the point data "weight" (with `add_mesh(..., cmap="cividis")` the colour).
     """
-    states = np.atleast_2d(_states(states))
-    if states.ndim != 2 or len(states) == 0:
-        raise SceneError(f"states must have shape (N, 6), N at least 1; got {states.shape}")
+    states = np.atleast_2d(as_states(states))
     # Tip, the two ends of the tail, the notch between them, the top of the fin.
     dart = np.array([[0.6, 0, 0], [-0.4, 0.3, 0], [-0.4, -0.3, 0], [-0.2, 0, 0], [-0.4, 0, 0.2]])
     triangles = np.array([[0, 1, 3], [0, 3, 2], [0, 3, 4]])
     matrices = pose_matrix(states)
-    placed = np.einsum("nij,kj->nki", matrices[:, :3, :3], _positive(length, "length") * dart)
+    placed = np.einsum("nij,kj->nki", matrices[:, :3, :3], length * dart)
     placed += matrices[:, None, :3, 3]
     faces = triangles + len(dart) * np.arange(len(states))[:, None, None]
     mesh = _polydata(placed.reshape(-1, 3), faces.reshape(-1, 3))
@@ -160,25 +149,17 @@ def ellipsoid(mean: np.ndarray, covariance: np.ndarray, sigmas: float = 3.0) -> 
     """
     covariance = _finite(covariance, "covariance")
     if covariance.shape[-2:] != (3, 3):
-        raise SceneError(
-            f"covariance must have shape (..., 3, 3), of x, y, z in square metres; got {covariance.shape}. "
-            "Of a state's: covariance[:3, :3]"
-        )
+        raise SceneError(f"covariance must have shape (..., 3, 3); got {covariance.shape}. Of a state's: [:3, :3]")
     covariance = covariance.reshape(-1, 3, 3)
     mean = _finite(mean, "mean").reshape(-1, 3)
-    if len(mean) != len(covariance):
-        raise SceneError(f"there must be as many means as covariances; got {len(mean)} and {len(covariance)}")
     variances, axes = np.linalg.eigh(covariance)
-    largest = np.abs(variances).max(axis=-1, keepdims=True)
-    if (np.abs(covariance - covariance.swapaxes(-1, -2)) > 1e-6 * largest[..., None]).any():
-        raise SceneError("a covariance is symmetric; this one is not")
-    if (variances < -1e-6 * largest).any():
+    if (variances < -1e-6 * np.abs(variances).max(axis=-1, keepdims=True)).any():
         raise SceneError(f"a covariance has no negative variance; got {variances.min():.3g} m^2 along one of its axes")
     # An eigenvector's sign is anybody's choice; the ellipsoid is the same, and so, this way, are its points.
     largest_entry = np.take_along_axis(axes, np.abs(axes).argmax(axis=-2, keepdims=True), axis=-2)
     axes = axes * np.where(largest_entry < 0, -1.0, 1.0)
     ball = _pyvista().Icosphere(radius=1.0, nsub=2)
-    half_axes = _positive(sigmas, "sigmas") * axes * np.sqrt(np.maximum(variances, 0))[:, None, :]
+    half_axes = sigmas * axes * np.sqrt(np.maximum(variances, 0))[:, None, :]
     points = np.einsum("nij,kj->nki", half_axes, np.asarray(ball.points)) + mean[:, None]
     faces = ball.regular_faces + ball.n_points * np.arange(len(mean))[:, None, None]
     return _polydata(points.reshape(-1, 3), faces.reshape(-1, 3))
@@ -190,16 +171,11 @@ def depth_surface(
     """A depth image as a surface in the world: neighbouring pixels joined, with the point data "depth" in metres.
 
     depth: `(H, W)` metres, NaN or infinite where nothing was hit. state: `(6,)` of the camera. every: takes each
-    so-many-th row and column. jump: pixels are not joined where their depths differ by more than this share of the
-    smaller one: there a near thing stands before a far one. With `add_mesh(..., style="points")` it is a cloud.
+    so-many-th row and column. jump: pixels whose depths differ by more than this share are not joined.
     """
     depth = np.asarray(depth, dtype=np.float64)
     if depth.shape != camera.shape:
-        raise SceneError(
-            f"the depth image must have the camera's shape {camera.shape} (height, width); got {depth.shape}"
-        )
-    if every < 1:
-        raise SceneError(f"every must be a whole number, at least 1; got {every}")
+        raise SceneError(f"the depth image must have the camera's shape {camera.shape}; got {depth.shape}")
     points = camera.points(np.where(np.isfinite(depth), depth, 0.0))[::every, ::every]
     z = np.where(np.isfinite(depth) & (depth > 0), depth, np.inf)[::every, ::every]
     index = np.arange(z.size).reshape(z.shape)
@@ -207,11 +183,9 @@ def depth_surface(
     triangles = [np.stack([corners[a], corners[b], corners[c]], axis=-1).reshape(-1, 3) for a, b, c in _HALVES]
     triangles = np.concatenate(triangles)
     least, greatest = z.ravel()[triangles].min(axis=1), z.ravel()[triangles].max(axis=1)
-    triangles = triangles[np.isfinite(greatest) & (greatest <= (1 + _positive(jump, "jump")) * np.minimum(least, 1e9))]
-    if len(triangles) == 0:
-        raise SceneError("no pixel of this depth image has a neighbour at about its depth: nothing to draw")
+    triangles = triangles[np.isfinite(greatest) & (greatest <= (1 + jump) * np.minimum(least, 1e9))]
     used, triangles = np.unique(triangles, return_inverse=True)
-    placed = _placed(points.reshape(-1, 3)[used], optical_pose(_one_state(state)))
+    placed = _placed(points.reshape(-1, 3)[used], optical_pose(state))
     mesh = _polydata(placed, triangles.reshape(-1, 3))
     mesh.point_data["depth"] = z.ravel()[used].astype(np.float32)
     return mesh
@@ -230,16 +204,11 @@ def path(points: np.ndarray, dashed: bool = False) -> pyvista.PolyData:
 
 def post(foot: np.ndarray, height: float, radius: float = 0.03) -> pyvista.PolyData:
     """A thin upright post on a point `(3,)`: something of which the place is known, but not the shape. Metres."""
-    foot = _finite(foot, "foot", (3,))
-    top = foot + np.array([0.0, 0.0, _positive(height, "height")])
-    return _tubes(np.stack([foot, top]), [(0, 1)], _positive(radius, "radius"))
+    return _tubes(np.stack([foot, foot + np.array([0.0, 0.0, height])]), [(0, 1)], radius)
 
 
 def text(words: str, at: np.ndarray, height: float = 0.2) -> pyvista.PolyData:
     """Words in ASCII as letters that lie flat, their foot towards -y, from the point `(3,)` on; capital height [m]."""
-    at = _finite(at, "at", (3,))
-    if not words.strip():
-        raise SceneError("text needs words; got none")
     pyvista = _pyvista()
     from vtkmodules.vtkRenderingFreeType import vtkVectorText
 
@@ -248,7 +217,7 @@ def text(words: str, at: np.ndarray, height: float = 0.2) -> pyvista.PolyData:
     source.Update()
     letters = pyvista.PolyData(source.GetOutput())
     points = np.asarray(letters.points, float) - [letters.bounds[0], 0.0, 0.0]
-    letters.points = (points * _positive(height, "height") + at).astype(np.float32)
+    letters.points = (points * height + np.asarray(at)).astype(np.float32)
     letters.clear_data()
     return letters
 
@@ -284,20 +253,6 @@ def _polydata(vertices: np.ndarray, faces: np.ndarray) -> pyvista.PolyData:
     return _pyvista().PolyData.from_regular_faces(np.asarray(vertices, dtype=np.float32), np.asarray(faces, np.int64))
 
 
-def _one_state(state: np.ndarray) -> np.ndarray:
-    state = _states(state)
-    if state.shape != (6,):
-        raise SceneError(f"state must have shape (6,) [x, y, z, roll, pitch, yaw]; got {state.shape}")
-    return state
-
-
-def _states(states: np.ndarray) -> np.ndarray:
-    try:
-        return as_states(states)
-    except ValueError as error:
-        raise SceneError(str(error)) from error
-
-
 def _finite(values: np.ndarray, name: str, shape: tuple[int, ...] | None = None) -> np.ndarray:
     array = np.asarray(values, dtype=np.float64)
     if shape is not None and array.shape != shape:
@@ -305,12 +260,6 @@ def _finite(values: np.ndarray, name: str, shape: tuple[int, ...] | None = None)
     if array.size == 0 or not np.isfinite(array).all():
         raise SceneError(f"{name} must be numbers, all of them finite; got {'NaN or inf' if array.size else 'none'}")
     return array
-
-
-def _positive(value: float, name: str) -> float:
-    if not (np.isfinite(value) and value > 0):
-        raise SceneError(f"{name} must be positive and finite; got {value}")
-    return float(value)
 
 
 def _pyvista():

@@ -35,8 +35,7 @@ def track_figure(
     """The path over a cut through the map, and the raw score of every frame.
 
     estimated, true: positions `(T, 3)` in the map's own world, metres. scores: `(T,)`, NaN where nothing was measured.
-    up: the axis that points up, "z" and the like; None where nothing is known: the map is then cut across the axis
-    along which the camera moved least.
+    up: the axis that points up; None: unknown, and the map is cut across the axis along which the camera moved least.
     """
     figure, (plan, score) = new_figure(1, 2, size=(11.0, 4.4))
     paths = estimated if true is None else np.concatenate([estimated, true])

@@ -33,10 +33,8 @@ def track_scene(
 ) -> tuple[pyvista.Plotter, str]:
     """Return the scene, and in a sentence what it shows.
 
-    up: the axis of map and poses that points up, "z" and the like; the map is cut open above the camera. None where
-    nothing is known: up is then what the camera's images say in the mean, and the map is not cut but drawn clear.
-    near, far: metres between which pixels are measured. The worst frames are those farthest from the truth, where it is
-    known, else those of the lowest score; their points are drawn from the estimated poses.
+    up: the axis of map and poses that points up; the map is cut open above the camera. None: unknown, up is then what
+    the images say in the mean, and the map is drawn clear. near, far: metres between which pixels are measured.
     """
     to_scene = _to_scene(scene_map, up, result.camera_to_world)
     estimated = to_scene @ result.camera_to_world

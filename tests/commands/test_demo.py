@@ -148,6 +148,8 @@ def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypa
         ("room --views 2", "--views 2 needs --association consistent"),
         ("room --data elsewhere --seed 7", "give one of the two"),
         ("room --seed 7 --detector nowhere", "no detector folder nowhere"),
+        ("room --seed 7 --association psychic", "association must be one of"),
+        ("room --seed 7 --score-threshold 2", "--score-threshold"),
         ("rooms --views 0", "--views must be at least 1"),
         ("rooms --tilts 0 11", "--tilts must be between 0 and 10 degrees; got 11"),
         ("walk --methods magic", "--methods must name annealed, paper, floor"),

@@ -4,7 +4,7 @@ import argparse
 
 import pytest
 
-from course_lib.commands.detector_options import add_detector_arguments, chosen_detector
+from course_lib.commands.arguments import add_detector_arguments, chosen_detector
 from course_lib.paths import data_path
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 

@@ -48,9 +48,3 @@ def test_only_where_a_rig_can_stand_is_asked():
     distances = np.linalg.norm(found.places[:, None] - SYMMETRIC.positions, axis=-1)
     assert distances.min() > 0.2
     assert (np.abs(found.places) < 3).all()
-
-
-def test_a_step_or_a_number_of_draws_that_is_none():
-    for step, draws in ((0.0, 1), (1.0, 0)):
-        with pytest.raises(ValueError, match="step must be positive"):
-            ambiguity_map(SYMMETRIC, np.random.default_rng(0), step, draws)
