@@ -19,7 +19,7 @@ one with the best F1 on the validation rooms."""
 
 VOTE_IOU = 0.6
 """Intersection over union from which a box votes on another's place. On the validation rooms 0.5 to 0.8 do about as
-well (`python -m tools.score_detector --voting`): centres miss exact ones by 2.96 rows, without votes by 3.22."""
+well (data/detector/README.md): centres miss exact ones by 2.96 rows, without votes by 3.22."""
 
 VOTE_SCORE = 0.1
 """Smallest score of a box that votes. On these rooms 0.05 to 0.3 do about as well."""

@@ -1,7 +1,5 @@
 """Training pictures: what counts as an object, and boxes that stay on their objects however the picture is changed."""
 
-import json
-
 import numpy as np
 import pytest
 
@@ -17,7 +15,7 @@ def painted(box):
     """A dark panorama with one bright object that fills `box`, which may cross the seam."""
     image = np.full((HEIGHT, WIDTH, 3), 20, np.uint8)
     image[int(box[1]) : int(box[3]), np.arange(int(box[0]), int(box[2])) % WIDTH] = 230
-    return LabelledPanorama("toy", image, np.array([1]), np.array([box], np.float32), np.array([False]))
+    return LabelledPanorama(image, np.array([1]), np.array([box], np.float32), np.array([False]))
 
 
 @pytest.mark.parametrize("box", [[40, 50, 80, 90], [240, 60, 280, 100], [0, 40, 30, 80]])
@@ -56,12 +54,8 @@ def test_one_seed_gives_one_sample_and_another_seed_another():
     assert not np.array_equal(first.image, third.image)
 
 
-def entry(objects, width=1280):
-    return {"file": "a.jpg", "width": width, "height": width // 2, "objects": objects}
-
-
 def thing(box, fraction=1.0, label="chair"):
-    return {"label": label, "visible_box": box, "visible_fraction": fraction}
+    return {"object": 0, "label": label, "visible_box": box, "unoccluded_box": box, "visible_fraction": fraction}
 
 
 def test_small_or_hidden_objects_are_ignored_unknown_labels_left_out_and_boxes_scaled():
@@ -70,9 +64,8 @@ def test_small_or_hidden_objects_are_ignored_unknown_labels_left_out_and_boxes_s
         thing([100, 100, 150, 129]),
         thing([200, 100, 250, 180], fraction=0.49),
         thing([300, 100, 350, 180], label="lamp"),
-        thing(None, fraction=0.0),
     ]
-    panorama = labelled_panorama(entry(objects), np.zeros((640, 1280, 3), np.uint8), NAMES, 1024)
+    panorama = labelled_panorama({"objects": objects}, np.zeros((640, 1280, 3), np.uint8), NAMES, 1024)
     assert panorama.ignored.tolist() == [False, True, True]
     assert panorama.image.shape == (512, 1024, 3)
     np.testing.assert_allclose(panorama.boxes[0], [80, 160, 1040, 240])
@@ -81,32 +74,13 @@ def test_small_or_hidden_objects_are_ignored_unknown_labels_left_out_and_boxes_s
 def test_the_parts_of_several_processes_make_up_the_folders(tmp_path):
     folders = [write_toy_folder(tmp_path / name, 5, width=64) for name in "ab"]
     parts = [read_panoramas(folders, NAMES, 64, (k, 2)) for k in (0, 1)]
-    assert sorted(p.file for part in parts for p in part) == sorted(2 * [f"{i:06d}.jpg" for i in range(5)])
+    assert sorted(map(len, parts)) == [4, 6]
+    assert len({panorama.image.tobytes() for part in parts for panorama in part}) == 5, (
+        "both folders hold the same five"
+    )
 
 
-@pytest.mark.parametrize(
-    ("content", "said"),
-    [
-        ({"version": 2, "images": []}, "version"),
-        ({"version": 1, "images": [5]}, "image 0 has no file"),
-        ({"version": 1, "images": []}, "no image that is there"),
-        (5, "version"),
-    ],
-)
-def test_a_folder_that_cannot_be_used_is_named(tmp_path, content, said):
-    (tmp_path / "boxes.json").write_text(json.dumps(content))
-    with pytest.raises(TrainingDataError, match=said):
+def test_a_folder_without_an_image_is_named(tmp_path):
+    (tmp_path / "boxes.json").write_text('{"version": 1, "images": []}')
+    with pytest.raises(TrainingDataError, match="no image that is there"):
         read_panoramas([tmp_path], NAMES)
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        (entry([]), r"64 x 32, boxes\.json says 1280 x 640"),
-        (entry([thing([50, 100, 50, 130])], 64), "a box that is none"),
-        *((entry([one], 64), "missing or of the wrong kind") for one in ({}, 5, thing(5), thing([1, 2, 3]))),
-    ],
-)
-def test_an_image_that_is_not_as_its_entry_says_is_named(given, said):
-    with pytest.raises(TrainingDataError, match=said):
-        labelled_panorama(given, np.zeros((32, 64, 3), np.uint8), NAMES, 64)
