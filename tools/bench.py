@@ -2,8 +2,6 @@
 
 The tools it is compared with (environment-bench.txt: Open3D with Embree) are installed by the first call into .bench, a
 folder of their own. Times are of this machine at this hour; the ratios are what to compare. Other programs should rest.
-`--lessons` measures something else instead: what a student's kernel costs in each lesson (lesson_costs.py); `--renders`
-memory over very many renders, and whether the same pose gives the same image each time (benchmarks/renders.py).
 """
 
 from __future__ import annotations

@@ -34,9 +34,8 @@ class DetectorScore(NamedTuple):
 def score_detector(detector, labelled: Iterable[tuple[np.ndarray, Sequence[TrueObject]]]) -> DetectorScore:
     """Run a detector over images and count.
 
-    detector: anything with `detect(image_bgr)`. labelled: (panorama, all that can be seen on it); objects that do
-    not count are ignored, neither hit nor false alarm. Raises `DetectionScoreError` when there is no object to find.
-    Source: paper 2, section 2.2.
+    labelled: (panorama, all that can be seen on it); objects that do not count are neither hit nor false alarm.
+    Raises `DetectionScoreError` when there is no object to find. Source: paper 2, section 2.2.
     """
     matchings = [match_image(detector.detect(image), things, image.shape[1]) for image, things in labelled]
     n_objects, found = objects_in(matchings), sum(int(matching.correct.sum()) for matching in matchings)

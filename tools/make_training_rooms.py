@@ -40,13 +40,8 @@ def run(arguments: argparse.Namespace) -> int:
     require_output_folder(arguments.out)
     from course_lib.simulation.room.training_images import make_room_images
 
-    images = make_room_images(
-        arguments.out,
-        arguments.first_room,
-        arguments.rooms,
-        arguments.images_per_room,
-        progress_bar("rooms", "room"),
-    )
+    asked = arguments.first_room, arguments.rooms, arguments.images_per_room
+    images = make_room_images(arguments.out, *asked, progress_bar("rooms", "room"))
     print(f"{arguments.out}: {len(images)} pictures of {len({image['room_seed'] for image in images})} rooms")
     return 0
 

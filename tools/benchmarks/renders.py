@@ -1,8 +1,4 @@
-"""Is memory flat over many renders, and does the same pose give the same image to the last bit, every time?
-
-`.venv/bin/python -m tools.bench --renders` runs this in a process of its own for each backend, so that one's memory
-is not another's: prints one JSON object.
-"""
+"""Is memory flat over many renders, and does the same pose give the same image to the last bit, every time?"""
 
 from __future__ import annotations
 
@@ -26,10 +22,7 @@ QUARTER = 4  # growth: from the least of the first of so many parts to the least
 
 
 def measure(backend: str, n_renders: int, n_renderers: int) -> dict[str, object]:
-    """What `bench --renders` tells of a backend, or why it is not here: n renders of one renderer, then n renderers.
-
-    A call draws a cloud of states about a true pose of the recording; the clouds are drawn in turn.
-    """
+    """What `bench --renders` tells of a backend, or why it is not here: n renders of one renderer, then n renderers."""
     scene = corridor()
     frames = np.linspace(0, len(scene.sequence) - 1, CLOUDS).astype(int)
     true = state_from_optical_pose(scene.sequence.camera_to_world[frames])

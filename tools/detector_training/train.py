@@ -74,7 +74,6 @@ def train(
 
     Checkpoints are written between epochs; `resume` goes on from the one in `output`, `initial_weights` starts from a
     `.weights` file. `progress(batches, count)` may draw a bar.
-    Raises `DetectorError`, `TrainingDataError`, `CheckpointError`.
     """
     plan = plan or TrainingPlan()
     check_names(class_count(read_cfg(cfg)), read_names(names_file), names_file)
