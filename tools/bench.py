@@ -2,8 +2,6 @@
 
 The tools it is compared with (environment-bench.txt: Open3D with Embree) are installed by the first call into .bench, a
 folder of their own. Times are of this machine at this hour; the ratios are what to compare. Other programs should rest.
-`--lessons` measures something else instead: what a student's kernel costs in each lesson (lesson_costs.py); `--renders`
-memory over very many renders, and whether the same pose gives the same image each time (benchmarks/renders.py).
 """
 
 from __future__ import annotations
@@ -32,11 +30,11 @@ MIN_RENDERS = 20  # fewer leave nothing to compare once memory has settled
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `bench`."""
     add = parser.add_argument
-    add("--quick", action="store_true", help="fewer repeats and no figure: a few minutes")
+    add("--quick", action="store_true", help="fewer repeats: a few minutes")
     add("--no-tools", action="store_true", help="install nothing: only tools that are there already")
     what = "measure on this recording, too, in six degrees of freedom: depth images, poses.txt and its map, map.ply"
     add("--recording", type=Path, metavar="FOLDER", help=what)
-    what = "where bench.json and bench.png go (default: results/bench)"
+    what = "where bench.json goes (default: results/bench)"
     add("--out", type=Path, default=Path("results/bench"), metavar="FOLDER", help=what)
     add("--json", action="store_true", help="print one JSON object instead of the table")
     what = "instead: memory and processor time of a student in these lessons and projects (default: all)"
@@ -66,7 +64,7 @@ def run_tools(arguments: argparse.Namespace) -> int:
     if why:
         print(f"The tools to compare with could not be installed, and are left out: {why}", file=sys.stderr)
     with run_folder(arguments.out, "bench") as out:
-        words = ["--quick"] if arguments.quick else ["--figure", str(out / "bench.png")]
+        words = ["--quick"] if arguments.quick else []
         words += ["--recording", str(arguments.recording.resolve())] if arguments.recording else []
         result = measured("measure", *words)
         print(json.dumps(result) if arguments.json else bench_table(result), flush=True)

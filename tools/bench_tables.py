@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-SYSTEM_BYTES = 2**30
-"""Left to the operating system."""
-PATIENCE_S = 120.0
-"""How long a class waits for its results when everybody runs all the cells at the same moment."""
+SYSTEM_BYTES = 2**30  # left to the operating system
+PATIENCE_S = 120.0  # that a class waits for its results when everybody runs all the cells at the same moment
 
 
 def bench_table(result: dict) -> str:
@@ -72,11 +70,7 @@ def renders_heading() -> str:
 
 
 def renders_rows(backend: str, told: dict) -> str:
-    """Memory (MB) before the first call, settled, the greatest from then on, at the end; calls of another image.
-
-    Settled: after a tenth of the calls, 20 at least. Grew: from the least of the first quarter since then to the least
-    of the last.
-    """
+    """Memory (MB) before the first call, settled, the greatest from then on, at the end; calls of another image."""
     if "missing" in told:
         return f"{backend:42}  not here: {told['missing'][:90]}"
     lines = []
@@ -110,9 +104,7 @@ def lessons_rows(result: dict) -> list[str]:
 def capacity(result: dict, memory_gib: float, processors: float) -> tuple[int, int]:
     """Students that fit on one server, by memory and by processors.
 
-    By memory: each has one kernel open, in the lesson that takes most, and a server of JupyterLab; nothing is shared
-    but the files of libraries, once. By processors: everybody runs all cells of the longest lesson at the same moment,
-    and has the results within `PATIENCE_S`.
+    Of memory nothing is shared but the files of libraries, once; what else is assumed `capacity_sentence` tells.
     """
     lessons, server = result["lessons"], result["server"]
 

@@ -1,33 +1,22 @@
-"""Precision and recall of detectors on panoramas whose objects are known; the choice of a threshold, and of votes."""
+"""Precision and recall of detectors on panoramas whose objects are known, and the choice of a threshold."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from course_lib.experiments.detection_scores import DetectionScoreError, Matching, match_image
-from course_lib.experiments.room import counts_as_object
-from course_lib.spherical_stereo.detection import detector as detector_module
-from course_lib.spherical_stereo.detection import suppression
-from course_lib.spherical_stereo.detection.detected_object import box_centre
 from course_lib.spherical_stereo.recording import StereoRecording, TrueObject
-
-VOTE_IOUS, VOTE_SCORES = (0.5, 0.6, 0.7, 0.8), (0.05, 0.1, 0.3)
-"""What is tried for the two constants of `suppression.vote_on_boxes`."""
-NO_VOTES = (1.0, 1.0)
-"""As constants: no box votes but the one that stays."""
 
 
 class DetectorScore(NamedTuple):
     """How well a detector did, at IoU 0.5."""
 
     images: int
-    objects: int
-    """To be found: half visible, 30 pixels high at a width of 1280."""
+    objects: int  # to be found: half visible, 30 pixels high at a width of 1280
     found: int
     false_alarms: int
 
@@ -45,74 +34,12 @@ class DetectorScore(NamedTuple):
 def score_detector(detector, labelled: Iterable[tuple[np.ndarray, Sequence[TrueObject]]]) -> DetectorScore:
     """Run a detector over images and count.
 
-    detector: anything with `detect(image_bgr)`. labelled: (panorama, all that can be seen on it); objects that do
-    not count are ignored, neither hit nor false alarm. Raises `DetectionScoreError` when there is no object to find.
-    Source: paper 2, section 2.2.
+    labelled: (panorama, all that can be seen on it); objects that do not count are neither hit nor false alarm.
+    Raises `DetectionScoreError` when there is no object to find. Source: paper 2, section 2.2.
     """
-    return _count(match_image(detector.detect(image), things, image.shape[1]) for image, things in labelled)
-
-
-class VotingScore(NamedTuple):
-    """A detector with one choice of the voters' constants."""
-
-    vote_iou: float
-    vote_score: float
-    score: DetectorScore
-    jitter_u: float
-    """Root mean square of the columns by which centres of found boxes miss those of the exact ones, pixels."""
-    jitter_v: float
-    """The same for rows, which distances depend on."""
-
-
-def compare_voting(detector, labelled: Iterable[tuple[np.ndarray, Sequence[TrueObject]]]) -> list[VotingScore]:
-    """Jitter of box centres, precision and recall for every choice of `VOTE_IOU` and `VOTE_SCORE`, and without votes.
-
-    labelled: panoramas of validation rooms, with all that can be seen on them. An exact box is the visible one; the
-    jitter is over the objects that count and were found. Source: paper 2, section 2.2 (silent about it).
-    """
-    labelled = list(labelled)
-    choices = [NO_VOTES, *((iou, score) for iou in VOTE_IOUS for score in VOTE_SCORES)]
-    found = []
-    for iou, score in choices:
-        with _voting(iou, score):
-            detections = [detector.detect(image) for image, _ in labelled]
-        pairs = list(zip(detections, labelled, strict=True))
-        matchings = [match_image(many, things, image.shape[1]) for many, (image, things) in pairs]
-        missed = np.concatenate(
-            [
-                centre_errors(matching, many, things, image.shape[1])
-                for matching, (many, (image, things)) in zip(matchings, pairs, strict=True)
-            ]
-        )
-        jitter = np.sqrt((missed**2).mean(axis=0)) if len(missed) else (np.nan, np.nan)
-        found.append(VotingScore(iou, score, _count(matchings), *map(float, jitter)))
-    return found
-
-
-def centre_errors(matching: Matching, detections: Sequence, objects: Sequence[TrueObject], width: int) -> np.ndarray:
-    """By how much the boxes of found objects miss the exact ones: `(n, 2)` columns and rows, centre to centre."""
-    wanted = [thing for thing in objects if counts_as_object(thing, width)]
-    errors = [
-        np.subtract(box_centre(detections[i].box), box_centre(wanted[k].visible_box))
-        for i, k in zip(matching.detection_index, matching.object_index, strict=True)
-        if k >= 0
-    ]
-    errors = np.array(errors).reshape(-1, 2)
-    errors[:, 0] = (errors[:, 0] + width / 2) % width - width / 2
-    return errors
-
-
-@contextmanager
-def _voting(iou: float, score: float) -> Iterator[None]:
-    """The detector's constants replaced for a while: they are no options, for nobody but this table changes them."""
-    before = suppression.VOTE_IOU, suppression.VOTE_SCORE
-    suppression.VOTE_IOU = iou
-    suppression.VOTE_SCORE = detector_module.VOTE_SCORE = score
-    try:
-        yield
-    finally:
-        suppression.VOTE_IOU, suppression.VOTE_SCORE = before
-        detector_module.VOTE_SCORE = before[1]
+    matchings = [match_image(detector.detect(image), things, image.shape[1]) for image, things in labelled]
+    n_objects, found = objects_in(matchings), sum(int(matching.correct.sum()) for matching in matchings)
+    return DetectorScore(len(matchings), n_objects, found, sum(len(m.correct) for m in matchings) - found)
 
 
 def labelled_panoramas(recording: StereoRecording) -> Iterable[tuple[np.ndarray, Sequence[TrueObject]]]:
@@ -123,25 +50,21 @@ def labelled_panoramas(recording: StereoRecording) -> Iterable[tuple[np.ndarray,
         yield lower, pair.lower_objects
 
 
-def _count(matchings: Iterable[Matching]) -> DetectorScore:
-    matchings = list(matchings)
+def objects_in(matchings: Sequence[Matching]) -> int:
+    """Objects to be found in all panoramas. Raises `DetectionScoreError` when there is none."""
     n_objects = sum(matching.n_objects for matching in matchings)
     if n_objects == 0:
         raise DetectionScoreError("there is no object to be found in these panoramas, so recall is not defined")
-    found = sum(int(matching.correct.sum()) for matching in matchings)
-    return DetectorScore(len(matchings), n_objects, found, sum(len(m.correct) for m in matchings) - found)
+    return n_objects
 
 
 @dataclass(frozen=True)
 class PrecisionRecall:
     """Precision and recall over falling thresholds."""
 
-    threshold: np.ndarray
-    """(k,) scores, falling: entry i keeps all detections of at least this score."""
-    precision: np.ndarray
-    """(k,) share of the kept detections that are right."""
-    recall: np.ndarray
-    """(k,) share of the objects that are found."""
+    threshold: np.ndarray  # (k,) scores, falling: entry i keeps all detections of at least this score
+    precision: np.ndarray  # (k,) share of the kept detections that are right
+    recall: np.ndarray  # (k,) share of the objects that are found
 
 
 def precision_recall_curve(matchings: Sequence[Matching]) -> PrecisionRecall:
@@ -150,11 +73,9 @@ def precision_recall_curve(matchings: Sequence[Matching]) -> PrecisionRecall:
     precision(t) = right detections with score >= t / all detections with score >= t
     recall(t)    = right detections with score >= t / objects
 
-    Ignored detections are in neither count. Raises `DetectionScoreError` when there is no object at all.
+    Ignored detections are in neither count.
     """
-    n_objects = sum(matching.n_objects for matching in matchings)
-    if n_objects == 0:
-        raise DetectionScoreError("there is no object to be found in these panoramas, so recall is not defined")
+    n_objects = objects_in(matchings)
     scores = np.concatenate([matching.scores for matching in matchings])
     correct = np.concatenate([matching.correct for matching in matchings])
     order = np.argsort(-scores, kind="stable")

@@ -1,7 +1,6 @@
 """What one student's kernel costs in each lesson and project: memory and processor time, measured, nothing stored.
 
-`tools.bench --lessons` runs each notebook once in a fresh kernel, as `refresh` does, in a folder that is thrown
-away. Neither number depends on how fast the machine is or on what else it does, so no time of the clock is told.
+Neither number depends on how fast the machine is or on what else it does, so no time of the clock is told.
 """
 
 from __future__ import annotations
@@ -27,24 +26,18 @@ from course_lib.commands.lab import lab_command
 from course_lib.files import temporary_folder
 from tools.refresh import HANGS_S, execute
 
-EVERY_S = 0.1
-"""Between two looks at the processes [s]; the kernel's own peak is the system's, which misses nothing."""
+EVERY_S = 0.1  # between two looks at the processes; the kernel's own peak is the system's, which misses nothing
 SERVER_STARTS_S = 1200.0  # only what hangs takes so long
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What one kernel and its children took.
-
-    peak_mb: most resident memory at one moment [10^6 bytes], libraries included. own_mb: most of it that no other
-    process can share (anonymous and shared memory, without the files of libraries); None where the system does not
-    tell (only Linux does). processor_s: user and system time of the whole tree [s], the kernel's start included.
-    """
+    """What one kernel and its children took."""
 
     name: str
-    peak_mb: float
-    own_mb: float | None
-    processor_s: float
+    peak_mb: float  # 10^6 bytes: most resident memory at one moment, libraries included
+    own_mb: float | None  # most without the files of libraries, which processes share; None where no Linux tells
+    processor_s: float  # user and system time of the whole tree, the kernel's start included
 
 
 @contextmanager
@@ -102,10 +95,7 @@ def status_bytes(pid: int) -> dict[str, int]:
 
 
 def notebook_cost(path: Path) -> Cost:
-    """What running all cells of the notebook `path` takes; the file and its folder stay as they are.
-
-    Raises `refresh.RefreshError` where a cell fails.
-    """
+    """What running all cells of the notebook `path` takes; the file and its folder stay as they are."""
     costs: list[Cost] = []
     with temporary_folder() as folder:
         watch = partial(watched, name=path.name.partition("_")[0], costs=costs)

@@ -18,15 +18,11 @@ FOLDER = Path(__file__).resolve().parents[1] / "data" / "projects"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds this command's options to its parser."""
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help="where the data go (default: data/projects)")
-    parser.add_argument(
-        "--work",
-        type=Path,
-        default=Path("results/project_rooms"),
-        metavar="FOLDER",
-        help="where finished rooms are kept, and looked for (default: results/project_rooms)",
-    )
-    parser.add_argument("--processes", type=int, metavar="N", help="rooms made at a time (default: one for each core)")
+    add, work = parser.add_argument, Path("results/project_rooms")
+    add("--out", type=Path, metavar="FOLDER", help="where the data go (default: data/projects)")
+    what = f"where finished rooms are kept, and looked for (default: {work})"
+    add("--work", type=Path, default=work, metavar="FOLDER", help=what)
+    add("--processes", type=int, metavar="N", help="rooms made at a time (default: one for each core)")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -40,13 +36,8 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.simulation.data_folder import checksums
 
     with staging_dir(out) as new:
-        counts = make_project_rooms(
-            new,
-            data_path("detector"),
-            arguments.work,
-            arguments.processes,
-            progress_bar("rooms", "room"),
-        )
+        bar = progress_bar("rooms", "room")
+        counts = make_project_rooms(new, data_path("detector"), arguments.work, arguments.processes, bar)
         (new / "SHA256SUMS").write_text(checksums(new, [f"rooms_{name}.json" for name in counts]))
     print(f"wrote {' and '.join(f'{n} views ({name})' for name, n in counts.items())} to {out}")
     return 0

@@ -12,9 +12,8 @@ from pathlib import Path
 from course_lib.commands.arguments import require_output_folder
 from course_lib.commands.progress import progress_bar
 
-FIRST_TRAINING_ROOM, N_TRAINING_ROOMS = 1000, 400  # chosen
+FIRST_TRAINING_ROOM, N_TRAINING_ROOMS = 1000, 400  # chosen; rooms 100 to 119 choose the threshold
 IMAGES_PER_ROOM = 3
-FIRST_VALIDATION_ROOM, N_VALIDATION_ROOMS = 100, 20
 FIRST_TEST_ROOM, N_TEST_ROOMS = 200, 20
 
 
@@ -41,13 +40,8 @@ def run(arguments: argparse.Namespace) -> int:
     require_output_folder(arguments.out)
     from course_lib.simulation.room.training_images import make_room_images
 
-    images = make_room_images(
-        arguments.out,
-        arguments.first_room,
-        arguments.rooms,
-        arguments.images_per_room,
-        progress_bar("rooms", "room"),
-    )
+    asked = arguments.first_room, arguments.rooms, arguments.images_per_room
+    images = make_room_images(arguments.out, *asked, progress_bar("rooms", "room"))
     print(f"{arguments.out}: {len(images)} pictures of {len({image['room_seed'] for image in images})} rooms")
     return 0
 

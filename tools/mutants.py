@@ -64,10 +64,7 @@ def is_meant(fault: dict, name: str) -> bool:
 
 
 def edited(root: Path, fault: dict) -> tuple[Path, str]:
-    """The file of a fault and its source with the fault in it; code that moved to another file is found there.
-
-    Raises `ValueError` unless the old text stands exactly once in the file, or else in the library.
-    """
+    """The file of a fault and its source with the fault in it; code that moved to another file is found there."""
     for paths in ([root / fault["file"]], sorted((root / "course_lib").rglob("*.py"))):
         sources = {path: path.read_text(encoding="utf-8") for path in paths if path.is_file()}
         holding = {path: source for path, source in sources.items() if fault["old"] in source}

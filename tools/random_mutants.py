@@ -11,158 +11,93 @@ from __future__ import annotations
 
 import argparse
 import ast
+import copy
 import random
 import re
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 from tools.mutants import ROOT, broken, copied_tree, tests_say
 
-SWAP = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
-COMPARE = {
-    ast.Lt: ("<", "<="),
-    ast.LtE: ("<=", "<"),
-    ast.Gt: (">", ">="),
-    ast.GtE: (">=", ">"),
-    ast.Eq: ("==", "!="),
-    ast.NotEq: ("!=", "=="),
-}
-TYPES = {"Literal", "Callable", "tuple", "list", "dict", "type", "Sequence", "Iterator", "Iterable"}
-Fault = tuple[Path, str, int, int, str]
-"""File, kind, start and end in the source, and the new text."""
+SWAP = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.And: ast.Or, ast.Or: ast.And}
+SWAP |= {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}
+LEFT_ALONE = (ast.Raise, ast.JoinedStr, ast.Assert, ast.Import, ast.ImportFrom)
+ANNOTATIONS = ("annotation", "returns", "decorator_list")
 
 
-class Sites(ast.NodeVisitor):
-    """Places in a source where one fault can be made: `found`, a list of (kind, start, end, new text)."""
+class Fault(NamedTuple):
+    """One place of one file, and what stands there before and after."""
 
-    def __init__(self, source: str) -> None:
-        self.source, self.lines, self.found = source, source.split("\n"), []
-        self.visit(ast.parse(source))
+    path: Path
+    kind: str
+    line: int
+    before: str
+    after: str
+    source: str  # of the whole file, with the fault
 
-    def at(self, line: int, column: int) -> int:
-        text = self.lines[line - 1].encode()[:column].decode()
-        return sum(len(one) + 1 for one in self.lines[: line - 1]) + len(text)
 
-    def span(self, node: ast.AST) -> tuple[int, int]:
-        return self.at(node.lineno, node.col_offset), self.at(node.end_lineno, node.end_col_offset)
-
-    def add(self, kind: str, start: int, end: int, new: str) -> None:
-        if self.source[start:end] != new:
-            self.found.append((kind, start, end, new))
-
-    def visit_FunctionDef(self, node):
-        if node.name in ("__repr__", "__str__", "__reduce__"):
-            return
+def changes(node: ast.AST) -> Iterator[tuple[str, ast.AST]]:
+    """What may stand in the place of a node: kinds of faults and new nodes."""
+    new = copy.copy(node)
+    if isinstance(node, ast.FunctionDef) and len(node.body) > 1 and "return " in ast.unparse(node):
         arguments = [a.arg for a in node.args.posonlyargs + node.args.args if a.arg not in ("self", "cls")]
-        body = [x for x in node.body if not (isinstance(x, ast.Expr) and isinstance(x.value, ast.Constant))]
-        returns = any(isinstance(x, ast.Return) and x.value is not None for x in ast.walk(node))
-        if arguments and len(body) > 1 and returns:
-            start = self.span(body[0])[0]
-            self.add("return at once", start, start, f"return {arguments[0]}\n" + " " * body[0].col_offset)
-        for x in [d for d in node.args.defaults + node.args.kw_defaults if d is not None] + body:
-            self.visit(x)
+        if arguments:
+            new.body = [ast.Return(ast.Name(arguments[0])), *node.body]
+            yield "return at once", new
+    elif isinstance(node, ast.AugAssign) or (isinstance(node, ast.Expr) and not isinstance(node.value, ast.Constant)):
+        yield "line dropped", ast.Pass()
+    elif isinstance(node, ast.Call) and ast.unparse(node.func) in ("abs", "np.abs"):
+        yield "abs dropped", node.args[0]
+    elif isinstance(node, (ast.BinOp, ast.BoolOp)) and type(node.op) in SWAP:
+        new.op = SWAP[type(node.op)]()
+        yield "operator", new
+    elif isinstance(node, ast.Compare) and type(node.ops[0]) in SWAP:
+        new.ops = [SWAP[type(node.ops[0])](), *node.ops[1:]]
+        yield "comparison", new
+    elif isinstance(node, (ast.If, ast.IfExp)):
+        new.test = ast.UnaryOp(ast.Not(), node.test)
+        yield "condition negated", new
+    elif isinstance(node, ast.Subscript) and isinstance(getattr(node.slice, "value", None), int):
+        new.slice = ast.Constant({0: 1, 1: 0}.get(node.slice.value, node.slice.value - 1))
+        yield "index", new
+    elif isinstance(node, ast.Constant) and type(node.value) in (int, float) and node.value:
+        new.value = node.value + 1 if type(node.value) is int else node.value * 1.1
+        yield "number", new
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        yield "minus dropped", node.operand
 
-    def visit_Expr(self, node):
-        if not isinstance(node.value, ast.Constant):
-            self.add("line dropped", *self.span(node), "pass")
-            self.generic_visit(node)
 
-    def skip(self, node):
-        return
-
-    visit_Raise = visit_JoinedStr = visit_Assert = visit_Import = visit_ImportFrom = skip
-
-    def visit_AnnAssign(self, node):
-        if node.value is not None:
-            self.visit(node.value)
-
-    def visit_AugAssign(self, node):
-        self.add("line dropped", *self.span(node), "pass")
-        self.generic_visit(node)
-
-    def visit_Call(self, node):
-        if ast.unparse(node.func) in ("abs", "np.abs") and len(node.args) == 1:
-            start, end = self.span(node.args[0])
-            self.add("abs dropped", *self.span(node), f"({self.source[start:end]})")
-        self.generic_visit(node)
-
-    def visit_BinOp(self, node):
-        start, end = self.span(node.left)[1], self.span(node.right)[0]
-        pair, middle = SWAP.get(type(node.op)), self.source[start:end]
-        is_text = isinstance(node.left, ast.JoinedStr) or isinstance(getattr(node.left, "value", None), str)
-        if pair and middle.count(pair[0]) == 1 and not is_text:
-            self.add("operator", start, end, middle.replace(*pair))
-        self.generic_visit(node)
-
-    def visit_Compare(self, node):
-        left = node.left
-        for operator, right in zip(node.ops, node.comparators, strict=True):
-            start, end = self.span(left)[1], self.span(right)[0]
-            if pair := COMPARE.get(type(operator)):
-                self.add("comparison", start, end, self.source[start:end].replace(*pair, 1))
-            left = right
-        self.generic_visit(node)
-
-    def visit_BoolOp(self, node):
-        start, end = self.span(node.values[0])[1], self.span(node.values[1])[0]
-        if len(node.values) == 2:
-            new = re.sub(r"\b(and|or)\b", lambda m: "or" if m[0] == "and" else "and", self.source[start:end])
-            self.add("and, or", start, end, new)
-        self.generic_visit(node)
-
-    def negate(self, node):
-        start, end = self.span(node.test)
-        if ast.unparse(node.test) != "TYPE_CHECKING":
-            self.add("condition negated", start, end, f"not ({self.source[start:end]})")
-        self.generic_visit(node)
-
-    visit_If = visit_IfExp = negate
-
-    def visit_Subscript(self, node):
-        if isinstance(node.value, ast.Name) and node.value.id in TYPES:
-            return
-        for e in node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]:
-            if isinstance(e, ast.Constant) and type(e.value) is int and e.value in (0, 1, 2):
-                self.add("index", *self.span(e), {0: "1", 1: "0", 2: "1"}[e.value])
-            else:
-                self.visit(e)
-        self.visit(node.value)
-
-    def visit_Constant(self, node):
-        if type(node.value) is float and node.value:
-            self.add("a tenth more", *self.span(node), repr(node.value * 1.1))
-        elif type(node.value) is int and node.value:
-            self.add("one more", *self.span(node), str(node.value + 1))
-
-    def visit_UnaryOp(self, node):
-        if isinstance(node.op, ast.USub) and not isinstance(node.operand, ast.Constant):
-            start, end = self.span(node.operand)
-            self.add("minus dropped", *self.span(node), self.source[start:end])
-        self.generic_visit(node)
+def faults_of(path: Path, tree: ast.Module, node: ast.AST) -> Iterator[Fault]:
+    """Every fault below a node, each with the whole file as it is then."""
+    for field, value in ast.iter_fields(node):
+        children = value if isinstance(value, list) else [value]
+        for index, child in enumerate(children):
+            if field in ANNOTATIONS or isinstance(child, LEFT_ALONE) or not isinstance(child, ast.AST):
+                continue
+            for kind, new in changes(child):
+                others = [*children[:index], new, *children[index + 1 :]]
+                setattr(node, field, others if isinstance(value, list) else new)
+                first = [ast.unparse(one).partition("\n")[0] for one in (child, new)]
+                yield Fault(path, kind, child.lineno, *first, ast.unparse(ast.fix_missing_locations(tree)))
+                setattr(node, field, value)
+            yield from faults_of(path, tree, child)
 
 
 def choose(root: Path, package: str, number: int, seed: int) -> tuple[list[Fault], int]:
     """So many faults of a room, every kind as often, and of how many they were chosen."""
     by_kind: dict[str, list[Fault]] = {}
     for path in sorted((root / "course_lib" / package).rglob("*.py")):
-        if path.name == "__init__.py":
-            continue
-        source = path.read_text(encoding="utf-8")
-        for kind, start, end, new in Sites(source).found:
-            try:
-                compile(source[:start] + new + source[end:], "x", "exec")
-            except SyntaxError:
-                continue
-            by_kind.setdefault(kind, []).append((path.relative_to(root), kind, start, end, new))
-    rng, chosen, seen = random.Random(seed), [], set()
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for fault in faults_of(path.relative_to(root), tree, tree):
+            by_kind.setdefault(fault.kind, []).append(fault)
+    rng, chosen = random.Random(seed), set()
     total = sum(map(len, by_kind.values()))
     while len(chosen) < min(number, total // 2):
-        one = rng.choice(by_kind[rng.choice(sorted(by_kind))])
-        if one[:1] + one[2:3] not in seen:
-            seen.add(one[:1] + one[2:3])
-            chosen.append(one)
-    return chosen, total
+        chosen.add(rng.choice(by_kind[rng.choice(sorted(by_kind))]))
+    return sorted(chosen), total
 
 
 def tests_of(root: Path, module: Path) -> tuple[list[Path], list[Path], list[Path]]:
@@ -192,16 +127,13 @@ def run(arguments: argparse.Namespace) -> int:
     counts = dict.fromkeys(("killed", "survived", "hung"), 0)
     with copied_tree() as root:
         faults, total = choose(root, arguments.package, arguments.number, arguments.seed)
-        for path, kind, start, end, new in faults:
-            source = (root / path).read_text(encoding="utf-8")
-            text, line = source[:start] + new + source[end:], source[:start].count("\n")
-            before, after = (one.split("\n")[line].strip() for one in (source, text))
-            told = f"{path}:{line + 1}: {kind}: {before}  =>  {after}"
+        for path, kind, line, before, after, source in faults:
+            told = f"{path}:{line}: {kind}: {before}  =>  {after}"
             if arguments.list:
                 print(told)
                 continue
             begun, outcome = time.monotonic(), "survived"
-            with broken(root / path, text):
+            with broken(root / path, source):
                 for tests in tests_of(root, path):
                     if tests and outcome == "survived":
                         left = max(arguments.seconds - (time.monotonic() - begun), 5.0)

@@ -1,8 +1,7 @@
 """Run the lessons and store what they show: every output, every picture, and no widget state.
 
-Each notebook runs in a fresh kernel, in the folder notebooks/, without a network. It is written back only after its
-last cell ran without an error, in one step, and in one form, so that a difference in git is a difference in the lesson.
-Its scenes, pages in notebooks/scenes, are written as their cells run.
+Each notebook runs in a fresh kernel, without a network. It is written back only after its last cell ran without an
+error, in one form, so that a difference in git is a difference in the lesson.
 """
 
 from __future__ import annotations
@@ -64,10 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def select(lessons: list[str]) -> list[Path]:
-    """Notebooks of these lessons ("03") and projects ("P1"), all of them for none.
-
-    Raises `ValueError` for a number without a notebook.
-    """
+    """Notebooks of these lessons ("03") and projects ("P1"), all of them for none."""
     paths = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
     wanted = [number.zfill(2) for number in lessons] or sorted(paths)
     unknown = sorted(set(wanted) - set(paths))

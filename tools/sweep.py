@@ -26,9 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seeds", default="20", metavar="N|A-B", help=told)
     parser.add_argument("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
     parser.add_argument("--frames", type=int, metavar="N", help="only the first N frames (default: all)")
-    told = (
-        "run on the workers of Dask's scheduler at this address (each with this repository); default: on this machine"
-    )
+    told = "run on the workers of Dask's scheduler there, each with this repository (default: on this machine)"
     parser.add_argument("--dask", metavar="ADDRESS", help=told)
     told = "for corridor.jsonl and corridor.json"
     parser.add_argument("--out", type=Path, default=Path("results/sweep"), metavar="FOLDER", help=told)
@@ -83,9 +81,7 @@ def dask(address: str) -> contextlib.AbstractContextManager:
     except ImportError as error:
         raise ValueError("--dask needs Dask's scheduler: pip install distributed") from error
     except (OSError, ValueError) as error:
-        raise ValueError(
-            f"--dask {address}: no scheduler answers there ({error}); start one: dask scheduler"
-        ) from error
+        raise ValueError(f"--dask {address}: no scheduler answers there ({error}): dask scheduler") from error
 
 
 def corridor(seed: int, frames: int | None, n_particles: int) -> dict:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import json
-import platform
 import sys
 from dataclasses import asdict
 from hashlib import sha256
@@ -17,12 +16,7 @@ from pathlib import Path
 from course_lib.files import atomic_write
 
 DATA = Path(__file__).parents[1] / "data" / "detector"
-RECORDED_WIDTH = 1280
-"""Columns of the recorded panoramas. The finished detector sees them so, not scaled as the training keeps them."""
-
-
-class PyTorchMissing(ValueError):
-    """PyTorch is not installed."""
+RECORDED_WIDTH = 1280  # columns of a panorama: the finished detector sees them so, not scaled as the training does
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -50,17 +44,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Trains, writes the weights, and measures the finished detector on the validation images; 0 when all was done."""
+    """Train, write the weights, and measure the finished detector on the validation images; 0 when all was done."""
     from course_lib.commands.arguments import require_output_folder, require_seed
 
     require_seed(arguments.seed)
     require_output_folder(arguments.out)
     _require_positive(arguments)
     if importlib.util.find_spec("torch") is None:
-        raise PyTorchMissing(
-            "train-detector needs PyTorch, which is not installed here. Install it into the Python that runs this "
-            f"course ({sys.executable}): pip install 'torch>=2.6', or pip install -e '.[train]' in the course's folder"
-        )
+        raise ValueError(f"no PyTorch here; install it for {sys.executable}: pip install 'torch>=2.6'")
     import torch
 
     from course_lib.spherical_stereo.detection.darknet import read_names
@@ -70,27 +61,12 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.threads:
         torch.set_num_threads(arguments.threads)
+    given = {name: getattr(arguments, name) for name in ("epochs", "learning_rate", "seed", "processes")}
     minutes = 60.0 if arguments.minutes is None and arguments.epochs is None else arguments.minutes
-    plan = TrainingPlan(
-        epochs=arguments.epochs,
-        minutes=minutes,
-        batch_size=arguments.batch,
-        learning_rate=arguments.learning_rate,
-        seed=arguments.seed,
-        processes=arguments.processes,
-    )
-    result = train(
-        arguments.cfg,
-        arguments.names,
-        arguments.images,
-        arguments.validation,
-        arguments.out,
-        plan,
-        resume=arguments.resume,
-        initial_weights=arguments.weights,
-        log=_log,
-        progress=_bar,
-    )
+    plan = TrainingPlan(minutes=minutes, batch_size=arguments.batch, **given)
+    folders = arguments.images, arguments.validation, arguments.out
+    how = {"resume": arguments.resume, "initial_weights": arguments.weights, "log": _log, "progress": _bar}
+    result = train(arguments.cfg, arguments.names, *folders, plan, **how)
     for path in (arguments.cfg, arguments.names):
         if path.resolve().parent != arguments.out.resolve():
             atomic_write(arguments.out / path.name, path.read_bytes())
@@ -106,9 +82,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 def report(plan, result, validation, initial_weights: Path | None) -> dict:
     """What training.json holds: the numbers, the seed, the versions, and of which weights the training began."""
-    import cv2
-    import numpy
     import torch
+
+    from course_lib.experiments.results import versions
 
     return {
         "version": 1,
@@ -118,12 +94,7 @@ def report(plan, result, validation, initial_weights: Path | None) -> dict:
         "started_from_sha256": sha256(initial_weights.read_bytes()).hexdigest() if initial_weights else None,
         "position": asdict(result.position),
         "images_per_second": round(result.images_per_second, 2),
-        "versions": {
-            "python": platform.python_version(),
-            "torch": torch.__version__,
-            "opencv": cv2.__version__,
-            "numpy": numpy.__version__,
-        },
+        "versions": versions() | {"torch": torch.__version__},
     }
 
 

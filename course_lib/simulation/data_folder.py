@@ -1,8 +1,4 @@
-"""What stands in a folder of generated data beside the data: checksums, and the models' parameters as Markdown tables.
-
-A field of a model is written `name: type = value  # unit, meaning; source or "chosen"`. The comment is the one place
-where unit and source stand, so the tables cannot drift from the code.
-"""
+"""Checksums of generated data, and the models' parameters as Markdown tables, from the comments behind their fields."""
 
 from __future__ import annotations
 

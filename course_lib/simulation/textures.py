@@ -1,7 +1,6 @@
 """Seeded pictures of materials, RGB uint8, that repeat without a seam and have a size in metres.
 
-All of them carry contrast at 1 to 10 cm: seen from a few metres in a panorama, finer detail is gone and plain colour
-gives AKAZE nothing to hold on to. Patterns change the brightness first, so that a surface keeps its hue and saturation.
+All carry contrast at 1 to 10 cm, for AKAZE to hold on to. Patterns change the brightness first: hues stay.
 """
 
 from __future__ import annotations
@@ -19,14 +18,11 @@ Colour = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Surface:
-    """A material: one tile of it and what the tile measures.
+    """A material: one tile of it and what the tile measures."""
 
-    image: `(h, w, 3)` uint8, RGB. size: metres that the tile covers, (across, up). emission: as in TexturedMesh.
-    """
-
-    image: np.ndarray
-    size: tuple[float, float]
-    emission: float = 0.0
+    image: np.ndarray  # `(h, w, 3)` uint8, RGB
+    size: tuple[float, float]  # metres that the tile covers, (across, up)
+    emission: float = 0.0  # as in TexturedMesh
 
     def turned(self) -> Surface:
         """The same material with its grain turned by 90 degrees."""
@@ -35,20 +31,13 @@ class Surface:
 
 @dataclass(frozen=True)
 class TexturedMesh:
-    """Triangles that share one texture: what the rooms are built of and what the panorama renderer draws.
+    """Triangles that share one texture: what the rooms are built of and what the panorama renderer draws."""
 
-    vertices: `(n, 3)` float64, metres, world frame (or the frame of the piece of furniture while it is being built).
-    faces: `(m, 3)` int64, corner indices, counter-clockwise seen from outside.
-    texture_coordinates: `(n, 2)` float64, (s, t); the texture repeats beyond [0, 1], t = 0 is the texture's lowest row.
-    texture: `(h, w, 3)` uint8, RGB.
-    emission: 0 = lit by the lamps only, 1 = shows its texture at full brightness without any lamp (screens, windows).
-    """
-
-    vertices: np.ndarray
-    faces: np.ndarray
-    texture_coordinates: np.ndarray
-    texture: np.ndarray
-    emission: float = 0.0
+    vertices: np.ndarray  # `(n, 3)` float64, metres, world frame (or that of the piece of furniture being built)
+    faces: np.ndarray  # `(m, 3)` int64, counter-clockwise seen from outside
+    texture_coordinates: np.ndarray  # `(n, 2)` float64, (s, t); repeats beyond [0, 1], t = 0 is the lowest row
+    texture: np.ndarray  # `(h, w, 3)` uint8, RGB
+    emission: float = 0.0  # 0 = lit by the lamps only, 1 = at full brightness without any lamp (screens, windows)
 
     def moved(self, pose: np.ndarray) -> TexturedMesh:
         """The same mesh in another frame; pose: `(4, 4)`, old frame to new frame, a rotation and a translation."""
@@ -68,10 +57,7 @@ def random_colour(
 
 
 def band_noise(rng: Generator, pixels: int, wavelength: float, stretch: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
-    """Noise of one scale that repeats at the edges: `(pixels, pixels)` float32, mean 0, standard deviation 1.
-
-    wavelength: pixels from one blob to the next. stretch: how many times longer the blobs are (across, up).
-    """
+    """Noise `(pixels, pixels)` that repeats, mean 0, deviation 1; wavelength, pixels; stretch of blobs (across, up)."""
     spectrum = scipy.fft.rfft2(rng.standard_normal((pixels, pixels), dtype=np.float32))
     across = np.fft.rfftfreq(pixels).astype(np.float32)[None, :] * stretch[0]
     up = np.fft.fftfreq(pixels).astype(np.float32)[:, None] * stretch[1]

@@ -15,6 +15,7 @@ def test_without_pytorch_it_says_what_to_install(tmp_path, run_tool, capsys):
     assert "pip install 'torch>=2.6'" in capsys.readouterr().err
 
 
-def test_numbers_that_must_be_positive_are_named(tmp_path, run_tool, capsys):
-    assert run_tool(*words(tmp_path, "--minutes", "0")) == 2
-    assert "--minutes must be above 0; got 0" in capsys.readouterr().err
+@pytest.mark.parametrize("option", ["--minutes", "--learning-rate"])
+def test_numbers_that_must_be_positive_are_named(option, tmp_path, run_tool, capsys):
+    assert run_tool(*words(tmp_path, option, "0")) == 2
+    assert f"{option} must be above 0; got 0" in capsys.readouterr().err

@@ -23,7 +23,7 @@ from course_lib.experiments.results import versions
 from course_lib.paths import data_path, notebook_paths
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from tools.benchmarks import curves, growth, side_by_side, waiting
+from tools.benchmarks import growth, side_by_side, waiting
 from tools.benchmarks.side_by_side import TOOLS, Scene
 
 QUICK_LESSONS = ("00", "07", "15")
@@ -48,8 +48,8 @@ def note(text: str) -> None:
     print("measuring:", text, file=sys.stderr, flush=True)
 
 
-def measure_all(quick: bool, recording: Path | None, figure: Path | None) -> dict[str, object]:
-    """Every number of the table; figure: where that of time against particles, pixels and triangles goes."""
+def measure_all(quick: bool, recording: Path | None) -> dict[str, object]:
+    """Every number of the table."""
     repeats, scene = (3 if quick else 9), corridor()
     note("particles")  # before tools that would hold more memory than many particles do
     found: dict[str, object] = {"quick": quick, "particles": growth.particle_growth(scene, 2 if quick else 5)}
@@ -74,9 +74,6 @@ def measure_all(quick: bool, recording: Path | None, figure: Path | None) -> dic
         found["picture_ms"] = waiting.picture_ms(lessons, 8 if quick else 20)
     except (ImportError, RuntimeError) as error:
         found["picture_ms"] = {"missing": str(error)}
-    if figure is not None:
-        found["curves"] = curves.curves(scene, 3, note)
-        curves.draw(found["curves"], figure)
     note("memory")
     found["memory"] = waiting.memory(scene, 200 if quick else 10_000, 20 if quick else 100)
     found["step_ms"] = rows["step, default"]["ms"]["median"]
@@ -108,6 +105,5 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--recording", type=Path)
-    parser.add_argument("--figure", type=Path)
     given = parser.parse_args()
-    print(json.dumps(measure_all(given.quick, given.recording, given.figure)))
+    print(json.dumps(measure_all(given.quick, given.recording)))

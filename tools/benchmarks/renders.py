@@ -1,8 +1,4 @@
-"""Is memory flat over many renders, and does the same pose give the same image to the last bit, every time?
-
-`.venv/bin/python -m tools.bench --renders` runs this in a process of its own for each backend, so that one's memory
-is not another's: prints one JSON object.
-"""
+"""Is memory flat over many renders, and does the same pose give the same image to the last bit, every time?"""
 
 from __future__ import annotations
 
@@ -20,19 +16,13 @@ from tools.benchmarks.waiting import held_mb
 CLOUDS, VIEWS = 10, 4
 SPREAD = np.array([0.1, 0.1, 0.05, 0.05, 0.05, 0.2])  # metres and radians: standard deviation about the true pose
 SEED = 1
+# Share and number of calls (half of them at most) in which caches may grow; past its tenth window OpenGL took 8 MB.
 SETTLING, SETTLING_CALLS = 0.1, 20
-"""Share and number of the calls (at most half of them) in which caches and the allocator may still grow: memory is
-held flat from there on. 20 was chosen after a look: past its tenth window OpenGL once more took 8 MB."""
-QUARTER = 4
-"""Growth lies between the least memory of the first and of the last of so many parts: what OpenGL takes for a while
-and gives back (8 MB often, once 18) is not growth, and what is kept with each call is in every later least."""
+QUARTER = 4  # growth: from the least of the first of so many parts to the least of the last
 
 
 def measure(backend: str, n_renders: int, n_renderers: int) -> dict[str, object]:
-    """What `bench --renders` tells of a backend, or why it is not here: n renders of one renderer, then n renderers.
-
-    A call draws a cloud of states about a true pose of the recording; the clouds are drawn in turn.
-    """
+    """What `bench --renders` tells of a backend, or why it is not here: n renders of one renderer, then n renderers."""
     scene = corridor()
     frames = np.linspace(0, len(scene.sequence) - 1, CLOUDS).astype(int)
     true = state_from_optical_pose(scene.sequence.camera_to_world[frames])

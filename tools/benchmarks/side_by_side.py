@@ -1,12 +1,9 @@
 """The filter's step and other renderers, measured in one process on the same poses of the same map.
 
-Every repeat takes another frame of the recording: particles are drawn about its true pose as the filter would draw
-them, one whole step of the filter is timed, with fewer triangles and exactly, and then every tool renders the poses
-that the first of these steps rendered, of the whole map. So what changes from repeat to repeat, the view and the
-machine's mood, changes for all alike, and ratios are taken repeat by repeat.
-
-A tool is made once from a map and a camera and then called with camera-to-world matrices `(N, 4, 4)`, optical
-convention. What it needs to be asked (rays, a plotter) is made outside the seconds that count: each is at its best.
+Every repeat takes another frame: one whole step of the filter is timed, with fewer triangles and exactly, and then
+every tool renders the poses of the first of these steps, of the whole map. So view and the machine's mood are alike for
+all. A tool is called with camera-to-world matrices `(N, 4, 4)`, optical convention; what it needs to be asked (rays, a
+plotter) is made outside the seconds that count.
 """
 
 from __future__ import annotations
@@ -51,10 +48,8 @@ LOOPED_IMAGES = 20
 class Timed(NamedTuple):
     """What one call gave."""
 
-    seconds: float
-    """For all N images, reckoned up where only some were rendered."""
-    images: np.ndarray
-    """`(n, H, W)`, the first n; `inf` where nothing was hit."""
+    seconds: float  # for all N images, reckoned up where only some were rendered
+    images: np.ndarray  # `(n, H, W)`, the first n; `inf` where nothing was hit
 
 
 Tool = Callable[[np.ndarray], Timed]

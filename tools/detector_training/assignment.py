@@ -16,18 +16,13 @@ from tools.detector_training.network import YoloHead
 
 
 class Targets(NamedTuple):
-    """The objects of a batch."""
+    """The objects of a batch; ignored ones count neither as hits nor as false alarms."""
 
-    image: torch.Tensor
-    """(n,) which image of the batch, int64."""
-    label: torch.Tensor
-    """(n,) class number, int64."""
-    boxes: torch.Tensor
-    """(n, 4) u, v of the centre, width, height, pixels of the network input."""
-    ignored_image: torch.Tensor
-    """(m,) which image, of the objects that count neither as hits nor as false alarms."""
-    ignored_boxes: torch.Tensor
-    """(m, 4) their boxes, like `boxes`."""
+    image: torch.Tensor  # (n,) which image of the batch, int64
+    label: torch.Tensor  # (n,) class number, int64
+    boxes: torch.Tensor  # (n, 4) u, v of the centre, width, height, pixels of the network input
+    ignored_image: torch.Tensor  # (m,)
+    ignored_boxes: torch.Tensor  # (m, 4)
 
 
 class Assignment(NamedTuple):
@@ -41,10 +36,7 @@ class Assignment(NamedTuple):
 
 
 def make_targets(samples: list[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> Targets:
-    """Targets of a batch from (labels (n,), boxes (n, 4), ignored (n,)) of each sample.
-
-    Boxes are u_min, v_min, u_max, v_max in pixels of the network input, `ignored` is boolean.
-    """
+    """Targets of a batch from (labels (n,), boxes (n, 4) [u_min, v_min, u_max, v_max], ignored (n,)) of each sample."""
     image = np.concatenate([np.full(len(labels), i) for i, (labels, _, _) in enumerate(samples)]).astype(np.int64)
     labels = np.concatenate([s[0] for s in samples]).astype(np.int64)
     corners = np.concatenate([s[1].reshape(-1, 4) for s in samples]).astype(np.float32)

@@ -1,8 +1,6 @@
 """One training sample from a panorama: turned, mirrored, scaled and recoloured, with its boxes.
 
-A panorama is a circle, so turning it by any number of columns makes a new, equally true picture. The window that the
-network sees may be wider than the panorama: its left part is then appended on the right, as in the detector
-(paper 2, section 2.2), and objects there appear twice.
+A window wider than the panorama has its left part appended on the right, as in the detector (paper 2, section 2.2).
 """
 
 from __future__ import annotations
@@ -22,35 +20,24 @@ MIN_SHARE_INSIDE = 0.4
 class AugmentationRanges:
     """How much a sample may differ from its panorama (chosen: light and cameras differ, furniture stands upright)."""
 
-    scale: tuple[float, float] = (0.85, 1.15)
-    """Size of the picture in the window, 1 = as the detector sees it."""
-    vertical_shift: float = 0.03
-    """Largest shift up or down, as a share of the panorama's height; a mount tilted by 1 degree moves 0.006."""
-    exposure: float = 0.35
-    """Largest change of brightness, as a natural logarithm: a factor from 0.70 to 1.42."""
-    gamma: float = 0.2
-    """The same for the exponent of the tone curve."""
-    white_balance: float = 0.12
-    """The same for the gain of each colour channel."""
+    scale: tuple[float, float] = (0.85, 1.15)  # size of the picture in the window, 1 = as the detector sees it
+    vertical_shift: float = 0.03  # share of the panorama's height; a mount tilted by 1 degree moves 0.006
+    exposure: float = 0.35  # largest change of brightness, as a natural logarithm: a factor from 0.70 to 1.42
+    gamma: float = 0.2  # the same for the exponent of the tone curve
+    white_balance: float = 0.12  # the same for the gain of each colour channel
     saturation: tuple[float, float] = (0.6, 1.3)
-    noise: float = 8.0
-    """Largest standard deviation of the noise, grey levels of 255."""
-    blur: float = 1.0
-    """Largest standard deviation of the blur, pixels; half of the samples have none."""
+    noise: float = 8.0  # largest standard deviation, grey levels of 255
+    blur: float = 1.0  # largest standard deviation, pixels; half of the samples have none
 
 
 @dataclass(frozen=True)
 class Sample:
     """What the network sees, and what it should find."""
 
-    image: np.ndarray
-    """(h, w, 3) uint8, BGR."""
-    labels: np.ndarray
-    """(n,) class numbers."""
-    boxes: np.ndarray
-    """(n, 4) u_min, v_min, u_max, v_max, pixels of `image`."""
-    ignored: np.ndarray
-    """(n,) boolean."""
+    image: np.ndarray  # (h, w, 3) uint8, BGR
+    labels: np.ndarray  # (n,) class numbers
+    boxes: np.ndarray  # (n, 4) u_min, v_min, u_max, v_max, pixels of `image`
+    ignored: np.ndarray  # (n,) boolean
 
 
 def augmented_sample(

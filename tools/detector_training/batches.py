@@ -1,7 +1,6 @@
-"""Batches of training samples, made in a thread beside the training; OpenCV and NumPy let go of Python's lock there.
+"""Batches of training samples, made in a thread beside the training.
 
-Every sample has a generator of its own, seeded by (seed, epoch, place in the epoch). So a training that was stopped
-goes on with the samples that it would have seen.
+Every sample has a generator of its own, seeded by (seed, epoch, place in the epoch): a stopped training goes on alike.
 """
 
 from __future__ import annotations
@@ -24,8 +23,7 @@ BATCHES_AHEAD = 4  # enough to bridge a slow one, little memory
 class Batch(NamedTuple):
     """Images and objects of one step."""
 
-    images: torch.Tensor
-    """(b, 3, h, w) float32, RGB in [0, 1]."""
+    images: torch.Tensor  # (b, 3, h, w) float32, RGB in [0, 1]
     targets: Targets
 
 

@@ -59,8 +59,8 @@ def complete_iou(boxes: torch.Tensor, targets: torch.Tensor) -> torch.Tensor:
 def yolo_loss(outputs: list[torch.Tensor], heads: list[YoloHead], targets: Targets, input_width: int) -> Loss:
     """The loss of the raw maps of a batch (as `TrainableNetwork` gives them) against its objects.
 
-    `input_width` is the width of the input images in pixels. Boxes that overlap an object well without being assigned
-    to it, and boxes inside ignored objects, are left out of the objectness term.
+    Boxes that overlap an object well without being assigned to it, and boxes inside ignored objects, are left out of
+    the objectness term. `input_width`: pixels.
     Source: paper 2, section 2.2 (its detector is YOLOv4).
     """
     grids = [(raw.shape[-2], raw.shape[-1], input_width / raw.shape[-1]) for raw in outputs]

@@ -1,8 +1,4 @@
-"""A Darknet cfg as a PyTorch module: the same file describes the network that is trained and the one that OpenCV runs.
-
-Layers as Darknet and OpenCV compute them: batch normalization with epsilon 1e-6 (PyTorch's own 1e-5 moves the outputs
-by 2e-3), leaky ReLU with slope 0.1, max pooling padded to keep the size, upsampling by the nearest neighbour.
-"""
+"""A Darknet cfg as a PyTorch module: one file describes the network that is trained and the one that OpenCV runs."""
 
 from __future__ import annotations
 
@@ -13,37 +9,27 @@ from torch import nn
 
 from course_lib.spherical_stereo.detection.darknet import DetectorError, Section, layer_channels
 
-# Darknet divides by sqrt(variance + 1e-6), and so does OpenCV for Darknet files.
-BATCH_NORM_EPSILON = 1e-6
-# Share of the old running statistics that a training step keeps; the runs here are short, a few thousand steps.
-BATCH_NORM_MOMENTUM = 0.03
+BATCH_NORM_EPSILON = 1e-6  # as Darknet and OpenCV: PyTorch's own 1e-5 moves the outputs by 2e-3
+BATCH_NORM_MOMENTUM = 0.03  # share that a step gives to the running statistics; trainings are a few thousand steps
 LEAKY_SLOPE = 0.1
-# Chance of an object that an untrained box starts with: most boxes are background, and a loss that starts by learning
-# just that wastes its first hundred steps.
-PRIOR_OBJECTNESS = 0.01
-# exp() of a wider range than this is no furniture, only overflow at the start of a training.
-MAX_LOG_SCALE = 4.0
+PRIOR_OBJECTNESS = 0.01  # of an untrained box: else the first hundred steps learn that most boxes are background
+MAX_LOG_SCALE = 4.0  # more is no furniture, only overflow at the start of a training
 
 
 @dataclass(frozen=True)
 class YoloHead:
     """What one `[yolo]` section says about its boxes."""
 
-    anchors: torch.Tensor
-    """(a, 2) width and height of its anchors, pixels of the network input."""
+    anchors: torch.Tensor  # (a, 2) width and height, pixels of the network input
     classes: int
-    scale_xy: float
-    """Stretch of the sigmoid that places a box centre in its cell: 2 lets it reach half a cell over either border."""
-    iou_threshold: float
-    """An anchor is used for an object when their shapes, laid on each other, have at least this IoU."""
-    ignore_threshold: float
-    """A box that overlaps an object by more than this IoU is not background, though another anchor is responsible."""
+    scale_xy: float  # stretch of the sigmoid of a box centre: 2 lets it reach half a cell over either border
+    iou_threshold: float  # of the shapes of an anchor and an object that it answers for
+    ignore_threshold: float  # a box that overlaps an object by more is not background
 
 
 class TrainableNetwork(nn.Module):
     """The layers of a cfg in order; `forward` gives the raw map of every `[yolo]` section.
 
-    `generator` draws the first weights (a generator seeded with 0 when it is left out), so one seed gives one network.
     Raises `DetectorError` for a section or an option that the training cannot build.
     """
 
@@ -68,10 +54,7 @@ class TrainableNetwork(nn.Module):
         self._needed = {source for index, section in routes for source in _sources(section, index)}
 
     def forward(self, images: torch.Tensor) -> list[torch.Tensor]:
-        """Raw maps (b, anchors, 5 + classes, rows, columns), one per `[yolo]`, of images (b, 3, h, w), RGB in [0, 1].
-
-        Height and width may be any multiples of the largest stride.
-        """
+        """Raw maps (b, anchors, 5 + classes, rows, columns), a `[yolo]` each, of images (b, 3, h, w), RGB in [0, 1]."""
         kept: dict[int, torch.Tensor] = {}
         outputs = []
         value = images

@@ -14,8 +14,7 @@ from torch import nn
 from course_lib.files import atomic_write
 
 FILE = "checkpoint.pt"
-LAST_SHARE = 0.01
-"""Share of the largest learning rate that is left at the end."""
+LAST_SHARE = 0.01  # of the largest learning rate, at the end
 
 
 class CheckpointError(ValueError):
@@ -60,12 +59,10 @@ class Position:
     """Where a training is. Samples are drawn from (seed, epoch, place), so no state of a generator is kept."""
 
     seed: int
-    epoch: int = 0
-    """Epochs finished."""
+    epoch: int = 0  # finished
     step: int = 0
     images_seen: int = 0
-    seconds: float = 0.0
-    """Time spent training, over all sessions."""
+    seconds: float = 0.0  # spent training, over all sessions
 
 
 @dataclass

@@ -11,12 +11,13 @@ import torch
 
 from course_lib.experiments.detection_scores import DetectionScoreError
 from course_lib.files import temporary_folder
+from course_lib.simulation.room.training_images import read_image_list
 from course_lib.spherical_stereo.detection.darknet import check_names, class_count, read_cfg, read_names
 from tools.detector_training import workers
 from tools.detector_training.augmentation import AugmentationRanges
 from tools.detector_training.batches import Batch, epoch_batches
 from tools.detector_training.export import read_weights, write_weights
-from tools.detector_training.images import TrainingDataError, read_boxes, read_panoramas
+from tools.detector_training.images import TrainingDataError, read_panoramas
 from tools.detector_training.loss import Loss, yolo_loss
 from tools.detector_training.network import TrainableNetwork
 from tools.detector_training.state import AveragedNetwork, Position, TrainingState, learning_rate
@@ -30,27 +31,18 @@ MAX_GRADIENT = 10.0
 class TrainingPlan:
     """How long and how fast to train. The defaults were chosen on generated rooms, two cores, bfloat16."""
 
-    epochs: int | None = None
-    """Stop after so many epochs, ..."""
-    minutes: float | None = 60.0
-    """... or after so much training time, whichever comes first; the learning rate falls towards that end."""
-    batch_size: int = 8
-    """Images a step, of all processes together."""
-    processes: int = 1
-    """Processes with one thread each; 1 is one process with as many threads as PyTorch has been given."""
-    window: tuple[int, int] = (1024, 416)
-    """Width and height of a training sample, pixels, multiples of 32. One panorama is 1024 x 512 there: floor and
-    ceiling are mostly cut off, which saves a fifth of the time and shifts the horizon."""
-    panorama_width: int = 1024
-    """Width to which panoramas are scaled in memory; 1024 makes 1280 with the appended quarter, the cfg's input."""
+    epochs: int | None = None  # stop after so many, ...
+    minutes: float | None = 60.0  # ... or after so much time; the learning rate falls towards the first of both
+    batch_size: int = 8  # images a step, of all processes together
+    processes: int = 1  # with one thread each; 1 is one process with all threads of PyTorch
+    window: tuple[int, int] = (1024, 416)  # pixels of a sample, multiples of 32: floor and ceiling are mostly cut off
+    panorama_width: int = 1024  # in memory; makes 1280 with the appended quarter, the cfg's input
     learning_rate: float = 1.5e-3
     warm_up_steps: int = 200
     weight_decay: float = 0.02
     seed: int = 0
-    bfloat16: bool = True
-    """Convolutions in bfloat16 (twice as fast on processors with AMX); statistics, loss and weights stay float32."""
-    validation_images: int = 60
-    """Images of a validation between epochs."""
+    bfloat16: bool = True  # convolutions only: twice as fast on processors with AMX
+    validation_images: int = 60  # of a validation between epochs
     minutes_between_validations: float = 4.0
     minutes_between_checkpoints: float = 1.0
 
@@ -61,8 +53,7 @@ class TrainingResult:
 
     weights: Path
     position: Position
-    validation: Validation | None
-    """The last validation between epochs; None when no detection was right yet."""
+    validation: Validation | None  # the last between epochs; None when no detection was right yet
     images_per_second: float
 
 
@@ -83,7 +74,6 @@ def train(
 
     Checkpoints are written between epochs; `resume` goes on from the one in `output`, `initial_weights` starts from a
     `.weights` file. `progress(batches, count)` may draw a bar.
-    Raises `DetectorError`, `TrainingDataError`, `CheckpointError`.
     """
     plan = plan or TrainingPlan()
     check_names(class_count(read_cfg(cfg)), read_names(names_file), names_file)
@@ -93,7 +83,7 @@ def train(
     if plan.processes == 1:
         return _train(*given, log, progress)
     for folder in images:  # what is wrong with a folder is said once, not by every process
-        read_boxes(folder)
+        read_image_list(folder)
     with temporary_folder() as folder:
         others = workers.start_others(plan.processes, folder / "meeting", _train, (*given, _silent, _unchanged))
         try:
@@ -164,10 +154,7 @@ def _train(
 
 
 def _run_epoch(state, started, training, plan, ranges, progress) -> tuple[float, str]:
-    """One epoch, or what is left of the time; returns images per second, and a line with it and the mean losses.
-
-    started: when the training began by `time.monotonic`, had it been in one piece.
-    """
+    """One epoch, or what is left of the time since `started`; images per second, and a line with the mean losses."""
     rank, count = workers.rank_and_count()
     position, size = state.position, plan.batch_size // count
     n_steps = workers.least(max(1, len(training) // size))

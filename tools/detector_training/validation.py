@@ -23,13 +23,11 @@ class Validation:
     """What a validation found."""
 
     n_images: int
-    threshold: float
-    """The score that gives the largest F1 on these images."""
+    threshold: float  # the score that gives the largest F1 on these images
     precision: float
     recall: float
     average_precision: float
-    by_class: dict[str, tuple[float, float, int]]
-    """Precision, recall at that threshold, and the number of objects, of each class."""
+    by_class: dict[str, tuple[float, float, int]]  # precision and recall at that threshold, and number of objects
 
     def line(self) -> str:
         """One line for a log."""
@@ -40,10 +38,7 @@ class Validation:
 
 
 def measure_detector(cfg: Path, weights: Path, names_file: Path, panoramas: Iterable[LabelledPanorama]) -> Validation:
-    """Precision and recall of the detector, run by OpenCV as the method runs it, on panoramas.
-
-    Raises what `YoloDetector` and `validate` raise.
-    """
+    """Precision and recall of the detector, run by OpenCV as the method runs it, on panoramas."""
     detector = YoloDetector(cfg, weights, names_file, score_threshold=MIN_SCORE)
 
     def detect(panorama: LabelledPanorama) -> Boxes:

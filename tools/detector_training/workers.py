@@ -1,9 +1,7 @@
 """Several processes that train one network together, each on a part of the images with one thread of its own.
 
-After every step the gradients are averaged, so that all processes hold the same weights. On a machine that others use
-too this is much faster than one process with many threads, whose threads wait for each other at every layer.
-All processes must make the same calls in the same order. A training in one process calls the same functions, which
-then return what they were given.
+After every step the gradients are averaged. All processes must make the same calls in the same order; in a training of
+one process these functions return what they were given.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""What stands in the corridor on the run day and was not there on the survey day. Sizes in metres, all chosen.
-
-Each function adds one thing of its kind to a `MeshBuilder`; what differs from one to the next is drawn with `rng`.
-"""
+"""What stands in the corridor on the run day and not on the survey day; `rng` varies it. Metres, all chosen."""
 
 from __future__ import annotations
 

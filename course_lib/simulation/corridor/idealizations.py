@@ -1,7 +1,4 @@
-"""What the simulated corridor grants and a real one does not, with what each is worth where that was measured.
-
-It stands in PARAMETERS.md of the corridor, below the parameters of its data and of the seeds' recordings.
-"""
+"""What the simulated corridor grants and a real one does not, with what each is worth where that was measured."""
 
 from __future__ import annotations
 

@@ -1,21 +1,18 @@
-"""What surfaces are made of: reflectivity for the camera's and the scanner's light, and a colour for pictures.
+"""What surfaces are made of: diffuse reflectivity at 850 nm, 0 to 1 but for retroreflective tape, and a colour.
 
-The SR4000 illuminates at 850 nm. The reflectivities are diffuse (Lambertian) and without unit, 0 to 1 but for
-retroreflective tape. All are chosen: they follow the usual ranges for indoor materials in the near infrared (white
-paint and paper bright, rubber dark; leaves and most cloth are brighter there than they look).
+All are chosen, in the usual ranges for indoor materials in the near infrared (leaves and most cloth are bright there).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class Material:
-    """Diffuse reflectivity at 850 nm (0 to 1) and visible colour (red, green, blue; 0 to 255)."""
+class Material(NamedTuple):
+    """What a surface is made of."""
 
     reflectivity: float
-    colour: tuple[int, int, int]
+    colour: tuple[int, int, int]  # red, green, blue; 0 to 255
 
 
 WALL_PAINT = Material(0.72, (226, 222, 210))

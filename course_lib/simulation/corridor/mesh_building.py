@@ -1,7 +1,4 @@
-"""Triangles with a material: the few solids from which the corridor is put together, and meshes as PLY files.
-
-Everything is built in local coordinates and set into the world by a `Placement`. Metres throughout.
-"""
+"""The solids from which the corridor is put together, each set into the world by a `Placement`; PLY files. Metres."""
 
 from __future__ import annotations
 
@@ -25,17 +22,13 @@ _BOX_FACES = np.array(
 
 @dataclass(frozen=True)
 class WorldMesh:
-    """One state of the world as triangles.
+    """One state of the world as triangles."""
 
-    vertices `(V, 3)` metres; faces `(F, 3)`; reflectivity `(F,)` at 850 nm, 0 to 1; colours `(F, 3)` 0 to 255;
-    parts `(F,)` index into part_names, so that a picture or a test can ask what a ray met.
-    """
-
-    vertices: np.ndarray
-    faces: np.ndarray
-    reflectivity: np.ndarray
-    colours: np.ndarray
-    parts: np.ndarray
+    vertices: np.ndarray  # `(V, 3)` metres
+    faces: np.ndarray  # `(F, 3)`
+    reflectivity: np.ndarray  # `(F,)` at 850 nm, 0 to 1
+    colours: np.ndarray  # `(F, 3)` 0 to 255
+    parts: np.ndarray  # `(F,)` index into part_names
     part_names: tuple[str, ...]
 
     def faces_of(self, part_name: str) -> np.ndarray:
@@ -51,10 +44,7 @@ class WorldMesh:
 
 @dataclass(frozen=True)
 class Placement:
-    """A local frame in the world: origin `(3,)` and the world directions of the local axes as rows of `axes` `(3, 3)`.
-
-    For a wall the local axes are: along the wall, into the wall (away from the corridor), and up.
-    """
+    """A local frame in the world: origin `(3,)`, and the directions of its axes as rows of `axes` `(3, 3)`."""
 
     origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
     axes: np.ndarray = field(default_factory=lambda: np.eye(3))
@@ -179,10 +169,7 @@ def write_ply(path: str | Path, vertices: np.ndarray, faces: np.ndarray, comment
 
 
 def write_world_ply(path: str | Path, world: WorldMesh, comment: str) -> None:
-    """A world as PLY with vertex colour (red, green, blue) and vertex property `reflectivity` (850 nm, 0 to 1).
-
-    Solids do not share vertices, so a value per vertex is a value per face.
-    """
+    """A world as PLY, colour and reflectivity at its vertices: solids share none, so they are values of faces."""
     colours, reflectivity = np.zeros((len(world.vertices), 3), np.uint8), np.zeros(len(world.vertices), np.float32)
     colours[world.faces] = world.colours[:, None]
     reflectivity[world.faces] = world.reflectivity[:, None]

@@ -1,8 +1,7 @@
 """What is built into the corridor: walls with openings, doors, windows, radiators, pillars, boards, stairs.
 
-Each function adds one thing to a `MeshBuilder` in the local axes of a wall: along the wall, into the wall (away from
-the corridor), up. So what sticks out of a wall has negative `into`. Sizes in metres; all are chosen, by the usual
-building sizes (a door leaf about 0.9 m x 2.0 m, a stair rise of 0.17 m).
+Local axes of a wall: along, into (away from the corridor), up; what sticks out has negative `into`. Metres, all chosen,
+by the usual building sizes.
 """
 
 from __future__ import annotations

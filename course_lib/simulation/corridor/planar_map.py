@@ -1,8 +1,7 @@
 """The map of the comparison partner: only the large planes of a detailed map, flattened.
 
-Fallon, Johannsson, Leonard, "Efficient Scene Simulation for Robust Monte Carlo Localization using an RGB-D Camera",
-ICRA 2012, localize in a low-fidelity model of large planar segments (walls, ceilings, floors). Here it is made from
-the detailed map by sequential RANSAC over its triangles, each counted by its area.
+Source: Fallon, Johannsson, Leonard, "Efficient Scene Simulation for Robust Monte Carlo Localization using an RGB-D
+Camera", ICRA 2012.
 """
 
 from __future__ import annotations
@@ -49,13 +48,10 @@ def planar_simplification(
 ) -> SceneMap:
     """The large planes of a map, each flattened; everything else is dropped.
 
-    Repeated: draw n_trials planes, each through a triangle drawn by area; a plane's support is the area of the
-    triangles within `distance` metres of it whose normals lie within `max_angle_deg` of its own; the best plane is
-    refitted to its support by area-weighted least squares. Its triangles are split into regions (no gap over `join`
-    metres between their middles); regions of at least `min_area` square metres are projected onto the plane and kept.
-    The search ends when the best plane has less than `min_area`. Last, the share `reduction` of the triangles is
-    decimated away (by quadric errors, which are zero within a plane).
-    Raises `ValueError` for a map without any plane so large.
+    Repeated: of n_trials planes, each through a triangle drawn by area, the one with most area in support (triangles
+    within `distance` metres and `max_angle_deg`) is refitted to it by least squares. Of its triangles those in regions
+    of `min_area` square metres (no gap over `join` metres) are projected onto it and kept, until no plane is so large.
+    Last, the share `reduction` of the triangles is decimated away. Raises `ValueError` for a map without such planes.
     Source: Fallon et al. 2012, section III (large planar segments); RANSAC: Fischler and Bolles 1981.
     """
     corners = scene_map.vertices[scene_map.faces]
@@ -93,10 +89,7 @@ def planar_simplification(
 
 
 def _best_plane(triangles: _Triangles, free: np.ndarray, n_trials: int, rng: Generator) -> Plane:
-    """The plane with most area in support among planes through triangles drawn by area.
-
-    Trials are judged on at most 5,000 triangles, drawn by area: the number of them in support is the area's estimate.
-    """
+    """The plane with most area in support, judged on 5,000 triangles drawn by area, among planes through such."""
     probability = triangles.areas[free] / triangles.areas[free].sum()
     sample = rng.choice(free, size=5000, p=probability)
     best, best_support = None, -1

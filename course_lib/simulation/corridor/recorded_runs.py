@@ -1,7 +1,4 @@
-"""The two recorded runs: a wagon pushed down the corridor, and the camera carried by hand.
-
-Trajectories are smooth curves through drawn knots; the states are exact, and become the ground truth. Metres, radians.
-"""
+"""The two recorded runs, exact states in metres and radians: a wagon pushed down the corridor, and a carried camera."""
 
 from __future__ import annotations
 
@@ -54,12 +51,9 @@ class PushModel:
 class Pushing(NamedTuple):
     """What pushing does to each frame, all `(T,)`."""
 
-    speed: np.ndarray
-    """Factor on the speed; its mean without stops is one."""
-    sway: np.ndarray
-    """Radians added to the heading."""
-    wobble: np.ndarray
-    """Metres to the left of the path."""
+    speed: np.ndarray  # factor on the speed; its mean without stops is one
+    sway: np.ndarray  # radians added to the heading
+    wobble: np.ndarray  # metres to the left of the path
 
 
 @dataclass(frozen=True)
@@ -91,10 +85,7 @@ class FloorSurveyModel:
 def wagon_run(
     model: WagonModel, clutter_boxes: np.ndarray, rng: Generator, pushing: Pushing | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """States `(T, 6)` and times `(T,)` of the wagon; its path keeps clear of the clutter `(n, 2, 2)`.
-
-    pushing: what the one who pushes it adds; None for a wagon that rolls evenly.
-    """
+    """States `(T, 6)` and times `(T,)` of the wagon, clear of the clutter `(n, 2, 2)`; no pushing: it rolls evenly."""
     length = model.mean_step * model.frames * (1 + model.step_spread) + 1.0
     path = _clear_path(model.start, length, model.wander, model.knot_spacing, model.clearance, clutter_boxes, rng)
     # Arc length along the path, so that steps are steps along the floor.
@@ -136,18 +127,14 @@ def draw_pushing(model: PushModel, frames: int, rng: Generator) -> Pushing:
 
 
 def hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
-    """States `(T, 6)` and times `(T,)` of the camera carried by hand, all six degrees of freedom moving.
-
-    Runs are drawn until one keeps the greatest step and turn; `ValueError` after 100 that do not.
-    """
+    """States `(T, 6)` and times `(T,)` of the camera carried by hand, no step or turn above the greatest."""
     for _ in range(100):
         states, times = _draw_hand_run(model, clutter_boxes, rng)
         step, turn = steps_and_turns(states)
         if step.max() <= model.greatest_step and np.rad2deg(turn.max()) <= model.greatest_turn_deg:
             return states, times
     raise ValueError(
-        f"100 runs had a step over {model.greatest_step} m or a turn over {model.greatest_turn_deg} degrees: take a "
-        "shorter mean_step or longer knot_seconds"
+        f"100 runs had a step over {model.greatest_step} m or a turn over {model.greatest_turn_deg} degrees"
     )
 
 

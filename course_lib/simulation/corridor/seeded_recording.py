@@ -1,8 +1,6 @@
-"""Recordings: the camera is carried along a trajectory through the true world of that day.
+"""Recordings: every seed is another day and another run in one building, with other errors of the camera.
 
-Every seed has a recording of its own: another day in the building of given data, another run of the wagon. The building
-is that of the map; doors, clutter, path, pushing, errors of the camera and its noise are the seed's. Each has a stream
-of random numbers to itself, so that two recordings of one seed differ in what they are asked to differ in.
+Each has a stream of random numbers to itself: two recordings of a seed differ only in what they are asked to differ in.
 """
 
 from __future__ import annotations
@@ -35,8 +33,8 @@ from course_lib.simulation.sensors.time_of_flight import (
     frame_counts,
 )
 
+# What a recording may have that the shipped one has not.
 Hardship = Literal["focal length", "lens distortion", "mount position", "mount angle", "pushed by hand"]
-"""What a recording may have that the shipped one has not."""
 HARDSHIPS: tuple[Hardship, ...] = get_args(Hardship)
 
 
@@ -54,10 +52,7 @@ class SeedModels:
 
 
 def building_of_data(folder: str | Path) -> Building:
-    """The building whose map lies in a folder that `tools.make_corridor` made: its seed is in summary.json.
-
-    Raises `FileNotFoundError` for a folder without one.
-    """
+    """The building whose map lies in a folder that `tools.make_corridor` made: its seed is in summary.json."""
     path = Path(folder) / "summary.json"
     if not path.is_file():
         raise FileNotFoundError(
@@ -80,10 +75,8 @@ def record(
 ) -> Counter[str]:
     """Capture a run, states `(T, 6)` and times `(T,)`, write it to `folder`, and return counts over its pixels.
 
+    What is written is what a user is told: nominal intrinsics, and the poses where the user believes the camera to be.
     frames: only the first so many images and poses; the line on the floor is always the whole run's.
-
-    What is written is what a user is told: the nominal intrinsics, and as true poses those of the body, where the user
-    believes the camera to be.
     """
     states, times = run
     caster, depths, counts = WorldCaster.of(world), [], Counter()
@@ -108,10 +101,10 @@ def record_seed(
     progress: Callable[[Iterable], Iterable] = iter,
     carried: Literal["wagon", "hand"] = "wagon",
 ) -> None:
-    """Write the recording of a seed to a new `folder`. camera: what the user is told (default: the SR4000's).
-    frames: only the first so many. carried: on a wagon, or by hand with all six degrees of freedom moving; what else
-    the seed draws, the day among it, is the same.
+    """Write the recording of a seed to a new `folder`.
 
+    camera: what the user is told (default: the SR4000's). frames: only the first so many. carried: on a wagon, or by
+    hand with all six degrees of freedom moving.
     Raises `ValueError` for an unknown hardship, or a folder that holds a recording.
     """
     unknown = sorted(set(hardships) - set(HARDSHIPS))

@@ -1,8 +1,7 @@
 """From registered scans to a triangle mesh: truncated signed distances on a voxel grid, iso-surface, decimation.
 
-The grid is worked through in slabs along x, so that memory stays small. A voxel that no station saw stays empty, and
-no triangle touches it: what was hidden on the survey day remains a hole.
-Method: Curless and Levoy, "A volumetric method for building complex models from range images", SIGGRAPH 1996.
+A voxel that no station saw stays empty, and no triangle touches it: what was hidden on the survey day remains a hole.
+Source: Curless and Levoy, "A volumetric method for building complex models from range images", SIGGRAPH 1996.
 """
 
 from __future__ import annotations
@@ -32,17 +31,14 @@ class FusionModel:
 def fuse(
     scans: list[RegisteredScan], model: FusionModel, progress=lambda slabs: slabs
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Surface of the scans at their registered poses: vertices `(V, 3)` metres, faces `(F, 3)`, before decimation.
-
-    progress wraps the slabs, for a progress bar.
-    """
+    """Surface of the scans at their registered poses: vertices `(V, 3)` metres, faces `(F, 3)`, before decimation."""
     clouds = []
     for scan in scans:
         points = scan.points()
         away = np.linalg.norm(points - scan.registered_pose[:3, 3], axis=1)
         clouds.append(points[away < model.greatest_range])
     if not sum(map(len, clouds)):
-        raise ValueError("the scans hold no surface: check the stations' poses and the scanner's greatest range")
+        raise ValueError("the scans hold no surface")
     block = _BLOCK * model.voxel
     occupied = np.unique(np.concatenate([np.floor(c / block).astype(np.int32) for c in clouds]), axis=0)
     around = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -1,8 +1,6 @@
 """The true world: a fourth-floor corridor of 40 m along +x, on the survey day and on the run day.
 
-z is up, the floor is at z = 0 (the fourth floor's; the building's other storeys are not there), the corridor runs from
-x = 0 to x = 40 m between y = +1.2 m and y = -1.38 m (-1.2 m beyond x = 20.4 m). Left is +y. Positions along the
-corridor follow no common spacing, so that one place does not look like the next.
+z is up, the floor is at z = 0, left is +y. Positions follow no common spacing: no place looks like the next.
 """
 
 from __future__ import annotations
@@ -87,13 +85,12 @@ CLUTTER = (
 
 @dataclass(frozen=True)
 class Building:
-    """What both days have in common. layout: rows of LEFT_DOORS, LEFT_PILLARS, ... by name, each moved along x;
-    windows: rows of WINDOWS, moved; phases `(6,)` of the walls' bow; detail_seed: of brackets and papers."""
+    """What both days have in common."""
 
-    layout: dict[str, list[tuple]]
-    windows: list[tuple]
-    phases: np.ndarray
-    detail_seed: int
+    layout: dict[str, list[tuple]]  # rows of LEFT_DOORS, LEFT_PILLARS, ... by name, each moved along x
+    windows: list[tuple]  # rows of WINDOWS, moved
+    phases: np.ndarray  # `(6,)` of the walls' bow
+    detail_seed: int  # of brackets and papers
 
 
 @dataclass(frozen=True)

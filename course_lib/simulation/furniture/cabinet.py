@@ -14,10 +14,7 @@ from course_lib.simulation.textures import Surface, colour, metal, random_colour
 
 @dataclass(frozen=True)
 class Cabinet:
-    """Lengths in metres. columns: of bays. rows: from below, "door", "drawer" or "open" and a height.
-
-    knob: "knob", "bar" or "none". legs: height of the legs, 0 = a plinth.
-    """
+    """Lengths in metres. rows: from below, "door", "drawer" or "open" and a height. legs: 0 = a plinth."""
 
     width: float = 1.2
     depth: float = 0.4

@@ -1,7 +1,6 @@
-"""The solids that furniture and rooms are made of, as textured triangles with outward counter-clockwise winding.
+"""The solids of furniture and rooms, as textured triangles with outward counter-clockwise winding.
 
-Texture coordinates run in metres divided by the tile's size, so that a material has the same scale on every part.
-A piece of furniture is built before it stands anywhere: x forward (its front), y to its left, z up, floor at z = 0.
+Texture coordinates are metres divided by the tile's size. A piece is built with x forward, y left, floor at z = 0.
 """
 
 from __future__ import annotations
@@ -135,10 +134,7 @@ def lathe(
     n: int = 18,
     stretch: tuple[float, float] = (1.0, 1.0),
 ) -> list[TexturedMesh]:
-    """A solid of revolution about the vertical axis through centre; profile: (radius, height) from below to above.
-
-    stretch: factors along x and y, for oval shapes.
-    """
+    """A solid of revolution about the vertical axis through centre; profile: (radius, height) from below to above."""
     profile = np.asarray(profile, float)
     angle = np.linspace(0.0, 2 * np.pi, n + 1)
     ring = np.stack([np.cos(angle) * stretch[0], np.sin(angle) * stretch[1], np.zeros(n + 1)], 1)
@@ -169,10 +165,7 @@ def cylinder(
 def swept(
     path: np.ndarray, side: np.ndarray, widths: np.ndarray, thicknesses: np.ndarray, surface: Surface, n: int = 8
 ) -> list[TexturedMesh]:
-    """A bar or a leaf along a path: an elliptic section of half-axes widths (along side) and thicknesses, closed ends.
-
-    path: `(k, 3)` metres. side: `(3,)`, roughly across the path.
-    """
+    """A bar or a leaf along a path `(k, 3)`: elliptic sections of half-axes widths (along side) and thicknesses."""
     path, side = np.asarray(path, float), np.asarray(side, float)
     tangent = np.gradient(path, axis=0)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)

@@ -13,10 +13,7 @@ from course_lib.simulation.textures import Surface, colour, metal
 
 @dataclass(frozen=True)
 class Television:
-    """Lengths in metres. width: of the screen with its frame, 16:9. stand: "foot", "floor" or "wall".
-
-    raised: height of the screen's lower edge above the foot's underside.
-    """
+    """Lengths in metres. width: of the screen, 16:9. stand: "foot", "floor" or "wall". raised: its lower edge."""
 
     width: float = 1.0
     thickness: float = 0.05

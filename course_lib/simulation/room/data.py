@@ -48,10 +48,7 @@ def make_room_data(
     models: RoomModels | None = None,
     progress: Callable[[Iterable], Iterable] = lambda items: items,
 ) -> dict:
-    """Make the data in folder `out`; return a summary. One seed gives one set of bytes.
-
-    progress(items) wraps the loop over the 40 pairs. A run that is stopped leaves the old data as they were.
-    """
+    """Make the data in folder `out`; return a summary. One seed gives one set of bytes."""
     models = models or RoomModels()
     survey_rng, rng = np.random.default_rng(seed).spawn(2)
     room = make_experiment_room()

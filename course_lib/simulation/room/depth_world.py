@@ -1,11 +1,7 @@
 """The furnished rooms of paper 2 as paper 1 sees them: a world for a depth camera, and its laser-scanned mesh map.
 
-What the camera sees is cast against the room itself; the map is what a few registered scans of it gave, with noise,
-holes behind furniture, and decimation. The filter never sees the room.
-
-A person may carry the camera from place to place where the floor is free, and look about: all six degrees of freedom
-move. The room is small and its walls are bare, so that a camera that sees 44 degrees of it often sees nothing but a
-wall: harder than the corridor, and nobody shaped it.
+The camera sees the room itself, the map is made of a few registered scans of it. A person carries the camera where the
+floor is free, and looks about: all six degrees of freedom move.
 """
 
 from __future__ import annotations
@@ -31,7 +27,6 @@ from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, Tim
 from course_lib.simulation.smooth_signal import smooth_signal, smoothed
 
 STREAM = 77  # joins a seed's generators of what the depth camera meets: apart from those of the photographs
-# Streams of a seed: the mesh map's survey, the camera's fixed pattern, each place, a walk, its camera.
 MAP, CAMERA, PLACE, WALK, WALK_CAMERA = range(1, 6)
 MAX_BEGINNINGS = 100
 REFLECTIVITY = 0.6  # of every surface, at 850 nm: textures say nothing of it (chosen: paint and cloth)
@@ -93,10 +88,7 @@ class WalkModels:
 
 
 def record_walk(folder: Path, seed: int, models: WalkModels | None = None) -> None:
-    """Writes a seed's recording and its mesh map, map.ply, to a new `folder`. Same seed, same bytes.
-
-    Raises `ValueError` for a folder that holds a recording, `NoFreePlace` for a room in which nobody can walk.
-    """
+    """Write a seed's recording and its mesh map, map.ply, to a new `folder`. Same seed, same bytes."""
     models = models or WalkModels()
     room = make_look_alike_room(seed, limits=models.limits)
     vertices, faces = surveyed_mesh(room, models.mesh, np.random.default_rng([STREAM, seed, MAP]))
@@ -106,9 +98,7 @@ def record_walk(folder: Path, seed: int, models: WalkModels | None = None) -> No
     caster = depth_caster(room)
     depths = [sensor.capture(caster, state, noise_rng).depth for state in states]
     times = np.arange(len(states)) / models.walk.frames_per_second
-    write_sequence(
-        folder, sensor.camera.matrix, list(range(len(states))), depths, optical_pose(states), times=times, up="z"
-    )
+    write_sequence(folder, sensor.camera.matrix, list(range(len(states))), depths, optical_pose(states), times, "z")
     write_ply(folder / "map.ply", vertices, faces, "generated room, simulated laser survey; CC BY 4.0")
 
 
@@ -141,10 +131,7 @@ def _way(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
             here, count = there, count + steps
         else:
             return np.concatenate(stretches)[: model.frames]
-    raise NoFreePlace(
-        f"from none of {MAX_BEGINNINGS} places a walk of {model.frames} frames leads on, {model.clearance} m clear of "
-        "the furniture; ask for less clearance or shorter stretches"
-    )
+    raise NoFreePlace(f"no walk of {model.frames} frames keeps {model.clearance} m from the furniture: less clearance?")
 
 
 def _can_go(here: np.ndarray, there: np.ndarray, footprints: list[np.ndarray], model: WalkModel) -> bool:

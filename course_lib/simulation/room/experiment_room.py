@@ -1,11 +1,8 @@
 """The room of the experiment: designed by hand, in the frame of the semantic map, around the paper's ten places.
 
 Three look-alike sofas, told apart only by their distance from the centroid of all furniture, are what the paper's
-greedy matching confuses: objects that it misses move that centroid. Every other pair of one class differs clearly in
-hue. This room is development data: after the detector's misses in it had been published, make_room's limits were moved
-to just beside the measures that stand here (data/room/README.md), so "outside the generator's range" is true of each
-piece by a hair only. The cloths have patterns of their own.
-Source: paper 2, section 3 (table 1, figure 7)
+greedy matching confuses. This is development data: the generator's limits were moved to just beside the measures here
+after the detector's misses had been published (data/room/README.md). Source: paper 2, section 3 (table 1, figure 7)
 """
 
 from __future__ import annotations

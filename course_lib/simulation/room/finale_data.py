@@ -1,8 +1,4 @@
-"""Everything under data/finale from one seed: the semantic map and the mesh map of one generated room.
-
-The room itself comes of its seed in half a second (`make_look_alike_room`); its mesh map takes half a minute, so it is
-kept. Seed and streams are those of `demo finale`: the files are what that experiment would make of the seed.
-"""
+"""Everything under data/finale: the semantic map and the mesh map that `demo finale` would make of one seed."""
 
 from __future__ import annotations
 

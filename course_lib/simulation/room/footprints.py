@@ -55,16 +55,13 @@ class NoFreePlace(ValueError):
 def free_places(room: Room, n: int, rng: Generator, clearance: float = 0.3, wall: float = 0.5) -> np.ndarray:
     """Places `(n, 2)` at least clearance from every object's footprint and wall from every wall; metres.
 
-    The room is a rectangle along the world's axes. Raises NoFreePlace when 500 n random places do not hold n free ones.
+    Raises NoFreePlace when 500 n random places do not hold n free ones.
     """
     low, high = np.asarray(room.walls).min(axis=0) + wall, np.asarray(room.walls).max(axis=0) - wall
     places = rng.uniform(low, high, (500 * n, 2))
     free = clear_of([footprint(item) for item in room.objects], places, clearance)
     if free.sum() < n:
-        raise NoFreePlace(
-            f"{n} places with {clearance} m to every footprint: found {int(free.sum())} among {500 * n}; "
-            "ask for fewer places or less clearance."
-        )
+        raise NoFreePlace(f"{n} places {clearance} m clear: found {free.sum()} among {500 * n}; ask for less clearance")
     return places[free][:n]
 
 

@@ -1,8 +1,4 @@
-"""Rooms from a seed: furniture finds its place by a wall, at a table or anywhere, apart from all that stands there.
-
-The detector is trained on the rooms of `make_room`. The hand-made room (experiment_room.py) is another, but some limits
-of the pieces were moved towards it; the rooms for reporting (look_alike_room.py) are made of the same pieces.
-"""
+"""Rooms from a seed, such as the detector is trained on: furniture finds its place apart from all that stands there."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 """A room of look-alikes surveyed, and photographed by the paper's rig at both heights, from a seed.
 
-Every random thing has a stream of its own (room, survey, mount, places, each pose), so that another tilt of the lower
-camera, or another number of poses, changes nothing else. From each pose the rig may be carried on by a few steps.
+Every random thing has a stream of its own: another tilt, or another number of poses, changes nothing else.
 """
 
 from __future__ import annotations
@@ -35,17 +34,14 @@ MAX_STEPS = 1000  # drawn until one ends at a free place
 
 @dataclass(frozen=True)
 class RecordingModels:
-    """How a room of look-alikes is drawn, surveyed and photographed; the defaults are those of the reported table.
-
-    tilt_deg: None, or the lower camera's tilt against the upper, degrees, instead of one drawn from the rig's model.
-    """
+    """How a room of look-alikes is drawn, surveyed and photographed; the defaults are those of the reported table."""
 
     limits: LookAlikeLimits = field(default_factory=LookAlikeLimits)
     rig: RigModel = field(default_factory=RigModel)
     camera: PanoramaCameraModel = field(default_factory=PanoramaCameraModel)
     survey: RoomSurveyModel = field(default_factory=RoomSurveyModel)
     width: int = 1280  # pixels
-    tilt_deg: float | None = None
+    tilt_deg: float | None = None  # of the lower camera against the upper; None: drawn from the rig's model
 
 
 def surveyed_room(seed: int, models: RecordingModels) -> tuple[Room, SemanticMap]:
@@ -60,10 +56,9 @@ def surveyed_room(seed: int, models: RecordingModels) -> tuple[Room, SemanticMap
 
 
 def measurement_poses(room: Room, n: int, seed: int) -> np.ndarray:
-    """Where the rig stands: `(n, 3)` [x, y, heading], metres and radians; two headings at every place.
+    """Where the rig stands: `(n, 3)` [x, y, heading], metres and radians; fewer poses are the first of more.
 
-    The first is drawn from the whole circle, the second is a quarter, half or three quarters of a turn further, as in
-    the paper's table 1. Fewer poses are the first of more.
+    Two headings a place, the second some quarters of a turn further. Source: paper 2, table 1
     """
     rng = np.random.default_rng([STREAM, seed, PLACES])
     n_places = -(-n // HEADINGS_A_PLACE)
@@ -84,7 +79,7 @@ def mount_of(seed: int, models: RecordingModels) -> Mount:
 
 
 def photograph_room(folder: Path, room: Room, seed: int, n_poses: int, models: RecordingModels) -> list[Path]:
-    """Writes a recording for each of the paper's heights, `experiment_1` and `experiment_2`; returns their folders."""
+    """Write a recording for each of the paper's heights, `experiment_1` and `experiment_2`; return their folders."""
     mount, poses, folders = mount_of(seed, models), measurement_poses(room, n_poses, seed), []
     with PanoramaRenderer(room, models.width, alone_scale=1) as renderer:
         for number, (upper, lower) in CAMERA_HEIGHTS.items():
@@ -112,8 +107,7 @@ class WalkModel:
 class NearbyView(NamedTuple):
     """One more view: where the rig really stood, and its two panoramas."""
 
-    pose: np.ndarray
-    """`(3,)` [x, y, heading], metres and radians."""
+    pose: np.ndarray  # `(3,)` [x, y, heading], metres and radians
     upper_image: np.ndarray
     lower_image: np.ndarray
 
@@ -124,10 +118,7 @@ def experiment_of(k: int) -> int:
 
 
 def walk_from(room: Room, pose: np.ndarray, n: int, rng: Generator, model: WalkModel = WalkModel()) -> np.ndarray:
-    """Poses `(n, 3)` of n further views, each a step from the one before, all at places where the rig can stand.
-
-    pose: `(3,)` of the first view, which is not repeated. Where no step of `MAX_STEPS` is free the rig turns only.
-    """
+    """Poses `(n, 3)` of n further views, each a free step from the one before, or a turn only where none is free."""
     footprints = [footprint(item) for item in room.objects]
     low, high = np.asarray(room.walls).min(axis=0) + model.wall, np.asarray(room.walls).max(axis=0) - model.wall
     poses, last = [], np.asarray(pose, dtype=np.float64)
@@ -146,10 +137,7 @@ def walk_from(room: Room, pose: np.ndarray, n: int, rng: Generator, model: WalkM
 def photograph_walks(
     folder: Path, room: Room, seed: int, n_poses: int, n: int, models: RecordingModels, walk: WalkModel
 ) -> Iterator[list[NearbyView]]:
-    """For each pose of `photograph_room` the n views that follow it, at the height of `experiment_of`.
-
-    folder: where the photographs are written and read back from, since JPEG is part of what a camera does.
-    """
+    """For each pose of `photograph_room` the n views that follow it, written to `folder` as JPEG and read back."""
     mount = mount_of(seed, models)
     with PanoramaRenderer(room, models.width, alone_scale=1) as renderer:
         for k, pose in enumerate(measurement_poses(room, n_poses, seed)):

@@ -1,10 +1,7 @@
 """Rooms for reporting: furnished from a seed, with three to five look-alike sofas or chairs in each.
 
-Paper 2's method fails where objects of one class look alike, so a room that shall test it needs some. Everything else
-is left to chance. The limits below were written down, and committed, before any room of this generator was drawn or
-photographed; nobody shaped a room. The pieces, the shell and the light are those of `make_room`, which made the
-detector's training rooms: the detector has seen their kind, though none of these rooms (no seed gives one room in
-both generators).
+The limits below were committed before any room of this generator was drawn; nobody shaped a room. Pieces, shell and
+light are those of `make_room`, but no seed gives one room in both generators: the detector has seen none of these.
 """
 
 from __future__ import annotations
@@ -43,9 +40,7 @@ class NoRoomDrawn(ValueError):
 def make_look_alike_room(seed: int, draw: int = 0, limits: LookAlikeLimits = LookAlikeLimits()) -> Room:
     """The room of a seed, its south-west corner at the origin; the look-alikes are its first objects.
 
-    One seed gives one room. draw: another room of the same seed, for who cannot use the first. A room whose
-    look-alikes, or too many of whose other pieces, find no place is drawn again.
-    Raises `NoRoomDrawn` when that never ends, for limits that ask for too much.
+    draw: another room of the same seed. A room whose pieces find no place is drawn again; `NoRoomDrawn` at last.
     """
     for rng in np.random.default_rng([STREAM, seed, draw]).spawn(MAX_DRAWS):
         high = rng.uniform(*limits.side, 2)

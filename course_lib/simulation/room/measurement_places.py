@@ -9,10 +9,8 @@ class MeasurementPlace(NamedTuple):
     """One row of table 1: where the rig stood, and its two headings there."""
 
     place: int
-    x: float
-    """Metres."""
-    y: float
-    """Metres."""
+    x: float  # metres
+    y: float  # metres
     headings_deg: tuple[float, float]
 
 

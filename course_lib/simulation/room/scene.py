@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,30 +11,22 @@ from course_lib.simulation.textures import TexturedMesh
 
 @dataclass(frozen=True)
 class Lamp:
-    """A light that shines in all directions and loses strength with distance.
+    """A light that shines in all directions and loses strength with distance."""
 
-    position: `(3,)` metres, world frame. colour: `(3,)` RGB, 0 to 1. strength: brightness of a white surface that
-    faces the lamp from one metre, 1 = full scale of an image with exposure 1.
-    """
-
-    position: tuple[float, float, float]
-    colour: tuple[float, float, float]
-    strength: float
+    position: tuple[float, float, float]  # metres, world frame
+    colour: tuple[float, float, float]  # RGB, 0 to 1
+    strength: float  # brightness of a white surface one metre before it, 1 = full scale of an image with exposure 1
 
 
 @dataclass(frozen=True)
 class RoomObject:
-    """One piece of furniture in its place.
+    """One piece of furniture in its place."""
 
-    label: class name as in the semantic map. x, y: its footprint's centre in the world, metres. heading: radians, the
-    direction its front faces. meshes: in the world frame.
-    """
-
-    label: str
-    x: float
+    label: str  # class name as in the semantic map
+    x: float  # metres, world frame: its footprint's centre
     y: float
-    heading: float
-    meshes: tuple[TexturedMesh, ...]
+    heading: float  # radians, the direction its front faces
+    meshes: tuple[TexturedMesh, ...]  # in the world frame
 
     def vertices(self) -> np.ndarray:
         """All corners `(n, 3)`, metres, world frame."""
@@ -43,16 +35,11 @@ class RoomObject:
 
 @dataclass(frozen=True)
 class Room:
-    """A furnished room, floor at z = 0.
+    """A furnished room, floor at z = 0."""
 
-    walls: `(k, 2)` corners of the floor in order, metres. height: of the ceiling, metres. objects: what the semantic
-    map lists. shell: floor, walls, ceiling, windows, doors, pictures, lamps: what it does not list. lamps: the light;
-    ambient: `(3,)` RGB, the light that comes from everywhere.
-    """
-
-    walls: np.ndarray
-    height: float
-    objects: tuple[RoomObject, ...]
-    shell: tuple[TexturedMesh, ...]
+    walls: np.ndarray  # `(k, 2)` corners of the floor in order, metres
+    height: float  # of the ceiling, metres
+    objects: tuple[RoomObject, ...]  # what the semantic map lists
+    shell: tuple[TexturedMesh, ...]  # what it does not list: floor, walls, ceiling, windows, doors, pictures
     lamps: tuple[Lamp, ...]
-    ambient: tuple[float, float, float] = field(default=(0.35, 0.35, 0.35))
+    ambient: tuple[float, float, float] = (0.35, 0.35, 0.35)  # RGB, the light that comes from everywhere

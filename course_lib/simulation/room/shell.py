@@ -1,8 +1,6 @@
 """What a room is apart from its listed furniture: floor, walls, windows, door, pictures, lamps, and small things.
 
-The semantic map lists none of it; the small things (boxes, bins, rugs, curtains) are there so that a detector meets
-objects that are not of its classes. Everything that stands on the floor stays within 0.45 m of a wall. `random_shell`
-draws all of it from random numbers.
+The small things are there so that a detector meets what is not of its classes; they stand within 0.45 m of a wall.
 """
 
 from __future__ import annotations
@@ -165,12 +163,7 @@ GAP = 0.06  # metres between two footprints
 
 @dataclass
 class Plan:
-    """A room while it is being made: from the floor's corner low to high `(2,)`, with a ceiling at height, metres.
-
-    meshes: of the plan. lamps: the lights. taken: rectangles `(4, 2)` on which nothing else may stand. spans: for each
-    of the four walls, the stretches (from, to) in metres along it that windows, the door and pictures cover.
-    probes: places of which some must stay free for a rig. objects: the furniture. tables: their rectangles.
-    """
+    """A room while it is being made: from the floor's corner low to high `(2,)`, with a ceiling at height, metres."""
 
     low: np.ndarray
     high: np.ndarray
@@ -178,12 +171,13 @@ class Plan:
     walls: list[Wall]
     meshes: list[TexturedMesh]
     lamps: list[Lamp] = field(default_factory=list)
-    taken: list[np.ndarray] = field(default_factory=list)
+    taken: list[np.ndarray] = field(default_factory=list)  # rectangles `(4, 2)` on which nothing else may stand
+    # Stretches (from, to) in metres along each of the four walls that windows, the door and pictures cover.
     spans: list[list[tuple[float, float]]] = field(default_factory=lambda: [[], [], [], []])
     ambient: tuple[float, float, float] = (0.35, 0.35, 0.35)
-    probes: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+    probes: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # some must stay free for a rig
     objects: list[RoomObject] = field(default_factory=list)
-    tables: list[np.ndarray] = field(default_factory=list)
+    tables: list[np.ndarray] = field(default_factory=list)  # their rectangles
 
     def fits(self, corners: np.ndarray, gap: float = GAP) -> bool:
         """Whether the rectangle lies inside the walls and apart from all others."""

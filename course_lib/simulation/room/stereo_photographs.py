@@ -1,7 +1,4 @@
-"""The exact boxes of a room's objects on a panorama, and a room photographed by a rig with them, as a recording.
-
-The boxes, seen and unoccluded, come from pictures of object numbers.
-"""
+"""A room photographed by a rig, as a recording, with the exact boxes of its objects."""
 
 from __future__ import annotations
 
@@ -20,11 +17,10 @@ Box = tuple[float, float, float, float]
 
 
 def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[TrueObject]:
-    """The boxes of all objects of which at least one pixel is seen, in the order of `room.objects`.
+    """The boxes of all objects of which at least one pixel is seen from `state` `(6,)`, in the order of `room.objects`.
 
-    visible_box: around the pixels that show an object; unoccluded_box: around the pixels that would show it if nothing
-    stood before it; visible_fraction: the first pixels' number over the second's. Boxes are (u_min, v_min, u_max,
-    v_max), 0 <= u_min < width; u_max passes the width at the seam. state: `(6,)` camera pose, metres and radians.
+    visible_box is around the pixels that show an object, unoccluded_box around those that would show it alone;
+    visible_fraction: the first pixels' number over the second's. u_max passes the width at the seam.
     """
     numbers = renderer.render_objects(state)
     scale = numbers.shape[1] / renderer.width
@@ -52,11 +48,7 @@ def box_entries(renderer: PanoramaRenderer, state: np.ndarray) -> list[dict]:
 
 
 def box_around(mask: np.ndarray, scale: float = 1.0) -> Box:
-    """The narrowest box around the True pixels of a panorama, across the seam where that is narrower.
-
-    mask: `(h, w)` bool, at least one pixel True. scale: mask pixels per image pixel. Returns edge coordinates in image
-    pixels.
-    """
+    """The narrowest box around the True pixels of a panorama, across the seam too; scale: of the mask."""
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     width = mask.shape[1]
     # The box leaves out the widest run of empty columns on the circle.
@@ -71,10 +63,7 @@ def box_around(mask: np.ndarray, scale: float = 1.0) -> Box:
 def photograph_pair(
     renderer: PanoramaRenderer, rig: RigPose, folder: Path, name: str, camera: PanoramaCameraModel, rng: Generator
 ) -> dict:
-    """Both panoramas of a rig, written to the folder as NAME_upper.jpg and NAME_lower.jpg; returns their entry.
-
-    The entry is what poses.json says of a pair: where the rig really stood, and the boxes of all that can be seen.
-    """
+    """Write both panoramas of a rig, NAME_upper.jpg and NAME_lower.jpg; return their entry of poses.json."""
     entry = {"name": name, "rig": rig.as_dict()}
     for side, state in zip(("upper", "lower"), rig.camera_states(), strict=True):
         file = f"{name}_{side}.jpg"

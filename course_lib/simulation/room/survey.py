@@ -1,8 +1,4 @@
-"""The semantic map of a room as a surveyor makes it: on another day, under other light, with a measuring error.
-
-The surveyor's lamps are warmer or colder than those of the experiment, so that the map's colours and the colours that
-the rig sees later are not the same numbers.
-"""
+"""The semantic map of a room as a surveyor makes it: another day, under warmer light, with a measuring error."""
 
 from __future__ import annotations
 
@@ -38,9 +34,8 @@ class UnseenObject(ValueError):
 
 
 def survey_room(room: Room, model: RoomSurveyModel, rng: Generator) -> SemanticMap:
-    """The semantic map of a room: class, centroid, hue and saturation of the whole object, and the walls.
+    """The semantic map of a room; colours are means over an object's pixels, and over the places that see it well.
 
-    Hue and saturation are means over all pixels that show the object, and over the places that see it well.
     Raises `UnseenObject` for an object that no place sees.
     """
     colour = np.asarray(model.lamp_colour)
@@ -49,10 +44,7 @@ def survey_room(room: Room, model: RoomSurveyModel, rng: Generator) -> SemanticM
     landmarks = []
     for number, thing in enumerate(room.objects):
         if not colours[number]:
-            raise UnseenObject(
-                f"object {number} ({thing.label} at {thing.x:.2f}, {thing.y:.2f}) is seen from none of the "
-                f"{model.places} places of the survey: give more places, or move the object."
-            )
+            raise UnseenObject(f"object {number} ({thing.label}) is seen from none of the {model.places} places")
         hue, saturation = _mean_colour(colours[number])
         x, y = np.array([thing.x, thing.y]) + model.position_error * rng.standard_normal(2)
         landmarks.append(Landmark(thing.label, round(float(x), 3), round(float(y), 3), hue, saturation))

@@ -1,7 +1,4 @@
-"""Photographs of many rooms with their boxes: what a detector is trained and tested on.
-
-No room of these is the experiment's: `make_room(seed)` draws other layouts, shapes, textures and light each time.
-"""
+"""Photographs of many rooms (`make_room`) with their boxes: what a detector is trained and tested on."""
 
 from __future__ import annotations
 
@@ -40,18 +37,12 @@ class OtherImagesPerRoom(ValueError):
 
 
 def make_room_images(
-    folder: str | Path,
-    first_seed: int,
-    n_rooms: int,
-    images_per_room: int = 4,
-    progress: Progress = lambda items: items,
+    folder: str | Path, first_seed: int, n_rooms: int, images_per_room: int = 4, progress: Progress = iter
 ) -> list[dict]:
-    """Photograph rooms `first_seed` to `first_seed + n_rooms - 1`; go on where an earlier run in the folder stopped.
+    """Photograph `n_rooms` rooms from `first_seed` on; go on where an earlier run in the folder stopped.
 
-    Writes NNNNNN_K.jpg (room, photograph) and boxes.json, which is complete after every room. A room depends on its
-    seed alone; its photographs depend on images_per_room too, because the places of all of them are drawn first.
-    Returns the list of images as boxes.json holds it.
-    Raises `OtherImagesPerRoom` for a folder begun with another number of images.
+    Writes NNNNNN_K.jpg (room, photograph) and boxes.json, complete after every room; returns the list in it.
+    Raises `OtherImagesPerRoom` for a folder begun with another number: the places of a room's images are drawn first.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -59,10 +50,8 @@ def make_room_images(
     done = Counter(image["room_seed"] for image in images)
     for seed, count in done.items():
         if count != images_per_room:
-            raise OtherImagesPerRoom(
-                f"{folder} was begun with {count} images of a room (room {seed}), now {images_per_room} are asked for: "
-                "go on with the same number, or give another folder."
-            )
+            begun = f"{folder} was begun with {count} images of a room (room {seed})"
+            raise OtherImagesPerRoom(f"{begun}, now {images_per_room} are asked for: give another folder")
     for seed in progress(range(first_seed, first_seed + n_rooms)):
         if seed not in done:
             images += _photograph_room(folder, seed, images_per_room)
@@ -71,10 +60,7 @@ def make_room_images(
 
 
 def read_image_list(folder: str | Path) -> list[dict]:
-    """The images of a folder with their objects, from its boxes.json.
-
-    Raises `FileNotFoundError` if there is none, `ValueError` for another version or a field that cannot be read.
-    """
+    """The images of a folder with their objects, from its boxes.json. Raises `FileNotFoundError`, `ValueError`."""
     path = Path(folder) / BOXES_FILE
     content = read_json(path, "list of images", ValueError, missing=FileNotFoundError)
     try:

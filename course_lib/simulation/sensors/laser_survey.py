@@ -1,7 +1,6 @@
-"""A terrestrial laser survey of the corridor: stations, scans with their errors, and how well they are registered.
+"""A terrestrial laser survey: stations, scans with their errors, and how well they are registered.
 
-A station measures ranges over azimuth and elevation. Its scan is kept in the scanner's own frame together with two
-poses: where it really stood, and where registration believes it stood. Only the second reaches the map.
+A scan knows where the scanner stood, and where registration believes it stood; only the second reaches the map.
 """
 
 from __future__ import annotations
@@ -48,16 +47,12 @@ class ScannerModel:
 
 @dataclass(frozen=True)
 class RegisteredScan:
-    """One station as the surveyor knows it, and all that a map may be made from.
+    """One station as the surveyor knows it, and all that a map may be made from."""
 
-    ranges `(E, A)` metres, nan = nothing came back, over `elevations` `(E,)` and `azimuths` `(A,)` in radians;
-    registered_pose `(4, 4)` scanner-to-world, where registration believes that the scanner stood.
-    """
-
-    ranges: np.ndarray
-    elevations: np.ndarray
-    azimuths: np.ndarray
-    registered_pose: np.ndarray
+    ranges: np.ndarray  # `(E, A)` metres, nan = nothing came back
+    elevations: np.ndarray  # `(E,)` radians
+    azimuths: np.ndarray  # `(A,)` radians
+    registered_pose: np.ndarray  # `(4, 4)` scanner-to-world, where registration believes that the scanner stood
 
     def points(self) -> np.ndarray:
         """Measured points `(n, 3)` in the world by the registered pose."""
@@ -103,10 +98,8 @@ def survey(caster: WorldCaster, model: ScannerModel, rng: Generator, stations: t
 def scan(
     caster: WorldCaster, model: ScannerModel, true_pose: np.ndarray, registered_pose: np.ndarray, rng: Generator
 ) -> Scan:
-    """One station's scan: ranges with noise, mixed pixels, and drop-outs on grazing, dark, near and far surfaces.
-
-    A mixed pixel: a second ray within the beam's footprint meets another surface; the instrument then reports a
-    weighted mean of both ranges, a point in mid-air.
+    """One station's scan, with noise, drop-outs, and mixed pixels: where a second ray within the beam's footprint meets
+    another surface, the instrument reports a weighted mean of both ranges, a point in mid-air.
     """
     step = np.deg2rad(model.step_deg)
     elevations = np.arange(np.deg2rad(model.lowest_deg), np.pi / 2 - step, step)
@@ -144,11 +137,10 @@ def _ranges(
 
 
 def registration_error(scans: list[Scan], rng: Generator, n_points: int = 20_000) -> dict[str, float]:
-    """How far apart neighbouring stations' points lie: the paper's "mean point distance after registration".
+    """How far apart neighbouring stations' points lie, m: the paper's "mean point distance after registration".
 
-    For each pair of neighbouring stations: mean distance in metres from points of one, seen by both, to the nearest
-    point of the other; then the mean over the pairs. Spacing and noise of the points are in it, so the same number
-    with the true poses stands beside it, and the root mean square of the stations' position errors.
+    Mean distance from points of one, seen by both, to the nearest of the other, over the pairs. Spacing and noise are
+    in it: the same number with the true poses stands beside it, and the stations' position errors.
     """
     result = {}
     for key, registered in (("mean_point_distance_m", True), ("mean_point_distance_true_poses_m", False)):

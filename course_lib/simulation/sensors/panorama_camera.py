@@ -1,7 +1,4 @@
-"""From the light that arrives to the file that a 360-degree camera writes: exposure, white balance, blur, noise, JPEG.
-
-Every photograph draws its own faults, so that the two cameras of a rig, and two photographs from one place, differ.
-"""
+"""From light to the file that a 360-degree camera writes: exposure, white balance, blur, noise, JPEG."""
 
 from __future__ import annotations
 

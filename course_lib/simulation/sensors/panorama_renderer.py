@@ -1,7 +1,6 @@
 """Equirectangular pictures of a room from any place, and which object each pixel shows.
 
-VTK draws the six faces of a cube around the camera and bends them into one panorama (vtkPanoramicProjectionPass). Two
-scenes live side by side: one lit and textured, one in which every object is painted with its own number.
+VTK bends the six faces of a cube into one panorama. Two scenes: one lit, one with each object painted in its number.
 """
 
 from __future__ import annotations
@@ -26,13 +25,10 @@ OVERSAMPLING = 2  # pictures are drawn twice as large and averaged down, against
 
 
 class PanoramaRenderer:
-    """Draws one room. A context manager: the two windows live until `close`.
+    """Draws one room of fewer than 255 objects. A context manager: the windows live until `close`.
 
-    room: what to draw; fewer than 255 objects.
-    width: of the panoramas, pixels, an even number; their height is half of it.
-    number_scale: the pictures of object numbers are so many times as large: boxes exact to a part of a pixel.
-    alone_scale: the same for pictures of one object alone, a divisor of number_scale; None: as fine. They are most of
-    the work, one for each object, and less depends on them.
+    width: of the panoramas, pixels, even. number_scale: pictures of object numbers are so many times as large.
+    alone_scale: the same for those of one object alone, which are most of the work, a divisor of number_scale.
     """
 
     def __init__(self, room: Room, width: int = 1280, number_scale: int = 2, alone_scale: int | None = None) -> None:
@@ -52,19 +48,12 @@ class PanoramaRenderer:
                 scene.add_flat(data, number)
 
     def render(self, state: np.ndarray) -> np.ndarray:
-        """The panorama from a camera pose, without the camera's own faults: noise and the like come later.
-
-        state: `(6,)` [x, y, z, roll, pitch, yaw] of the camera's body frame, metres and radians.
-        Returns `(height, width, 3)` float32 BGR, 0 to 255, brightness 255 being full scale at exposure 1.
-        """
+        """The panorama `(height, width, 3)` float32 BGR, 255 = full scale, from a body pose `(6,)`, without noise."""
         image = self._picture.draw(state).astype(np.float32)
         return cv2.resize(image, (self.width, self.height), interpolation=cv2.INTER_AREA)[..., ::-1].copy()
 
     def render_objects(self, state: np.ndarray) -> np.ndarray:
-        """Which object each pixel shows, `number_scale` times the panorama's size.
-
-        Returns uint8 `(number_scale height, number_scale width)`: the index into `room.objects`, or `BACKGROUND`.
-        """
+        """The index into `room.objects`, or `BACKGROUND`, of each pixel; uint8, `number_scale` times as large."""
         return self._numbers.draw(state)[..., 0].copy()
 
     def render_alone(self, state: np.ndarray, number: int) -> np.ndarray:

@@ -14,11 +14,8 @@ from course_lib.geometry import pose_matrix, state_from_matrix
 class RigModel:
     """How far a rig that is set up by hand stands from upright, and its two cameras from one vertical axis.
 
-    The method takes the lower camera to be a pure shift of the upper one by the baseline that it was told. What real
-    mounts leave: the seat of a tripod thread is some 30 mm wide, and 0.15 mm of play, paint or dust under one edge
-    tilts the camera by 0.3 degrees; the two lenses inside one uncalibrated consumer camera were measured to be 0.7 to
-    1.2 degrees from opposite (a Theta SC; monochrome.sutic.nu, 2017-08-03). So 0.3 degrees stand for a rig that was
-    set up with care and never calibrated; 1 degree for one set up without.
+    0.15 mm of dust under a tripod thread's seat, 30 mm wide, tilts a camera by 0.3 degrees; the two lenses inside one
+    consumer camera were measured to be 0.7 to 1.2 degrees from opposite (a Theta SC; monochrome.sutic.nu, 2017-08-03).
     """
 
     tilt_deg: float = 1.0  # degrees, greatest tilt of the rig as a whole; chosen
@@ -29,23 +26,20 @@ class RigModel:
     assembled_anew: bool = False  # whether the lower camera is mounted anew at every place; chosen: once for all
 
 
+# The rig of data/room, which was photographed before these faults had parameters: kinder than a real one.
 NEARLY_PERFECT_RIG = RigModel(
     relative_tilt_deg=0.05, relative_yaw_deg=0.0, baseline_error=0.0, height_error=0.0, assembled_anew=True
 )
-"""The rig of data/room, which was photographed before these faults had parameters: kinder than a real one."""
 
 
 @dataclass(frozen=True)
 class Mount:
-    """How the lower camera really sits below the upper one.
+    """How the lower camera really sits below the upper one."""
 
-    relative_tilt: (roll, pitch), radians. relative_yaw: radians. baseline_error, height_error: metres, true less told.
-    """
-
-    relative_tilt: tuple[float, float] = (0.0, 0.0)
-    relative_yaw: float = 0.0
-    baseline_error: float = 0.0
-    height_error: float = 0.0
+    relative_tilt: tuple[float, float] = (0.0, 0.0)  # (roll, pitch), radians
+    relative_yaw: float = 0.0  # radians
+    baseline_error: float = 0.0  # metres, true less told
+    height_error: float = 0.0  # likewise
 
     def tilted(self, tilt_deg: float) -> Mount:
         """The same mount with a relative tilt of exactly so many degrees, in the direction that it has already."""
@@ -55,12 +49,7 @@ class Mount:
 
 @dataclass(frozen=True)
 class RigPose:
-    """A vertical pair of 360-degree cameras as it really stands.
-
-    x, y, heading: of the upper camera, metres and radians: what the methods estimate. upper_height: metres above the
-    floor; the lower camera is `baseline` metres below. tilt, relative_tilt: (roll, pitch), radians. relative_yaw: of
-    the lower camera against the upper, radians.
-    """
+    """A vertical pair of 360-degree cameras as it really stands, metres and radians; x, y, heading are estimated."""
 
     x: float
     y: float
@@ -109,11 +98,7 @@ def stand_up(
     rng: Generator,
     mount: Mount | None = None,
 ) -> RigPose:
-    """A rig set up at a place, tilted as a whole by an angle drawn uniformly from a disk of the model's radius.
-
-    upper_height, baseline: as told to the method, metres. mount: how the cameras sit on the bar; None: assembled anew
-    at this place.
-    """
+    """A rig set up at a place, tilted as a whole; lengths as told to the method, metres. No mount: assembled anew."""
     tilt = _from_disk(np.deg2rad(model.tilt_deg), rng)
     mount = mount or assemble(model, rng)
     heights = upper_height + mount.height_error, baseline + mount.baseline_error

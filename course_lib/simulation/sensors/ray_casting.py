@@ -15,12 +15,11 @@ _BATCH = 1_000_000
 
 @dataclass(frozen=True)
 class Hits:
-    """What rays met. distance `(...)` in units of the ray direction's length, inf = nothing; cosine of incidence
-    `(...)`, 0 to 1; face `(...)` index, -1 = nothing."""
+    """What rays met, arrays of the rays' shape."""
 
-    distance: np.ndarray
-    cosine: np.ndarray
-    face: np.ndarray
+    distance: np.ndarray  # in units of the direction's length, inf = nothing
+    cosine: np.ndarray  # of incidence, 0 to 1
+    face: np.ndarray  # index, -1 = nothing
 
 
 class WorldCaster:

@@ -5,11 +5,8 @@ A surface at range r (along the ray, not along the optical axis) adds the phasor
 
     s = rho cos(theta) / r^2 * exp(i 4 pi f r / c)
 
-to every pixel that sees it. A pixel sums over 3 x 3 sub-pixel rays: where it sees two surfaces, the sum's phase is
-that of neither, and the point floats between them (a flying pixel); nothing else is done to make them.
-range = c phase / (4 pi f) lies in [0, c / 2f): a return from farther away comes back wrapped to the wrong range
-unless its amplitude is below the threshold, where it is dropped.
-
+to every pixel that sees it. A pixel sums over 3 x 3 sub-pixel rays, so that it floats between two surfaces it sees.
+range = c phase / (4 pi f) lies in [0, c / 2f): what comes from farther away is wrapped, or too weak and dropped.
 Not modelled: light that takes several paths in the room, motion blur within one exposure, warming up.
 """
 
@@ -59,24 +56,16 @@ class TimeOfFlightModel:
 
 @dataclass(frozen=True)
 class CalibrationErrors:
-    """How the true camera differs from the one that its user is told of; all zero where calibration is perfect.
+    """How the true camera differs from the one that its user is told of; all zero where calibration is perfect."""
 
-    focal_length: share by which the true focal lengths are longer. radial: a pixel that should look along the tangent r
-    looks along r (1 + radial r^2). mount: the true camera's pose [x, y, z, roll, pitch, yaw] in the body frame that the
-    user takes for the camera's, metres and radians.
-    """
-
-    focal_length: float = 0.0
-    radial: float = 0.0
-    mount: tuple[float, ...] = (0.0,) * 6
+    focal_length: float = 0.0  # share by which the true focal lengths are longer
+    radial: float = 0.0  # a pixel that should look along the tangent r looks along r (1 + radial r^2)
+    mount: tuple[float, ...] = (0.0,) * 6  # the true camera's pose in the told body frame, metres and radians
 
 
 @dataclass(frozen=True)
 class CalibrationModel:
-    """How wrong calibration and mount are: sizes are fixed and signs are drawn.
-
-    So every recording has the errors that its row of the table is named after; drawn sizes would leave it to luck.
-    """
+    """How wrong calibration and mount are: sizes are fixed and signs are drawn."""
 
     focal_length: float = 0.01  # share of both focal lengths; chosen: a calibration by hand from a few boards
     radial: float = 0.02  # no unit, radial distortion left over: half a pixel in an SR4000's corners; chosen
@@ -94,20 +83,17 @@ class CalibrationModel:
 
 @dataclass(frozen=True)
 class Frame:
-    """One simulated frame, `(H, W)` each. depth: metres along the optical axis, nan = no measurement. range: the same
-    along the ray. amplitude: relative (see `TimeOfFlightModel`). nearest, farthest: least and greatest true range in
-    metres over the sub-rays that met something (nearest is inf, farthest -inf, where none did)."""
+    """One simulated frame, `(H, W)` each."""
 
-    depth: np.ndarray
-    range: np.ndarray
-    amplitude: np.ndarray
-    nearest: np.ndarray
-    farthest: np.ndarray
+    depth: np.ndarray  # metres along the optical axis, nan = no measurement
+    range: np.ndarray  # metres along the ray
+    amplitude: np.ndarray  # relative (see `TimeOfFlightModel`)
+    nearest: np.ndarray  # least true range of the sub-rays, metres; inf where none met anything
+    farthest: np.ndarray  # greatest; -inf where none met anything
 
 
 class TimeOfFlightCamera:
-    """A camera with its own fixed pattern. `camera`: the pinhole that its user is told; `rng` draws the pattern;
-    `errors`: how the true camera differs from what is told."""
+    """A camera with a fixed pattern drawn by `rng`; its user is told `camera`, from which it differs by `errors`."""
 
     def __init__(
         self, camera: DepthCamera, model: TimeOfFlightModel, rng: Generator, errors: CalibrationErrors | None = None
@@ -120,10 +106,7 @@ class TimeOfFlightCamera:
         self._mount = pose_matrix(np.array(errors.mount))
 
     def capture(self, world: WorldCaster, state: np.ndarray, rng: Generator) -> Frame:
-        """Frame from a body pose [x, y, z, roll, pitch, yaw]; the camera looks along body +x.
-
-        Ranges become depths by the rays that the user is told of, as they would in the user's hands.
-        """
+        """Frame from a body pose; ranges become depths by the rays that the user is told of."""
         pose = pose_matrix(state) @ self._mount
         hits = world.cast(pose[:3, 3], self._rays @ (pose[:3, :3] @ BODY_FROM_OPTICAL).T)
         ranges = hits.distance.astype(np.float64)  # the rays have length one
@@ -174,12 +157,7 @@ def _sub_pixel_rays(camera: DepthCamera, n: int, errors: CalibrationErrors) -> n
 
 
 def frame_counts(frame: Frame, model: TimeOfFlightModel) -> dict[str, int]:
-    """Counts of pixels of one frame: all, without return, saturated, beyond the unambiguous range (all, and those that
-    came back wrapped), flying.
-
-    Flying: the pixel sees two surfaces more than 0.1 m apart, and reads a range between them, more than 5 cm and three
-    times the noise away from both.
-    """
+    """Counts of pixels of one frame. Flying: between two surfaces, 5 cm and three times the noise off both."""
     measured = np.isfinite(frame.depth)
     limit = model.unambiguous_range
     beyond = (frame.nearest > limit) & np.isfinite(frame.nearest)

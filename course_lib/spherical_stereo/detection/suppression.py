@@ -12,7 +12,7 @@ from course_lib.spherical_stereo.detection.detected_object import box_iou
 # one with the best F1 on the validation rooms.
 SAME_OBJECT_IOU = 0.65
 # Intersection over union from which a box votes on another's place. On the validation rooms 0.5 to 0.8 do about as well
-# (`python -m tools.score_detector --voting`): centres miss exact ones by 2.96 rows, without votes by 3.22.
+# (data/detector/README.md): centres miss exact ones by 2.96 rows, without votes by 3.22.
 VOTE_IOU = 0.6
 VOTE_SCORE = 0.1  # Smallest score of a box that votes. On these rooms 0.05 to 0.3 do about as well.
 

@@ -47,7 +47,7 @@ def test_all_six_degrees_of_freedom_move_and_none_jumps(walk):
 
 def test_where_nobody_can_walk_it_says_so():
     room = make_look_alike_room(SEEDS[0])
-    with pytest.raises(NoFreePlace, match="from none of 100 places a walk of 120 frames leads on"):
+    with pytest.raises(NoFreePlace, match="no walk of 120 frames"):
         walk_states(room, WalkModel(shortest_stretch=50.0), np.random.default_rng(1))
 
 

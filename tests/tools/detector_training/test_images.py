@@ -1,12 +1,10 @@
 """Training pictures: what counts as an object, and boxes that stay on their objects however the picture is changed."""
 
-import json
-
 import numpy as np
 import pytest
 
-from tests.tools.detector_training.toy_panoramas import CLASSES
-from tools.detector_training.augmentation import panorama_window
+from tests.tools.detector_training.toy_panoramas import CLASSES, write_toy_folder
+from tools.detector_training.augmentation import augmented_sample, panorama_window
 from tools.detector_training.images import LabelledPanorama, TrainingDataError, labelled_panorama, read_panoramas
 
 NAMES = list(CLASSES)
@@ -17,7 +15,7 @@ def painted(box):
     """A dark panorama with one bright object that fills `box`, which may cross the seam."""
     image = np.full((HEIGHT, WIDTH, 3), 20, np.uint8)
     image[int(box[1]) : int(box[3]), np.arange(int(box[0]), int(box[2])) % WIDTH] = 230
-    return LabelledPanorama("toy", image, np.array([1]), np.array([box], np.float32), np.array([False]))
+    return LabelledPanorama(image, np.array([1]), np.array([box], np.float32), np.array([False]))
 
 
 @pytest.mark.parametrize("box", [[40, 50, 80, 90], [240, 60, 280, 100], [0, 40, 30, 80]])
@@ -41,12 +39,23 @@ def test_the_window_left_as_it_is_shows_the_extended_panorama_and_objects_of_the
     assert sample.boxes.tolist() == [[20, 50, 50, 90], [276, 50, 306, 90]]
 
 
-def entry(objects, width=1280):
-    return {"file": "a.jpg", "width": width, "height": width // 2, "objects": objects}
+@pytest.mark.parametrize(("roll", "ignored"), [(0, True), (-8, False)])
+def test_an_object_cut_to_less_than_two_fifths_is_ignored(roll, ignored):
+    # 12 of 40 columns are left of the window's end, then 20 of 40.
+    sample = panorama_window(painted([244, 50, 284, 90]), (256, HEIGHT), roll)
+    assert sample.ignored[sample.boxes[:, 2] == 256].tolist() == [ignored]
+
+
+def test_one_seed_gives_one_sample_and_another_seed_another():
+    panorama = painted([30, 50, 70, 90])
+    first, second, third = (augmented_sample(panorama, (256, 96), np.random.default_rng(seed)) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first.image, second.image)
+    np.testing.assert_array_equal(first.boxes, second.boxes)
+    assert not np.array_equal(first.image, third.image)
 
 
 def thing(box, fraction=1.0, label="chair"):
-    return {"label": label, "visible_box": box, "visible_fraction": fraction}
+    return {"object": 0, "label": label, "visible_box": box, "unoccluded_box": box, "visible_fraction": fraction}
 
 
 def test_small_or_hidden_objects_are_ignored_unknown_labels_left_out_and_boxes_scaled():
@@ -55,32 +64,23 @@ def test_small_or_hidden_objects_are_ignored_unknown_labels_left_out_and_boxes_s
         thing([100, 100, 150, 129]),
         thing([200, 100, 250, 180], fraction=0.49),
         thing([300, 100, 350, 180], label="lamp"),
-        thing(None, fraction=0.0),
     ]
-    panorama = labelled_panorama(entry(objects), np.zeros((640, 1280, 3), np.uint8), NAMES, 1024)
+    panorama = labelled_panorama({"objects": objects}, np.zeros((640, 1280, 3), np.uint8), NAMES, 1024)
     assert panorama.ignored.tolist() == [False, True, True]
     assert panorama.image.shape == (512, 1024, 3)
     np.testing.assert_allclose(panorama.boxes[0], [80, 160, 1040, 240])
 
 
-@pytest.mark.parametrize(
-    ("content", "said"),
-    [({"version": 2, "images": []}, "version"), ({"version": 1, "images": [5]}, "image 0 has no file")],
-)
-def test_a_folder_that_cannot_be_used_is_named(tmp_path, content, said):
-    (tmp_path / "boxes.json").write_text(json.dumps(content))
-    with pytest.raises(TrainingDataError, match=said):
+def test_the_parts_of_several_processes_make_up_the_folders(tmp_path):
+    folders = [write_toy_folder(tmp_path / name, 5, width=64) for name in "ab"]
+    parts = [read_panoramas(folders, NAMES, 64, (k, 2)) for k in (0, 1)]
+    assert sorted(map(len, parts)) == [4, 6]
+    assert len({panorama.image.tobytes() for part in parts for panorama in part}) == 5, (
+        "both folders hold the same five"
+    )
+
+
+def test_a_folder_without_an_image_is_named(tmp_path):
+    (tmp_path / "boxes.json").write_text('{"version": 1, "images": []}')
+    with pytest.raises(TrainingDataError, match="no image that is there"):
         read_panoramas([tmp_path], NAMES)
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        (entry([]), r"64 x 32, boxes\.json says 1280 x 640"),
-        (entry([thing([50, 100, 50, 130])], 64), "a box that is none"),
-        *((entry([one], 64), "missing or of the wrong kind") for one in ({}, 5, thing(5), thing([1, 2, 3]))),
-    ],
-)
-def test_an_image_that_is_not_as_its_entry_says_is_named(given, said):
-    with pytest.raises(TrainingDataError, match=said):
-        labelled_panorama(given, np.zeros((32, 64, 3), np.uint8), NAMES, 64)

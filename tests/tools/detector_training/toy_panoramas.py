@@ -97,5 +97,6 @@ def toy_panorama(rng, width, objects):
         columns = (u + np.arange(w)) % width
         image[v : v + h, columns] = np.clip(patch, 0, 255).astype(np.uint8)
         box = [float(u), float(v), float(u + w), float(v + h)]
-        entries.append({"label": label, "visible_box": box, "visible_fraction": 1.0})
+        boxes = {"visible_box": box, "unoccluded_box": box}
+        entries.append({"object": len(entries), "label": label, "visible_fraction": 1.0} | boxes)
     return image, entries
