@@ -6,10 +6,9 @@ import pytest
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.recorded_runs import steps_and_turns
 from course_lib.simulation.corridor.surface_fusion import FusionModel
 from course_lib.simulation.room.depth_world import DepthSurveyModel, WalkModel, WalkModels, record_walk, walk_states
-from course_lib.simulation.room.footprints import NoFreePlace, distance_to, footprint
+from course_lib.simulation.room.footprints import distance_to, footprint
 from course_lib.simulation.room.look_alike_room import make_look_alike_room
 from course_lib.simulation.sensors.laser_survey import ScannerModel
 
@@ -29,26 +28,6 @@ def test_it_keeps_clear_of_walls_and_furniture(walk):
     assert (states[:, :2] < high - 0.3).all()
     nearest = min(distance_to(footprint(item), states[:, :2]).min() for item in room.objects)
     assert nearest > 0.15, "corners of the way are rounded, by less than what it keeps clear"
-
-
-def test_all_six_degrees_of_freedom_move_and_none_jumps(walk):
-    _, states = walk
-    assert states.shape == (WalkModel().frames, 6)
-    steps, turns = steps_and_turns(states)
-    assert np.median(steps) == pytest.approx(0.08, rel=0.2)
-    assert steps.max() < 0.12
-    assert np.rad2deg(turns.max()) < 20
-    assert np.linalg.norm(np.ptp(states[:, :2], axis=0)) > 1.0
-    height, roll, pitch, heading = np.ptp(np.column_stack([states[:, 2:5], np.unwrap(states[:, 5])]), axis=0)
-    assert height > 0.05
-    assert min(roll, pitch) > 0.1
-    assert heading > 1.0
-
-
-def test_where_nobody_can_walk_it_says_so():
-    room = make_look_alike_room(SEEDS[0])
-    with pytest.raises(NoFreePlace, match="from none of 100 places a walk of 120 frames leads on"):
-        walk_states(room, WalkModel(shortest_stretch=50.0), np.random.default_rng(1))
 
 
 def test_a_recording_is_what_a_user_would_have_and_its_seed_decides_every_byte(tmp_path):
