@@ -45,10 +45,6 @@ def fail_for_two(seed, folder):
     return {"seed": seed}
 
 
-def give_nan(seed):
-    return {"value": float("nan")}
-
-
 def lines_of(path):
     return [json.loads(line) for line in path.read_text().splitlines()]
 
@@ -109,15 +105,6 @@ def test_a_point_that_fails_is_named_and_what_was_finished_is_kept(tmp_path):
     assert [row["point"]["seed"] for row in lines_of(tmp_path / "rows.jsonl")] == [1]
     (tmp_path / "mended").touch()
     assert [row["seed"] for row in kept_rows(fail_for_two, points, tmp_path / "rows.jsonl", 1)] == [1, 2, 3]
-
-
-def test_a_number_that_json_has_not_leaves_no_half_line(tmp_path):
-    with pytest.raises(ValueError, match="JSON"):
-        kept_rows(give_nan, [{"seed": 1}], tmp_path / "rows.jsonl", 1)
-    with pytest.raises(ValueError, match="JSON"):
-        write_results(tmp_path / "run.json", {"error_m": float("nan")})
-    assert (tmp_path / "rows.jsonl").read_text() == ""
-    assert not (tmp_path / "run.json").exists()
 
 
 def test_results_hold_their_versions_and_rows(tmp_path):
