@@ -144,12 +144,6 @@ def test_a_mirror_image_is_named(theta, x, y):
         fit_rigid_2d(TRIANGLE * [1, -1], Pose2D(x, y, theta).apply(TRIANGLE))
 
 
-def test_an_equilateral_triangle_with_two_corners_exchanged_is_a_mirror_image():
-    corners = np.array([[np.cos(a), np.sin(a)] for a in np.radians([90, 210, 330])])
-    with refused(MIRRORED):
-        fit_rigid_2d(corners, corners[[0, 2, 1]])
-
-
 @given(st.integers(2, 8), angles, st.integers(0, 1000))
 def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
     line = np.stack([np.linspace(0, 4, n), np.zeros(n)], axis=1)
@@ -162,12 +156,9 @@ def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
     ("changes", "says"),
     [
         ({"target": TRIANGLE[:2]}, "shape"),
-        ({"target": np.zeros((3, 3))}, "shape"),
         ({"weights": [1, 1]}, "one a pair"),
         ({"weights": [1, -1, 1]}, "not be negative"),
-        ({"weights": [1, np.nan, 1]}, "weights must be finite"),
         ({"source": np.full((3, 2), np.inf)}, "source must be finite"),
-        ({"covariances": np.full((3, 2, 2), np.nan)}, "covariances must be finite"),
         ({"covariances": np.eye(2)}, r"one \(2, 2\) matrix a pair"),
         ({"covariances": [np.zeros((2, 2))] * 3}, "positive eigenvalues"),
         ({"covariances": [[[1, 0.5], [0, 1]]] * 3}, "symmetric"),
