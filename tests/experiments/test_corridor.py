@@ -7,15 +7,7 @@ import pytest
 
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.corridor import (
-    BY_HAND,
-    METHODS,
-    Maps,
-    own_recordings,
-    path_errors,
-    run_method,
-    run_rows,
-)
+from course_lib.experiments.corridor import BY_HAND, METHODS, Maps, own_recordings, path_errors, run_method, run_rows
 from course_lib.experiments.recordings import SIGMA
 from course_lib.rendering.scene_map import SceneMap
 

@@ -5,14 +5,7 @@ import pytest
 
 from course_lib.beyond.guarded_depth import OUTCOMES
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.depth_trouble import (
-    GATE,
-    LENGTHS,
-    MAX_RANGE,
-    SPOILS,
-    recording_trouble,
-    underexposed,
-)
+from course_lib.experiments.depth_trouble import GATE, LENGTHS, MAX_RANGE, SPOILS, recording_trouble, underexposed
 from course_lib.experiments.troubled_frames import summary, troubled_frames, troubled_recording
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap

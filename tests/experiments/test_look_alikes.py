@@ -26,10 +26,7 @@ STEPS = (POSE, POSE + [0.3, -0.1, 0.2], POSE + [0.5, 0.2, 0.3])  # noqa: RUF005 
 def record_of(semantic_map, seed=7, which=None):
     """A room's record with one pose at each height; which: the landmarks that are seen."""
     indices = list(range(len(semantic_map))) if which is None else list(which)
-    entry = {
-        "observations": record_of_observations(observed(semantic_map, POSE, indices)),
-        "true_landmarks": indices,
-    }
+    entry = {"observations": record_of_observations(observed(semantic_map, POSE, indices)), "true_landmarks": indices}
     pose = {"pose": POSE.tolist(), "name": "00", "sources": {"images": entry, "exact_boxes": entry}}
     return {
         "seed": seed,

@@ -8,7 +8,6 @@ import sys
 import time
 from pathlib import Path
 
-import joblib
 import numpy as np
 import pytest
 
@@ -53,14 +52,6 @@ def lines_of(path):
 def test_results_come_in_the_order_of_the_points(processes, tmp_path):
     assert kept_rows(draw, POINTS, tmp_path / "rows.jsonl", processes) == [draw(**point) for point in POINTS]
     assert sorted(map(str, (row["point"] for row in lines_of(tmp_path / "rows.jsonl")))) == sorted(map(str, POINTS))
-
-
-def test_dasks_workers_give_the_same_rows(tmp_path):
-    distributed = pytest.importorskip("dask.distributed")
-    options = {"n_workers": 1, "threads_per_worker": 2, "processes": False, "dashboard_address": None}
-    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
-        with joblib.parallel_config("dask", client=client):
-            assert kept_rows(draw, POINTS, tmp_path / "rows.jsonl") == [draw(**point) for point in POINTS]
 
 
 def test_only_missing_points_are_run_and_counted(tmp_path):

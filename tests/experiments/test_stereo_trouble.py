@@ -91,12 +91,7 @@ def troubled_walk():
 
 def test_the_stereo_method_names_every_pair(troubled_walk):
     told = summary([troubled_walk], GATE)
-    assert told["undisturbed"] == {
-        "frames": 20,
-        "good_frames": {"ok": 20},
-        "false_alarms": 0,
-        "confident_wrong": 0,
-    }
+    assert told["undisturbed"] == {"frames": 20, "good_frames": {"ok": 20}, "false_alarms": 0, "confident_wrong": 0}
     names = {row["trouble"]: row["outcomes"] for row in told["rows"]}
     assert names["dropped"] == {"no image": 2}
     assert names["repeated"] == {"repeated": 2}

@@ -36,13 +36,6 @@ def test_compression_keeps_the_picture():
     assert np.abs(back.astype(int) - rgb).max() <= 12
 
 
-def test_figures_leave_nothing_in_matplotlibs_global_state():
-    import matplotlib.pyplot
-
-    figures.new_figure()
-    assert matplotlib.pyplot.get_fignums() == []
-
-
 def test_commands_draw_where_there_is_no_ipython():
     names = [f"course_lib.plots.{module.name}" for module in pkgutil.iter_modules(course_lib.plots.__path__)]
     code = f"import sys; sys.modules['IPython'] = sys.modules['ipywidgets'] = None; import {', '.join(names)}"

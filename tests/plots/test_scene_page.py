@@ -67,12 +67,7 @@ def test_pages_that_differ_by_rounding_show_the_same(page):
 
 @pytest.mark.parametrize(
     "change",
-    [
-        {"state": STATE + 0.01},
-        {"colour": "#D55E00"},
-        {"title": "Other axes"},
-        {"alt": "The axes of another pose"},
-    ],
+    [{"state": STATE + 0.01}, {"colour": "#D55E00"}, {"title": "Other axes"}, {"alt": "The axes of another pose"}],
     ids=["place", "colour", "title", "words"],
 )
 def test_pages_that_differ_show_something_else(page, change):

@@ -13,17 +13,11 @@ from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch
-from course_lib.spherical_stereo.panorama import (
-    PanoramaError,
-    StereoRig,
-    direction_to_pixel,
-)
+from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, direction_to_pixel
 from course_lib.spherical_stereo.pose import localization as outcomes
 from course_lib.spherical_stereo.pose.rigid_fit import COINCIDENT, MIRRORED, TOO_FEW_PAIRS, Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import AssociationError, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
-from tests.spherical_stereo import vertical_pair
-from tests.spherical_stereo.stereo_scene import TRUE_POSE, mapped_scene
 
 WIDTH, HEIGHT = 1280, 640
 RIG = StereoRig(0.3, 1.32)
@@ -270,43 +264,3 @@ def by_size(size):
 
 def given(observation):
     return SemanticLocalizer(RIG, ROOM).localize_observations([observation])
-
-
-class BoxesGiven:
-    """A detector that knows the boxes of each image."""
-
-    def __init__(self):
-        self.of_image = {}
-
-    def detect(self, image_bgr):
-        return self.of_image[image_bgr.tobytes()]
-
-
-@pytest.fixture(scope="module")
-def photographed():
-    """Two small panoramas of textured boards, a detector that knows their boxes, and the map of the boards."""
-    *both, semantic_map = mapped_scene()
-    detector = BoxesGiven()
-    for view in both:
-        for k in (0, 100, 256, 400):
-            turned = vertical_pair.rolled(view.detections, k)
-            detector.of_image[np.roll(view.image, k, axis=1).tobytes()] = [
-                Detection(d.label, 0.9, t.box, d.hue, 50.0) for d, t in zip(view.detections, turned, strict=True)
-            ]
-    localizer = SemanticLocalizer(StereoRig(vertical_pair.BASELINE, 1.3), semantic_map, detector)
-    return localizer, [view.image for view in both]
-
-
-def heading_error_deg(found, theta):
-    return abs(math.degrees(wrap_angle(found.pose.theta - theta)))
-
-
-def test_two_images_give_the_pose(photographed):
-    localizer, images = photographed
-    found = localizer.localize(*images)
-    assert found.status == "ok"
-    assert sorted(found.used_pairs) == sorted((one.observation, one.upper) for one in found.objects)
-    assert len(found.used_pairs) == 5
-    assert math.dist(found.pose[:2], TRUE_POSE[:2]) < 0.1
-    assert heading_error_deg(found, TRUE_POSE.theta) < 1
-    assert found.unmatched == ()

@@ -46,18 +46,9 @@ def test_an_uncertain_pose_forgives_more():
     assert (np.diagonal(forgiving[0]) < 0.5 * np.diagonal(exact[0])).all()
 
 
-def test_hue_is_a_circle():
-    assert colour_cost((355.0, 60.0), (5.0, 60.0)) == pytest.approx(colour_cost((100.0, 60.0), (110.0, 60.0)))
-
-
 def test_the_paler_the_less_a_hue_means():
     costs = [colour_cost((0.0, s), (40.0, s)) for s in (15.0, 30.0, 45.0)]
     assert costs[0] < 0.5 * costs[1] < 0.5 * costs[2]
-
-
-def test_grey_has_no_hue_and_weighs_nothing():
-    assert colour_cost((np.nan, 5.0), (120.0, 5.0)) == 0.0
-    assert colour_cost((120.0, 5.0), (np.nan, 5.0)) == 0.0
 
 
 def test_a_landmark_behind_another_is_not_expected_and_one_in_front_is():
@@ -79,8 +70,3 @@ def test_the_chance_of_detection_falls_with_distance_and_ends_at_the_max_range()
 def test_no_rig_stands_in_a_sofa_or_behind_a_wall():
     poses = np.array([[1.2, -0.7, 0.0], [0.05, 0.05, 0.0], [3.5, 0.0, 0.0]])
     np.testing.assert_array_equal(free_space_costs(SYMMETRIC, poses), [0.0, OUTSIDE_COST, OUTSIDE_COST])
-
-
-def test_a_map_without_walls_says_nothing_of_the_outside():
-    bare = SemanticMap(SYMMETRIC.landmarks)
-    assert free_space_costs(bare, np.array([[30.0, 0.0, 0.0]]))[0] == 0.0

@@ -21,13 +21,7 @@ def box(u, v, across, down):
 
 
 @pytest.mark.parametrize(
-    ("name", "label"),
-    [
-        ("couch", "sofa"),
-        ("tvmonitor", "television"),
-        ("dining table", "table"),
-        (" Chair ", "chair"),
-    ],
+    ("name", "label"), [("couch", "sofa"), ("tvmonitor", "television"), ("dining table", "table"), (" Chair ", "chair")]
 )
 def test_names_of_coco_and_voc_in_any_spelling_become_one_label(name, label):
     assert canonical_label(name) == label

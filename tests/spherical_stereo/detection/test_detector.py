@@ -90,14 +90,6 @@ def test_a_panorama_of_another_size_gives_the_same_boxes_in_its_own_pixels(detec
         assert np.abs(np.array(detection.box) - expected[detection.label]).max() < 2 * max(scale, 1)
 
 
-def test_another_input_size_pads_and_boxes_come_back(files, rng):
-    """320 x 192 holds the extended image with 32 rows of padding above and below."""
-    padded = YoloDetector(*files, input_size=(320, 192))
-    boxes = {d.label: d.box for d in padded.detect(panorama(rng, (100, 50, RED), (250, 100, GREEN)))}
-    assert boxes["sofa"] == pytest.approx((100, 50, 132, 74), abs=1)
-    assert boxes["television"] == pytest.approx((250, 100, 282, 124), abs=1)
-
-
 def test_opencv_s_own_threshold_of_two_tenths_does_not_decide(files, rng):
     image = panorama(rng, (100, 50, (105, 105, 185)))  # a pale red: a weak answer
     scores = [d.score for d in YoloDetector(*files, score_threshold=0.001).detect(image)]

@@ -58,14 +58,6 @@ def test_two_objects_side_by_side_at_the_border_of_the_range_both_stay():
     assert sorted(boxes[:, 0]) == pytest.approx([start - 42, start + 2])
 
 
-def test_objects_of_two_classes_at_one_place_both_stay_unless_their_boxes_coincide():
-    boxes = np.array([[200.0, 100, 260, 180], [215, 100, 275, 180]])
-    scores, classes = np.array([0.8, 0.7]), np.array([0, 1])
-    assert len(select_on_circle(boxes, scores, classes, WIDTH, IOU)[0]) == 2
-    boxes[1] = [202, 101, 261, 180]
-    assert select_on_circle(boxes, scores, classes, WIDTH, IOU)[2].tolist() == [0]
-
-
 def test_a_surer_copy_that_the_seam_cuts_gives_way_to_the_whole_one_even_when_both_centres_count():
     """A wide object: 28 of its columns are missing at the left end, and its middle is in the range all the same."""
     cut, whole = [0, 100, 165, 180], [WIDTH - 28, 100, WIDTH + 149, 180]

@@ -45,14 +45,6 @@ def noisy(source, pose, sigma, seed=0):
     return pose.apply(source) + sigma * np.random.default_rng(seed).standard_normal(source.shape)
 
 
-@given(points, metres, metres, angles)
-def test_exact_points_give_the_exact_pose(source, x, y, theta):
-    assume(spread(source) > 0.1)
-    fitted = fit_rigid_2d(source, Pose2D(x, y, theta).apply(source))
-    assert fitted[:2] == pytest.approx((x, y), abs=1e-9)
-    assert wrap_angle(fitted.theta - theta) == pytest.approx(0, abs=1e-10)
-
-
 @given(points, angles, st.integers(0, 10_000))
 def test_noisy_points_give_the_pose_that_scikit_image_gives(source, theta, seed):
     assume(spread(source) > 1.0)

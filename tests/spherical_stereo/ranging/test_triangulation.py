@@ -5,11 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from course_lib.spherical_stereo.panorama import (
-    PanoramaError,
-    azimuth_elevation,
-    direction_from_angles,
-)
+from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_elevation, direction_from_angles
 from course_lib.spherical_stereo.ranging.triangulation import (
     TriangulationError,
     object_position,
