@@ -13,6 +13,7 @@ from course_lib.experiments.finale import (
     best_start,
     is_known,
     joined,
+    odometry,
     one_place,
     robot_states,
     start_covariance,
@@ -108,6 +109,12 @@ def test_a_view_of_a_bare_wall_leaves_the_pose_open(renderer):
     assert not is_known(estimate(0.20, 0.5)), "free to slide along the wall"
     assert not is_known(estimate(0.02, 5.0)), "free to turn"
     assert not is_known(estimate(0.02, 0.5, "doubtful"))
+
+
+def test_the_odometer_is_a_few_percent_off_and_without_bias(rng):
+    told = np.array([odometry(2.0, 0.5, rng) for _ in range(2000)])
+    assert told.mean(axis=0) == pytest.approx([2.0, 0.5], abs=0.01)
+    assert told.std(axis=0) == pytest.approx([0.1, np.hypot(0.025, np.deg2rad(1.0))], rel=0.1)
 
 
 SEMANTIC = np.array([[0.0025, 0.0005, 0.0002], [0.0005, 0.0036, -0.0001], [0.0002, -0.0001, 0.0004]])

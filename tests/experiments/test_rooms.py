@@ -9,8 +9,8 @@ import pytest
 from course_lib.experiments import observed_rooms
 from course_lib.experiments.observed_rooms import observe_room, stored_map, stored_observations
 from course_lib.experiments.room import localize_pair
-from course_lib.experiments.room_evaluation import NO_OBJECT
-from course_lib.experiments.rooms import METHODS, judge_rooms, rooms_summary
+from course_lib.experiments.room_evaluation import NO_OBJECT, PoseOutcome
+from course_lib.experiments.rooms import METHODS, JudgedPose, judge_rooms, rates_and_errors, rooms_summary
 from course_lib.geometry import wrap_angle
 from course_lib.paths import data_path
 from course_lib.simulation.room.look_alike_recording import RecordingModels
@@ -85,6 +85,17 @@ def test_the_summary_counts_rooms_look_alikes_and_what_was_confused():
     assert found["wrong_pairs"]["images"] == {"poses": 1, "look_alikes": 2, "others": 0, "nothing": 1}
     assert (found["detector"]["precision"], found["detector"]["recall"]) == (0.75, 0.75)
     json.dumps(found, allow_nan=False)
+
+
+def test_rooms_that_differ_widen_the_interval_and_rooms_that_agree_do_not():
+    judged = [
+        JudgedPose(seed, 1, str(k), "images", "paper", (0, 0, 0), None, PoseOutcome(kind, 0.1, 0.1, 1.0), ())
+        for seed in range(10)
+        for k, kind in enumerate(["correct" if seed < 5 else "incorrect"] * 20)
+    ]
+    found = rates_and_errors(judged)
+    over_poses, over_rooms = (np.ptp(found[f"correct_{which}_percent"]) for which in ("wilson", "rooms"))
+    assert over_rooms > 3 * over_poses
 
 
 class Nothing:

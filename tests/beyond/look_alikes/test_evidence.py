@@ -46,6 +46,10 @@ def test_an_uncertain_pose_forgives_more():
     assert (np.diagonal(forgiving[0]) < 0.5 * np.diagonal(exact[0])).all()
 
 
+def test_hue_is_a_circle():
+    assert colour_cost((355.0, 60.0), (5.0, 60.0)) == pytest.approx(colour_cost((100.0, 60.0), (110.0, 60.0)))
+
+
 def test_the_paler_the_less_a_hue_means():
     costs = [colour_cost((0.0, s), (40.0, s)) for s in (15.0, 30.0, 45.0)]
     assert costs[0] < 0.5 * costs[1] < 0.5 * costs[2]

@@ -4,6 +4,7 @@ import numpy as np
 
 from course_lib.beyond.look_alikes.hypotheses import fit_poses, pair_poses, pairs_of_matches, scene_of
 from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.semantic_map.association import Observation
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, observed
 
 
@@ -25,6 +26,11 @@ def test_pairs_join_like_classes_to_distinct_landmarks_at_compatible_distances()
         assert all(PLANTED.labels[j] == observations[i].label for i, j in zip(seen[:, k], on_map[:, k], strict=True))
     narrow, _ = pairs_of_matches(scene, gate=0.1)
     assert 0 < len(narrow) < len(seen)
+
+
+def test_two_objects_in_one_place_tell_no_heading():
+    observations = [Observation("sofa", 1.0, 0.0, 0.0, 50.0), Observation("chair", 1.2, 0.0, 0.0, 50.0)]
+    assert len(pairs_of_matches(scene_of(observations, PLANTED))[0]) == 0
 
 
 def test_the_fits_covariance_is_that_of_its_errors():

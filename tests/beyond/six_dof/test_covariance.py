@@ -89,6 +89,14 @@ def test_along_each_direction_the_surer_is_believed():
     assert np.diag(gain) == pytest.approx([1 - 0.01**2 / 0.1**2, 0, 0, 0, 1 - 0.02**2 / 0.2**2, 0])
 
 
+def test_the_same_image_again_makes_it_no_surer(rng):
+    information = np.linalg.inv(random_covariance(rng, 0.05))
+    covariance, _ = fused(random_covariance(rng, 1.0), information)
+    again, gain_again = fused(covariance, information)
+    assert again == pytest.approx(covariance, rel=1e-6, abs=1e-12)
+    assert gain_again == pytest.approx(0.0, abs=1e-6)
+
+
 def test_a_rival_widens_it_towards_itself_by_how_likely_it_is():
     pose, small = optical_pose(np.zeros(6)), np.eye(6) * 1e-6
     there = np.array([0.4, 0, 0, 0, 0, 0])
