@@ -50,11 +50,6 @@ def test_a_person_in_front_weighs_less_than_a_wall_that_is_not_there():
     assert agreement(farther, wall).support == pytest.approx(0.0)
 
 
-def test_an_image_without_measurement_says_nothing():
-    assert agreement(np.full((2, 3), np.nan), np.ones((2, 3))).pixels == 0
-    assert np.isnan([NOTHING_MEASURED.score, NOTHING_MEASURED.support]).all()
-
-
 @pytest.mark.parametrize(
     ("frames", "expected"),
     [

@@ -5,7 +5,6 @@ import pytest
 
 from course_lib.beyond.guarded_depth import OUTCOMES, GuardedLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
-from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, furnished_room
@@ -124,12 +123,3 @@ def test_after_long_trouble_one_good_frame_is_no_proof(renderer, walk):
     outcomes = [one.outcome for one in run(renderer, "annealed", frames)]
     assert "tracked" not in outcomes[10:18]
     assert outcomes[-1] == "tracked"
-
-
-def test_a_new_start_forgets_what_was_and_an_image_of_another_size_is_not_remembered(renderer, walk):
-    guarded = GuardedLocalizer(filters(renderer)["paper"], PERIOD)
-    for _ in range(2):
-        guarded.initialize(START)
-        with pytest.raises(DepthImageError, match="the camera gives"):
-            guarded.step(np.zeros((3, 4)), 9.0)
-        assert guarded.step(walk[1][0], 7.0).outcome == "tracked"

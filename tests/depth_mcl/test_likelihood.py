@@ -1,7 +1,5 @@
 """Laws of likelihood and weights, eqs (8) to (11), and of Fallon's scoring."""
 
-import pickle
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -150,13 +148,6 @@ def test_fallons_score_is_a_mean_over_the_pixels_that_it_compares():
     assert scores == pytest.approx([scores[0]] * 3)
 
 
-def test_weighting_rules_can_be_sent_to_another_process():
-    z, simulated = np.full((2, 2), 2.0), np.full((3, 2, 2), 2.1)
-    for rule in (paper_weighting(0.2, 0.05), fallon_weighting("depth"), fallon_weighting("disparity")):
-        again = pickle.loads(pickle.dumps(rule))
-        assert np.array_equal(weigh(again, z, simulated), weigh(rule, z, simulated))
-
-
 def test_fallons_half_normal_is_a_density_on_zero_to_three_metres():
     def density(x):
         log_value = depth_log_likelihood(np.full((1, 1), 4.0), np.full((1, 1, 1), 4.0 + x))[0]
@@ -190,12 +181,3 @@ def test_fallons_disparity_form_masks_measurements_outside_its_planes(outside):
     pair = disparity_log_likelihood(np.array([[2.0, outside]]), np.array([[[2.0, 3.0]]]))
     alone = disparity_log_likelihood(np.array([[2.0]]), np.array([[[2.0]]]))
     assert pair == pytest.approx(alone)
-
-
-def test_fallons_sum_collapses_onto_one_particle_at_full_size_only(rng):
-    """The same difference between two particles: 84 times the terms, the 84th power of the weights' ratio."""
-    near, far = 2.0, 2.5
-    for size, least, most in (((15, 20), 0.5, 0.999), ((144, 176), 1 - 1e-12, 1.0)):
-        z = np.full(size, near)
-        w = weigh(fallon_weighting("depth"), z, np.stack([z, np.full(size, far)]))
-        assert least <= w[0] <= most

@@ -206,10 +206,8 @@ def test_the_score_falls_when_the_filter_is_lost_though_the_best_weight_does_not
     ("arguments", "said"),
     [
         ({"n_particles": 0}, "n_particles"),
-        ({"n_particles": 2.5}, "n_particles"),
         ({"sigma": [0.1] * 5}, "sigma"),
         ({"sigma": [0.1, 0.1, 0, 0, 0, -0.1]}, "sigma"),
-        ({"sigma": [np.nan] * 6}, "sigma"),
         ({"alpha": 0.0}, "alpha"),
         ({"beta": -1.0}, "beta"),
         ({"motion": "tangent"}, "motion"),

@@ -35,12 +35,6 @@ def test_too_few_particles_weigh_the_same_and_equal_scores_too(rng):
     assert (equal.sharpness, equal.ess) == (SHARPEST, pytest.approx(20))
 
 
-@pytest.mark.parametrize("scores", [[], [0.1, np.nan], [[0.1, 0.2]]])
-def test_scores_that_are_none_are_named(scores):
-    with pytest.raises(ValueError, match="scores must be"):
-        temper(np.array(scores), 2)
-
-
 def test_a_quadratic_score_gives_the_gaussian_that_it_describes(rng):
     """s = -d^2 / (2 b^2): exp(kappa s) is normal with variance b^2 / kappa, cut by the cloud's own."""
     deviations = np.zeros((200_000, 6))

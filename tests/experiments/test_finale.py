@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from course_lib.experiments.finale import (
-    CAMERA_HEIGHT,
     FRAMES,
     LEVEL_SIGMA,
     VIEW_TURN,
@@ -118,36 +117,6 @@ def test_the_odometer_is_a_few_percent_off_and_without_bias(rng):
     assert told.std(axis=0) == pytest.approx([0.1, np.hypot(0.025, np.deg2rad(1.0))], rel=0.1)
 
 
-def test_a_pose_outside_the_map_is_no_start(renderer):
-    outside, right = Pose2D(40.0, 0.0, 0.0), Pose2D(TRUE[0] + 0.05, TRUE[1], TRUE[2])
-    alternatives = tuple(SimpleNamespace(pose=pose) for pose in (outside, right))
-    result = place(renderer, SimpleNamespace(status="unable", pose=None, alternatives=alternatives))
-    assert result["starts"] == 1
-    assert result["reached"]
-
-
-def test_the_robot_rolls_on_level_but_for_a_little(rng):
-    states = robot_states(TRUE, rng)
-    assert states[0, [0, 1, 5]] == pytest.approx(TRUE)
-    assert states[:, 2] == pytest.approx(CAMERA_HEIGHT, abs=0.05)
-    assert np.abs(states[:, 3:5]).max() < np.deg2rad(2)
-    assert np.linalg.norm(np.diff(states[:, :2], axis=0), axis=1) == pytest.approx(0.03, rel=0.05)
-
-
-def test_places_are_counted():
-    places = [
-        {"semantic_status": "ok", "starts": 1, "semantic_m": 0.1, "position_m": 0.01, "rotation_deg": 0.2,
-         "status": "tracked", "reached": True},
-        {"semantic_status": "unable", "starts": 3, "position_m": 0.5, "rotation_deg": 0.2, "status": "tracked",
-         "reached": False},
-        {"semantic_status": "unable", "starts": 0, "reached": False},
-    ]  # fmt: skip
-    told = summarize(places)
-    assert (told["places"], told["reached"], told["semantic_ok"]) == (3, 1, 1)
-    assert (told["started_from_several"], told["wrong_called_tracked"]) == (1, 1)
-    assert told["median_semantic_m"] == 0.1
-
-
 SEMANTIC = np.array([[0.0025, 0.0005, 0.0002], [0.0005, 0.0036, -0.0001], [0.0002, -0.0001, 0.0004]])
 
 
@@ -180,9 +149,3 @@ def test_angles_are_joined_across_the_half_turn():
     found, _ = joined(start, np.eye(6), state, np.eye(6))
     assert found[5] == pytest.approx(wrap_angle(np.pi + 0.1))
     assert start[5] == np.pi - 0.1, "what is given stays as it is"
-
-
-def test_a_direction_that_one_does_not_know_is_the_others():
-    wall = np.diag([1e-6, 1e6, 1e6, 1e-8, 1e-8, 1e-8])
-    found, _ = joined(np.zeros(6), start_covariance(SEMANTIC), np.array([0.05, 0.5, -0.4, 0.0, 0.0, 0.0]), wall)
-    assert found[:3] == pytest.approx([0.05, 0.01, 0.0], abs=2e-3)

@@ -1,26 +1,20 @@
 """Answers within half a metre and 10 degrees: who is counted as what, how surely, and what a threshold buys."""
 
-import json
-
 import numpy as np
 import pytest
 
 from course_lib.beyond.look_alikes.evidence import Evidence
-from course_lib.experiments import look_alikes
 from course_lib.experiments.look_alikes import (
     Answer,
     OdometryModel,
     answers_of_evidence,
     answers_of_rooms,
     answers_of_sequences,
-    answers_of_thinned_sequences,
-    answers_summary,
     answers_table,
     is_right,
     measured_motion,
     pose_errors,
     risk_coverage,
-    why_not_answered,
 )
 from course_lib.experiments.observed_rooms import record_of_observations
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
@@ -32,10 +26,7 @@ STEPS = (POSE, POSE + [0.3, -0.1, 0.2], POSE + [0.5, 0.2, 0.3])  # noqa: RUF005 
 def record_of(semantic_map, seed=7, which=None):
     """A room's record with one pose at each height; which: the landmarks that are seen."""
     indices = list(range(len(semantic_map))) if which is None else list(which)
-    entry = {
-        "observations": record_of_observations(observed(semantic_map, POSE, indices)),
-        "true_landmarks": indices,
-    }
+    entry = {"observations": record_of_observations(observed(semantic_map, POSE, indices)), "true_landmarks": indices}
     pose = {"pose": POSE.tolist(), "name": "00", "sources": {"images": entry, "exact_boxes": entry}}
     return {
         "seed": seed,
@@ -101,18 +92,6 @@ def test_what_the_first_view_told_is_known_after_the_last():
     assert {one.kind for one in nothing} == {"unanswered"}
 
 
-def test_thinned_sequences_are_judged_after_every_view_and_see_less(monkeypatch):
-    monkeypatch.setattr(look_alikes, "LEFT_OUT", 0.0)
-    whole = answers_of_thinned_sequences([record_of(PLANTED)], [views_of(PLANTED)])
-    assert [one.method for one in whole] == [
-        f"{n}_views_{way}" for n in (1, 2, 3) for way in ("odometry", "no_odometry")
-    ]
-    assert {one.kind for one in whole} == {"correct"}
-    monkeypatch.setattr(look_alikes, "LEFT_OUT", 1.0)
-    nothing = answers_of_thinned_sequences([record_of(PLANTED)], [views_of(PLANTED)])
-    assert {one.kind for one in nothing} == {"unanswered"}
-
-
 def test_odometry_is_the_true_motion_with_its_noise():
     rng, model = np.random.default_rng(2), OdometryModel()
     start, end = np.array([1.0, 1.0, np.pi / 2]), np.array([1.0, 3.0, np.pi / 2 + 0.5])
@@ -144,30 +123,3 @@ def test_risk_over_coverage_goes_through_every_threshold():
     assert curve["threshold"] == [0.9, 0.8, 0.7]
     assert curve["coverage_percent"] == [20.0, 40.0, 80.0]
     assert curve["risk_percent"] == [0.0, 50.0, 25.0]
-
-
-def test_too_few_objects_are_told_from_too_like_ones():
-    rooms = [record_of(PLANTED, seed=1, which=(0, 5)), record_of(PLANTED, seed=2)]
-    counts = why_not_answered(rooms, answers_of_rooms(rooms, ["consistent"]))
-    assert (counts["unanswered_observations"], counts["correct_observations"]) == (2.0, 6.0)
-    assert counts["wrong_observations"] is None
-
-
-def test_the_summary_holds_what_was_asked_for_and_is_json(monkeypatch):
-    monkeypatch.setattr(look_alikes, "ABLATION", {"everything": Evidence()})
-    rooms, views = [record_of(PLANTED)], [views_of(PLANTED)]
-    short = answers_summary(rooms, ["greedy"])
-    assert set(short) == {"one_view"}
-    whole = answers_summary(rooms, views=views, ablation=True)
-    assert set(whole) == {
-        "one_view",
-        "risk_coverage",
-        "why_unanswered",
-        "n_views",
-        "several_views",
-        "thinned_views",
-        "ablation",
-    }
-    assert list(whole["one_view"]) == ["greedy", "hungarian", "consistent"]
-    assert whole["n_views"] == 3
-    json.dumps(whole, allow_nan=False)

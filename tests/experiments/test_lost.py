@@ -11,12 +11,6 @@ def a_trial(frames_to_recover):
     }
 
 
-def test_cameras_that_are_never_found_again_are_told():
-    found = summarize([a_trial(None), a_trial(None)])
-    assert "0 of 2 recovered within 30 frames (median -)" in lost_table(found)
-    assert found["frames_to_recover"] is None
-
-
 def test_the_median_is_of_the_cameras_that_were_found_again():
     found = summarize([a_trial(3), a_trial(None), a_trial(7)])
     assert (found["kidnapped_recovered"], found["frames_to_recover"]) == (2, 5.0)

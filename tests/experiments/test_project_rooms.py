@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from course_lib.experiments import project_rooms
-from course_lib.experiments.project_rooms import SEEDS, make_project_rooms, record_room
+from course_lib.experiments.project_rooms import SEEDS, record_room
 from course_lib.experiments.project_rooms import project_rooms as read_rooms
 from course_lib.simulation.room.look_alike_recording import RecordingModels
 from course_lib.spherical_stereo.detection.detected_object import Detection
@@ -49,18 +48,3 @@ def test_a_room_is_seen_from_both_heights_and_reads_back(record, tmp_path):
     assert chair.hue == 0.0, "359.99999 is rounded on the circle"
     assert sofa.is_grey
     assert len(view.observations) == len(view.shows)
-
-
-def test_a_run_writes_both_files_and_goes_on_where_it_was(monkeypatch, tmp_path):
-    made = []
-
-    def tell(function, points, path, processes, progress):
-        made.append([point["seed"] for point in points])
-        return [{"seed": point["seed"], "views": [{}, {}]} for point in points]
-
-    monkeypatch.setattr(project_rooms, "kept_rows", tell)
-    counts = make_project_rooms(tmp_path, tmp_path / "detector", tmp_path / "work")
-    assert counts == {"practice": 2 * len(SEEDS["practice"]), "hidden": 2 * len(SEEDS["hidden"])}
-    assert made == [list(seeds) for seeds in SEEDS.values()]
-    stored = json.loads((tmp_path / "rooms_hidden.json").read_text())
-    assert stored["rooms"][0] == {"seed": SEEDS["hidden"][0], "views": [{}, {}]}

@@ -8,7 +8,6 @@ import sys
 import time
 from pathlib import Path
 
-import joblib
 import numpy as np
 import pytest
 
@@ -45,10 +44,6 @@ def fail_for_two(seed, folder):
     return {"seed": seed}
 
 
-def give_nan(seed):
-    return {"value": float("nan")}
-
-
 def lines_of(path):
     return [json.loads(line) for line in path.read_text().splitlines()]
 
@@ -57,14 +52,6 @@ def lines_of(path):
 def test_results_come_in_the_order_of_the_points(processes, tmp_path):
     assert kept_rows(draw, POINTS, tmp_path / "rows.jsonl", processes) == [draw(**point) for point in POINTS]
     assert sorted(map(str, (row["point"] for row in lines_of(tmp_path / "rows.jsonl")))) == sorted(map(str, POINTS))
-
-
-def test_dasks_workers_give_the_same_rows(tmp_path):
-    distributed = pytest.importorskip("dask.distributed")
-    options = {"n_workers": 1, "threads_per_worker": 2, "processes": False, "dashboard_address": None}
-    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
-        with joblib.parallel_config("dask", client=client):
-            assert kept_rows(draw, POINTS, tmp_path / "rows.jsonl") == [draw(**point) for point in POINTS]
 
 
 def test_only_missing_points_are_run_and_counted(tmp_path):
@@ -109,15 +96,6 @@ def test_a_point_that_fails_is_named_and_what_was_finished_is_kept(tmp_path):
     assert [row["point"]["seed"] for row in lines_of(tmp_path / "rows.jsonl")] == [1]
     (tmp_path / "mended").touch()
     assert [row["seed"] for row in kept_rows(fail_for_two, points, tmp_path / "rows.jsonl", 1)] == [1, 2, 3]
-
-
-def test_a_number_that_json_has_not_leaves_no_half_line(tmp_path):
-    with pytest.raises(ValueError, match="JSON"):
-        kept_rows(give_nan, [{"seed": 1}], tmp_path / "rows.jsonl", 1)
-    with pytest.raises(ValueError, match="JSON"):
-        write_results(tmp_path / "run.json", {"error_m": float("nan")})
-    assert (tmp_path / "rows.jsonl").read_text() == ""
-    assert not (tmp_path / "run.json").exists()
 
 
 def test_results_hold_their_versions_and_rows(tmp_path):

@@ -6,7 +6,7 @@ import pytest
 from course_lib.beyond.six_dof.poses import retract
 from course_lib.beyond.six_dof.prediction import START_SPREAD
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.six_degrees import ABLATIONS, METHODS, StandingStill, pooled, run_frames, thinned_points
+from course_lib.experiments.six_degrees import ABLATIONS, StandingStill, pooled, run_frames
 from course_lib.rendering.scene_map import SceneMap
 
 
@@ -26,21 +26,6 @@ def test_a_thinned_recording_keeps_what_belongs_together(corridor_folder):
     for every, offset in ((0, 0), (8, -1), (1, len(whole))):
         with pytest.raises(ValueError, match="no frame is left"):
             whole.thinned(every, offset)
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_a_run_tells_every_frame(corridor, method):
-    """Two metres from frame to frame: the floor does not move, the filters are lost from the second frame on."""
-    frames = run_frames(method, *corridor, seed=10_001)
-    assert {len(values) for values in frames.values()} == {5}
-    if method == "floor":
-        assert max(frames["position_m"]) < 0.05
-        assert "lost" not in frames["status"]
-    else:
-        assert frames["position_m"][0] < 0.05 < 0.2 < min(frames["position_m"][1:])
-    if method == "annealed":
-        assert frames["status"][0] == "tracked"
-        assert frames["status"].count("lost") >= 3
 
 
 def test_what_is_switched_off_is_off(corridor):
@@ -78,10 +63,3 @@ def test_frames_of_several_runs_are_pooled_not_their_medians():
     assert (row["wrong"], row["wrong_called_lost"]) == (3, 2)
     assert (row["good"], row["good_called_lost"]) == (3, 1)
     assert (row["most_renders"], row["within_3_sigma_percent"]) == (100, 100.0)
-
-
-def test_every_offset_of_a_thinning_is_a_run(tmp_path):
-    points = thinned_points(tmp_path / "m.ply", tmp_path, ["annealed", "floor"], [1, 4], [1, 2])
-    annealed = [(p["every"], p["offset"], p["seed"]) for p in points if p["method"] == "annealed"]
-    assert annealed == [(1, 0, 1), (1, 0, 2)] + [(4, offset, seed) for offset in range(4) for seed in (1, 2)]
-    assert [(p["every"], p["seed"]) for p in points if p["method"] == "floor"] == [(1, 1)]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.experiments.turned_rig import RolledPair, compare, turn_summary, weigh_by_covariance
+from course_lib.experiments.turned_rig import RolledPair, compare, turn_summary
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose.localization import UNABLE, Localization
@@ -68,22 +68,3 @@ def test_the_summary_is_of_those_that_agree():
     assert found["columns"] == [COLUMNS]
     assert found["greatest_moved_m"] == pytest.approx(0.105)
     assert found["greatest_turned_deg"] == pytest.approx(np.rad2deg(0.01))
-
-
-def test_weighted_by_covariance_a_far_object_that_moves_hardly_moves_the_pose():
-    """The sofa, of which the covariance says that it is uncertain, is seen half a metre farther away."""
-    sure, unsure = 0.01 * np.eye(2), np.eye(2)
-    seen = [
-        Observation(one.label, one.x, one.y, one.hue, one.saturation, unsure if one.label == "sofa" else sure)
-        for one in MAP.landmarks
-    ]
-    moved = [one._replace(x=one.x + 0.5) if one.label == "sofa" else one for one in seen]
-    localizer = SemanticLocalizer(StereoRig(0.3, 1.4), MAP)
-    pairs = [
-        RolledPair(0, WIDTH, localizer.localize_observations(seen), localizer.localize_observations(moved)),
-        RolledPair(0, WIDTH, localizer.localize_observations(seen), Localization(None, UNABLE)),
-    ]
-    alike, weighted = compare(pairs[0]), compare(weigh_by_covariance(pairs, localizer)[0])
-    assert alike[0]
-    assert weighted[0]
-    assert weighted[1] < 0.2 * alike[1]

@@ -5,7 +5,6 @@ import pytest
 
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.experiments import walk
-from course_lib.experiments.six_degrees import ABLATIONS, METHODS, require_methods
 
 
 @pytest.fixture
@@ -35,10 +34,3 @@ def test_each_offset_of_each_thinning_is_run_and_the_floor_once(recorded):
     ]
     assert np.median(rows[0]["run"]["position_m"]) < 0.05
     assert rows == walk.room_walk(10_001, ["annealed", "floor"], [1, 2])
-
-
-def test_methods_are_named_or_all_of_them():
-    assert require_methods("all") == [*METHODS, *ABLATIONS]
-    assert require_methods("floor,without refinement") == ["floor", "without refinement"]
-    with pytest.raises(ValueError, match=r"--methods must name annealed, paper, floor.*got 'magic'"):
-        require_methods("magic")

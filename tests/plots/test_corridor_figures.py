@@ -19,10 +19,6 @@ def test_a_cut_through_a_box_is_its_outline_in_the_other_two_coordinates(axis, k
     assert segments.reshape(-1, 2).max(axis=0) == pytest.approx(kept)
 
 
-def test_a_plane_beside_the_mesh_cuts_nothing():
-    assert plane_cut(BOX.vertices, BOX.faces, 2, 5.0).shape == (0, 2, 2)
-
-
 def test_a_floor_plan_keeps_the_vertices_near_its_height():
     assert len(floor_plan(BOX.vertices, 1.0)) == 4
     assert len(floor_plan(BOX.vertices, 0.5)) == 0

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.plots.experiment_figures import covariance_figure, risk_coverage_figure
+from course_lib.plots.experiment_figures import covariance_figure
 
 
 def runs_of(factor, rng):
@@ -27,10 +27,3 @@ def test_frames_without_a_covariance_are_left_out():
     axes = covariance_figure({"floor": floor, "blind": blind}).axes[0]
     assert len(axes.lines) == 2, "the dashed line and one more"
     assert axes.lines[1].get_data()[1][-1] == 100.0
-
-
-def test_every_curve_has_a_line_and_a_name():
-    curve = {"threshold": [0.9, 0.5], "coverage_percent": [50.0, 100.0], "risk_percent": [0.0, 10.0]}
-    axes = risk_coverage_figure({"one view": curve, "three views": curve}).axes[0]
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["one view", "three views"]
-    np.testing.assert_allclose(axes.lines[0].get_xydata(), [[50.0, 0.0], [100.0, 10.0]])

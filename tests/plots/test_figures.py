@@ -28,34 +28,12 @@ def test_where_nothing_was_hit_the_hatched_ground_shows_through():
     assert axes.patch.get_hatch()
 
 
-def test_depth_images_side_by_side_share_one_scale_and_one_colour_bar():
-    figure = figures.depth_images([np.ones((2, 3)), 5 * np.ones((2, 3))], ["Near", "Far"], (0, 8))
-    left, right, bar = figure.axes
-    assert [a.images[0].get_clim() for a in (left, right)] == [(0, 8), (0, 8)]
-    assert bar.get_label() == "<colorbar>"
-
-
 def test_compression_keeps_the_picture():
     rng = np.random.default_rng(0)
     rgb = np.kron(rng.integers(0, 255, (4, 5, 3)), np.ones((20, 20, 1))).astype(np.uint8)
     back = np.asarray(Image.open(io.BytesIO(figures.compress(rgb))).convert("RGB"))
     assert back.shape == rgb.shape
     assert np.abs(back.astype(int) - rgb).max() <= 12
-
-
-def test_compression_keeps_the_colour_of_a_thin_line_on_a_smooth_ground():
-    ground = np.linspace(0, 1, 300)[:, None] * np.ones(400)
-    rgb = np.stack([200 * ground, 220 * ground, 255 - 200 * ground], axis=-1).astype(np.uint8)
-    rgb[:, 200] = (213, 94, 0)
-    back = np.asarray(Image.open(io.BytesIO(figures.compress(rgb))).convert("RGB")).astype(int)
-    assert np.abs(back[:, 200] - (213, 94, 0)).max() <= 12
-
-
-def test_figures_leave_nothing_in_matplotlibs_global_state():
-    import matplotlib.pyplot
-
-    figures.new_figure()
-    assert matplotlib.pyplot.get_fignums() == []
 
 
 def test_commands_draw_where_there_is_no_ipython():

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from course_lib.plots.location_scene import _in_ascii, location_scene
+from course_lib.plots.location_scene import location_scene
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.scene_page import page_html
 from course_lib.spherical_stereo import SemanticLocalizer, StereoRig
 from tests.plots.test_track_scene import of_colour
-from tests.spherical_stereo.stereo_scene import TRUE_POSE, mapped_scene
+from tests.spherical_stereo.stereo_scene import mapped_scene
 from tests.spherical_stereo.vertical_pair import BASELINE
 
 
@@ -66,16 +66,3 @@ def test_a_rejected_pose_is_called_so_and_no_pose_is_said(answer):
     plotter, words = location_scene(semantic_map, nothing)
     assert "no pose, no detections" in words
     assert len(page_html(plotter, "A map", words)) < 1_300_000
-
-
-def test_the_true_pose_is_drawn_where_it_is_known(answer):
-    semantic_map, found = answer
-    plotter, words = location_scene(semantic_map, found, np.array(TRUE_POSE))
-    axes = of_colour(plotter, "#000000")[0]
-    assert axes.bounds[4:] == pytest.approx((-0.1, 0.4), abs=0.15)
-    assert np.asarray(axes.points)[:, :2].mean(axis=0) == pytest.approx(TRUE_POSE[:2], abs=0.3)
-    assert "true pose" in words
-
-
-def test_names_in_other_scripts_are_numbers_in_a_scene():
-    assert [_in_ascii(label, 2) for label in ("chair", "café", "椅子")] == ["chair", "cafe", "[2]"]

@@ -8,8 +8,7 @@ import pytest
 
 from course_lib.plots.figures import new_figure
 from course_lib.plots.panorama_drawing import draw_box, draw_numbers, panorama
-from course_lib.plots.room_figures import detections_figure, pose_figure
-from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.plots.room_figures import pose_figure
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
@@ -44,13 +43,6 @@ def test_a_box_across_the_seam_is_drawn_on_both_sides(box, frames):
     draw_box(axes, box, WIDTH, "sofa", "sofa")
     assert len(axes.patches) == frames
     assert list(texts(axes)) == ["sofa"]
-
-
-def test_the_list_below_says_what_each_number_is():
-    found = [Detection("sofa", 0.91, BOXES[0], 347.0, 40.0), Detection("chair", 0.5, BOXES[1], float("nan"), 0.0)]
-    figure = detections_figure(IMAGE, found)
-    lines = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert [line.split() for line in lines] == [["1", "sofa", "0.91", "347°"], ["2", "chair", "0.50", "grey"]]
 
 
 def test_a_line_joins_each_measured_object_to_its_landmark_and_a_swap_crosses():

@@ -85,14 +85,6 @@ def test_a_world_with_another_up_axis_is_turned(recording):
     assert np.allclose(np.linalg.norm(np.diff(paths[0], axis=0)), np.linalg.norm(np.diff(paths[1], axis=0)), atol=1e-4)
 
 
-def test_without_up_the_map_is_whole_and_the_cameras_say_what_is_up(recording):
-    scene_map, sequence = recording
-    plotter, _ = track_scene(scene_map, made_run(sequence), sequence, None, NEAR, FAR)
-    grey = of_colour(plotter, "#d3d3d3")[0]
-    assert grey.bounds[5] > 2.3
-    assert next(iter(plotter.actors.values())).prop.opacity < 1
-
-
 def test_far_from_zero_the_scene_is_brought_near(recording):
     scene_map, sequence = recording
     away = np.eye(4)

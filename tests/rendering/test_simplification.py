@@ -1,7 +1,5 @@
 """Fewer triangles that look the same: within the tolerance, holes where they were, kept for the next process."""
 
-import warnings
-
 import numpy as np
 import pytest
 
@@ -96,16 +94,6 @@ def test_what_is_damaged_is_made_again_and_where_nothing_can_be_kept_it_works(mo
     monkeypatch.setenv("XDG_CACHE_HOME", str(file))
     simplification.simplified.cache_clear()
     assert len(simplification.simplified(wall)) == len(first)
-
-
-def test_who_has_to_wait_is_told_why_and_only_once(monkeypatch):
-    monkeypatch.setattr(simplification, "QUICK_TRIANGLES", 21_000)
-    with pytest.warns(simplification.LargeMapWarning, match="exact=True"):
-        simplification.simplified(bumpy_wall())
-    simplification.simplified.cache_clear()
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        simplification.simplified(bumpy_wall())
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf])

@@ -14,6 +14,7 @@ from course_lib.spherical_stereo.pose import localization as outcomes
 from course_lib.spherical_stereo.pose.rigid_fit import MIRRORED, rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from tests.spherical_stereo.moved_rig import KnowingDetector
 from tests.spherical_stereo.stereo_scene import TRUE_POSE, mapped_scene
 from tests.spherical_stereo.vertical_pair import BASELINE, WIDTH, rolled, seen_turned
 
@@ -51,6 +52,13 @@ def test_a_baseline_in_millimetres_is_named_and_one_in_other_units_is_implausibl
         assert locate(rig=StereoRig(baseline), reject_implausible=False).status == "ok", (
             "the paper's method says nothing"
         )
+
+
+def test_two_images_and_a_detector_give_the_same_pose():
+    detector = KnowingDetector((UPPER.image, LOWER.image, UPPER.detections, LOWER.detections))
+    found = SemanticLocalizer(RIG, MAP, detector).localize(UPPER.image, LOWER.image)
+    assert (found.pose, found.unmatched) == (locate().pose, ())
+    assert set(found.used_pairs) == {(one.observation, one.upper) for one in found.objects}
 
 
 @pytest.mark.parametrize("columns", [20, -20, 200])

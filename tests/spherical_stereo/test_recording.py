@@ -41,18 +41,12 @@ def test_what_is_written_is_read(tmp_path, content):
     [
         (("baseline",), "0.3"),
         (("baseline",), -0.3),
-        (("width",), True),
         (("height",), -64),
-        (("pairs",), "pairs"),
         (("pairs", 0, "name"), 5),
-        (("pairs", 0, "upper", "file"), 2000 * "x"),
         (("pairs", 0, "lower", "file"), ""),
         (("pairs", 0, "rig", "heading"), [0.1]),
-        (("pairs", 0, "upper", "objects", 0, "label"), 5),
         (("pairs", 0, "upper", "objects", 0, "object"), 7.5),
         (("pairs", 0, "upper", "objects", 0, "visible_box"), BOX[:3]),
-        (("pairs", 0, "upper", "objects", 0, "visible_box"), "1234"),
-        (("pairs", 0, "lower", "objects", 0, "visible_fraction"), "most"),
     ],
 )
 def test_what_is_of_another_kind_is_named_with_the_file(tmp_path, content, place, value):

@@ -47,10 +47,6 @@ def blotches(rng, size=24, contrast=70):
     return np.clip(128 + contrast * cv2.resize(noise, (16 * size, 16 * size), interpolation=cv2.INTER_CUBIC), 0, 255)
 
 
-def plain(value=120):
-    return np.full((8, 8, 3), value, np.float32)
-
-
 def tiled(texture, times):
     """A texture repeated from left to right and from top to bottom."""
     return np.tile(

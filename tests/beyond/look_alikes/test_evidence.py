@@ -55,11 +55,6 @@ def test_the_paler_the_less_a_hue_means():
     assert costs[0] < 0.5 * costs[1] < 0.5 * costs[2]
 
 
-def test_grey_has_no_hue_and_weighs_nothing():
-    assert colour_cost((np.nan, 5.0), (120.0, 5.0)) == 0.0
-    assert colour_cost((120.0, 5.0), (np.nan, 5.0)) == 0.0
-
-
 def test_a_landmark_behind_another_is_not_expected_and_one_in_front_is():
     semantic_map = SemanticMap([Landmark("sofa", 2.0, 0.0, 0, 50), Landmark("plant", 4.0, 0.1, 0, 50)])
     from_west, from_north = detection_probabilities(semantic_map, np.array([[0.0, 0.0, 0.0], [3.0, 4.0, 0.0]]))
@@ -79,8 +74,3 @@ def test_the_chance_of_detection_falls_with_distance_and_ends_at_the_max_range()
 def test_no_rig_stands_in_a_sofa_or_behind_a_wall():
     poses = np.array([[1.2, -0.7, 0.0], [0.05, 0.05, 0.0], [3.5, 0.0, 0.0]])
     np.testing.assert_array_equal(free_space_costs(SYMMETRIC, poses), [0.0, OUTSIDE_COST, OUTSIDE_COST])
-
-
-def test_a_map_without_walls_says_nothing_of_the_outside():
-    bare = SemanticMap(SYMMETRIC.landmarks)
-    assert free_space_costs(bare, np.array([[30.0, 0.0, 0.0]]))[0] == 0.0

@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.being_lost import sigmas
-from course_lib.beyond.six_dof.covariance import (
-    PREDICTED,
-    fused,
-    pose_information,
-    predicted_covariance,
-    with_rivals,
-)
+from course_lib.beyond.six_dof.covariance import PREDICTED, fused, pose_information, predicted_covariance, with_rivals
 from course_lib.beyond.six_dof.poses import local, retract
 from course_lib.beyond.six_dof.prediction import Rival
 from course_lib.geometry import optical_pose
@@ -93,16 +87,6 @@ def test_along_each_direction_the_surer_is_believed():
     covariance, gain = fused(prior, information)
     assert np.sqrt(np.diag(covariance)) == pytest.approx([0.01, 0.1, 0.1, 0.2, 0.02, 0.2])
     assert np.diag(gain) == pytest.approx([1 - 0.01**2 / 0.1**2, 0, 0, 0, 1 - 0.02**2 / 0.2**2, 0])
-
-
-def test_it_knows_no_axes(rng):
-    """Turned, it gives the same, turned."""
-    prior, information = random_covariance(rng, 0.1), np.linalg.inv(random_covariance(rng, 0.1))
-    turn = np.linalg.qr(rng.standard_normal((6, 6)))[0]
-    covariance, gain = fused(prior, information)
-    turned_covariance, turned_gain = fused(turn @ prior @ turn.T, turn @ information @ turn.T)
-    assert turned_covariance == pytest.approx(turn @ covariance @ turn.T, rel=1e-6, abs=1e-9)
-    assert turned_gain == pytest.approx(turn @ gain @ turn.T, abs=1e-6)
 
 
 def test_the_same_image_again_makes_it_no_surer(rng):

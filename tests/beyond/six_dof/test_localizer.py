@@ -6,10 +6,7 @@ import pytest
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.beyond.six_dof.poses import lengths, local, retract
 from course_lib.beyond.six_dof.prediction import START_SPREAD
-from course_lib.beyond.six_dof.schedule import Layer
-from course_lib.depth_mcl.likelihood import DepthImageError
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
-from course_lib.experiments.six_degrees import image_alone
 from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, fence, furnished_room, rough_wall, wall
@@ -62,13 +59,6 @@ def test_slow_or_fast_it_follows_all_six(renderer, rng, step):
         assert estimate.weights.sum() == pytest.approx(1)
         assert len(estimate.particles) == len(estimate.weights) == 80
         assert np.linalg.eigvalsh(estimate.error_covariance).min() > 0
-
-
-def test_every_layer_tells_how_sharp_it_was(renderer):
-    layers = (Layer(1.0, 1.0, 0.2), Layer(0.6, 0.5, 0.1), Layer(0.4, 0.25, 0.05))
-    (estimate,) = run(renderer, renderer.render(walk(1)), n_particles=100, layers=layers)
-    assert [len(t.weights) for t in estimate.layers] == [100, 60, 40]
-    assert [t.ess for t in estimate.layers] == pytest.approx([20, 6, 2], rel=1e-3)
 
 
 def test_a_start_by_hand_may_be_off(renderer):
@@ -165,17 +155,6 @@ def test_before_a_bare_wall_that_the_map_has_rough_it_soon_says_that_it_does_not
     assert {e.status for e in estimates[-4:]} == {"lost"}
 
 
-def test_before_a_bare_wall_it_stays_where_it_was_going(bare_wall, rng):
-    """One that takes the image's word in every direction is carried off by the map's roughness at once."""
-    depth, slid = noisy(bare_wall[0], rng)[:6], []
-    for seed in range(4):
-        with DepthRenderer(rough_wall(np.random.default_rng(seed)), SMALL) as rough:
-            both = (run(rough, depth, STILL[0], **how) for how in ({}, {"fuse": image_alone}))
-            slid.append([off(estimates, STILL[:6])[-1, 0] for estimates in both])
-    fused, alone = np.median(slid, axis=0)
-    assert fused < 0.5 * alone
-
-
 def test_where_two_places_fit_alike_it_is_not_sure_of_either():
     """Before a fence, a step of half its pitch: on to the next post, or back?"""
     true = np.zeros((8, 6))
@@ -194,17 +173,3 @@ def test_the_same_seed_gives_the_same_bytes(renderer):
     )
     assert first.tobytes() == second.tobytes()
     assert not np.array_equal(first, other)
-
-
-def test_bad_use_is_named(renderer):
-    for bad in ({"seed": -1}, {"n_particles": 0}, {"rivals": -1}, {"layers": ()}):
-        with pytest.raises(ValueError, match=next(iter(bad)).rstrip("s")):
-            AnnealedLocalizer(renderer, **bad)
-    localizer = AnnealedLocalizer(renderer)
-    with pytest.raises(RuntimeError, match="initialize"):
-        localizer.step(np.ones(SMALL.shape))
-    with pytest.raises(ValueError, match="outside the map"):
-        localizer.initialize([99.0, 0, 0, 0, 0, 0])
-    localizer.initialize(START)
-    with pytest.raises(DepthImageError, match="shape"):
-        localizer.step(np.ones((3, 4)))

@@ -14,7 +14,7 @@ from course_lib.beyond.six_dof.refinement import (
 )
 from course_lib.geometry import optical_pose
 from course_lib.rendering.renderer import DepthRenderer
-from tests.rendering.shapes import OFF_CENTRE, SMALL, furnished_room, random_triangles, wall
+from tests.rendering.shapes import OFF_CENTRE, SMALL, furnished_room, random_triangles
 
 TRUE = optical_pose(np.array([-0.5, 0.2, -0.4, 0.05, 0.1, 0.6]))
 SCALES = (0.2, 0.15, 0.1, 0.05, 0.05)
@@ -70,26 +70,6 @@ def test_poses_near_the_right_one_come_to_it(renderer, rng):
     measured[10:40, 20:32] = 0.8
     off = lengths(local(TRUE, refine(renderer, measured, near_poses(rng, 20, 0.04, 0.03), SCALES)))
     assert np.median(off[:, 0]) < 0.01, "a person in the way pulls little"
-
-
-def test_along_a_bare_wall_the_pose_stays_where_it_is():
-    with DepthRenderer(wall(2.0), SMALL, "ray") as renderer:
-        facing = optical_pose(np.zeros(6))
-        measured = renderer.render_poses(facing[None])[0]
-        start = retract(facing, np.array([0.1, 0.07, 0.05, 0.0, 0.0, 0.0]))  # right, down, forward
-        refined = refine(renderer, measured, start[None], SCALES)[0]
-    along = local(facing, refined)
-    assert along[2] == pytest.approx(0.0, abs=1e-3), "the distance from the wall is seen"
-    assert along[:2] == pytest.approx([0.1, 0.07], abs=1e-3), "along it nothing is"
-
-
-def test_nothing_to_compare_moves_nothing(renderer):
-    nothing = np.full(SMALL.shape, np.nan)
-    for measured in (nothing, np.full(SMALL.shape, 2.0)):
-        images = np.full((2, *SMALL.shape), np.inf, dtype=np.float32)
-        system = compiled_normal_equations(measured, images, SMALL, 0.1)
-        assert not system.weights.any()
-        assert solve(system) == pytest.approx(np.zeros((2, 6)))
 
 
 def test_no_step_is_longer_than_first_order_reaches(renderer):

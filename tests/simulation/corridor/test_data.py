@@ -10,7 +10,7 @@ from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.recorded_runs import HandModel, WagonModel
 from course_lib.simulation.corridor.surface_fusion import FusionModel
-from course_lib.simulation.data_folder import checksums, field_comments, parameter_tables
+from course_lib.simulation.data_folder import checksums, field_comments
 from course_lib.simulation.sensors.laser_survey import ScannerModel
 from tools.corridor_data import PRODUCTS, CorridorModels, make_corridor_data
 
@@ -54,22 +54,6 @@ def test_all_products_are_there_and_readable(small):
     assert set(numbers["noise_on_a_wall_m"]) == {"2 m", "5 m", "8 m"}
 
 
-@pytest.mark.slow
-def test_a_run_that_is_stopped_leaves_the_old_data_alone(small):
-    folder, _ = small
-    before = checksums(folder, PRODUCTS)
-
-    def stop(items, text):
-        if "fusing" in text:
-            raise KeyboardInterrupt
-        return items
-
-    with pytest.raises(KeyboardInterrupt):
-        make_corridor_data(folder, 12, SMALL, progress=stop)
-    assert checksums(folder, PRODUCTS) == before
-    assert [path.name for path in folder.parent.iterdir()] == [folder.name]
-
-
 MODELS = {field.name: getattr(CorridorModels(), field.name) for field in dataclasses.fields(CorridorModels)}
 
 
@@ -79,9 +63,3 @@ def test_every_parameter_has_a_source_or_is_called_chosen(name):
     assert set(comments) == {field.name for field in dataclasses.fields(MODELS[name])}
     for field, comment in comments.items():
         assert "chosen" in comment or "data sheet" in comment, field
-
-
-def test_the_parameter_tables_show_the_values_used():
-    text = parameter_tables(dataclasses.replace(CorridorModels(), wagon=WagonModel(frames=123)), "corridor")
-    assert "| `frames` | 123 |" in text
-    assert "| `frequency` | 15000000.0 | Hz" in text

@@ -62,20 +62,3 @@ def test_an_error_of_the_camera_changes_the_images_and_not_what_is_told(hardship
     assert np.array_equal(harder.camera_to_world, plain.camera_to_world)
     assert np.array_equal(harder.intrinsics, plain.intrinsics)
     assert harder.intrinsics == pytest.approx(CAMERA.matrix, abs=1e-5)
-
-
-def test_pushing_changes_the_way_and_nothing_else_of_the_seed(record, plain):
-    pushed = record(10_010, ("pushed by hand",))
-    assert not np.allclose(pushed.camera_to_world[1:, :3, 3], plain.camera_to_world[1:, :3, 3], atol=1e-3)
-    assert pushed.camera_to_world[0, 0, 3] == pytest.approx(plain.camera_to_world[0, 0, 3], abs=0.02)
-    assert np.nanmedian(np.abs(images(pushed)[0] - images(plain)[0])) < 0.1
-
-
-def test_an_unknown_hardship_is_named(building, tmp_path):
-    with pytest.raises(ValueError, match="unknown hardship 'rain'"):
-        record_seed(tmp_path / "run", building, 1, ("rain",))
-
-
-def test_a_folder_without_the_seed_of_its_building_is_named(tmp_path):
-    with pytest.raises(FileNotFoundError, match=r"no summary\.json"):
-        building_of_data(tmp_path)

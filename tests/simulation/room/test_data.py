@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ from course_lib.simulation.room.data import PRODUCTS, RoomModels, make_room_data
 from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.survey import RoomSurveyModel
-from course_lib.simulation.room.training_images import BOXES_FILE, OtherImagesPerRoom, make_room_images, read_image_list
+from course_lib.simulation.room.training_images import make_room_images, read_image_list
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -60,15 +58,6 @@ def test_the_map_lists_every_object_of_the_room_where_it_stands(small):
     np.testing.assert_allclose(semantic_map.walls, room.walls)
 
 
-def test_an_object_that_nobody_sees_is_named():
-    from course_lib.simulation.room.survey import survey_room
-
-    with pytest.raises(ValueError, match="seen from none of the 1 places"):
-        survey_room(
-            make_experiment_room(), RoomSurveyModel(places=1, width=160, fewest_pixels=10**6), np.random.default_rng(0)
-        )
-
-
 @pytest.mark.slow
 def test_training_pictures_go_on_where_they_stopped(tmp_path):
     make_room_images(tmp_path / "stopped", 5, 1, 1)
@@ -85,21 +74,3 @@ def test_training_pictures_go_on_where_they_stopped(tmp_path):
             assert 0 <= u_min < 1280
             assert u_min < u_max <= u_min + 1280
             assert 0 <= v_min < v_max <= 640
-
-
-def test_a_folder_begun_with_another_number_of_images_is_refused(tmp_path):
-    images = [{"file": f"000005_{k}.jpg", "room_seed": 5, "objects": []} for k in range(3)]
-    begun = json.dumps({"version": 1, "images": images})
-    (tmp_path / BOXES_FILE).write_text(begun)
-    with pytest.raises(OtherImagesPerRoom, match=r"begun with 3 images of a room \(room 5\), now 4"):
-        make_room_images(tmp_path, 5, 2, 4)
-    assert [path.name for path in tmp_path.iterdir()] == [BOXES_FILE]
-    assert (tmp_path / BOXES_FILE).read_text() == begun
-    assert make_room_images(tmp_path, 5, 1, 3) == images, "the same number goes on, and here all is done"
-
-
-def test_an_image_list_that_cannot_be_read_is_named(tmp_path):
-    for content in ('{"version": 9, "images": []}', '{"version": 1, "images": [{"file": "a.jpg"}]}', "[]"):
-        (tmp_path / BOXES_FILE).write_text(content)
-        with pytest.raises(ValueError, match=r"boxes\.json: a field is missing or of the wrong kind"):
-            read_image_list(tmp_path)

@@ -23,7 +23,6 @@ INTS_ATTRIBUTE, INT_ATTRIBUTE = 7, 2  # AttributeProto.AttributeType
 
 
 def varint(value: int) -> bytes:
-    """A whole number, seven bits a byte."""
     out = b""
     while value > 127:
         out, value = out + bytes([value & 127 | 128]), value >> 7
@@ -31,18 +30,15 @@ def varint(value: int) -> bytes:
 
 
 def number(field: int, value: int) -> bytes:
-    """A field that is a whole number."""
     return varint(field << 3) + varint(value)
 
 
 def block(field: int, value: bytes | str) -> bytes:
-    """A field that is a text, bytes, or a message of its own."""
     data = value.encode() if isinstance(value, str) else value
     return varint(field << 3 | 2) + varint(len(data)) + data
 
 
 def tensor(name: str, values: np.ndarray) -> bytes:
-    """A constant: int64 as it is, everything else as float32."""
     kind = INT64 if values.dtype == np.int64 else FLOAT
     values = values if kind == INT64 else values.astype("<f4")
     dims = b"".join(number(1, size) for size in values.shape)
@@ -50,26 +46,22 @@ def tensor(name: str, values: np.ndarray) -> bytes:
 
 
 def attribute(name: str, value: int | list[int]) -> bytes:
-    """An option of an operation."""
     if isinstance(value, int):
         return block(1, name) + number(3, value) + number(20, INT_ATTRIBUTE)
     return block(1, name) + b"".join(number(8, item) for item in value) + number(20, INTS_ATTRIBUTE)
 
 
 def node(operation: str, inputs: list[str], output: str, **attributes: int | list[int]) -> bytes:
-    """One operation of the graph."""
     data = b"".join(block(1, name) for name in inputs) + block(2, output) + block(3, output) + block(4, operation)
     return data + b"".join(block(5, attribute(name, value)) for name, value in attributes.items())
 
 
 def value_info(name: str, shape: tuple[int, ...]) -> bytes:
-    """Name and shape of an input or output."""
     dims = b"".join(block(1, number(1, size)) for size in shape)
     return block(1, name) + block(2, block(1, number(1, FLOAT) + block(2, dims)))
 
 
 def model(nodes: list[bytes], constants: dict[str, np.ndarray], inputs: dict, outputs: dict) -> bytes:
-    """A whole file. inputs, outputs: names and shapes."""
     graph = b"".join(block(1, item) for item in nodes) + block(2, "blobs")
     graph += b"".join(block(5, tensor(name, values)) for name, values in constants.items())
     graph += b"".join(block(11, value_info(name, shape)) for name, shape in inputs.items())
@@ -79,7 +71,6 @@ def model(nodes: list[bytes], constants: dict[str, np.ndarray], inputs: dict, ou
 
 
 def blob_onnx() -> bytes:
-    """Return the network of `blob_networks` as an ONNX file with its output in the layout "yolov8"."""
     width, height = INPUT_SIZE
     columns, rows = width // STRIDE, height // STRIDE
     x, y = np.meshgrid((np.arange(columns) + 0.5) * STRIDE, (np.arange(rows) + 0.5) * STRIDE)

@@ -89,12 +89,9 @@ def test_a_cfg_keeps_its_order_options_and_lines_and_comes_back_from_its_text(tm
     ("text", "says"),
     [
         ("", "has 0 sections"),
-        ("width=3\n[net]\n", "line 1: 'width=3' is neither"),
         ("[convolutional]\nfilters=3\n", r"line 1: unknown section \[convolutional\], expected \[net\]"),
-        ("[net]\nwidth=3\n", "has 1 sections"),
         ("[net]\nwidth=3\n[lstm]\nsize=1\n", r"line 3: unknown section \[lstm\]"),
         ("[net]\nwidth 3\n", "line 2: 'width 3' is neither"),
-        ("[net]\nwidth=\n", "line 2: 'width=' is neither"),
     ],
 )
 def test_a_malformed_cfg_is_refused_with_its_line(text, says):
@@ -106,7 +103,6 @@ def test_a_malformed_cfg_is_refused_with_its_line(text, says):
     ("old", "new", "says"),
     [
         ("filters=8", "filters=many", "line 6: filters must be whole numbers; got many"),
-        ("filters=8\n", "", "line 6: filters must be whole numbers; got none"),
         ("groups=2", "groups=3", "line 12: groups=3 does not divide 8"),
         ("[yolo]", "[route]\nlayers=5\n[yolo]", "line 17: layer 2 points to layer 5"),
         ("[yolo]", "[route]\nlayers=-3\n[yolo]", "layer 2 points to layer -3"),

@@ -6,14 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from course_lib.spherical_stereo.detection.detected_object import (
-    ALIASES,
-    CANONICAL_LABELS,
     Detection,
     DetectionError,
     box_centre,
     box_iou,
     canonical_label,
-    wrapped_box,
 )
 
 WIDTH = 1280.0
@@ -24,25 +21,10 @@ def box(u, v, across, down):
 
 
 @pytest.mark.parametrize(
-    ("name", "label"),
-    [
-        ("couch", "sofa"),
-        ("tvmonitor", "television"),
-        ("dining table", "table"),
-        ("potted_plant", "potted plant"),
-        (" Chair ", "chair"),
-        ("Traffic_Light", "traffic light"),
-        ("TV  Stand", "tv stand"),
-        (" bed_", "bed"),
-    ],
+    ("name", "label"), [("couch", "sofa"), ("tvmonitor", "television"), ("dining table", "table"), (" Chair ", "chair")]
 )
 def test_names_of_coco_and_voc_in_any_spelling_become_one_label(name, label):
     assert canonical_label(name) == label
-
-
-def test_every_alias_leads_to_a_canonical_label_that_stays_as_it_is():
-    assert set(ALIASES.values()) <= set(CANONICAL_LABELS)
-    assert all(canonical_label(label) == label for label in CANONICAL_LABELS)
 
 
 @pytest.mark.parametrize(
@@ -74,13 +56,6 @@ def test_turning_both_boxes_keeps_their_overlap(u_a, across_a, u_b, across_b, co
     assert 0 <= box_iou([a], [b], WIDTH)[0, 0] <= 1 + 1e-12
 
 
-@given(st.floats(-1e4, 1e4), st.floats(1, 1280))
-def test_a_wrapped_box_starts_on_the_image_and_keeps_its_size(u, across):
-    wrapped = wrapped_box(box(u, 5, across, 10), WIDTH)
-    assert 0 <= wrapped[0] < WIDTH
-    assert wrapped[2] - wrapped[0] == pytest.approx(across, abs=1e-8)
-
-
 def test_the_centre_of_a_box_across_the_seam_lies_past_the_width():
     assert box_centre([1260, 10, 1320, 30]).tolist() == [1290, 20]
 
@@ -91,7 +66,6 @@ def test_the_centre_of_a_box_across_the_seam_lies_past_the_width():
         ([[1, 2, 3]], "shape"),
         ([[np.nan, 0, 1, 1]], "finite"),
         ([[10, 0, 5, 1]], "above the width"),
-        ([[0, 5, 5, 5]], "v_min < v_max"),
         ([[0, 0, 1281, 1]], "wider than the panorama"),
     ],
 )
@@ -106,25 +80,14 @@ def test_a_detection_knows_its_centre_its_size_and_its_place_on_the_circle():
     assert Detection("sofa", 0.5, (506, 10, 526, 40), 20.0, 55.0).wrapped(256) == detection
 
 
-def test_a_grey_detection_says_so():
-    grey = Detection("refrigerator", 0.9, (1, 2, 3, 4), float("nan"), 3.0)
-    assert grey.is_grey
-    assert "grey, no hue" in grey.describe()
-    assert "hue 0 deg" in Detection("sofa", 0.9, (1, 2, 3, 4), 0.0, 80.0).describe()
-
-
 @pytest.mark.parametrize(
     ("change", "says"),
     [
         ({"label": "_-"}, "label"),
-        ({"label": 3}, "label"),
         ({"score": "x"}, "must be numbers"),
-        ({"hue": "red"}, "must be numbers"),
-        ({"box": ("a", 2, 3, 4)}, "must be numbers"),
         ({"score": float("nan")}, "score"),
         ({"score": 1.1}, "score"),
         ({"box": (1, 2, 3)}, "four finite"),
-        ({"box": (1, 2, float("inf"), 4)}, "four finite"),
         ({"box": (3, 2, 1, 4)}, "u_min < u_max"),
         ({"box": (-1, 2, 3, 4)}, "0 <= u_min"),
         ({"hue": 360.0}, "hue"),

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection import onnx_network
 from course_lib.spherical_stereo.detection.darknet import DetectorError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.onnx_network import LAYOUTS, decode_onnx
@@ -67,13 +66,6 @@ def test_files_and_sizes_that_do_not_fit_are_named(names, tmp_path):
     refused(path, names, "at an input of 200 x 128", input_size=(200, 128))
     refused(path, names, "layout yolov5", layout="yolov5")
     refused(path, names, "known are yolov5, yolov8, yolov4", layout="yolov9")
-
-
-def test_a_file_that_ends_opencvs_reader_is_an_error_with_a_name(names, tmp_path, monkeypatch):
-    monkeypatch.setattr(onnx_network, "_PROBE", "import os; os.abort()")
-    path = tmp_path / "blobs.onnx"
-    path.write_bytes(blob_onnx())
-    refused(path, names, r"running the ONNX file .*blobs\.onnx ends the process")
 
 
 def test_results_that_are_no_numbers_are_refused(names, tmp_path):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.detected_object import box_iou
 from course_lib.spherical_stereo.detection.seam import (
     appended_columns,
     centres_in_range,
@@ -52,29 +51,11 @@ def test_an_object_of_any_width_at_any_column_is_counted_once_and_whole(object_w
         assert boxes[0] == pytest.approx([u_min, 100, u_min + object_width, 180], abs=1e-9), f"at column {u_min}"
 
 
-@pytest.mark.parametrize("object_width", [30, 120, 160, 240, 400])
-def test_jitter_of_a_few_pixels_neither_doubles_nor_loses_an_object(object_width, rng):
-    for u_min in np.repeat(np.arange(0, WIDTH, 9), 2):
-        boxes, _, _ = select_on_circle(*ideal_detections(u_min, object_width, rng, jitter=4), WIDTH, IOU)
-        assert len(boxes) == 1, f"at column {u_min}"
-        assert 0 <= boxes[0, 0] < WIDTH
-        true = np.array([[u_min, 100, u_min + object_width, 180]], dtype=float)
-        assert box_iou(boxes, true, WIDTH)[0, 0] > (0.6 if object_width < 40 else 0.75)
-
-
 def test_two_objects_side_by_side_at_the_border_of_the_range_both_stay():
     start, _ = valid_range(WIDTH)
     one, two = ideal_detections(start - 42, 40), ideal_detections(start + 2, 40)
     boxes, _, _ = select_on_circle(*(np.concatenate(parts) for parts in zip(one, two, strict=True)), WIDTH, IOU)
     assert sorted(boxes[:, 0]) == pytest.approx([start - 42, start + 2])
-
-
-def test_objects_of_two_classes_at_one_place_both_stay_unless_their_boxes_coincide():
-    boxes = np.array([[200.0, 100, 260, 180], [215, 100, 275, 180]])
-    scores, classes = np.array([0.8, 0.7]), np.array([0, 1])
-    assert len(select_on_circle(boxes, scores, classes, WIDTH, IOU)[0]) == 2
-    boxes[1] = [202, 101, 261, 180]
-    assert select_on_circle(boxes, scores, classes, WIDTH, IOU)[2].tolist() == [0]
 
 
 def test_a_surer_copy_that_the_seam_cuts_gives_way_to_the_whole_one_even_when_both_centres_count():

@@ -38,13 +38,6 @@ def test_features_on_the_seam_are_found_as_well_as_elsewhere(image, features):
     assert np.mean(nearest < 0.5) > 0.9
 
 
-def test_no_feature_is_found_twice(features):
-    assert len(np.unique(features.keypoints.round(3), axis=0)) > 0.98 * len(features)
-    assert features.keypoints.min() >= 0
-    assert features.keypoints[:, 0].max() < WIDTH
-    assert features.keypoints[:, 1].max() <= HEIGHT
-
-
 def test_keypoints_are_in_edge_coordinates():
     """A bright square over columns 100 to 119 and rows 60 to 79 has its centre at (110, 70)."""
     image = np.full((HEIGHT, WIDTH, 3), (50, 60, 70), np.uint8)

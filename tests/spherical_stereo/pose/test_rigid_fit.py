@@ -45,14 +45,6 @@ def noisy(source, pose, sigma, seed=0):
     return pose.apply(source) + sigma * np.random.default_rng(seed).standard_normal(source.shape)
 
 
-@given(points, metres, metres, angles)
-def test_exact_points_give_the_exact_pose(source, x, y, theta):
-    assume(spread(source) > 0.1)
-    fitted = fit_rigid_2d(source, Pose2D(x, y, theta).apply(source))
-    assert fitted[:2] == pytest.approx((x, y), abs=1e-9)
-    assert wrap_angle(fitted.theta - theta) == pytest.approx(0, abs=1e-10)
-
-
 @given(points, angles, st.integers(0, 10_000))
 def test_noisy_points_give_the_pose_that_scikit_image_gives(source, theta, seed):
     assume(spread(source) > 1.0)
@@ -144,12 +136,6 @@ def test_a_mirror_image_is_named(theta, x, y):
         fit_rigid_2d(TRIANGLE * [1, -1], Pose2D(x, y, theta).apply(TRIANGLE))
 
 
-def test_an_equilateral_triangle_with_two_corners_exchanged_is_a_mirror_image():
-    corners = np.array([[np.cos(a), np.sin(a)] for a in np.radians([90, 210, 330])])
-    with refused(MIRRORED):
-        fit_rigid_2d(corners, corners[[0, 2, 1]])
-
-
 @given(st.integers(2, 8), angles, st.integers(0, 1000))
 def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
     line = np.stack([np.linspace(0, 4, n), np.zeros(n)], axis=1)
@@ -162,10 +148,8 @@ def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
     ("changes", "says"),
     [
         ({"target": TRIANGLE[:2]}, "shape"),
-        ({"target": np.zeros((3, 3))}, "shape"),
         ({"weights": [1, 1]}, "one a pair"),
         ({"weights": [1, -1, 1]}, "not be negative"),
-        ({"weights": [1, np.nan, 1]}, "weights must be finite"),
         ({"source": np.full((3, 2), np.inf)}, "source must be finite"),
         ({"covariances": np.full((3, 2, 2), np.nan)}, r"one finite \(2, 2\) matrix a pair"),
         ({"covariances": np.eye(2)}, r"one finite \(2, 2\) matrix a pair"),

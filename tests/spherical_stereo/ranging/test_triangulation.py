@@ -5,11 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from course_lib.spherical_stereo.panorama import (
-    PanoramaError,
-    azimuth_elevation,
-    direction_from_angles,
-)
+from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_elevation, direction_from_angles
 from course_lib.spherical_stereo.ranging.triangulation import (
     TriangulationError,
     object_position,
@@ -88,15 +84,6 @@ def test_directions_without_a_distance_have_a_named_outcome(upper, lower, name):
         assert caught.value.outcome == name
 
 
-@QUICK
-@given(upper=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)), lower=st.tuples(st.floats(-3, 3), st.floats(-1.5, 1.5)))
-def test_a_distance_is_never_a_huge_number(upper, lower):
-    """Whatever the directions, the outcome is named or the distance is below baseline / a thousandth of a radian."""
-    upper, lower = direction_from_angles(*upper), direction_from_angles(*lower)
-    if triangulation_outcome(upper, lower) == "ok":
-        assert 0 < triangulate(upper, lower, BASELINE) < 303
-
-
 def test_the_covariance_is_that_of_noise_drawn_by_hand(rng):
     sigma_azimuth, sigma_elevation = 2 * np.pi / 1280, 0.3 * np.pi / 640
     for point in ([2.5, 1.0, -0.8], [-1.5, 0.3, -1.2], [0.2, -3.5, 0.4]):
@@ -106,17 +93,6 @@ def test_the_covariance_is_that_of_noise_drawn_by_hand(rng):
         drawn = object_position(upper, direction_from_angles(azimuth, e_l + noise[2]), BASELINE)
         predicted = triangulation_covariance(*seen(np.array(point)), BASELINE, sigma_azimuth, sigma_elevation)
         np.testing.assert_allclose(np.cov(drawn.T), predicted, atol=0.05 * np.abs(predicted).max())
-
-
-def test_the_deviation_along_the_ray_grows_with_distance_squared_over_baseline():
-    def along(distance, baseline):
-        direction = direction_from_angles(0.4, -0.1)
-        covariance = triangulation_covariance(*seen(distance * direction, baseline), baseline, 0.001, 0.001)
-        return np.sqrt(direction @ covariance @ direction)
-
-    # Far away against the baseline, where the law holds: twice as far is four times as uncertain.
-    assert along(12, BASELINE) / along(6, BASELINE) == pytest.approx(4, rel=0.05)
-    assert along(8, 0.15) / along(8, 0.30) == pytest.approx(2, rel=0.05)
 
 
 def test_noise_that_is_none_and_directions_that_are_none_are_refused():

@@ -62,11 +62,6 @@ def test_the_hue_difference_is_symmetric_and_turns_with_the_circle(a, b, turn):
     assert hue_difference((a + turn) % 360, (b + turn) % 360) == pytest.approx(apart, abs=1e-9)
 
 
-@given(st.floats(0, 359.999), st.floats(0, 359.999))
-def test_the_hue_term_is_at_most_half_of_its_weight(a, b):
-    assert cost(seen(hue=a), mapped(hue=b)).hue <= WEIGHTS.p_h / 2
-
-
 @pytest.mark.parametrize(("hue_seen", "hue_mapped"), [(math.nan, 200), (200, math.nan), (math.nan, math.nan)])
 def test_grey_on_either_side_has_no_hue_term(hue_seen, hue_mapped):
     terms = cost(seen(hue=hue_seen), mapped(hue=hue_mapped))
@@ -139,16 +134,6 @@ def test_pairs_come_in_the_order_of_choice_cheapest_open_combination_first():
         free_columns.remove(j)
 
 
-def test_an_early_choice_is_never_taken_back():
-    # The second observation is the better partner of both landmarks, so the first is left with the dear one.
-    semantic_map = SemanticMap([Landmark("sofa", -1, 0, 0, 50), Landmark("sofa", 1, 0, 0, 90)])
-    observations = [Observation("sofa", -1, 0, 0, 40.0), Observation("sofa", 1, 0, 0, 52.0)]
-    found = associate_greedy(observations, semantic_map)
-    assert found.pairs == ((1, 0), (0, 1))
-    total = found.table.total
-    assert total[1, 0] + total[0, 1] > total[0, 0] + total[1, 1]
-
-
 @given(st.floats(-7, 7))
 def test_rounding_does_not_choose_between_objects_that_are_alike(theta):
     corners = [(1, 1), (1, -1), (-1, -1), (-1, 1)]
@@ -189,12 +174,6 @@ def test_above_the_least_object_weight_every_like_pair_is_cheaper_than_every_unl
         assert (table.total[like].max() < table.total[~like].min()) == holds
 
 
-def test_no_observations_give_no_pairs():
-    found = associate_greedy([], ROOM)
-    assert found.pairs == found.unassigned == found.steps == ()
-    assert found.table.total.shape == (0, 5)
-
-
 @pytest.mark.parametrize(
     ("change", "says"),
     [
@@ -202,9 +181,7 @@ def test_no_observations_give_no_pairs():
         ({"x": math.inf}, "observation: x and y must be finite"),
         ({"hue": 360.0}, r"observation: hue must lie in \[0, 360\)"),
         ({"hue": -1.0}, "observation: hue"),
-        ({"hue": math.inf}, "observation: hue"),
         ({"saturation": 101.0}, r"observation: saturation must lie in \[0, 100\]"),
-        ({"saturation": math.nan}, "observation: saturation"),
         ({"hue": np.array([10.0, 400.0])}, "observation: hue"),
     ],
 )

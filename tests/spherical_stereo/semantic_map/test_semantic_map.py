@@ -31,10 +31,6 @@ def same(first, second):
     )
 
 
-def test_the_centroid_is_the_mean_of_all_objects():
-    assert a_map().centroid == pytest.approx([3.5, 4.0 / 3])
-
-
 def test_a_map_cannot_be_changed_by_writing_to_its_arrays():
     with pytest.raises(ValueError, match="read-only"):
         a_map().positions[0, 0] = 9.0
@@ -48,13 +44,6 @@ def test_json_gives_back_the_whole_map_and_csv_its_landmarks(tmp_path):
     assert (read.name, read.walls.tolist()) == ("部屋", WALLS)
     with pytest.raises(SemanticMapError, match=r"\.json or \.csv"):
         a_map().save(tmp_path / "map.txt")
-
-
-def test_grey_is_null_in_json_and_empty_in_csv(tmp_path):
-    a_map().save(tmp_path / "map.json")
-    a_map().save(tmp_path / "map.csv")
-    assert json.loads((tmp_path / "map.json").read_text("utf-8"))["landmarks"][2]["hue"] is None
-    assert (tmp_path / "map.csv").read_text().splitlines()[-1] == "television,5.5,3.0,,4.0"
 
 
 def test_csv_as_a_spreadsheet_saves_it_is_read(tmp_path):
@@ -102,12 +91,9 @@ def refused(path, text, says):
         ({"landmarks": []}, "the map is empty"),
         ({"landmarks": [SOFA, SOFA | {"x": 1.005}]}, "written twice.* 5.0 mm apart"),
         ({"version": 2}, "version must be 1.*got 2"),
-        ({"version": True}, "version must be 1.*got True"),
         ({"landmarks": {"sofa": 1}}, "a list of landmarks"),
-        ({"landmarks": ["sofa"]}, "landmark 0: lacks label, x"),
         ({"name": 3}, "name must be a text"),
         ({"walls": [[0, 0], [1, 0]]}, "at least three finite corners"),
-        ({"walls": [[0, 0], [1, 0], "door"]}, "at least three finite corners"),
     ],
 )
 def test_a_json_file_that_is_no_map_is_named(tmp_path, change, says):
@@ -123,7 +109,6 @@ def test_a_json_file_that_is_no_map_is_named(tmp_path, change, says):
         ({"saturation": 100.5}, r"saturation must lie in \[0, 100\]"),
         ({"hue": 360}, r"hue must lie in \[0, 360\)"),
         ({"label": " - "}, "label must be the name of a class"),
-        ({"label": 7}, "label must be the name of a class"),
     ],
 )
 def test_a_landmark_that_cannot_be_is_named(tmp_path, change, says):
@@ -140,11 +125,8 @@ HEAD = "# semantic map, version 1\nlabel,x,y,hue,saturation\n"
         ("label,x,y,hue,saturation\nsofa,1,2,3,4\n", "first line must be '# semantic map, version 1'"),
         (HEAD.replace("version 1", "version 7") + "sofa,1,2,3,4\n", "version must be 1.*7"),
         ("# semantic map, version 1\nlabel,x,y\nsofa,1,2\n", "second line must name the columns"),
-        (HEAD + "sofa,1,2\n", "line 3 must have 5 values"),
-        (HEAD + "chair,1,2,3,4\nsofa,1,5,2,3,4\n", "line 4 must have 5 values"),
         (HEAD + "sofa,,2,3,4\n", "landmark 0: lacks x"),
         (HEAD + "sofa,one,2,3,4\n", "x of this sofa must be a number; got 'one'"),
-        (HEAD + "sofa,nan,2,3,4\n", "must be finite"),
         (HEAD + "sofa,1,2,nan,4\n", "landmark 0: lacks a hue"),
     ],
 )
