@@ -96,12 +96,6 @@ def test_what_is_damaged_is_made_again_and_where_nothing_can_be_kept_it_works(mo
     assert len(simplification.simplified(wall)) == len(first)
 
 
-@pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf])
-def test_a_tolerance_that_is_none_is_refused(tolerance):
-    with pytest.raises(ValueError, match="tolerance must be a positive number"):
-        simplification.simplified(bumpy_wall(), tolerance)
-
-
 def test_against_the_true_world_fewer_triangles_are_no_worse(corridor_folder):
     """Judged by the world as it was on the day of the recording, which no filter sees."""
     recording = read_sequence(corridor_folder / "wagon")

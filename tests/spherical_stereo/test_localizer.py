@@ -206,14 +206,6 @@ def test_one_image_given_twice_has_no_distances():
     assert found.upper.image is None
 
 
-def test_objects_matched_across_a_gap_in_azimuth_are_left_out():
-    upper, lower, matches = views(POSE)
-    lower[0] = rolled([lower[0]], 100)[0]
-    found = localize(upper, lower, matches)
-    assert [one.outcome for one in found.objects] == ["azimuth gap", "ok", "ok", "ok", "ok"]
-    assert found.pose == pytest.approx(POSE, abs=0.3)  # the centroid moved, and four pairs are left
-
-
 class NoObjects:
     """A detector in an empty room."""
 
