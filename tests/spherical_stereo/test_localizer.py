@@ -234,6 +234,7 @@ UPPER, LOWER, PAIRS = views(POSE)
         (DetectionError, "whole numbers; got 5", lambda: localize(UPPER, LOWER, [5])),
         (DetectionError, "needs ObjectMatch with its features", lambda: localize(*views(POSE), distance="disparity")),
         (DetectionError, "not on a panorama of 640 x 320", lambda: by_size((640, 320))),
+        (PanoramaError, "size must be", lambda: by_size("big")),
         (LocalizerError, "observation 0 is a person", lambda: given(Observation("person", 1.0, 2.0, 30, 50))),
         (AssociationError, "observation 0", lambda: given(Observation("chair", math.nan, 2.0, 30, 50))),
         (LocalizerError, "no detector", lambda: SemanticLocalizer(RIG, ROOM).localize(IMAGE, IMAGE)),

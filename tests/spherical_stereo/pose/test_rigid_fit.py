@@ -151,6 +151,7 @@ def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
         ({"weights": [1, 1]}, "one a pair"),
         ({"weights": [1, -1, 1]}, "not be negative"),
         ({"source": np.full((3, 2), np.inf)}, "source must be finite"),
+        ({"covariances": np.full((3, 2, 2), np.nan)}, "covariances must be finite"),
         ({"covariances": np.eye(2)}, r"one \(2, 2\) matrix a pair"),
         ({"covariances": [np.zeros((2, 2))] * 3}, "positive eigenvalues"),
         ({"covariances": [[[1, 0.5], [0, 1]]] * 3}, "symmetric"),
