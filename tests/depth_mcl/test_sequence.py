@@ -96,11 +96,13 @@ def truncate_an_image(f):
         (lambda f: (f / "depth" / "000005.png").unlink(), "other frames"),
         (lambda f: change_line(f / "poses.txt", 2, "5 1 2 3"), "poses"),
         (lambda f: change_line(f / "poses.txt", 2, "5 " + " ".join(["2"] * 16)), "frame 5"),
+        (lambda f: (f / "poses.txt").write_text("# nothing\n"), "poses"),
         (lambda f: (f / "intrinsics.txt").write_text("1 2\n3 4\n"), "3 x 3"),
         (lambda f: np.savetxt(f / "intrinsics.txt", [[500, 0, 300], [0, 500, 200], [0, 0, 1]]), "another image size"),
         (lambda f: (f / "up.txt").write_text("north"), r"up\.txt"),
         (truncate_an_image, "complete"),
         (lambda f: (f / "groundtruth.txt").write_text("0 0 0 0 0 0 0 1\n"), "same"),
+        (lambda f: (f / "path_on_floor.txt").write_text("1 2\n"), "x y z"),
         (lambda f: (f / "path_on_floor.txt").write_text("# x y z, metres; 2 rows\n1 2 3\n"), "announces 2 rows"),
         (lambda f: (f / "path_on_floor.txt").write_text("# x y z, metres; 1 rows\n1 2 3"), "is not complete"),
         (lambda f: [p.rename(p.with_name("cam0_" + p.name)) for p in (f / "depth").glob("*.png")], "first number"),
@@ -163,6 +165,7 @@ def test_a_folder_of_the_tum_dataset_is_read_by_its_times(tum_folder):
     ("damage", "said"),
     [
         (lambda f: (f / "depth.txt").write_text("one line too few words\n"), "a time and a file name"),
+        (lambda f: (f / "depth.txt").write_text("# nothing\n"), "names no image"),
         (lambda f: write_tum(f / "groundtruth.txt", [7.0], np.eye(4)[None]), "within 0.02 s"),
     ],
 )
@@ -206,4 +209,13 @@ def test_what_may_be_missing_may_not_be_something_else(folder, name, target):
     read_sequence(folder)
     (folder / name).symlink_to(target) if target else (folder / name).mkdir()
     with pytest.raises((SequenceError, FileNotFoundError), match=name):
+        read_sequence(folder)
+
+
+def test_a_list_of_images_that_are_not_there_is_named(folder):
+    (folder / "poses.txt").unlink()
+    (folder / "depth.txt").write_text("0.0 depth/000002.png\n0.1 depth/nowhere.png\n0.2 depth\n0.3 " + 900 * "1")
+    with pytest.raises(
+        SequenceError, match=r"depth\.txt names 3 images that are no files, depth/nowhere\.png in row 2"
+    ):
         read_sequence(folder)

@@ -165,3 +165,9 @@ def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_
     assert 0.5 < np.mean(normalized) < 2
     # The spread of the paper's own weights is no answer: beyond ten sigma in more than half of the frames.
     assert np.median([abs(e.state[0] - state[0]) / np.sqrt(e.covariance[0, 0] + 1e-30) for e, state in pairs]) > 10
+
+
+@pytest.mark.parametrize("scores", [[], [0.1, np.nan], [[0.1, 0.2]]])
+def test_scores_that_are_none_are_named(scores):
+    with pytest.raises(ValueError, match="scores must be"):
+        temper(np.array(scores), 2)

@@ -14,7 +14,6 @@ import pytest
 from course_lib.commands.scene_output import write_scene
 from course_lib.plots import scenes
 from course_lib.plots.scene_page import ScenePageError, page_html, same_scene
-from course_lib.plots.scenes import SceneError
 from course_lib.rendering.renderer import OpenGLError
 
 WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose <seen> from above"}
@@ -72,14 +71,6 @@ def test_pages_that_differ_by_rounding_show_the_same(page):
 )
 def test_pages_that_differ_show_something_else(page, change):
     assert not same_scene(axes_page(**change), page)
-
-
-@pytest.mark.parametrize(
-    ("words", "said"), [({"title": " "}, "has a title"), ({"alt": "some axes"}, "says what it shows")]
-)
-def test_a_page_without_words_is_refused(words, said):
-    with pytest.raises(SceneError, match=said):
-        axes_page(**words)
 
 
 @pytest.mark.parametrize("kind", [OpenGLError, ScenePageError, ImportError])

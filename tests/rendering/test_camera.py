@@ -93,3 +93,9 @@ def test_a_depth_image_of_the_wrong_size_is_named():
         SMALL.points(np.ones((64, 48)))
     with pytest.raises(ValueError, match="shape"):
         subsample_depth(np.ones((3, 3)), SMALL, SMALL.resized(4, 3))
+
+
+@pytest.mark.parametrize("matrix", [np.eye(4), np.full((3, 3), np.nan), [[500, 3, 80], [0, 500, 60], [0, 0, 1]]])
+def test_a_matrix_that_is_no_k_is_named(matrix):
+    with pytest.raises(ValueError, match="intrinsics"):
+        DepthCamera.from_matrix(matrix, 160, 120)

@@ -206,14 +206,6 @@ def test_one_image_given_twice_has_no_distances():
     assert found.upper.image is None
 
 
-def test_objects_matched_across_a_gap_in_azimuth_are_left_out():
-    upper, lower, matches = views(POSE)
-    lower[0] = rolled([lower[0]], 100)[0]
-    found = localize(upper, lower, matches)
-    assert [one.outcome for one in found.objects] == ["azimuth gap", "ok", "ok", "ok", "ok"]
-    assert found.pose == pytest.approx(POSE, abs=0.3)  # the centroid moved, and four pairs are left
-
-
 class NoObjects:
     """A detector in an empty room."""
 
@@ -242,6 +234,7 @@ UPPER, LOWER, PAIRS = views(POSE)
         (DetectionError, "whole numbers; got 5", lambda: localize(UPPER, LOWER, [5])),
         (DetectionError, "needs ObjectMatch with its features", lambda: localize(*views(POSE), distance="disparity")),
         (DetectionError, "not on a panorama of 640 x 320", lambda: by_size((640, 320))),
+        (PanoramaError, "size must be", lambda: by_size("big")),
         (LocalizerError, "observation 0 is a person", lambda: given(Observation("person", 1.0, 2.0, 30, 50))),
         (AssociationError, "observation 0", lambda: given(Observation("chair", math.nan, 2.0, 30, 50))),
         (LocalizerError, "no detector", lambda: SemanticLocalizer(RIG, ROOM).localize(IMAGE, IMAGE)),

@@ -116,3 +116,9 @@ def test_files_that_hold_no_colour_panorama_are_named(tmp_path, rng):
         with pytest.raises(PanoramaError, match=says) as caught:
             read_panorama(tmp_path / name)
         assert name in str(caught.value)
+
+
+def test_a_panorama_file_is_read_and_its_alpha_left_out(tmp_path, rng):
+    image = rng.integers(0, 255, (8, 16, 4), dtype=np.uint8)
+    cv2.imwrite(str(tmp_path / "a.png"), image)
+    np.testing.assert_array_equal(read_panorama(tmp_path / "a.png"), image[..., :3])

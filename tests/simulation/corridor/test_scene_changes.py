@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from course_lib.simulation.corridor.recorded_runs import WagonModel, wagon_run
 from course_lib.simulation.corridor.scene_changes import DayModel, scene_change
 from course_lib.simulation.corridor.world import draw_building, make_corridor
 
@@ -36,15 +35,3 @@ def test_doors_and_things_differ_from_day_to_day_and_from_the_survey(days, surve
             middles = [day.clutter_boxes.mean(axis=1) for day in (one, other)]
             nearest = np.linalg.norm(middles[0][:, None] - middles[1][None], axis=2).min(axis=1)
             assert np.median(nearest) > 0.3
-
-
-@pytest.mark.parametrize("number", range(len(SEEDS)))
-def test_things_stand_apart_inside_the_corridor_and_the_wagon_gets_past(days, number):
-    boxes = days[number].clutter_boxes
-    assert 6 <= len(boxes) <= 12
-    assert np.diff(np.sort(boxes.mean(axis=1)[:, 0])).min() > 1.8
-    assert np.abs(boxes[:, :, 1]).max() < 1.45
-    states, _ = wagon_run(WagonModel(), boxes, np.random.default_rng(number))
-    for low, high in boxes:
-        gap = np.maximum(np.maximum(low - states[:, :2], states[:, :2] - high), 0)
-        assert np.hypot(*gap.T).min() > 0.33

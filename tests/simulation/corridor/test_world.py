@@ -5,22 +5,11 @@ import pytest
 
 from course_lib.simulation.corridor import world as corridor
 from course_lib.simulation.corridor.world import make_corridor
-from course_lib.simulation.sensors.ray_casting import WorldCaster
 
 
 @pytest.fixture(scope="module")
 def world():
     return make_corridor(np.random.default_rng(4))
-
-
-def first_hit(mesh, origin, direction):
-    return float(WorldCaster.of(mesh).cast(np.array(origin), np.array([direction])).distance[0])
-
-
-def test_the_corridor_is_forty_metres_long_and_has_a_floor_at_zero(world):
-    low, high = world.survey_day.part_bounds("floor")
-    assert (low[0], high[0]) == pytest.approx((0, 40), abs=0.05)
-    assert first_hit(world.survey_day, [14.0, 0.0, 1.0], [0, 0, -1]) == pytest.approx(1.0, abs=0.006)
 
 
 def test_only_doors_and_clutter_differ_between_the_days(world):

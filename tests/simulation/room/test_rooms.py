@@ -6,8 +6,6 @@ import itertools
 import numpy as np
 import pytest
 
-from course_lib.simulation import textures
-from course_lib.simulation.furniture import solids
 from course_lib.simulation.room.experiment_room import LAYOUT, make_experiment_room
 from course_lib.simulation.room.footprints import footprint, overlap
 from course_lib.simulation.room.furnishing import make_room
@@ -25,11 +23,6 @@ def experiment():
     return make_experiment_room()
 
 
-@pytest.fixture(scope="module")
-def cover():
-    return textures.cloth(np.random.default_rng(0), (0.8, 0.3, 0.2))
-
-
 def bytes_of(room) -> str:
     digest = hashlib.sha256()
     for mesh in [*room.shell, *(mesh for item in room.objects for mesh in item.meshes)]:
@@ -37,39 +30,6 @@ def bytes_of(room) -> str:
             digest.update(np.ascontiguousarray(array).tobytes())
     digest.update(repr((room.lamps, room.ambient, room.height)).encode())
     return digest.hexdigest()
-
-
-def triangles(meshes) -> np.ndarray:
-    return np.concatenate([mesh.vertices[mesh.faces] for mesh in meshes])
-
-
-def area_vectors(corners: np.ndarray) -> np.ndarray:
-    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
-
-
-def volume(meshes) -> float:
-    corners = triangles(meshes)
-    return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6)
-
-
-def solid_examples(cover):
-    path = np.array([(0, 0, 0), (0.1, 0, 0.3), (0.3, 0, 0.5), (0.5, 0.1, 0.5)])
-    return {
-        "box": (solids.box((0.5, 1.2, 0.3), (1, 2, 3), cover), 0.5 * 1.2 * 0.3, 1e-9),
-        "rounded box": (solids.rounded_box((0.5, 1.2, 0.3), (1, 2, 3), cover, 0.02), 0.18, 0.01),
-        "cylinder": (solids.cylinder(0.2, 0.6, (1, 2, 0), cover, n=64), np.pi * 0.04 * 0.6, 0.01),
-        "bar": (solids.rod([(0, 0, 0), (0, 0.4, 0.3)], 0.02, cover, n=32), np.pi * 0.0004 * 0.5, 0.01),
-        "turned box": (solids.turn(solids.box((0.5, 1.2, 0.3), (0, 0, 0), cover), 1, 2, 3, 0.7, 0.4), 0.18, 1e-9),
-        "leaf": (solids.swept(path, (0, 1, 0), np.full(4, 0.03), np.full(4, 0.01), cover, n=32), 7.75e-4, 0.08),
-    }
-
-
-@pytest.mark.parametrize("name", ["box", "rounded box", "turned box", "cylinder", "bar", "leaf"])
-def test_a_solid_is_closed_and_encloses_its_volume_outwards(cover, name):
-    meshes, expected, tolerance = solid_examples(cover)[name]
-    vectors = area_vectors(triangles(meshes))
-    assert np.abs(vectors.sum(axis=0)).max() < 1e-9 * len(vectors) + 1e-12
-    assert volume(meshes) == pytest.approx(expected, rel=max(tolerance, 1e-9))
 
 
 def test_the_same_seed_makes_the_same_bytes(rooms):

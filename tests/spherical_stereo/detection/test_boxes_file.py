@@ -72,6 +72,7 @@ def side(**change):
         (side(box=[1, 2, 3]), "shape"),
         (side(box=[1, 2, None, 4]), "finite"),
         (side(box=[10, 20, 50, 129]), "leaves the image"),
+        (side(name=""), "name must be a text"),
         (side(name="screen"), "'screen' is a chair above and a television below"),
         ({"upper": 2 * side(name="one")["upper"]}, "upper has a name twice"),
     ],

@@ -77,6 +77,7 @@ def test_a_mask_selects_pixels_and_meets_the_box():
     [
         ({"mask": np.zeros((40, 80), dtype=bool)}, "no pixel is left"),
         ({"mask": np.ones((2, 2), dtype=bool)}, r"mask must have the image's shape \(40, 80\)"),
+        ({"box": (5, 5, 5, 9)}, "u_min < u_max"),
         ({"box": (5, 50, 9, 90)}, "no pixel is left"),
     ],
 )

@@ -98,3 +98,10 @@ def test_a_detection_that_cannot_be_is_refused(change, says):
     good = {"label": "sofa", "score": 0.9, "box": (1, 2, 3, 4), "hue": 10.0, "saturation": 50.0}
     with pytest.raises(DetectionError, match=says):
         Detection(**(good | change))
+
+
+def test_a_grey_detection_says_so():
+    grey = Detection("refrigerator", 0.9, (1, 2, 3, 4), float("nan"), 3.0)
+    assert grey.is_grey
+    assert "grey, no hue" in grey.describe()
+    assert "hue 0 deg" in Detection("sofa", 0.9, (1, 2, 3, 4), 0.0, 80.0).describe()

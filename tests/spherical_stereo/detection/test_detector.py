@@ -1,5 +1,6 @@
 """Detection with real networks run by OpenCV: every object once wherever it is, and every misfit of files named."""
 
+import pickle
 import struct
 
 import cv2
@@ -10,6 +11,8 @@ from course_lib.spherical_stereo.detection.darknet import DetectorError, expecte
 from course_lib.spherical_stereo.detection.detector import YoloDetector, find_objects
 from course_lib.spherical_stereo.panorama import PanoramaError, open_view
 from tests.spherical_stereo.detection.blob_networks import (
+    BLOCK,
+    CFG,
     GREEN,
     NAMES,
     OBJECT_HEIGHT,
@@ -143,10 +146,45 @@ def test_the_threshold_that_training_chose_is_taken_unless_another_is_given(copi
         YoloDetector.load(copied, score_threshold=0.4, iou_threshold=1.2)
 
 
-def test_a_network_of_right_numbers_whose_results_are_none_is_refused(copied):
-    weights = darknet_weights()
-    weights[:3], weights[3 + 144 :] = 3e38, 3e38  # sums that no float32 holds, of both signs
-    weights[3 + 144 :: 2] = -3e38
-    (copied / "blobs.weights").write_bytes(struct.pack("<3iq", 0, 2, 5, 0) + weights.tobytes())
-    with pytest.raises(DetectorError, match=r"blobs\.cfg with .*blobs\.weights gives boxes or scores that are NaN"):
+def test_a_folder_that_lacks_or_doubles_a_file_is_refused(copied):
+    with pytest.raises(DetectorError, match="no detector folder"):
+        YoloDetector.load(copied / "nowhere")
+    (copied / "second.cfg").write_text("")
+    with pytest.raises(DetectorError, match=r"exactly one \.cfg file; found blobs\.cfg, second\.cfg"):
         YoloDetector.load(copied)
+    (copied / "second.cfg").unlink()
+    (copied / "blobs.names").unlink()
+    with pytest.raises(DetectorError, match=r"exactly one \.names file; found none"):
+        YoloDetector.load(copied)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("filters=3", "size=3", "filters must be whole numbers; got none"),
+        ("width=320", "width=3.5", "whole numbers; got 3.5"),
+        ("width=320", "width=2147483647", "1 to 16,777,216 pixels"),
+        ("filters=3", "filters=4", r"blobs\.weights is too short"),
+    ],
+)
+def test_a_fault_of_the_cfg_names_the_cfg(copied, old, new, says):
+    (copied / "blobs.cfg").write_text(CFG.replace(old, new, 1))
+    with pytest.raises(DetectorError, match=rf"blobs\.cfg: .*{says}"):
+        YoloDetector.load(copied)
+
+
+def test_a_layer_that_nothing_takes_and_that_detects_nothing_is_named(copied):
+    """OpenCV makes an output of it, and its numbers must not be taken for boxes."""
+    unused = "[convolutional]\nfilters=4\nsize=1\nstride=1\nactivation=linear\n\n[route]\nlayers=-2\n\n"
+    first, second = CFG.rsplit("[convolutional]", 1)
+    (copied / "blobs.cfg").write_text(f"{first}{unused}[convolutional]{second}")
+    taken = 3 + 3 * 3 * BLOCK**2
+    weights = np.insert(darknet_weights(), [taken] * 16, 0).astype("<f4")
+    (copied / "blobs.weights").write_bytes(struct.pack("<3iq", 0, 2, 5, 0) + weights.tobytes())
+    with pytest.raises(DetectorError, match=r"has an output of shape \(1, 4, 32, 80\) that no \[yolo\] layer gives"):
+        YoloDetector.load(copied)
+
+
+def test_a_detector_that_was_sent_elsewhere_finds_the_same(detector, rng):
+    image = panorama(rng, (100, 50, RED), (20, 60, GREEN))
+    assert pickle.loads(pickle.dumps(detector)).detect(image) == detector.detect(image)

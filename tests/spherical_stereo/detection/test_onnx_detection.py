@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from course_lib.spherical_stereo.detection import onnx_network
 from course_lib.spherical_stereo.detection.darknet import DetectorError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.onnx_network import LAYOUTS, decode_onnx
@@ -73,3 +74,10 @@ def test_results_that_are_no_numbers_are_refused(names, tmp_path):
     cells = np.array([4, 12, 20, 28], "<f4").tobytes()  # where the first four cells are
     path.write_bytes(blob_onnx().replace(cells, np.full(4, np.nan, "<f4").tobytes(), 1))
     refused(path, names, r"blobs\.onnx gives boxes or scores that are NaN")
+
+
+def test_a_file_that_ends_opencvs_reader_is_an_error_with_a_name(names, tmp_path, monkeypatch):
+    monkeypatch.setattr(onnx_network, "_PROBE", "import os; os.abort()")
+    path = tmp_path / "blobs.onnx"
+    path.write_bytes(blob_onnx())
+    refused(path, names, r"running the ONNX file .*blobs\.onnx ends the process")

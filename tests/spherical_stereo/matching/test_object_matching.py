@@ -14,6 +14,7 @@ from course_lib.spherical_stereo.matching.features import (
     match_features,
 )
 from course_lib.spherical_stereo.matching.object_matching import (
+    CLASS_NOT_IN_OTHER,
     NO_MATCHES,
     PARTNER_TAKEN,
     TIE,
@@ -171,3 +172,10 @@ def test_a_feature_with_two_partners_nearly_alike_is_matched_to_neither(second, 
     """20 of 25 bits is Lowe's ratio of 0.8."""
     found = match_views(lone_feature([-0.2], [0]), lone_feature([-0.1, 0.0], [20, second]), RIG)
     assert len(found.matches) == matched
+
+
+def test_a_class_that_the_other_image_lacks_says_so(features):
+    *_, upper_detections, lower_detections = scene()
+    without_cabinet = [d for d in lower_detections if d.label != "cabinet"]
+    matching = match_scene(features, upper_detections, without_cabinet)
+    assert matching.unmatched == [Unmatched("upper", 7, CLASS_NOT_IN_OTHER)]

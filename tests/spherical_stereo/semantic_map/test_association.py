@@ -201,3 +201,9 @@ def test_options_that_do_not_exist_are_named():
         associate_greedy([seen(), seen(x=math.nan)], ROOM)
     with pytest.raises(AssociationError, match="landmark: hue"):
         cost(seen(), seen(hue=400.0))
+
+
+def test_no_observations_give_no_pairs():
+    found = associate_greedy([], ROOM)
+    assert found.pairs == found.unassigned == found.steps == ()
+    assert found.table.total.shape == (0, 5)

@@ -94,6 +94,7 @@ def refused(path, text, says):
         ({"landmarks": {"sofa": 1}}, "a list of landmarks"),
         ({"name": 3}, "name must be a text"),
         ({"walls": [[0, 0], [1, 0]]}, "at least three finite corners"),
+        ({"walls": [[0, 0], [1, 0], "door"]}, "at least three finite corners"),
     ],
 )
 def test_a_json_file_that_is_no_map_is_named(tmp_path, change, says):
@@ -127,6 +128,7 @@ HEAD = "# semantic map, version 1\nlabel,x,y,hue,saturation\n"
         ("# semantic map, version 1\nlabel,x,y\nsofa,1,2\n", "second line must name the columns"),
         (HEAD + "sofa,,2,3,4\n", "landmark 0: lacks x"),
         (HEAD + "sofa,one,2,3,4\n", "x of this sofa must be a number; got 'one'"),
+        (HEAD + "sofa,nan,2,3,4\n", "must be finite"),
         (HEAD + "sofa,1,2,nan,4\n", "landmark 0: lacks a hue"),
     ],
 )
