@@ -85,11 +85,34 @@ def chi_square(draw, n_seeds=40, n_draws=400):
     return total
 
 
-def test_resampling_is_unbiased():
+def pick(w, points):
+    return np.minimum(np.searchsorted(np.cumsum(w), points, side="right"), len(w) - 1)
+
+
+def residual_of_filterpy(w, rng, n):
+    copies = np.floor(n * w).astype(int)
+    rest = w - copies  # n w - copies is meant
+    rest = np.clip(rest, 0, None) if (rest > 0).any() else w
+    return np.concatenate([np.repeat(np.arange(len(w)), copies), pick(rest / rest.sum(), rng.random(n - copies.sum()))])
+
+
+BIASED = {
+    "systematic, its offset always one half": lambda w, rng, n: pick(w, (np.arange(n) + 0.5) / n),
+    "systematic, steps of 1 / (n - 1) from zero": lambda w, rng, n: pick(w, np.arange(n) / max(n - 1, 1)),
+    "systematic, the neighbour of each": lambda w, rng, n: (pick(w, (np.arange(n) + rng.random()) / n) + 1) % len(w),
+    "multinomial, all weights alike": lambda w, rng, n: rng.integers(len(w), size=n),
+    "residual, the rest from w - floor(n w)": residual_of_filterpy,
+    "always the same draw": lambda w, rng, n: pick(w, np.random.default_rng(5).random(n)),
+}
+
+
+def test_resampling_is_unbiased_by_a_test_that_finds_what_is_biased():
     """Copies are n w in the mean; a right resampler fails one time in 5,000, and too evenly spread draws fail, too."""
     low, high = chi2.ppf([1e-4, 1 - 1e-4], 40)
     for scheme in SCHEMES:
         assert low < chi_square(lambda w, rng, n, scheme=scheme: resample(w, rng, scheme, n)) < high, scheme
+    for name, draw in BIASED.items():
+        assert not low < chi_square(draw) < high, name
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -126,6 +149,16 @@ def test_filterpy_draws_the_same_particles_from_the_same_random_numbers(scheme, 
     monkeypatch.setattr(monte_carlo.resampling, "random", lambda *n: numbers.random(*n))
     theirs = getattr(monte_carlo, f"{scheme}_resample")(w)
     assert np.array_equal(np.sort(theirs), resample(w, np.random.default_rng(9), scheme))
+
+
+def test_filterpys_residual_resampling_starves_light_particles_and_ours_does_not(rng, monkeypatch):
+    """The reason why it is no oracle here: it forms w - floor(N w) where N w - floor(N w) is meant."""
+    w = np.array([0.55] + [0.45 / 9] * 9)
+    monkeypatch.setattr(monte_carlo.resampling, "random", lambda *n: rng.random(*n))
+    theirs = sum(np.bincount(monte_carlo.residual_resample(w), minlength=10) for _ in range(200)) / 200
+    assert (theirs[1:] == 0).all()
+    ours = sum(np.bincount(resample(w, rng, "residual"), minlength=10) for _ in range(4000)) / 4000
+    assert np.allclose(ours, 10 * w, atol=0.1)
 
 
 @pytest.mark.parametrize("w", [[], [0.0, 0.0], [np.nan, 1.0], [-0.1, 1.1], [[0.5, 0.5]]])

@@ -70,12 +70,23 @@ def test_intrinsics_for_another_image_size_are_named():
             DepthCamera.from_matrix(matrix, width, height)
 
 
+@pytest.mark.parametrize("matrix", [np.eye(4), np.full((3, 3), np.nan), [[500, 3, 80], [0, 500, 60], [0, 0, 1]]])
+def test_a_matrix_that_is_no_k_is_named(matrix):
+    with pytest.raises(ValueError, match="intrinsics"):
+        DepthCamera.from_matrix(matrix, 160, 120)
+
+
 def test_of_several_points_on_a_pixel_the_nearest_counts():
     points = np.array([[0.0, 0, 4], [0, 0, 2], [0, 0, 3]]) * [[1, 1, 1]]
     camera = DepthCamera(3, 3, 10, 10, 1, 1)
     image = depth_image_from_points(points, camera)
     assert image[1, 1] == 2
     assert np.isnan(image).sum() == 8
+
+
+def test_points_outside_the_planes_or_the_image_are_not_seen():
+    points = np.array([[0, 0, 0.05], [0, 0, 99.0], [50.0, 0, 1], [0, 0, -2]])
+    assert np.isnan(depth_image_from_points(points, SMALL)).all()
 
 
 def test_subsampling_picks_the_pixel_nearest_to_the_coarse_centre():
@@ -93,9 +104,3 @@ def test_a_depth_image_of_the_wrong_size_is_named():
         SMALL.points(np.ones((64, 48)))
     with pytest.raises(ValueError, match="shape"):
         subsample_depth(np.ones((3, 3)), SMALL, SMALL.resized(4, 3))
-
-
-@pytest.mark.parametrize("matrix", [np.eye(4), np.full((3, 3), np.nan), [[500, 3, 80], [0, 500, 60], [0, 0, 1]]])
-def test_a_matrix_that_is_no_k_is_named(matrix):
-    with pytest.raises(ValueError, match="intrinsics"):
-        DepthCamera.from_matrix(matrix, 160, 120)

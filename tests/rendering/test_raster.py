@@ -10,7 +10,7 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.chunks import MAX_EDGE, MeshChunks, cut_large_triangles
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap, SceneMapError
-from tests.rendering.shapes import OFF_CENTRE, random_states, random_triangles
+from tests.rendering.shapes import OFF_CENTRE, SMALL, random_states, random_triangles
 
 CAMERA = DepthCamera.from_fov(80, 60, 65, 52, near=0.2, far=9.0)
 
@@ -78,6 +78,15 @@ def test_a_chunk_that_a_view_can_see_is_never_left_out(rng):
         inside = (z > 0) & (z < OFF_CENTRE.far) & (np.abs(u - 30) < 30.5) & (np.abs(v - 23) < 23.5)
         assert visible[inside.any(axis=1)].all()
     assert 0 < visible.sum() < len(visible)
+
+
+def test_leaving_out_what_no_view_can_see_changes_no_pixel(rng, monkeypatch):
+    scene, states = random_triangles(3000, rng, spread=20.0), random_states(16, rng, spread=9.0)
+    with DepthRenderer(scene, SMALL, "vtk") as renderer:
+        culled = [renderer.render(state) for state in states]
+        monkeypatch.setattr(MeshChunks, "visible", lambda self, camera, poses: np.ones(len(self.centers), dtype=bool))
+        everything = [renderer.render(state) for state in states]
+    assert np.array_equal(np.concatenate(culled), np.concatenate(everything))
 
 
 @pytest.mark.parametrize("size", [20.0, 33.0, 500.0])

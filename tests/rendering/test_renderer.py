@@ -198,6 +198,21 @@ def test_the_same_states_give_the_same_bytes(backend, rng):
         assert first.render(states).tobytes() == second.render(states).tobytes()
 
 
+def test_a_stopped_render_leaves_no_tile_in_the_way_of_the_measurement(monkeypatch):
+    """Ctrl-C between drawing and reading, as in a stopped notebook cell: tile 0 and the points share their pixels."""
+
+    def stop(self, out):
+        raise KeyboardInterrupt
+
+    points = SMALL.points(np.ones(SMALL.shape))
+    with DepthRenderer(room(), SMALL, "vtk") as renderer:
+        with monkeypatch.context() as patched:
+            patched.setattr(VtkBackend, "_read_tiles", stop)
+            with pytest.raises(KeyboardInterrupt):
+                renderer.render(np.zeros(6))
+        assert np.abs(renderer.render_points(points) - 1.0).max() < HALF_MILLIMETRE
+
+
 def test_the_linearized_buffer_inverts_the_projection():
     near, far = SMALL.near, SMALL.far
     depth = np.array([0.1, 0.5, 3.0, 10.0])

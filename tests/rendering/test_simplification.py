@@ -98,6 +98,22 @@ def test_what_is_damaged_is_made_again_and_where_nothing_can_be_kept_it_works(mo
     assert len(simplification.simplified(wall)) == len(first)
 
 
+def test_who_has_to_wait_is_told_why_and_only_once(monkeypatch):
+    monkeypatch.setattr(simplification, "QUICK_TRIANGLES", 21_000)
+    with pytest.warns(simplification.LargeMapWarning, match="exact=True"):
+        simplification.simplified(bumpy_wall())
+    simplification.simplified.cache_clear()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        simplification.simplified(bumpy_wall())
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf])
+def test_a_tolerance_that_is_none_is_refused(tolerance):
+    with pytest.raises(ValueError, match="tolerance must be a positive number"):
+        simplification.simplified(bumpy_wall(), tolerance)
+
+
 def test_against_the_true_world_fewer_triangles_are_no_worse(corridor_folder):
     """Judged by the world as it was on the day of the recording, which no filter sees."""
     recording = read_sequence(corridor_folder / "wagon")
@@ -114,19 +130,3 @@ def test_against_the_true_world_fewer_triangles_are_no_worse(corridor_folder):
         assert both.mean() > 0.5
         errors.append(np.percentile(np.abs(images[both] - true[both]), [50, 99]))
     assert (errors[1] <= 1.1 * errors[0]).all()
-
-
-@pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf])
-def test_a_tolerance_that_is_none_is_refused(tolerance):
-    with pytest.raises(ValueError, match="tolerance must be a positive number"):
-        simplification.simplified(bumpy_wall(), tolerance)
-
-
-def test_who_has_to_wait_is_told_why_and_only_once(monkeypatch):
-    monkeypatch.setattr(simplification, "QUICK_TRIANGLES", 21_000)
-    with pytest.warns(simplification.LargeMapWarning, match="exact=True"):
-        simplification.simplified(bumpy_wall())
-    simplification.simplified.cache_clear()
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        simplification.simplified(bumpy_wall())

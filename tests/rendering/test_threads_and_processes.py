@@ -5,6 +5,7 @@ measure of speed: it only has to be longer than a slow, busy machine takes, for 
 in memory) and for a new process.
 """
 
+import gc
 import multiprocessing
 import os
 import select
@@ -118,6 +119,19 @@ def test_in_a_forked_child_opengl_is_refused_by_name(z_buffer, use):
     assert "spawn" in answer
     assert 'backend="raster"' in answer
     assert is_right(z_buffer.render(np.zeros((1, 6))), np.zeros((1, 6)))
+
+
+@needs_fork
+def test_a_forked_child_may_close_and_drop_what_it_inherited(z_buffer):
+    assert in_a_fork(z_buffer.close) == "None"
+    others = [DepthRenderer(room(), CAMERA, "vtk")]
+
+    def drop():
+        others.clear()
+        return gc.collect() >= 0
+
+    assert in_a_fork(drop) == "True"
+    assert is_right(others[0].render(np.zeros((1, 6))), np.zeros((1, 6)))
 
 
 @needs_fork

@@ -2,6 +2,8 @@
 
 import pickle
 import struct
+import threading
+import time
 
 import cv2
 import numpy as np
@@ -14,6 +16,7 @@ from tests.spherical_stereo.detection.blob_networks import (
     BLOCK,
     CFG,
     GREEN,
+    INPUT_SIZE,
     NAMES,
     OBJECT_HEIGHT,
     OBJECT_WIDTH,
@@ -93,6 +96,14 @@ def test_a_panorama_of_another_size_gives_the_same_boxes_in_its_own_pixels(detec
         assert np.abs(np.array(detection.box) - expected[detection.label]).max() < 2 * max(scale, 1)
 
 
+def test_another_input_size_pads_and_boxes_come_back(files, rng):
+    """320 x 192 holds the extended image with 32 rows of padding above and below."""
+    padded = YoloDetector(*files, input_size=(320, 192))
+    boxes = {d.label: d.box for d in padded.detect(panorama(rng, (100, 50, RED), (250, 100, GREEN)))}
+    assert boxes["sofa"] == pytest.approx((100, 50, 132, 74), abs=1)
+    assert boxes["television"] == pytest.approx((250, 100, 282, 124), abs=1)
+
+
 def test_opencv_s_own_threshold_of_two_tenths_does_not_decide(files, rng):
     image = panorama(rng, (100, 50, (105, 105, 185)))  # a pale red: a weak answer
     scores = [d.score for d in YoloDetector(*files, score_threshold=0.001).detect(image)]
@@ -114,6 +125,27 @@ def test_a_view_that_was_checked_is_taken_as_it_is_and_an_image_is_checked(detec
     assert find_objects(open_view(image), detector).detections == tuple(detector.detect(image))
     with pytest.raises(PanoramaError, match="twice as wide"):
         detector.detect(image[:, :255])
+
+
+def test_truncated_weights_that_opencv_would_take_are_refused(files, tmp_path):
+    cfg, weights, names = files
+    cut = tmp_path / "cut.weights"
+    cut.write_bytes(weights.read_bytes()[:-4000])
+    cv2.dnn.readNetFromDarknet(str(cfg), str(cut))  # without an error
+    with pytest.raises(DetectorError, match="too short"):
+        YoloDetector(cfg, cut, names)
+
+
+def test_a_missing_file_is_named(files, tmp_path):
+    for k in range(3):
+        with pytest.raises(DetectorError, match="nothing is missing"):
+            YoloDetector(*files[:k], tmp_path / "nothing", *files[k + 1 :])
+
+
+def test_names_of_another_network_are_refused(copied):
+    (copied / "blobs.names").write_text("a\nb\nc\n")
+    with pytest.raises(DetectorError, match=r"2 classes.* 3"):
+        YoloDetector.load(copied)
 
 
 def test_a_yolov4_with_the_80_classes_of_coco_runs_at_the_shape_of_a_panorama(tmp_path, rng):
@@ -183,6 +215,53 @@ def test_a_layer_that_nothing_takes_and_that_detects_nothing_is_named(copied):
     (copied / "blobs.weights").write_bytes(struct.pack("<3iq", 0, 2, 5, 0) + weights.tobytes())
     with pytest.raises(DetectorError, match=r"has an output of shape \(1, 4, 32, 80\) that no \[yolo\] layer gives"):
         YoloDetector.load(copied)
+
+
+def test_a_network_of_right_numbers_whose_results_are_none_is_refused(copied):
+    weights = darknet_weights()
+    weights[:3], weights[3 + 144 :] = 3e38, 3e38  # sums that no float32 holds, of both signs
+    weights[3 + 144 :: 2] = -3e38
+    (copied / "blobs.weights").write_bytes(struct.pack("<3iq", 0, 2, 5, 0) + weights.tobytes())
+    with pytest.raises(DetectorError, match=r"blobs\.cfg with .*blobs\.weights gives boxes or scores that are NaN"):
+        YoloDetector.load(copied)
+
+
+class SlowNet:
+    """Keeps its input in itself, as OpenCV's does, and takes its time."""
+
+    def setInput(self, blob):
+        self.blob = blob
+
+    def getUnconnectedOutLayersNames(self):
+        return ["output"]
+
+    def forward(self, names):
+        time.sleep(0.05)
+        return [np.full((1, 7), self.blob.max())]
+
+
+def test_threads_take_turns_and_each_gets_what_it_asked_for(files):
+    network = YoloDetector(*files)._network
+    network._net = SlowNet()
+    answers: dict[int, float] = {}
+
+    def ask(number):
+        answers[number] = network.infer(np.full((1, 3, 2, 2), float(number)))[1].max()
+
+    threads = [threading.Thread(target=ask, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert [answers[number] for number in range(4)] == [0, 1, 2, 3]
+
+
+def test_one_run_does_not_write_over_what_another_gave(detector, rng):
+    blobs = rng.random((2, 1, 3, *INPUT_SIZE[::-1]), dtype=np.float32)
+    first = detector._network.infer(blobs[0])
+    kept = [output.copy() for output in first]
+    detector._network.infer(blobs[1])
+    assert all(np.array_equal(one, other) for one, other in zip(first, kept, strict=True))
 
 
 def test_a_detector_that_was_sent_elsewhere_finds_the_same(detector, rng):
