@@ -46,7 +46,7 @@ def graded(sandbox, tmp_path):
         handed_in(path, "06", {"06.1": source, "06.3": right["06.3"]})
         written = path.read_bytes()
         hostile = grade(Task("mallory", "06", path, "06.1", "difference_at"), sandbox, 1, limits or Limits())
-        beside = grade(Task("mallory", "06", path, "06.3", "least_likelihood"), sandbox, 1)
+        beside = grade(Task("mallory", "06", path, "06.3", "min_likelihood"), sandbox, 1)
         assert (beside.status, beside.points) == ("right", 4), beside
         assert trap.read_text("ascii") == "untouched"
         assert path.read_bytes() == written
@@ -363,7 +363,7 @@ def test_an_answer_knows_nothing_of_references_seeds_or_other_students(graded):
         loaded = [name for name in names if name[-1] in ("project", "rivals", "judging", "points", "model_answers")]
         loaded += [name for name in names if name[-1] == "exercises" and "kit" not in name]
         known = [key for key in os.environ if key.startswith(("COURSE", "PYTEST", "SSH", "AWS")) or "TOKEN" in key]
-        texts = [one for one in gc.get_objects() if isinstance(one, dict) and "least_likelihood" in one]
+        texts = [one for one in gc.get_objects() if isinstance(one, dict) and "min_likelihood" in one]
         return None if loaded or known or texts else alpha * (1 - term) / term
         """
     for _ in range(2):

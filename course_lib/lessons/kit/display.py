@@ -15,7 +15,7 @@ from PIL import Image
 from course_lib.plots.figures import png_bytes, webp_bytes
 
 # Pixels: in a narrow window a figure is scrolled rather than made smaller than this, or its labels could not be read.
-LEAST_WIDTH = 640
+MIN_WIDTH = 640
 
 
 class FigureError(ValueError):
@@ -60,7 +60,7 @@ class Picture:
     def html(self) -> str:
         """The `<img>` element, its bytes inside."""
         data = base64.b64encode(self.data).decode("ascii")
-        least = min(LEAST_WIDTH, Image.open(io.BytesIO(self.data)).width)
+        least = min(MIN_WIDTH, Image.open(io.BytesIO(self.data)).width)
         return (
             f'<img alt="{html.escape(self.alt)}" src="data:image/{self.kind};base64,{data}"'
             f' style="max-width: 100%; min-width: {least}px">'

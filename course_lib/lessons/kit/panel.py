@@ -81,7 +81,7 @@ class Switch:
 Control = Slider | Choice | Switch
 
 NO_CONTROLS_HERE = "<p>Run this cell to move the controls.</p>"
-LEAST_LABEL_EM = 14.0  # so that the sliders of most panels begin at one place
+MIN_LABEL_EM = 14.0  # so that the sliders of most panels begin at one place
 EM_PER_LETTER = 0.55  # measured in JupyterLab: up to 0.52; a label that is longer than its place is cut
 
 
@@ -144,7 +144,7 @@ class Panel:
         self._summary = widgets.HTML(tooltip="")
         self._summary.add_class("course-numbers")
         letters = max((len(control.label) for control in controls if not isinstance(control, Switch)), default=0)
-        self._label_em = max(LEAST_LABEL_EM, EM_PER_LETTER * letters)
+        self._label_em = max(MIN_LABEL_EM, EM_PER_LETTER * letters)
         rows = [self._row(control) for control in controls]
         buttons = [self._button(label) for label in self.actions]
         wraps = widgets.Layout(flex_flow="row wrap")  # many buttons go on in a second line where the window is narrow

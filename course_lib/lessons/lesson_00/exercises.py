@@ -53,7 +53,7 @@ def _votes(rng: np.random.Generator) -> tuple:
     return rng.uniform(0.05, 0.95, size=(rng.integers(2, 5), rng.integers(2, 5))), rng.uniform(0.05, 0.5)
 
 
-def _least_and_greatest_votes(rng: np.random.Generator) -> tuple:
+def _min_and_max_votes(rng: np.random.Generator) -> tuple:
     """A vote of 1 (no difference) and one of 0 (a hole in the map) among others, with the paper's alpha."""
     votes = rng.uniform(0.05, 0.95, size=8)
     votes[[2, 5]] = 1.0, 0.0
@@ -276,7 +276,7 @@ EXERCISES = [
         number="00.2",
         reference=difference_of_vote,
         inputs=_votes,
-        cases=(_least_and_greatest_votes,),
+        cases=(_min_and_max_votes,),
         mistakes=(
             Mistake(
                 _upside_down,

@@ -15,7 +15,7 @@ from course_lib.plots import figures
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 
-_LEAST_HALF_WIDTH = 0.5  # metres, of the near plane as it is drawn (chosen)
+_MIN_HALF_WIDTH = 0.5  # metres, of the near plane as it is drawn (chosen)
 _NEAR_PLANES = ("1", "0.5", "0.1", "0.01", "0.001", "0.0001")
 
 
@@ -57,7 +57,7 @@ def camera_panel() -> Panel:
         reach = 1.6 / np.cos([half, 0, half])
         wedge.set_data([x, *(x + reach * np.cos(ends)), x], [y, *(y + reach * np.sin(ends)), y])
         # Drawn beyond the view where it would be too short to be seen: at 0.1 m only 8 cm of it are in view.
-        across = max(plane * np.tan(half), _LEAST_HALF_WIDTH) * np.array([1, -1])
+        across = max(plane * np.tan(half), _MIN_HALF_WIDTH) * np.array([1, -1])
         near_line.set_data(
             x + plane * np.cos(heading) - across * np.sin(heading),
             y + plane * np.sin(heading) + across * np.cos(heading),

@@ -301,7 +301,7 @@ def _counted_once(bel, moves, doors, seen, hit, false_alarm):
 # 05.5: the least noise that keeps up
 
 
-def least_sigma(step: float, n: int, frames: int, p: float) -> float:
+def min_sigma(step: float, n: int, frames: int, p: float) -> float:
     """Least sigma [m] at which, with probability p, in each of `frames` frames one of n normal steps is >= step [m].
 
     P(one of n) = 1 - Phi(step / sigma)^n; the frames are independent, so that this to the power of `frames` is p.
@@ -699,13 +699,13 @@ EXERCISES = [
     ),
     Exercise(
         number="05.5",
-        reference=least_sigma,
+        reference=min_sigma,
         inputs=_wagons,
         cases=(_the_courses_wagon, _one_frame),
         level="challenge",
         mistakes=(
             Mistake(
-                lambda step, n, frames, p: least_sigma(step, n, 1, p),
+                lambda step, n, frames, p: min_sigma(step, n, 1, p),
                 "That holds for one frame. It must go well in *every* one of them: multiply the probabilities.",
             ),
             Mistake(
@@ -737,7 +737,7 @@ EXERCISES = [
                 "That is a sigma for one particle, and negative. One minus q is Phi to the power of n.",
             ),
             Mistake(
-                lambda step, n, frames, p: least_sigma(step, n, frames, 1 - p),
+                lambda step, n, frames, p: min_sigma(step, n, frames, 1 - p),
                 "You took p for the probability of failing.",
             ),
             Mistake(

@@ -12,13 +12,13 @@ from course_lib.lessons.lesson_05.figures import draw_plan
 from course_lib.plots import figures
 
 ONLY_MOVE, KEEP_NEAREST = "only move", "move, then keep the nearest"
-_MOST_FRAMES = 60  # of the panel: the wagon rolls almost six metres (chosen)
+_MAX_FRAMES = 60  # of the panel: the wagon rolls almost six metres (chosen)
 _TICK = 0.12  # m, how long a particle's heading is drawn (chosen)
 
 
 def cloud_panel() -> Panel:
     """Move a cloud by system noise, with or without an oracle that keeps the nearest particle."""
-    true = wagon_states()[: _MOST_FRAMES + 1]
+    true = wagon_states()[: _MAX_FRAMES + 1]
     figure, axes = figures.new_figure(2, 2, size=(9.8, 4.9))
     grid = axes[0, 0].get_gridspec()
     grid.set_height_ratios([1.25, 1])
@@ -45,7 +45,7 @@ def cloud_panel() -> Panel:
     )
     distance_axes.set(ylim=(0.0008, 30))
     for a in (spread_axes, distance_axes):
-        a.set(xlim=(0, _MOST_FRAMES))
+        a.set(xlim=(0, _MAX_FRAMES))
         a.legend(loc="upper left", fontsize=8, framealpha=0.95, ncols=2)
     live = LiveFigure(figure, [*moving[:4], ticks, moving[4], *curves])
 
@@ -80,7 +80,7 @@ def cloud_panel() -> Panel:
         Slider("sigma_y", "sigma in y [m]", 0.0, 0.4, 0.04, 0.01),
         Slider("sigma_yaw", "sigma in yaw [degrees]", 0.0, 20.0, 1.5, 0.5),
         Slider("n", "number of particles N", 5, 1000, 200, 5),
-        Slider("frame", "frame t", 1, _MOST_FRAMES, 30, 1),
+        Slider("frame", "frame t", 1, _MAX_FRAMES, 30, 1),
         Choice("between", "each frame", (ONLY_MOVE, KEEP_NEAREST), ONLY_MOVE),
         Slider("seed", "seed", 0, 9, 1, 1),
     ]

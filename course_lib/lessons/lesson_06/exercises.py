@@ -163,7 +163,7 @@ def _missed_by_any(measured, images, alpha, beta):
 # 06.3: beta read backwards
 
 
-def least_likelihood(values: np.ndarray, beta: float) -> float:
+def min_likelihood(values: np.ndarray, beta: float) -> float:
     """Likelihood at which a particle's w of eq. (10) is one half, that of the best being 1."""
     return float(values.max() - beta * np.sqrt(np.log(2)) * (values.max() - values.min()))
 
@@ -391,16 +391,16 @@ EXERCISES = [
     ),
     Exercise(
         number="06.3",
-        reference=least_likelihood,
+        reference=min_likelihood,
         inputs=_unequal_likelihoods,
         cases=(_the_papers_beta, _a_large_beta),
         mistakes=(
             Mistake(
-                lambda values, beta: round(least_likelihood(values, beta), 1),
+                lambda values, beta: round(min_likelihood(values, beta), 1),
                 "You round, as the example is printed. Give the number as it comes out.",
             ),
             Mistake(
-                lambda values, beta: max(least_likelihood(values, beta), values.min()),
+                lambda values, beta: max(min_likelihood(values, beta), values.min()),
                 "You stop at the worst particle. For a large beta the l of one half lies below all of them.",
             ),
             Mistake(

@@ -243,7 +243,7 @@ def _a_new_bin_at_the_bound(rng: np.random.Generator) -> tuple:
     return np.array([5] * 19 + [9, 5] * 40), 20
 
 
-def _fewer_than_least(rng: np.random.Generator) -> tuple:
+def _fewer_than_the_minimum(rng: np.random.Generator) -> tuple:
     return np.array([3, 3, 8, 3, 1]), 20
 
 
@@ -536,7 +536,7 @@ EXERCISES = [
         cases=(
             _example_3,
             _a_new_bin_at_the_bound,
-            _fewer_than_least,
+            _fewer_than_the_minimum,
             _ever_new_bins,
         ),
         mistakes=(

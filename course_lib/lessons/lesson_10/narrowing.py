@@ -20,7 +20,7 @@ from course_lib.rendering.sensor import subsample_depth
 COARSE = CAMERA.resized(20, 15)
 ALPHA, BETA = 0.3, 0.15  # of eqs (8) and (10): wide, for the nearest of thousands is still decimetres off
 SIGMA = np.array([0.12, 0.12, 0.03, 0.01, 0.02, 0.1])  # of eq. (5)
-MOST, LEAST = 3_000, 100
+MAX_PARTICLES, MIN_PARTICLES = 3_000, 100
 BIN = 0.5  # metres, and as a chord of the direction of view
 
 # From beside the bed of 101 out of the door, and to the left.
@@ -99,7 +99,7 @@ def one_round(particles: np.ndarray, depth: np.ndarray, rng: np.random.Generator
     likelihoods = likelihood(coarse(depth), coarse_renderer().render(particles), ALPHA)
     w = weights(normalize_likelihood(likelihoods), BETA)
     bins = occupied_bins(optical_pose(particles[resample(w, rng)]), BIN, BIN)
-    n = kld_count(bins, LEAST, MOST)
+    n = kld_count(bins, MIN_PARTICLES, MAX_PARTICLES)
     return w, bins, propagate(particles[resample(w, rng, n=n)], SIGMA, rng)
 
 
@@ -107,7 +107,7 @@ def one_round(particles: np.ndarray, depth: np.ndarray, rng: np.random.Generator
 def narrow(run: int) -> list[Round]:
     """The run of that number over the walk out of 101."""
     recording, rng = leaving_101(), np.random.default_rng(10_000 + run)
-    particles, rounds = start_anywhere(MOST, recording.gravity[0], rng), []
+    particles, rounds = start_anywhere(MAX_PARTICLES, recording.gravity[0], rng), []
     for depth in recording.depths:
         w, bins, following = one_round(particles, depth, rng)
         rounds.append(Round(particles, w, bins))

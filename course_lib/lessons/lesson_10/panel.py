@@ -8,7 +8,7 @@ from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.lesson_10.figures import draw_camera, draw_hotel, trace_axes
-from course_lib.lessons.lesson_10.narrowing import FRAMES, MOST, RUNS, leaving_101, narrow, shares
+from course_lib.lessons.lesson_10.narrowing import FRAMES, MAX_PARTICLES, RUNS, leaving_101, narrow, shares
 from course_lib.lessons.lesson_10.trials import GOALS, alarms, running_mean, traces
 from course_lib.plots import figures
 
@@ -56,9 +56,7 @@ def anywhere_panel() -> Panel:
     plan.get_gridspec().set_width_ratios([2.0, 1.0])
     draw_hotel(plan, "Particles from above, and where they look")
     dots = plan.scatter([], [], c=[], s=9, cmap="cividis", vmin=0, vmax=1, linewidths=0)
-    arrows = plan.quiver(
-        np.zeros(MOST), np.zeros(MOST), np.zeros(MOST), np.zeros(MOST), color=figures.BLUE, scale=45, width=0.0016
-    )
+    arrows = plan.quiver(*np.zeros((4, MAX_PARTICLES)), color=figures.BLUE, scale=45, width=0.0016)
     before = len(plan.lines)
     draw_camera(plan, leaving_101().states[0])
     star, double = plan.lines[before:]
@@ -76,7 +74,7 @@ def anywhere_panel() -> Panel:
         xy, relative = one.particles[order, :2], one.weights[order] / one.weights.max()
         dots.set_offsets(xy)
         dots.set_array(relative)
-        ends = np.zeros((MOST, 4))
+        ends = np.zeros((MAX_PARTICLES, 4))
         if directions:
             yaw = one.particles[order, 5]
             ends[: len(xy)] = np.column_stack([xy, np.cos(yaw), np.sin(yaw)])

@@ -26,7 +26,7 @@ from course_lib.lessons.lesson_10.hotel import (
 from course_lib.lessons.lesson_10.narrowing import OUT_OF_101, leaving_101
 from course_lib.rendering.renderer import DepthRenderer
 
-LEAST, MOST = 200, 2_000  # of the search: the hotel is small
+MIN_PARTICLES, MAX_PARTICLES = 200, 2_000  # of the search: the hotel is small
 PARTICLES = 150
 SEARCHED = 24  # frames of the walk out of 101
 NEAR = 0.2  # metres
@@ -79,7 +79,7 @@ def follow(
     rooms whose door is shut on the map; until: the first so many frames alone."""
     with DepthRenderer(hotel_map(*closed), CAMERA) as renderer, warnings.catch_warnings():
         warnings.simplefilter("ignore", NoMeasurementWarning)  # covered on purpose
-        localizer = RecoveringLocalizer(renderer, PARTICLES, seed=seed, least=LEAST, most=MOST)
+        localizer = RecoveringLocalizer(renderer, PARTICLES, seed=seed, least=MIN_PARTICLES, most=MAX_PARTICLES)
         localizer.initialize(recording.states[0])
         for number, (depth, down) in enumerate(zip(recording.depths[:until], recording.gravity[:until], strict=True)):
             dark = number in covered
@@ -116,7 +116,7 @@ def search_run(seed: int = 10_002) -> list[PoseCandidates]:
     """`GlobalSearch` over the walk out of 101: what it says in every frame."""
     recording = leaving_101()
     with DepthRenderer(hotel_map(), CAMERA) as renderer:
-        search = GlobalSearch(renderer, seed=seed, least=LEAST, most=MOST)
+        search = GlobalSearch(renderer, seed=seed, least=MIN_PARTICLES, most=MAX_PARTICLES)
         frames = progress(range(SEARCHED), "searching")
         return [search.step(recording.depths[k], recording.gravity[k]) for k in frames]
 

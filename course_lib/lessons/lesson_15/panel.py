@@ -20,9 +20,9 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 WITH_ABSOLUTE, AS_PRINTED = "with absolute value", "as printed"
 _TERMS = {WITH_ABSOLUTE: "absolute", AS_PRINTED: "as_printed"}
-_MOST = 6.0  # penalty that the colours end at
+_MAX_PENALTY = 6.0  # penalty that the colours end at
 _SHOWN = (-1.2, 2.6)  # penalties that the right plot shows; what is beyond is drawn at its edge
-_MOST_HIDDEN = 8
+_MAX_HIDDEN = 8
 
 
 class Matching(NamedTuple):
@@ -65,7 +65,7 @@ def penalty_panel(semantic_map: SemanticMap, scenes: dict[str, MatchingScene]) -
     figure, (heat, plan, rounds) = figures.new_figure(1, 3, size=(11.0, 4.3))
     heat.get_gridspec().set_width_ratios([1.25, 1.15, 0.8])
     image = heat.imshow(
-        np.zeros((n, n)), cmap="cividis", norm=PowerNorm(0.5, 0.0, _MOST), interpolation="nearest", aspect="auto"
+        np.zeros((n, n)), cmap="cividis", norm=PowerNorm(0.5, 0.0, _MAX_PENALTY), interpolation="nearest", aspect="auto"
     )
     heat.patch.set(facecolor="white", edgecolor="0.7", hatch="////", linewidth=0)
     heat.grid(False)
@@ -104,7 +104,7 @@ def penalty_panel(semantic_map: SemanticMap, scenes: dict[str, MatchingScene]) -
         found = match(scene, semantic_map, PenaltyWeights(p_obj, p_h, p_s, p_d), _TERMS[term], int(hidden))
         table = np.full((n, n), np.nan)
         table[list(found.shows)] = found.association.table.total
-        image.set_data(np.ma.masked_invalid(np.clip(table, 0, _MOST)))
+        image.set_data(np.ma.masked_invalid(np.clip(table, 0, _MAX_PENALTY)))
         pairs = found.association.pairs
         k = min(int(done_rounds), len(pairs))
         rows, columns = [found.shows[i] for i, _ in pairs[:k]], [j for _, j in pairs[:k]]
@@ -144,7 +144,7 @@ def penalty_panel(semantic_map: SemanticMap, scenes: dict[str, MatchingScene]) -
         Slider("p_s", "p_s (saturation) [-]", 0.0, 10.0, 1.0, 0.1),
         Slider("p_d", "p_d (distance) [-]", 0.0, 5.0, 1.0, 0.1),
         Slider("done_rounds", "rounds done", 0, most, most, 1),
-        Slider("hidden", "farthest objects hidden", 0, _MOST_HIDDEN, 0, 1),
+        Slider("hidden", "farthest objects hidden", 0, _MAX_HIDDEN, 0, 1),
         Choice("term", "distance term", tuple(_TERMS), WITH_ABSOLUTE),
         Choice("pair", "pair of photographs", tuple(scenes), next(iter(scenes))),
     ]

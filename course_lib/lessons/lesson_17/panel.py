@@ -18,7 +18,7 @@ from course_lib.plots.room_figures import ESTIMATE, map_axes
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-MOST_MISSED = 12  # objects that the panel can hide; 11 to 14 are measured in a pose
+MAX_MISSED = 12  # objects that the panel can hide; 11 to 14 are measured in a pose
 _ARROW = 0.45  # metres
 
 
@@ -60,7 +60,7 @@ def judge_panel() -> Panel:
     controls = [
         Choice("experiment", "experiment", tuple(map(str, EXPERIMENTS)), "1"),
         Slider("pose", "pose (of 20) [-]", 1, 20, 3, 1),
-        Slider("missed", "objects hidden [-]", 0, MOST_MISSED, 2, 1),
+        Slider("missed", "objects hidden [-]", 0, MAX_MISSED, 2, 1),
         Slider("choice", "which ones (seed) [-]", 1, 30, 5, 1),
     ]
     return Panel("17 hide some objects", controls, draw)

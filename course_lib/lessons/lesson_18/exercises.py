@@ -215,15 +215,15 @@ def _nat_costs(rng: np.random.Generator) -> tuple:
 # 18.4: how much may be answered
 
 
-def most_answered(confidence, right, most_wrong):
-    """Greatest share of all poses that one threshold answers, at most `most_wrong` of the answers wrong; 0: none."""
-    return _answered(confidence, right, most_wrong)
+def max_answered(confidence, right, max_wrong):
+    """Return the largest share of poses that one threshold answers; a share `max_wrong` of them may be wrong. 0: none."""
+    return _answered(confidence, right, max_wrong)
 
 
 def _answered(
     confidence,
     right,
-    most_wrong,
+    max_wrong,
     nothing_at_zero: bool = True,
     allowed: Callable = lambda wrong, limit: wrong <= limit,
     wrong_share: Callable = lambda right, given: np.mean(~right[given]),
@@ -236,7 +236,7 @@ def _answered(
         if threshold == 0 and nothing_at_zero:
             continue
         given = confidence >= threshold
-        if allowed(wrong_share(right, given), most_wrong):
+        if allowed(wrong_share(right, given), max_wrong):
             best = gives(given, threshold)
         elif stop:
             break
@@ -244,35 +244,35 @@ def _answered(
 
 
 def _mistaken_share(**parts) -> Callable:
-    return lambda confidence, right, most_wrong: _answered(confidence, right, most_wrong, **parts)
+    return lambda confidence, right, max_wrong: _answered(confidence, right, max_wrong, **parts)
 
 
-def _ties_split(confidence, right, most_wrong):
+def _ties_split(confidence, right, max_wrong):
     order = np.argsort(-confidence, kind="stable")
     order = order[confidence[order] > 0]
     wrong = np.cumsum(~right[order]) / np.arange(1, len(order) + 1)
-    good = np.flatnonzero(wrong <= most_wrong)
+    good = np.flatnonzero(wrong <= max_wrong)
     return float(good[-1] + 1) / len(confidence) if len(good) else 0.0
 
 
-def _above(confidence, right, most_wrong):
+def _above(confidence, right, max_wrong):
     best = 0.0
     for threshold in np.unique(confidence):
         given = confidence > threshold
-        if given.any() and np.mean(~right[given]) <= most_wrong:
+        if given.any() and np.mean(~right[given]) <= max_wrong:
             best = max(best, given.mean())
     return float(best)
 
 
-def _given_wrong(confidence, right, most_wrong):
-    return 1.0 - _answered(confidence, right, most_wrong)
+def _given_wrong(confidence, right, max_wrong):
+    return 1.0 - _answered(confidence, right, max_wrong)
 
 
-def _right_of_the_best(confidence, right, most_wrong):
+def _right_of_the_best(confidence, right, max_wrong):
     shares = [0.0]
     for threshold in np.unique(confidence[confidence > 0]):
         given = confidence >= threshold
-        if np.mean(~right[given]) <= most_wrong:
+        if np.mean(~right[given]) <= max_wrong:
             shares.append(float(np.mean(given & right)))
     return max(shares)
 
@@ -519,7 +519,7 @@ EXERCISES = [
     ),
     Exercise(
         number="18.4",
-        reference=most_answered,
+        reference=max_answered,
         inputs=_answers,
         mistakes=(
             Mistake(
@@ -567,7 +567,7 @@ EXERCISES = [
                 "At least the threshold: a pose whose confidence is the threshold itself is answered, too.",
             ),
             Mistake(
-                lambda confidence, right, most_wrong: float(np.mean((confidence > 0) & right)),
+                lambda confidence, right, max_wrong: float(np.mean((confidence > 0) & right)),
                 "You count the right ones. Asked is what one threshold answers, right or wrong.",
             ),
             Mistake(_given_wrong, "You give the share that is *not* answered."),

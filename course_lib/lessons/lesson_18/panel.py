@@ -27,11 +27,11 @@ ROOM, MIRROR = "the room", "its mirror image"
 ALL = 99
 """More distinct poses than there ever are."""
 SHOWN_RANKS = 6
-MOST_HIDDEN = 8
+MAX_HIDDEN = 8
 """Of the eleven objects or more that each of the panel's pairs of photographs shows: two poses or more are left."""
 PAIRS = ("08_a", "07_b", "06_a", "10_a")
-_LEAST_NATS, _MOST_NATS = -45.0, 130.0  # of the bars; what is beyond is drawn at the edge
-_MOST_SIGMAS = 5.0
+_MIN_NATS, _MAX_NATS = -45.0, 130.0  # of the bars; what is beyond is drawn at the edge
+_MAX_SIGMAS = 5.0
 _AROUND = np.linspace(0, 2 * np.pi, 33)
 
 
@@ -90,7 +90,7 @@ def hypotheses_panel() -> Panel:
     (wrong_dots,) = residuals.plot([], [], "X", color=figures.VERMILION, markersize=8, label="wrong")
     residuals.axhline(SIGMAS, color="0.5", linewidth=0.8, linestyle=":")
     residuals.set(title="How far each match is off", xlabel="match [-]", ylabel="distance [sigmas]")
-    residuals.set(xlim=(0.3, 14.7), ylim=(0, _MOST_SIGMAS))
+    residuals.set(xlim=(0.3, 14.7), ylim=(0, _MAX_SIGMAS))
     residuals.legend(loc="upper right", fontsize=7, ncols=2)
     on_map = [ellipses, right_lines, wrong_lines, *landmarks.values(), places, missed, truth, heading, robot]
     live = LiveFigure(figure, [*on_map, term_bars, right_dots, wrong_dots])
@@ -120,7 +120,7 @@ def hypotheses_panel() -> Panel:
         heading.set_segments([[(x, y), (x + 0.5 * np.cos(theta), y + 0.5 * np.sin(theta))]])
         values = score_terms(found.arrays, chosen)
         _set_bars(term_bars, [*values.values(), chosen.score])
-        off = np.clip(residual_sigmas(found.arrays, chosen), 0, 0.97 * _MOST_SIGMAS)
+        off = np.clip(residual_sigmas(found.arrays, chosen), 0, 0.97 * _MAX_SIGMAS)
         order = np.argsort(off)
         numbers = np.arange(1, len(off) + 1)
         right_dots.set_data(numbers[right[order]], off[order][right[order]])
@@ -137,7 +137,7 @@ def hypotheses_panel() -> Panel:
 
     controls = [
         Slider("rank", "pose, by rank", 1, SHOWN_RANKS, 1, 1),
-        Slider("hidden", "farthest objects hidden", 0, MOST_HIDDEN, 0, 1),
+        Slider("hidden", "farthest objects hidden", 0, MAX_HIDDEN, 0, 1),
         Choice("photographs", "pair of photographs", PAIRS, PAIRS[0]),
         Choice("map_name", "map", (ROOM, MIRROR), ROOM),
     ]
@@ -146,7 +146,7 @@ def hypotheses_panel() -> Panel:
 
 def _bars(axes: Axes, names: list[str]) -> LineCollection:
     """Horizontal bars, the first name on top: thick lines, which a live figure moves cheaply."""
-    axes.set(ylim=(len(names) - 0.4, -0.6), xlim=(_LEAST_NATS, _MOST_NATS))
+    axes.set(ylim=(len(names) - 0.4, -0.6), xlim=(_MIN_NATS, _MAX_NATS))
     axes.set_yticks(range(len(names)), names)
     axes.axvline(0, color="0.3", linewidth=0.8)
     colours = [figures.BLUE if name != "score" else figures.BLACK for name in names]
@@ -156,7 +156,7 @@ def _bars(axes: Axes, names: list[str]) -> LineCollection:
 
 
 def _set_bars(drawn: LineCollection, values: list[float]) -> None:
-    clipped = np.clip(values, _LEAST_NATS, _MOST_NATS)
+    clipped = np.clip(values, _MIN_NATS, _MAX_NATS)
     drawn.set_segments([[(0, k), (value, k)] for k, value in enumerate(clipped)])
 
 

@@ -81,7 +81,7 @@ Z = 1.96
 
 def places_needed(share: float, misses: int) -> int:
     """Least number of places, with so many misses among them, whose Wilson 95 % interval lies at `share` or above."""
-    return _least(lambda n: wilson_low(n - misses, n) >= share, misses)
+    return _min_n(lambda n: wilson_low(n - misses, n) >= share, misses)
 
 
 def wilson_low(hits: int, n: int, z: float = Z) -> float:
@@ -111,7 +111,7 @@ def _agresti_low(hits: int, n: int) -> float:
     return p - Z * math.sqrt(p * (1 - p) / more)
 
 
-def _least(enough, misses: int) -> int:
+def _min_n(enough, misses: int) -> int:
     n = misses + 1
     while not enough(n):
         n += 1
@@ -305,19 +305,19 @@ EXERCISES = [
         inputs=_wanted,
         mistakes=(
             Mistake(
-                lambda share, misses: _least(lambda n: _exact_low(n - misses, n) >= share, misses),
+                lambda share, misses: _min_n(lambda n: _exact_low(n - misses, n) >= share, misses),
                 "That is the exact (Clopper-Pearson) interval, which is wider. The task asks for Wilson's.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: (n - misses) / n >= share - 1e-12, misses),
+                lambda share, misses: _min_n(lambda n: (n - misses) / n >= share - 1e-12, misses),
                 "You ask the share itself. It is the *lower end* of the interval that must reach the wanted share.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: _normal_low(n - misses, n) >= share, misses),
+                lambda share, misses: _min_n(lambda n: _normal_low(n - misses, n) >= share, misses),
                 "p - 1.96 sqrt(p (1 - p) / n) says that one place without a miss proves everything. Take Wilson's.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: _wilson_high(n - misses, n) >= share, misses),
+                lambda share, misses: _min_n(lambda n: _wilson_high(n - misses, n) >= share, misses),
                 "That is the upper end: it says what is not excluded. What is shown is the lower end.",
             ),
             Mistake(
@@ -333,31 +333,31 @@ EXERCISES = [
                 "Yours are the places that went well; asked is how many there are in all, misses included.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: wilson_low(n - misses, n, 1.0) >= share, misses),
+                lambda share, misses: _min_n(lambda n: wilson_low(n - misses, n, 1.0) >= share, misses),
                 "z = 1 is the 68 % interval. For 95 % z is 1.96.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: wilson_low(n - misses, n, 1.645) >= share, misses),
+                lambda share, misses: _min_n(lambda n: wilson_low(n - misses, n, 1.645) >= share, misses),
                 "z = 1.645 is the 90 % interval (or one side of 95 %). Take 1.96.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: wilson_low(n, n) >= share, misses),
+                lambda share, misses: _min_n(lambda n: wilson_low(n, n) >= share, misses),
                 "You count no miss: hits are n less the misses.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: _agresti_low(n - misses, n) >= share, misses),
+                lambda share, misses: _min_n(lambda n: _agresti_low(n - misses, n) >= share, misses),
                 "That is the interval of Agresti and Coull: Wilson's middle, another width. Take Wilson's.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: wilson_low(n - misses, n) * (1 + Z**2 / n) >= share, misses),
+                lambda share, misses: _min_n(lambda n: wilson_low(n - misses, n) * (1 + Z**2 / n) >= share, misses),
                 "Wilson's lower end is divided by 1 + z^2 / n: that is missing.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: wilson_low(n - misses, n, 2.576) >= share, misses),
+                lambda share, misses: _min_n(lambda n: wilson_low(n - misses, n, 2.576) >= share, misses),
                 "z = 2.576 is the 99 % interval. Take 1.96.",
             ),
             Mistake(
-                lambda share, misses: _least(lambda n: wilson_low(n - misses, n, 2.0) >= share, misses),
+                lambda share, misses: _min_n(lambda n: wilson_low(n - misses, n, 2.0) >= share, misses),
                 "z = 2 is 1.96 rounded, and a place or more beside it. Take 1.96.",
             ),
         ),

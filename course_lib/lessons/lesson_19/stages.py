@@ -16,7 +16,7 @@ from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 
 FILTER_SEED = 1
-MOST_KEPT = 64
+MAX_KEPT = 64
 STAGES = ("photographing two panoramas", "finding objects, places and the pose", "taking depth images", "the filter")
 
 
@@ -92,7 +92,7 @@ def journey(
     """
     key = (float(x), float(y), float(heading_deg), float(hidden_share), lens_cap)
     if key not in _kept:
-        if len(_kept) == MOST_KEPT:
+        if len(_kept) == MAX_KEPT:
             del _kept[next(iter(_kept))]
         _kept[key] = _travelled(*key, say or (lambda text: None))
     return _kept[key]

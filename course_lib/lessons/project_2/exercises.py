@@ -123,7 +123,7 @@ def _in_their_order(gaps: np.ndarray) -> np.ndarray:
     return partner
 
 
-def _least_total(gaps: np.ndarray) -> np.ndarray:
+def _min_total(gaps: np.ndarray) -> np.ndarray:
     partner = np.full(len(gaps), -1)
     for i, j in zip(*linear_sum_assignment(np.minimum(gaps, 10.0)), strict=True):
         partner[i] = j if np.isfinite(gaps[i, j]) else -1
@@ -564,7 +564,7 @@ EXERCISES = [
                 "You ask for e_l < e_u. From below, an object is seen higher: draw the rig from the side.",
             ),
             Mistake(
-                _mistaken_pairs(pair=_least_total),
+                _mistaken_pairs(pair=_min_total),
                 "That makes the *total* gap least. Asked is the least gap first, and no way back.",
             ),
             Mistake(_mistaken_pairs(limit=False), "You pair boxes however far apart: largest_gap is not used."),

@@ -15,7 +15,7 @@ from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 
-MOST_COST = 2.0
+MAX_COST = 2.0
 """Metres: a pose that is farther off than this costs no more."""
 NO_ANSWER = 1.0
 """Metres: what no answer costs."""
@@ -61,7 +61,7 @@ def prepare(seed: int) -> Task:
 def pose_cost(answer: object, true_pose: np.ndarray) -> float:
     """How far a pose is off, metres: the mean of what the rig and a point one metre ahead of it are off.
 
-    At most `MOST_COST`; `NO_ANSWER` for None. Raises `AnswerError` for what is neither None nor three numbers.
+    At most `MAX_COST`; `NO_ANSWER` for None. Raises `AnswerError` for what is neither None nor three numbers.
     """
     if answer is None:
         return NO_ANSWER
@@ -75,7 +75,7 @@ def pose_cost(answer: object, true_pose: np.ndarray) -> float:
         np.hypot(*(pose[:2] + rotation(pose[2]) @ point - true_pose[:2] - rotation(true_pose[2]) @ point))
         for point in np.array([[0.0, 0.0], [1.0, 0.0]])
     ]
-    return min(float(np.mean(off)), MOST_COST)
+    return min(float(np.mean(off)), MAX_COST)
 
 
 def measure(task: Task, answers: list) -> Result:

@@ -12,7 +12,7 @@ from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise, Mistake
 
 MAP_SIGMA = 0.02  # m
-LEAST_LENGTH = 0.5  # m
+MIN_LENGTH = 0.5  # m
 REFIT_EXCESS = 0.02  # of a sum that the noise alone makes 2 n - 3
 SAME_PLACE, SAME_HEADING = 0.5, np.deg2rad(10.0)
 
@@ -103,7 +103,7 @@ def _hypotheses(
     like: bool = True,
     both_ways: bool = True,
     gate: Callable = lambda a, b, tolerance: abs(a - b) <= tolerance,
-    least: float = LEAST_LENGTH,
+    min_length: float = MIN_LENGTH,
     pose: Callable = _pose_of_two,
 ):
     """The poses, and with other parts their mistakes."""
@@ -118,7 +118,7 @@ def _hypotheses(
         if i == k or j == m or (m < j and not both_ways):
             continue
         a, b = seen_lengths[i, k], true_lengths[j, m]
-        if gate(a, b, tolerance) and min(a, b) >= least:
+        if gate(a, b, tolerance) and min(a, b) >= min_length:
             found.append(pose(places[[i, k]], landmarks[[j, m]]))
     return np.array(found).reshape(-1, 3)
 
@@ -262,10 +262,10 @@ def _all_too_far(rng: np.random.Generator) -> tuple:
 
 def refit(start, places, covariances, targets) -> tuple[float, float, float]:
     """(x, y, theta) that makes sum r^T (R C R^T)^-1 r least, r = R z + t - m."""
-    return _least(start, places, covariances, targets)
+    return _weighted_fit(start, places, covariances, targets)
 
 
-def _least(start, places, covariances, targets):
+def _weighted_fit(start, places, covariances, targets):
     """In the body frame R turns away: e = z - R^T (m - t), and e^T C^-1 e is a sum of squares."""
     roots = np.linalg.cholesky(np.linalg.inv(covariances))
 
@@ -529,7 +529,7 @@ EXERCISES = [
                 "A length may be too long *or too short*: take the absolute difference.",
             ),
             Mistake(
-                _mistaken_hypotheses(least=0.0),
+                _mistaken_hypotheses(min_length=0.0),
                 "Two things closer together than 0.5 m tell no heading worth having: leave such pairs out.",
             ),
             Mistake(
@@ -628,7 +628,7 @@ EXERCISES = [
                 "You weigh with the covariances. What is unsure must count less: their inverses.",
             ),
             Mistake(
-                lambda *given: (*_least(*given)[:2], _least(*given)[2] % (2 * np.pi)),
+                lambda *given: (*_weighted_fit(*given)[:2], _weighted_fit(*given)[2] % (2 * np.pi)),
                 "Your theta runs from 0 to 2 pi; asked is -pi to pi.",
             ),
             Mistake(
@@ -636,7 +636,7 @@ EXERCISES = [
                 "That is the start, unchanged.",
             ),
             Mistake(
-                lambda *given: (*_least(*given)[:2], float(np.degrees(_least(*given)[2]))),
+                lambda *given: (*_weighted_fit(*given)[:2], float(np.degrees(_weighted_fit(*given)[2]))),
                 "theta in radians, please.",
             ),
         ),

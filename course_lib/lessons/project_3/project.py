@@ -88,14 +88,14 @@ def measure(task: Task, answers: list) -> Result:
     return Result(float(np.mean(points)), f"{given} of {len(points)} answered, {wrong} of them wrong")
 
 
-def by_the_library(associate: Callable[..., Association], least_confidence: float = 0.0) -> Callable:
+def by_the_library(associate: Callable[..., Association], min_confidence: float = 0.0) -> Callable:
     """`match` by one of the library's matchers, which answers from some confidence on."""
 
     def match(observations, semantic_map):
         if not observations:
             return None
         found = associate(observations, semantic_map)
-        if found.confidence is not None and found.confidence < least_confidence:
+        if found.confidence is not None and found.confidence < min_confidence:
             return None
         return found.usable_pairs
 

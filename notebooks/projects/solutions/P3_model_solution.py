@@ -1,8 +1,8 @@
-"""Model solution of project P3: every two matches make a pose, every pose is judged by all that is seen; doubt counts.
+"""Model solution of project P3: every two matches propose a pose, and all observations judge every pose.
 
-`match` uses the five stages as they stand and no colour at all: where objects look alike, colours say the same of all
-of them. It withholds an answer whose confidence is below `LEAST`. What it leaves: what should be seen and is not, the
-walls, and colours where they do differ.
+`match` uses the five stages as they stand and no colour, because look-alikes share their colour. It withholds an answer
+whose confidence is below `MIN_CONFIDENCE`. You can add the objects that should be visible but are not, the walls, and
+the colours where they differ.
 """
 
 import itertools
@@ -14,7 +14,7 @@ TOLERANCE = 0.8  # m by which the lengths of two matches may disagree
 REWARD = 5.0  # nats for a match that fits exactly: a false alarm is that much rarer there than the object
 NOTHING = 3.0  # nats for every observation that "none of these poses" explains
 FEWEST = 3  # matches of an answer
-LEAST = 0.8  # confidence
+MIN_CONFIDENCE = 0.8  # confidence
 
 
 def rotation(theta):
@@ -93,7 +93,7 @@ def match(observations, semantic_map):
     if not answers:
         return None
     poses, scores = np.array([one[0] for one in answers]), np.array([one[1] for one in answers])
-    if confidence(poses, scores, NOTHING * len(places)) < LEAST:
+    if confidence(poses, scores, NOTHING * len(places)) < MIN_CONFIDENCE:
         return None
     landmark = answers[int(scores.argmax())][2]
     return [(i, int(j)) for i, j in enumerate(landmark) if j >= 0]

@@ -99,7 +99,7 @@ def by_order(cost):
     return columns_of(pairs, len(cost))
 
 
-def by_sorting(confidence, right, most_wrong):
+def by_sorting(confidence, right, max_wrong):
     """Down the sorted list, looked at only where the next confidence is another one."""
     order = sorted(range(len(confidence)), key=lambda k: -confidence[k])
     best, wrong = 0.0, 0
@@ -108,35 +108,35 @@ def by_sorting(confidence, right, most_wrong):
             break
         wrong += not right[k]
         last = n == len(order) or confidence[order[n]] != confidence[k]
-        if last and wrong <= most_wrong * n:
+        if last and wrong <= max_wrong * n:
             best = n / len(order)
     return best
 
 
-def of_answered(confidence, right, most_wrong):
+def of_answered(confidence, right, max_wrong):
     """Thresholds on a fixed grid."""
     best = 0.0
     for threshold in (0.5, 0.8):
         given = confidence >= threshold
-        if given.any() and np.mean(~right[given]) <= most_wrong:
+        if given.any() and np.mean(~right[given]) <= max_wrong:
             best = max(best, given.mean())
     return best
 
 
-def strictly_above(confidence, right, most_wrong):
+def strictly_above(confidence, right, max_wrong):
     best = 0.0
     for threshold in np.unique(confidence):
         given = confidence > threshold
-        if given.any() and np.mean(~right[given]) <= most_wrong:
+        if given.any() and np.mean(~right[given]) <= max_wrong:
             best = max(best, given.mean())
     return best
 
 
-def bitwise_not_of_integers(confidence, right, most_wrong):
+def bitwise_not_of_integers(confidence, right, max_wrong):
     best = 0.0
     for threshold in np.unique(confidence[confidence > 0]):
         given = confidence >= threshold
-        if 1 - np.mean(right[given]) <= most_wrong:
+        if 1 - np.mean(right[given]) <= max_wrong:
             best = max(best, np.mean(given))
     return np.float32(best)
 

@@ -8,7 +8,7 @@ import pytest
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import find_exercise, judge
 from course_lib.lessons.lesson_05.clouds import corner_states, nearest_expected, wagon_states, walk
-from course_lib.lessons.lesson_05.exercises import bayes_step, least_sigma
+from course_lib.lessons.lesson_05.exercises import bayes_step, min_sigma
 from course_lib.lessons.lesson_05.figures import beliefs_figure
 
 SIGMA = np.array([0.15, 0.04, 0, 0, 0, np.deg2rad(1.5)])
@@ -99,7 +99,7 @@ def test_particles_that_move_one_by_one_come_to_the_exact_prediction_of_the_baye
 
 
 def test_the_least_sigma_of_exercise_05_5_keeps_up_in_just_that_share_of_runs():
-    sigma = least_sigma(0.1, 50, 30, 0.8)
+    sigma = min_sigma(0.1, 50, 30, 0.8)
     rng = np.random.default_rng(1)
     runs = [(sigma * rng.standard_normal((30, 50))).max(axis=1).min() >= 0.1 for _ in range(4000)]
     assert np.mean(runs) == pytest.approx(0.8, abs=0.02)

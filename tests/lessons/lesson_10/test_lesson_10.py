@@ -18,8 +18,8 @@ from course_lib.lessons.lesson_10.hotel import (
     walk,
 )
 from course_lib.lessons.lesson_10.narrowing import (
-    LEAST,
-    MOST,
+    MAX_PARTICLES,
+    MIN_PARTICLES,
     OUT_OF_101,
     distance_to_either,
     free_space,
@@ -94,9 +94,11 @@ def test_free_places_are_inside_the_hotel_and_some_inside_a_bed():
 def test_a_run_that_starts_anywhere_narrows_to_one_of_the_two_rooms():
     rounds = narrow(1)[:10]
     counts = [len(one.particles) for one in rounds]
-    assert counts[0] == MOST
-    assert counts[9] < 2 * LEAST
-    assert all(n == kld_count(one.bins, LEAST, MOST) for one, n in zip(rounds[:-1], counts[1:], strict=True))
+    assert counts[0] == MAX_PARTICLES
+    assert counts[9] < 2 * MIN_PARTICLES
+    assert all(
+        n == kld_count(one.bins, MIN_PARTICLES, MAX_PARTICLES) for one, n in zip(rounds[:-1], counts[1:], strict=True)
+    )
     here, next_door = (share[9] for share in shares(narrow(1)))
     assert max(here, next_door) > 0.95
     assert min(here, next_door) < 0.05

@@ -15,7 +15,7 @@ from course_lib.lessons import lesson_18
 from course_lib.lessons.kit.display import require_labels
 from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.lesson_18.figures import ellipse_of
-from course_lib.lessons.lesson_18.panel import MIRROR, MOST_HIDDEN, PAIRS, ROOM, hypotheses_panel, ranked
+from course_lib.lessons.lesson_18.panel import MAX_HIDDEN, MIRROR, PAIRS, ROOM, hypotheses_panel, ranked
 from course_lib.lessons.lesson_18.scenes import mirrored
 from course_lib.lessons.lesson_18.terms import residual_sigmas, score_terms, share_of_nothing
 from course_lib.lessons.lesson_18.trials import answers_of_confidence
@@ -57,7 +57,7 @@ def test_most_pairs_of_matches_are_wrong_and_most_right_ones_make_the_right_pose
     assert near[~right].mean() < 0.05
 
 
-@pytest.mark.parametrize("hidden", [0, 4, MOST_HIDDEN])
+@pytest.mark.parametrize("hidden", [0, 4, MAX_HIDDEN])
 @pytest.mark.parametrize("map_name", [ROOM, MIRROR])
 def test_the_terms_add_up_to_the_score_and_the_shares_to_one(hidden, map_name):
     for photographs in PAIRS:

@@ -260,7 +260,7 @@ def test_several_poses_and_covered_sensors_are_told_in_words(panel, crowded):
 
 def test_places_are_kept_but_not_for_ever(monkeypatch):
     monkeypatch.setattr(stages, "_kept", {})
-    monkeypatch.setattr(stages, "MOST_KEPT", 2)
+    monkeypatch.setattr(stages, "MAX_KEPT", 2)
     monkeypatch.setattr(stages, "_travelled", lambda *key: key[:5])
     first = journey(1, 2, 3)
     assert journey(1.0, 2.0, 3.0) is first

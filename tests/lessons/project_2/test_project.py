@@ -6,7 +6,7 @@ import pytest
 from course_lib.lessons.kit.projects import AnswerError, one_outcome
 from course_lib.lessons.project_2 import boxes_figure, rooms_of
 from course_lib.lessons.project_2.project import (
-    MOST_COST,
+    MAX_COST,
     NO_ANSWER,
     PROJECT,
     Rig,
@@ -29,7 +29,7 @@ def test_the_true_pose_costs_nothing_by_whole_turns_too():
 def test_a_place_costs_what_it_is_off_and_a_heading_what_a_metre_ahead_is_off():
     assert pose_cost((2.3, 3.4, 1.0), TRUE) == pytest.approx(0.5)
     assert pose_cost((2.0, 3.0, 1.2), TRUE) == pytest.approx(np.sin(0.1))
-    assert pose_cost((9.0, 3.0, 1.0), TRUE) == MOST_COST
+    assert pose_cost((9.0, 3.0, 1.0), TRUE) == MAX_COST
     assert pose_cost(None, TRUE) == NO_ANSWER
 
 
@@ -42,7 +42,7 @@ def test_what_is_no_pose_is_refused(answer):
 def test_a_room_is_the_mean_of_its_views():
     task = prepare(PRACTICE)._replace(truth=np.array([TRUE, TRUE, TRUE]))
     result = measure(task, [tuple(TRUE), None, (9.0, 9.0, 0.0)])
-    assert result.value == pytest.approx((0 + NO_ANSWER + MOST_COST) / 3)
+    assert result.value == pytest.approx((0 + NO_ANSWER + MAX_COST) / 3)
     assert result.remark == "1 correct, 1 wrong, 1 unable"
 
 
