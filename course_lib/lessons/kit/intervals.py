@@ -1,20 +1,20 @@
-"""Error bars of medians over few values, as lessons print them: the bootstrap, which lesson 08 explains.
-
-Shares have Wilson's interval: `course_lib.experiments.intervals.wilson_percent`.
-"""
+"""Medians and shares as lessons print them, each with its 95 % interval. Lesson 08 explains both intervals."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from course_lib.experiments.intervals import wilson_percent
+
 DRAWS = 2000
-SEED = 1  # of the draws with replacement: the same interval every time
+SEED = 1  # fixed, so that the same values always print the same interval
 
 
 def bootstrap_median(values: np.ndarray) -> tuple[float, float]:
-    """95 % interval (low, high) of the median of independent `values` (n,): medians of sets drawn with replacement.
+    """Return the 95 % interval (low, high) of the median of independent `values` (n,), in their unit.
 
-    Raises `ValueError` for fewer than two values. Source: Efron and Tibshirani, An Introduction to the Bootstrap.
+    The bootstrap draws n values with replacement, `DRAWS` times, and takes the median of each draw. Raises `ValueError`
+    for fewer than two values. Source: Efron and Tibshirani, An Introduction to the Bootstrap.
     """
     values = np.asarray(values, dtype=np.float64).ravel()
     if len(values) < 2:
@@ -25,8 +25,19 @@ def bootstrap_median(values: np.ndarray) -> tuple[float, float]:
 
 
 def median_text(values: np.ndarray, digits: int = 3, unit: str = "m") -> str:
-    """The median of `values` with its interval, such as "0.041 m (0.032 to 0.058)"; fewer than two have none."""
+    """Return the median of `values` (n,) with its interval, such as "0.041 m (0.032 to 0.058)"."""
     if len(values) < 2:
         return f"{values[0]:.{digits}f} {unit} (one value)" if len(values) else "no number (of no values)"
     low, high = bootstrap_median(values)
     return f"{np.median(values):.{digits}f} {unit} ({low:.{digits}f} to {high:.{digits}f})"
+
+
+def share_text(hits: int, n: int, digits: int = 0) -> str:
+    """Return the share hits / n with Wilson's interval, such as "5 of 11 = 45 % (21 to 72 %)".
+
+    digits: decimals of the percentages. Raises `ValueError` unless 0 <= hits <= n and n >= 1.
+    """
+    if not 0 <= hits <= n or n < 1:
+        raise ValueError(f"a share needs 0 <= hits <= n and n at least 1; got {hits} of {n}")
+    low, high = wilson_percent(int(hits), int(n))
+    return f"{hits} of {n} = {100 * hits / n:.{digits}f} % ({low:.{digits}f} to {high:.{digits}f} %)"

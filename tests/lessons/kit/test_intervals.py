@@ -1,11 +1,11 @@
-"""The bootstrap of a median covers as often as it says, and is said in words."""
+"""The bootstrap of a median covers as often as it says; medians and shares are printed with their intervals."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.intervals import bootstrap_median, median_text
+from course_lib.lessons.kit.intervals import bootstrap_median, median_text, share_text
 
 
 def test_it_covers_the_true_median_in_about_95_of_100_samples():
@@ -37,3 +37,15 @@ def test_the_text_of_too_few_values_says_so():
 def test_one_value_has_no_interval():
     with pytest.raises(ValueError, match="at least two"):
         bootstrap_median([0.3])
+
+
+def test_a_share_says_hits_trials_and_interval():
+    assert share_text(5, 11) == "5 of 11 = 45 % (21 to 72 %)"
+    assert share_text(2902, 2908, 1) == "2902 of 2908 = 99.8 % (99.6 to 99.9 %)"
+    assert share_text(0, 3) == "0 of 3 = 0 % (0 to 56 %)"
+
+
+@pytest.mark.parametrize(("hits", "n"), [(0, 0), (-1, 4), (5, 4)])
+def test_what_is_no_share_is_refused(hits, n):
+    with pytest.raises(ValueError, match=f"got {hits} of {n}"):
+        share_text(hits, n)
