@@ -1,1 +1,1 @@
-"""What several lessons share: exercise checks, panels, live figures, progress bars, the recordings they look at."""
+"""Tools that several lessons share: exercise checks, panels, live figures, progress bars and the recordings."""

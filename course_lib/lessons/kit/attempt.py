@@ -1,8 +1,8 @@
-"""A student's function called once, so that whatever it does comes back as a value or as a sentence.
+"""Call a student's function once and return its value, or a sentence that says how the call failed.
 
-It may stop with an error, call `exit()`, never end, or print without end: the notebook lives on, and the verdict says
-which it was. The time limit works on every system, in the kernel's own thread, on whatever runs in Python; a single
-call into a compiled library is left to end by itself.
+The function may raise an error, call `exit()`, run forever or print forever. The notebook survives all of these. The
+time limit works on every operating system and stops all Python code in the kernel's own thread. It cannot interrupt a
+single call into a compiled library, so we wait until that call ends.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 SECONDS = 20.0
-"""Longest time that one call may take: answers take milliseconds, also on a slow and busy machine."""
+"""Time limit of one call. Right answers take milliseconds, even on a slow and busy machine."""
 
-CHARACTERS = 20_000
-"""Most that one call may print."""
+MAX_CHARACTERS = 20_000
+"""Upper limit on the characters that one call may print."""
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """What came of one call: `value`, or a sentence in `failure`; and what it `printed`."""
+    """The result of one call: its `value`, or a sentence in `failure`. `printed` holds the printed text."""
 
     value: object = None
     failure: str | None = None
@@ -32,24 +32,24 @@ class Attempt:
 
 
 class _OutOfTime(BaseException):
-    """Raised inside a function that takes too long; no `except Exception` of its own stops it."""
+    """Stops a function that takes too long. The function's own `except Exception` cannot catch it."""
 
 
 class _PrintsWithoutEnd(BaseException):
-    """Raised by the print that is one too many."""
+    """Stops a function that prints more than `MAX_CHARACTERS`."""
 
 
 class _Bounded(io.StringIO):
-    """Keeps what is printed, and stops whoever prints without end."""
+    """Keeps the printed text and stops a function that prints too much."""
 
     def write(self, text: str) -> int:
-        if self.tell() + len(text) > CHARACTERS:
+        if self.tell() + len(text) > MAX_CHARACTERS:
             raise _PrintsWithoutEnd
         return super().write(text)
 
 
 def attempt(function: Callable, arguments: tuple, seconds: float = SECONDS) -> Attempt:
-    """Call `function(*arguments)`; an interrupt by the user (Ctrl-C, the stop button) passes through."""
+    """Call `function(*arguments)` with a time limit [s]. Raises KeyboardInterrupt if the user interrupts the call."""
     printed = _Bounded()
     try:
         with contextlib.redirect_stdout(printed), _limited(seconds):
@@ -57,27 +57,27 @@ def attempt(function: Callable, arguments: tuple, seconds: float = SECONDS) -> A
     except _OutOfTime:
         failure = f"does not end within {seconds:g} seconds: does every loop come closer to its end?"
     except _PrintsWithoutEnd:
-        failure = f"prints more than {CHARACTERS:,} characters in one call: is there a print inside a loop?"
+        failure = f"prints more than {MAX_CHARACTERS:,} characters in one call: is there a print inside a loop?"
     except SystemExit:
         failure = "calls exit() or quit(): that would end the program. End with `return`."
     except KeyboardInterrupt:
         raise
     except RecursionError:
         failure = "calls itself without end: when does it stop?"
-    except BaseException as error:  # also what a student derives from BaseException
+    except BaseException as error:  # a student may derive an error from BaseException
         failure = f"stops with {_described(error, function)}."
     return Attempt(None, failure, printed.getvalue())
 
 
 @contextlib.contextmanager
 def _limited(seconds: float):
-    """Raise `_OutOfTime` in this thread after so many seconds, and again every second while the code goes on."""
+    """Raise `_OutOfTime` in this thread after so many seconds, then every second until the code stops."""
     thread, lock, ended = threading.get_ident(), threading.Lock(), threading.Event()
 
     def watch() -> None:
         wait = seconds
         while not ended.wait(wait):
-            with lock:  # never after the end: the exception would hit whoever runs next
+            with lock:  # after the end, the exception would hit the code that runs next
                 if not ended.is_set():
                     _raise_in(thread, _OutOfTime)
             wait = 1.0
@@ -89,7 +89,7 @@ def _limited(seconds: float):
     finally:
         with lock:
             ended.set()
-            _raise_in(thread, None)  # takes back what was raised and has not arrived
+            _raise_in(thread, None)  # cancel an exception that was raised but has not arrived
         watcher.join()
 
 
@@ -99,7 +99,7 @@ def _raise_in(thread: int, error: type[BaseException] | None) -> None:
 
 
 def _described(error: BaseException, function: Callable) -> str:
-    """Type and first line of an error, and the line of the student's function where it came up."""
+    """Return an error's type, the line of the student's function that caused it, and the first line of its message."""
     code = getattr(function, "__code__", None)
     frames = traceback.walk_tb(error.__traceback__)
     lines = [line - code.co_firstlineno + 1 for frame, line in frames if frame.f_code is code]

@@ -1,7 +1,7 @@
-"""A small world of boxes for the sensors of `course_lib.simulation`: rays meet it in NumPy alone, quickly and exactly.
+"""A small world of boxes for the sensors of `course_lib.simulation`. NumPy alone computes its ray hits, exactly.
 
-The corridor's world needs a ray caster with wheels for some processors only. The lessons run everywhere, so theirs are
-boxes along the axes: `BoxWorld` answers `cast` as `WorldCaster` does.
+The corridor's world needs a ray caster that can be installed on some processors only. The lessons must run everywhere,
+so their worlds consist of boxes along the axes. `BoxWorld.cast` returns the same as `WorldCaster.cast`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from course_lib.simulation.sensors.ray_casting import Hits
 
 
 def box_map(*boxes: tuple[tuple, tuple]) -> SceneMap:
-    """A map of boxes, each given by two opposite corners (x, y, z) in metres."""
+    """Return a map of boxes. Each box is a pair of opposite corners (x, y, z) [m]."""
     meshes = [trimesh.creation.box(bounds=np.array(corners, dtype=float)) for corners in boxes]
     mesh = trimesh.util.concatenate(meshes)
     return SceneMap(mesh.vertices, mesh.faces)
@@ -29,15 +29,15 @@ class Box(NamedTuple):
     low: tuple[float, float, float]
     """corner (x, y, z) [m]"""
     high: tuple[float, float, float]
-    """opposite corner (x, y, z) [m], each coordinate larger"""
+    """opposite corner (x, y, z) [m]; each coordinate is larger"""
     reflectivity: float
-    """0 to 1 for what scatters light evenly; retroreflective tape has more"""
+    """[-], 0 to 1 for a surface that scatters light evenly, above 1 for retroreflective tape"""
 
 
 class BoxWorld:
-    """Boxes with their reflectivities; stands in for a `WorldCaster`: a face's number is that of its box.
+    """Boxes with reflectivities. It replaces a `WorldCaster`, and the index of a face is the index of its box.
 
-    Raises `ValueError` for no boxes or a box whose `high` is not above its `low`.
+    Raises `ValueError` if there are no boxes, or if a box's `high` is not above its `low`.
     """
 
     def __init__(self, boxes: Sequence[Box]) -> None:
@@ -45,19 +45,19 @@ class BoxWorld:
         self.low = np.array([box.low for box in self.boxes], dtype=np.float64)
         self.high = np.array([box.high for box in self.boxes], dtype=np.float64)
         if not len(self.boxes) or (self.high <= self.low).any():
-            raise ValueError("a box world needs boxes, each with every coordinate of `high` above that of `low`")
+            raise ValueError("a box world needs boxes, and every coordinate of a box's `high` must be above its `low`")
         self.reflectivity = np.array([box.reflectivity for box in self.boxes], dtype=np.float64)
 
     def cast(self, origins: np.ndarray, directions: np.ndarray) -> Hits:
-        """First hits of rays from outside the boxes; origins and directions broadcast to `(..., 3)`.
+        """Return the first hit of each ray. Origins [m] and directions broadcast to `(..., 3)`.
 
-        A ray is inside a box where it is between both planes of all three axes: from t = max_k min(t_k) to
-        min_k max(t_k). It meets the face of the axis that it enters last.
+        The origins must lie outside the boxes. A ray is inside a box while it is between both planes of all three axes,
+        so from t = max_k min(t_k) to t = min_k max(t_k). It hits the face of the axis that it enters last.
         """
         directions = np.asarray(directions, dtype=np.float32)
         origins = np.asarray(origins, dtype=np.float32)
         shape = np.broadcast_shapes(origins.shape, directions.shape)[:-1]
-        # One contiguous array per axis: reductions over a last axis of three would be slow.
+        # One contiguous array per axis, because reductions over a last axis of length three are slow.
         o = [np.ascontiguousarray(np.broadcast_to(origins[..., k], shape)) for k in range(3)]
         d = [np.ascontiguousarray(np.broadcast_to(directions[..., k], shape)) for k in range(3)]
         with np.errstate(divide="ignore"):
@@ -82,5 +82,5 @@ class BoxWorld:
         return Hits(distance, np.where(face >= 0, cosine, 0).astype(np.float32), face)
 
     def mesh(self) -> SceneMap:
-        """The boxes' surfaces as triangles."""
+        """Return the surfaces of the boxes as triangles."""
         return box_map(*((box.low, box.high) for box in self.boxes))

@@ -1,4 +1,4 @@
-"""The corridor as the lessons see it: its map, the wagon's run, and the lines of plans and side views."""
+"""Load the corridor's map and the wagon's run for the lessons, and draw its walls in plans and side views."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from course_lib.rendering.scene_map import SceneMap
 
 @functools.cache
 def corridor_map() -> SceneMap:
-    """The corridor's map, loaded once."""
+    """Return the corridor's map. It is loaded once."""
     return SceneMap.load(data_path("corridor/map.ply"))
 
 
 @functools.cache
 def wagon_run() -> DepthSequence:
-    """The recording of the camera on the wagon."""
+    """Return the recording of the camera on the wagon. It is loaded once."""
     return read_sequence(data_path("corridor/wagon"))
 
 
 @functools.cache
 def corridor_cut(axis: int, position: float) -> np.ndarray:
-    """The `plane_cut` of the corridor's map."""
+    """Return the `plane_cut` of the corridor's map at `position` [m] along `axis`."""
     return plane_cut(corridor_map().vertices, corridor_map().faces, axis, position)
 
 
 def draw_walls(axes: Axes, axis: int, position: float, label: str | None = None) -> None:
-    """Draw a `corridor_cut` as thin grey lines, in the limits that the axes have."""
+    """Draw a `corridor_cut` as thin grey lines. The limits of the axes do not change."""
     lines = LineCollection(corridor_cut(axis, position), colors="0.45", linewidths=1.0, label=label)
     axes.add_collection(lines, autolim=False)

@@ -1,4 +1,4 @@
-"""How a lesson shows a figure: as one compressed picture with its alternative text, and only where it is labelled."""
+"""Show a lesson's figure as one compressed picture with alternative text. A figure without labels is refused."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from PIL import Image
 
 from course_lib.plots.figures import png_bytes, webp_bytes
 
-# Pixels: in a narrow window a figure is scrolled rather than made smaller than this, or its labels could not be read.
+# Pixels. In a narrower window the reader scrolls the figure, because in a smaller picture the labels are unreadable.
 MIN_WIDTH = 640
 
 
 class FigureError(ValueError):
-    """A figure that lacks what every figure of the course has: title, labels with units, alternative text."""
+    """A figure without a title, labels with units, or alternative text. Every figure of the course has all three."""
 
 
 def show(figure: Figure, alt: str, photograph: bool = False) -> None:
     """Display a finished figure as one compressed picture with its alternative text.
 
-    photograph: for a figure that is mostly one, which the few colours of a palette would turn into patches.
-    Raises `FigureError` where title, axis labels with units (such as "depth Z [m]") or `alt` are missing.
+    photograph: store a WebP, because a photograph in the few colours of a palette shows patches.
+    Raises `FigureError` if the title, `alt` or an axis label with its unit (such as "depth Z [m]") is missing.
     """
     require_labels(figure)
     display(Picture(webp_bytes(figure), alt, "webp") if photograph else Picture(png_bytes(figure), alt))
@@ -47,23 +47,23 @@ def require_labels(figure: Figure) -> None:
 
 
 class Picture:
-    """A PNG or WebP with alternative text, shown as `<img alt=...>`.
+    """A PNG or WebP with alternative text.
 
-    JupyterLab drops the alternative text of an `image/png` output, so the picture travels as HTML.
+    It is shown as the HTML `<img alt=...>`, because JupyterLab drops the alternative text of an `image/png` output.
     """
 
     def __init__(self, data: bytes, alt: str, kind: Literal["png", "webp"] = "png") -> None:
         if len(alt.split()) < 4:
-            raise FigureError(f"alternative text says what the picture shows, in a sentence; got {alt!r}")
+            raise FigureError(f"the alternative text must say what the picture shows, in a sentence; got {alt!r}")
         self.data, self.alt, self.kind = data, " ".join(alt.split()), kind
 
     def html(self) -> str:
-        """The `<img>` element, its bytes inside."""
+        """Return the `<img>` element. It contains the picture's bytes."""
         data = base64.b64encode(self.data).decode("ascii")
-        least = min(MIN_WIDTH, Image.open(io.BytesIO(self.data)).width)
+        min_width = min(MIN_WIDTH, Image.open(io.BytesIO(self.data)).width)
         return (
             f'<img alt="{html.escape(self.alt)}" src="data:image/{self.kind};base64,{data}"'
-            f' style="max-width: 100%; min-width: {least}px">'
+            f' style="max-width: 100%; min-width: {min_width}px">'
         )
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:

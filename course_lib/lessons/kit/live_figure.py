@@ -1,4 +1,4 @@
-"""A figure that is redrawn many times a second: what does not change is drawn once, what changes on top of it."""
+"""Redraw a figure many times a second. The fixed parts are drawn once, and the moving parts are drawn on top."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from course_lib.lessons.kit.display import require_labels
 
 
 class LiveFigure:
-    """Keeps the drawn frame of a figure and adds its moving artists to it.
+    """Keeps the drawn frame of a figure and draws its moving artists on top.
 
-    figure: finished, with all labels. moving: the artists whose data, text or position change between redraws (their
-    axes keep their limits). Set their data, then call `png()`.
+    figure: finished, with all labels. moving: the artists whose data, text or position change between redraws. Set
+    their data, then call `png()`. The limits of their axes must not change.
     """
 
     def __init__(self, figure: Figure, moving: list[Artist]) -> None:
@@ -23,13 +23,13 @@ class LiveFigure:
         for artist in moving:
             artist.set_animated(True)
         figure.canvas.draw()
-        # Constrained layout has found its places: another pass would only cost time.
+        # Constrained layout has placed everything, so another pass would only cost time.
         figure.set_layout_engine("none")
         figure.canvas.draw()
         self._frame = figure.canvas.copy_from_bbox(figure.bbox)
 
     def png(self) -> bytes:
-        """The picture now, encoded quickly (a panel's stored picture is compressed once, when it is shown)."""
+        """Return the present picture as a PNG. It is barely compressed, so that encoding is fast."""
         canvas = self.figure.canvas
         canvas.restore_region(self._frame)
         for artist in self.moving:

@@ -1,14 +1,15 @@
 """Panels: a few controls above one picture that is redrawn at once.
 
-A panel is a list of controls and a function that turns their values into a `Drawing`. Only ipywidgets' own sliders,
-number boxes, drop-downs, check boxes, buttons and HTML are used: no `Output`, which was seen to hang and to put text
-into stored notebooks. The picture is an `HTML` widget with an `<img alt=...>`.
+A panel is a list of controls and a function that turns their values into a `Drawing`. The picture is an `HTML` widget
+with an `<img alt=...>`. We do not use ipywidgets' `Output`, because it sometimes hung and wrote text into stored
+notebooks.
 
-`panel.draw(**values)` and the functions in `panel.actions` are plain functions: tests call them directly, so an error
-is never lost in a widget's callback. For a reader an error appears under the picture, which keeps its last state.
+`panel.draw(**values)` and the functions in `panel.actions` are plain functions. Tests call them directly, so an error
+is never lost in a widget's callback. The reader sees an error under the picture, and the picture keeps its last state.
 
-What is stored is a still: the picture at the defaults, its numbers, and how to get the controls back. The classes
-"course-..." are what the small extension of `course.py lab` (course_lib/commands/lab_extension) knows a panel by.
+A stored notebook holds a still of the panel: the picture at the defaults, its numbers, and a sentence that says how to
+get the controls. The extension of `course.py lab` (course_lib/commands/lab_extension) finds panels by their CSS classes
+"course-...".
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from course_lib.plots.figures import compress, compress_photograph
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a panel shows for one set of values: a PNG, its alternative text, and one or two lines of numbers."""
+    """The result of one redraw: a PNG, its alternative text, and one or two lines of numbers."""
 
     png: bytes
     alt: str
@@ -37,18 +38,18 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Slider:
-    """A number between `least` and `greatest` in steps of `step`; shown with a number box beside it."""
+    """A number from `minimum` to `maximum` in steps of `step`, with a number box beside the slider."""
 
     name: str
     label: str
-    least: float
-    greatest: float
+    minimum: float
+    maximum: float
     default: float
     step: float
 
     def test_values(self) -> tuple:
-        """Least, default and greatest value."""
-        return self.least, self.default, self.greatest
+        """Return the smallest, the default and the largest value."""
+        return self.minimum, self.default, self.maximum
 
 
 @dataclass(frozen=True)
@@ -61,36 +62,36 @@ class Choice:
     default: str
 
     def test_values(self) -> tuple:
-        """Every option."""
+        """Return all options."""
         return self.options
 
 
 @dataclass(frozen=True)
 class Switch:
-    """Yes or no."""
+    """A check box."""
 
     name: str
     label: str
     default: bool = False
 
     def test_values(self) -> tuple:
-        """Both."""
+        """Return both values."""
         return False, True
 
 
 Control = Slider | Choice | Switch
 
 NO_CONTROLS_HERE = "<p>Run this cell to move the controls.</p>"
-MIN_LABEL_EM = 14.0  # so that the sliders of most panels begin at one place
-EM_PER_LETTER = 0.55  # measured in JupyterLab: up to 0.52; a label that is longer than its place is cut
+MIN_LABEL_EM = 14.0  # so that the sliders of most panels start at the same place
+EM_PER_LETTER = 0.55  # up to 0.52 measured in JupyterLab, which cuts a label that is too long
 
 
 def _pair(slider: widgets.FloatSlider, number: widgets.BoundedFloatText, control: Slider) -> None:
-    """Slider and number box move together. A browser's slider says 0.15000000000000002: the box holds 0.15.
+    """Move slider and number box together. A browser's slider says 0.15000000000000002, so the box rounds it to 0.15.
 
-    The slider is not told what it said itself: on a slow machine it has moved on by then, and would be set back.
+    We do not send the slider's own value back to it. On a slow machine it has moved on, and would jump back.
     """
-    digits = max(_decimals(control.step), _decimals(control.least))
+    digits = max(_decimals(control.step), _decimals(control.minimum))
 
     def to_number(change: dict) -> None:
         number.value = round(change["new"], digits)
@@ -104,22 +105,22 @@ def _pair(slider: widgets.FloatSlider, number: widgets.BoundedFloatText, control
 
 
 def _numbers(text: str, role: str = "") -> str:
-    """A panel's line or two of numbers; a long one goes on between two words, so that no unit is cut."""
+    """Return the HTML of a panel's numbers. Long lines break between words, so that no unit is cut."""
     return f'<pre{role} style="white-space: pre-wrap; word-break: normal">{html.escape(text)}</pre>'
 
 
 def _decimals(value: float) -> int:
-    """Decimals that a number is written with: 2 for 0.05, 0 for 15."""
+    """Return how many decimals a number needs, such as 2 for 0.05 and 0 for 15."""
     return len(f"{value:.10f}".rstrip("0").partition(".")[2])
 
 
 class Panel:
     """Controls and the picture that they redraw.
 
-    title: short, unique in its lesson. draw: takes every control's value by name, returns a `Drawing`. continuous:
-    redraw while a slider moves; False (redraw on release) where `draw` takes longer than 0.15 s in the median. actions:
-    extra buttons, label -> function that takes the present values and returns the values to set. photograph: the
-    picture is mostly one, which the few colours of a palette would turn into patches: its still is stored as WebP.
+    title: short, unique in its lesson. draw: takes every control's value by name and returns a `Drawing`. continuous:
+    redraw while a slider moves; False redraws on release, for a `draw` that needs more than 0.15 s (median). actions:
+    label -> function of the present values that returns the values to set; each is an extra button. photograph: store
+    the still as WebP, because a photograph in the few colours of a palette shows patches.
     """
 
     def __init__(
@@ -133,7 +134,7 @@ class Panel:
     ) -> None:
         names = [control.name for control in controls]
         if len(set(names)) != len(names) or not names:
-            raise ValueError(f"a panel needs controls of different names; got {names}")
+            raise ValueError(f"a panel needs controls with different names; got {names}")
         self.title, self.draw, self.continuous, self.photograph = title, draw, continuous, photograph
         self.controls: dict[str, Control] = {control.name: control for control in controls}
         self.actions = {"Reset": lambda values: self.defaults()} | (actions or {})
@@ -147,17 +148,17 @@ class Panel:
         self._label_em = max(MIN_LABEL_EM, EM_PER_LETTER * letters)
         rows = [self._row(control) for control in controls]
         buttons = [self._button(label) for label in self.actions]
-        wraps = widgets.Layout(flex_flow="row wrap")  # many buttons go on in a second line where the window is narrow
+        wraps = widgets.Layout(flex_flow="row wrap")  # in a narrow window the buttons use a second line
         self.box = widgets.VBox([*rows, widgets.HBox(buttons, layout=wraps), self._picture, self._summary])
         self.box.add_class("course-panel")
         self.redraw()
 
     def defaults(self) -> dict:
-        """Default value of every control."""
+        """Return the default value of every control by name."""
         return {name: control.default for name, control in self.controls.items()}
 
     def values(self) -> dict:
-        """Present value of every control."""
+        """Return the present value of every control by name."""
         return {name: widget.value for name, widget in self._inputs.items()}
 
     def set(self, **values: object) -> None:
@@ -171,11 +172,11 @@ class Panel:
         self.redraw()
 
     def press(self, label: str) -> None:
-        """Do what the button does."""
+        """Run the action of the button with this label."""
         self.set(**self.actions[label](self.values()))
 
     def redraw(self) -> None:
-        """Show the picture for the present values; an error is shown under the old picture and raised again."""
+        """Draw the picture for the present values. An error is shown under the old picture and raised again."""
         try:
             drawing = self.draw(**self.values())
         except Exception as error:
@@ -187,28 +188,28 @@ class Panel:
         self._summary.value = _numbers(drawing.summary, role=' role="status"')
 
     def say(self, text: str) -> None:
-        """A line under the picture while an action works; the picture stays until `redraw`."""
+        """Show a line under the picture while an action runs. It stays until `redraw`."""
         self._summary.value = f'<p role="status">{html.escape(text)}</p>'
 
     def show(self) -> None:
-        """Display the panel: live where a kernel runs, its picture at the defaults where none does."""
+        """Display the panel. Without a kernel, the reader sees the still."""
         display(self)
 
     def _row(self, control: Control) -> widgets.Widget:
         label = {"description": control.label, "style": {"description_width": f"{self._label_em:g}em"}}
-        label["tooltip"] = control.label  # without one, ipywidgets says "null"
+        label["tooltip"] = control.label  # without a tooltip, ipywidgets shows "null"
         wide = widgets.Layout(width=f"{self._label_em + 20:g}em", max_width="calc(100% - 4px)")
         if isinstance(control, Choice):
             widget = row = widgets.Dropdown(options=control.options, value=control.default, layout=wide, **label)
         elif isinstance(control, Switch):
-            whole = widgets.Layout(width="auto")  # the default, 300 px, cuts long labels
+            whole = widgets.Layout(width="auto")  # the default width of 300 px cuts long labels
             widget = row = widgets.Checkbox(
                 value=control.default, indent=False, description=control.label, layout=whole
             )
         else:
-            ends = {"min": control.least, "max": control.greatest, "step": control.step, "value": control.default}
+            ends = {"min": control.minimum, "max": control.maximum, "step": control.step, "value": control.default}
             slider = widgets.FloatSlider(**ends, **label, layout=wide, readout=False, continuous_update=self.continuous)
-            # The slider's label stands beside it; its own, of no width, is for who hears the page.
+            # The slider shows the label. The number box has it too, with no width, for readers who use a screen reader.
             label["style"] = {"description_width": "0px"}
             widget = widgets.BoundedFloatText(**ends, **label, layout=widgets.Layout(width="7em"))
             _pair(slider, widget, control)

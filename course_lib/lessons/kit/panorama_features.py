@@ -1,4 +1,4 @@
-"""Pairs of panoramas of the room with their exact boxes and their features, for lessons 13 and 14."""
+"""Load pairs of panoramas of the room with exact boxes and features, for lessons 13 and 14."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ EXPERIMENT, PLACE = 2, "09_a"  # a chair stands before another, and a table lies
 
 
 class Side(NamedTuple):
-    """One panorama: its picture, what is on it, and its features."""
+    """One panorama: its picture, its objects and its features."""
 
     image: np.ndarray
     """`(H, W, 3)` uint8 BGR."""
     objects: list[Detection]
-    """With their exact boxes."""
+    """The detections, with exact boxes."""
     numbers: list[int]
-    """Line of each object in the map."""
+    """Row of each object in the map."""
     features: PanoramaFeatures
 
     def view(self, objects: Sequence[Detection] | None = None) -> View:
-        """The panorama as the library hands it on; objects: others than its own."""
+        """Return the panorama in the library's form. objects: detections that replace its own."""
         return open_view(self.image).replace(
             detections=self.objects if objects is None else objects, features=self.features
         )
 
 
 class Scene(NamedTuple):
-    """Both panoramas of one place."""
+    """The two panoramas of one place."""
 
     upper: Side
     lower: Side
@@ -45,7 +45,7 @@ class Scene(NamedTuple):
 
 @functools.lru_cache(maxsize=8)
 def scene(name: str = PLACE) -> Scene:
-    """One place of the experiment's room, features found: half a second, once."""
+    """Return one place of the room with its features. The first call takes half a second."""
     recording = room_recording(EXPERIMENT)
     pair = pair_of(recording, name)
     views = [

@@ -1,8 +1,8 @@
-"""Predictions: typed in before anything runs, kept, and shown again beside what was measured.
+"""Ask for predictions at the start of a lesson, and print them beside the measured results at its end.
 
-`predict("06", "How much more does it count?", ...)` shows a text box a question; `recall("06", "2.0 times", ...)` at
-the end of the lesson prints each question, what was typed, and what was measured. What was typed is in the student's
-record (`student_record`); where there is none, the boxes work and are forgotten.
+`predict("06", "How much more does it count?", ...)` shows a text box for each question. At the end of the lesson,
+`recall("06", "2.0 times", ...)` prints each question, the student's prediction and the measured answer. Predictions are
+kept in the student's record (`student_record`). Without a record, the boxes work, but nothing is kept.
 """
 
 from __future__ import annotations
@@ -16,13 +16,14 @@ from course_lib.lessons.kit.progress_page import bring_up_to_date
 from course_lib.lessons.kit.student_record import RecordError, read_record, record_folder, record_prediction
 
 _ASKED: dict[str, tuple[str, ...]] = {}
-"""Questions of the lessons that this kernel has shown: `recall` repeats them."""
+"""Lesson -> the questions that this kernel has shown. `recall` repeats them."""
 
 
 class Predictions:
-    """One text box a question; what is typed is kept when the box is left.
+    """One text box for each question. A prediction is kept when the student leaves its box.
 
-    lesson: "06". questions: each in a few words, in the order of the numbered list in the text above.
+    lesson: "06". questions: a few words each, in the order of the numbered list in the lesson's text. Raises
+    `ValueError` for no question or an empty one.
     """
 
     def __init__(self, lesson: str, questions: tuple[str, ...]) -> None:
@@ -32,7 +33,7 @@ class Predictions:
         kept, said = _kept(lesson)
         self.boxes = [self._box(number, question, kept) for number, question in enumerate(questions, start=1)]
         self._state = widgets.HTML(f'<p role="status">{html.escape(said)}</p>')
-        self._state.add_class("course-numbers")  # what the lab's extension says aloud
+        self._state.add_class("course-numbers")  # the lab's extension reads this class's text aloud
         self.view = widgets.VBox([*self.boxes, self._state])
 
     def _box(self, number: int, question: str, kept: dict[str, str]) -> widgets.Textarea:
@@ -50,7 +51,7 @@ class Predictions:
         return box
 
     def keep(self, number: int, text: str) -> None:
-        """Keep what was typed for one question, and say so."""
+        """Keep the prediction for one question, and say so under the boxes."""
         try:
             said = FORGOTTEN
             if record_folder() is not None:
@@ -75,16 +76,16 @@ FORGOTTEN = "Noted, but not kept: `python3 course.py lab` keeps predictions in t
 
 
 def predict(lesson: str, *questions: str) -> None:
-    """Display a text box for each question; the answers typed in earlier stand in them."""
+    """Display a text box for each question. It holds the student's earlier prediction, if there is one."""
     _ASKED[lesson] = questions
     display(Predictions(lesson, questions))
 
 
 def recall(lesson: str, *measured: str) -> None:
-    """Print each question of `predict`, what was typed (where a record is kept), and what was `measured`.
+    """Print each question of `predict`, the prediction (if a record is kept), and the `measured` answer.
 
-    Where the cell with `predict` was not run, the questions are only numbered. Raises `ValueError` where the lesson
-    asked another number of questions.
+    If the cell with `predict` did not run, only the questions' numbers are known. Raises `ValueError` if the number of
+    answers differs from the number of questions.
     """
     questions = _ASKED.get(lesson, tuple(f"Prediction {number}" for number in range(1, len(measured) + 1)))
     if len(questions) != len(measured):
@@ -104,7 +105,7 @@ def recall(lesson: str, *measured: str) -> None:
 
 
 def _kept(lesson: str) -> tuple[dict[str, str], str]:
-    """What was typed in earlier, and a sentence where it cannot be read."""
+    """Return the kept predictions by number, and a sentence if they cannot be read."""
     try:
         return read_record(lesson)["predictions"], ""
     except (RecordError, OSError) as error:

@@ -1,9 +1,8 @@
-"""A progress bar that leaves nothing behind.
+"""A progress bar that leaves no trace in a stored notebook.
 
-tqdm writes to the error stream, and a stored notebook would keep its timings, which differ from run to run. Here its
-line goes into one output that is updated in place, and the last update is the same as the first display: empty but for
-a text of one constant line. So nbval, which looks at the first display only, and a stored notebook, which keeps the
-last update only, see the same.
+tqdm writes its timings to the error stream, and they differ from run to run, so a stored notebook must not keep them.
+Here one output shows tqdm's line and is updated in place. Its first and its last state are equal: no HTML, and a
+constant line of text. nbval compares the first state, and a stored notebook keeps the last state, so both agree.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from tqdm import tqdm
 
 
 class _OutputLine:
-    """What tqdm takes for a file: its latest line becomes the content of one notebook output."""
+    """A file for tqdm. Its latest line becomes the content of one notebook output."""
 
     def __init__(self, description: str) -> None:
         self._at_rest = {"text/plain": f"progress: {description}", "text/html": ""}
@@ -29,15 +28,15 @@ class _OutputLine:
             self._handle.update(self._at_rest | {"text/html": f"<pre>{html.escape(line)}</pre>"}, raw=True)
 
     def flush(self) -> None:
-        """tqdm calls it; there is nothing to flush."""
+        """Do nothing. tqdm needs the method."""
 
     def clear(self) -> None:
-        """Back to what was displayed first."""
+        """Show the first state again."""
         self._handle.update(self._at_rest, raw=True)
 
 
 def progress(iterable: Iterable, description: str, total: int | None = None) -> Iterator:
-    """Iterate with a progress bar: for whatever takes more than two seconds. Outside a notebook it is plain tqdm."""
+    """Iterate with a progress bar. Use it for a task of more than two seconds. Outside a notebook it is plain tqdm."""
     if get_ipython() is None:
         yield from tqdm(iterable, desc=description, total=total, leave=False)
         return

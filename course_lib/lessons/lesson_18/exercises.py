@@ -216,7 +216,7 @@ def _nat_costs(rng: np.random.Generator) -> tuple:
 
 
 def max_answered(confidence, right, max_wrong):
-    """Return the largest share of poses that one threshold answers; a share `max_wrong` of them may be wrong. 0: none."""
+    """Return the largest share of poses that one threshold answers, with at most `max_wrong` of the answers wrong."""
     return _answered(confidence, right, max_wrong)
 
 

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from course_lib.lessons.kit.attempt import CHARACTERS, attempt
+from course_lib.lessons.kit.attempt import MAX_CHARACTERS, attempt
 
 
 def endless():
@@ -80,7 +80,7 @@ def test_a_flood_of_prints_is_a_verdict():
 
     result = attempt(floods, ())
     assert "prints more than" in result.failure
-    assert len(result.printed) <= CHARACTERS
+    assert len(result.printed) <= MAX_CHARACTERS
 
 
 def test_endless_recursion_is_a_verdict():

@@ -105,7 +105,7 @@ def test_a_slider_that_is_dragged_shows_each_place(panel):
     for name, control in panel.controls.items():
         if isinstance(control, Slider):
             for share in (0.3, 0.6):
-                value = control.least + round(share * (control.greatest - control.least) / control.step) * control.step
+                value = control.minimum + round(share * (control.maximum - control.minimum) / control.step) * control.step
                 panel.set(**{name: value})
                 assert panel.values()[name] == pytest.approx(value)
                 assert panel.error is None
