@@ -35,7 +35,7 @@ from course_lib.classroom.answers import decode, dump, encode, load
 from course_lib.classroom.confinement import Limits, die_with_parent, raise_walls
 from course_lib.classroom.refusals import refuse
 from course_lib.lessons.kit.attempt import attempt
-from course_lib.lessons.kit.exercises import SHOWN, is_stub, same_values
+from course_lib.lessons.kit.exercises import MAX_SHOWN, is_stub, same_values
 from course_lib.lessons.kit.hints import kind_of
 
 PREPARED = (
@@ -234,7 +234,7 @@ def answer(assignment: Assignment, channel: Channel) -> None:
         kept = copy.deepcopy(given)
         started = time.monotonic()
         call = attempt(function, given, limits.call_seconds)
-        message = {"printed": "" if index else call.printed[:SHOWN]}
+        message = {"printed": "" if index else call.printed[:MAX_SHOWN]}
         if call.failure is not None:
             channel.send(message | {"failure": call.failure[:LONGEST_SENTENCE]})
             if time.monotonic() - started >= limits.call_seconds or call.failure.startswith("stops with MemoryError"):

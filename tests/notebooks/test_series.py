@@ -7,7 +7,7 @@ import re
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.series_pictures import CHOSEN, MAX_BYTES, SIZE, write_pictures
+from course_lib.lessons.kit.series_pictures import CHOSEN, MAX_BYTES, MAX_SIZE, write_pictures
 from course_lib.paths import REPOSITORY, notebook_paths
 
 FOLDER = REPOSITORY / "notebooks"
@@ -54,5 +54,5 @@ def test_the_command_makes_the_pictures(tmp_path):
     for path in written:
         assert path.stat().st_size <= MAX_BYTES
         with Image.open(path) as picture:
-            assert picture.width <= SIZE[0]
-            assert picture.height <= SIZE[1]
+            assert picture.width <= MAX_SIZE[0]
+            assert picture.height <= MAX_SIZE[1]

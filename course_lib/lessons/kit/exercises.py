@@ -1,10 +1,9 @@
-"""Exercises that answer at once: `check("03.1", function)` says not attempted, right, or wrong with a fitting hint.
+"""Exercises: `check("03.1", function)` says at once: not attempted, right, or wrong with a hint.
 
-An `Exercise` holds what is right (a reference function), how to make inputs, and the mistakes that people really make,
-each as a wrong function with the hint that mends it. A student's function runs on the cases that matter and on several
-random inputs; its values are compared with the reference's and, where they differ, with those of every known mistake.
-Neither the inputs nor the reference are ever shown. Lesson NN keeps its exercises in
-`course_lib/lessons/lesson_NN/exercises.py`, as a list `EXERCISES`.
+An `Exercise` has a reference function, a generator of inputs, and common mistakes. Each mistake is a wrong function
+with a hint. A student's function runs on special cases and on random inputs, and its values are compared with the
+reference's. If they differ, they are compared with the values of every known mistake. The student never sees the inputs
+or the reference. The exercises of lesson NN are the list `EXERCISES` in `course_lib/lessons/lesson_NN/exercises.py`.
 """
 
 from __future__ import annotations
@@ -24,19 +23,19 @@ from course_lib.lessons.kit.hints import MISSING_RETURN, agree, agree_all, hint,
 from course_lib.lessons.kit.progress_page import bring_up_to_date
 from course_lib.lessons.kit.student_record import record_check, record_folder
 
-# Random inputs per check: enough that a case drawn for one input in five is never missed, save once in 200 checks.
+# Random inputs per check. A case that one input in five has is missed in one of 200 checks only: 0.8^24 = 0.005.
 N_INPUTS = 24
-SHOWN = 1000
-"""Characters shown of what a student's function prints; the first call's alone."""
+MAX_SHOWN = 1000
+"""Upper limit on the characters that we show of a function's printed text. Only the first call's text is shown."""
 
 Level = Literal["warm-up", "core", "challenge"]
 
 
 @dataclass(frozen=True)
 class Mistake:
-    """A mistake that people really make: `function` computes what they compute, `hint` says what to look at.
+    """A common mistake: `function` makes it, and `hint` says what to look at.
 
-    others: the same mistake made in other ways, whose values differ.
+    others: functions that make the same mistake in another way and return other values.
     """
 
     function: Callable
@@ -45,7 +44,7 @@ class Mistake:
 
     @property
     def functions(self) -> tuple[Callable, ...]:
-        """Every way in which the mistake is made."""
+        """Return all functions that make the mistake."""
         return (self.function, *self.others)
 
 
@@ -54,11 +53,11 @@ class Exercise:
     """One exercise.
 
     number: such as "03.1". reference: the right function. inputs: makes one tuple of arguments from a
-    `numpy.random.Generator`. mistakes: at least three. tolerance: absolute, plus the same share of the value.
-    level: how hard it is. cases: like `inputs`, each drawn once in every check: the seam, the mirror image, the empty,
-    the equal and the extreme case. others: other functions that the task allows, such as another estimator.
-    verify: where many answers are right, `verify(arguments, answer)` tells what is wrong with one, or None, instead of
-    a comparison with the reference's.
+    `numpy.random.Generator`. mistakes: at least three. tolerance: absolute and relative, as in `numpy.allclose`.
+    level: how hard it is. cases: like `inputs`, but each runs once in every check. They are special cases, for example
+    a seam, a mirror image, empty input, equal values. others: other functions that the task allows, for example another
+    estimator. verify: for tasks with many right answers. `verify(arguments, answer)` returns a sentence that says what
+    is wrong, or None. It replaces the comparison with the reference.
     """
 
     number: str
@@ -72,13 +71,13 @@ class Exercise:
     verify: Callable[[tuple, object], str | None] | None = None
 
     def draw(self, rng: np.random.Generator) -> list[tuple]:
-        """Arguments of every call of one check: the cases, then `N_INPUTS` random ones."""
+        """Return the arguments of every call of one check: the cases, then `N_INPUTS` random inputs."""
         return [make(rng) for make in (*self.cases, *[self.inputs] * N_INPUTS)]
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """Outcome of a check, the sentence that is printed, and what the function itself `printed` in its first call."""
+    """The result of a check: its status, the message, and the text that the function `printed` in its first call."""
 
     status: Literal["not attempted", "right", "wrong"]
     message: str
@@ -86,7 +85,7 @@ class Verdict:
 
 
 class UnknownExerciseError(KeyError):
-    """There is no exercise of that number."""
+    """No exercise has this number."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -96,7 +95,7 @@ def check(number: str, function: Callable) -> None:
     """Print whether `function` solves exercise `number`: not attempted, right, or not yet with a hint."""
     verdict = judge(find_exercise(number), function)
     if verdict.printed:
-        print(f"(your function prints) {verdict.printed[:SHOWN].rstrip()}")
+        print(f"(your function prints) {verdict.printed[:MAX_SHOWN].rstrip()}")
     print(f"{number}: {verdict.message}")
     if record_folder() is not None:
         try:
@@ -108,7 +107,7 @@ def check(number: str, function: Callable) -> None:
 
 
 def find_exercise(number: str) -> Exercise:
-    """The exercise of that number. Raises `UnknownExerciseError`, which names those that there are."""
+    """Return the exercise of this number. Raises `UnknownExerciseError`, which lists all numbers."""
     lesson = str(number).partition(".")[0]
     for exercise in lesson_exercises(lesson):
         if exercise.number == number:
@@ -118,13 +117,13 @@ def find_exercise(number: str) -> Exercise:
 
 
 def lesson_numbers() -> list[str]:
-    """Numbers ("03") of the lessons that have exercises, and names ("P1") of the projects, whose stages are such."""
+    """Return the numbers ("03") of the lessons with exercises and the names ("P1") of the projects with stages."""
     folders = [path.parent.name for path in Path(__file__).parents[1].glob("*_*/exercises.py")]
     return sorted(name.removeprefix("lesson_").replace("project_", "P") for name in folders)
 
 
 def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
-    """Exercises of lesson "03" or stages of project "P1"; none where there is no file of exercises."""
+    """Return the exercises of lesson "03" or the stages of project "P1". Without a file of exercises, return ()."""
     if lesson not in lesson_numbers():
         return ()
     folder = f"project_{lesson[1:]}" if lesson.startswith("P") else f"lesson_{lesson}"
@@ -132,7 +131,7 @@ def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
 
 
 def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float = SECONDS) -> Verdict:
-    """Verdict on `function`, from its values on inputs drawn with `seed`; one call may take so many `seconds`."""
+    """Run `function` on inputs drawn with `seed` and return the verdict. seconds: time limit of one call."""
     if not callable(function):
         return _wrong(f"Give the function itself, without calling it; this is a {kind_of(function)}.")
     if is_stub(function):
@@ -154,9 +153,10 @@ def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float 
 
 
 def right_on(exercise: Exercise, arguments: list[tuple], answers: list) -> list[bool]:
-    """For each input whether the answer is right: the reference's, or that of the one other function that fits best.
+    """Return for each input whether the answer is right, so that a partly right function gets part of the points.
 
-    An answer of None is wrong. The arguments are not changed. What is partly right can so be told from what is wrong.
+    All answers are compared with one function: the reference, or the function of `exercise.others` that agrees with
+    more of them. An answer of None is wrong. The arguments are not changed.
     """
     if exercise.verify is not None:
         return [
@@ -176,12 +176,12 @@ def right_on(exercise: Exercise, arguments: list[tuple], answers: list) -> list[
 
 
 def fault(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """What is wrong with the answers, in a sentence that shows neither inputs nor right values; None: nothing is."""
+    """Return a sentence about a fault in the answers, or None. It shows neither inputs nor right values."""
     return _verified(exercise, arguments, answers) if exercise.verify else _compared(exercise, arguments, answers)
 
 
 def _compared(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """None where the answers are those of the reference or of another function that the task allows, else a hint."""
+    """Return None if the answers agree with the reference or another allowed function, else a hint."""
     wanted = [exercise.reference(*copy.deepcopy(given)) for given in arguments]
     if agree_all(answers, wanted, exercise.tolerance):
         return None
@@ -192,7 +192,7 @@ def _compared(exercise: Exercise, arguments: list[tuple], answers: list) -> str 
 
 
 def _verified(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """A known mistake's hint, or what `verify` says of the first answer that it refuses; None where it refuses none."""
+    """Return None if `verify` accepts all answers, else a known mistake's hint or the sentence of `verify`."""
     for given, answer in zip(arguments, answers, strict=True):
         if answer is None:
             return MISSING_RETURN
@@ -202,7 +202,7 @@ def _verified(exercise: Exercise, arguments: list[tuple], answers: list) -> str 
 
 
 def is_stub(function: Callable) -> bool:
-    """Whether the body is still a docstring and `...` alone: it does nothing but return None."""
+    """Return whether the body is still only a docstring and `...`, so that its bytecode only returns None."""
     if not hasattr(function, "__code__"):
         return False
     idle = {"RESUME", "NOP", "LOAD_CONST", "RETURN_CONST", "RETURN_VALUE", "COPY_FREE_VARS"}
@@ -212,7 +212,7 @@ def is_stub(function: Callable) -> bool:
 
 
 def same_values(given: tuple, kept: tuple) -> bool:
-    """Whether arguments after a call are what they were before it."""
+    """Return whether the arguments after a call equal those before it."""
     pairs = zip(given, kept, strict=True)
     return all(np.array_equal(g, k, equal_nan=np.asarray(k).dtype.kind == "f") for g, k in pairs)
 

@@ -1,4 +1,4 @@
-"""What is wrong with an answer, in a sentence: the hint of a known mistake, another order, kind, shape, NaN or inf."""
+"""Explain a wrong answer in a sentence: a known mistake, a wrong order, type or shape, a NaN or an infinity."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:  # `exercises` asks here for hints
+if TYPE_CHECKING:  # because `exercises` imports this module
     from course_lib.lessons.kit.exercises import Exercise
 
 
 MISSING_RETURN = "Your function returns None: does every way through it end in `return`?"
 
 SINGLE_PRECISION = 1e-5
-"""Tolerance of an answer in float32, whose numbers hold seven digits."""
+"""Tolerance [-] for answers in float32, which has seven digits."""
 
 
 def hint(exercise: Exercise, arguments: list[tuple], answers: list, wanted: list) -> str:
-    """The sentence for wrong answers to a list of inputs; the inputs and the right values are never shown."""
+    """Return the hint for wrong answers to a list of inputs. It shows neither the inputs nor the right values."""
     if any(answer is None for answer in answers):
         return MISSING_RETURN
     if (sentence := known_mistake(exercise, arguments, answers)) is not None:
@@ -40,7 +40,7 @@ def hint(exercise: Exercise, arguments: list[tuple], answers: list, wanted: list
 
 
 def known_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """The hint of the known mistake that gives just these answers, or None."""
+    """Return the hint of the known mistake that gives exactly these answers, or None."""
     for mistake in exercise.mistakes:
         for function in mistake.functions:
             slips = [function(*copy.deepcopy(given)) for given in arguments]
@@ -50,7 +50,7 @@ def known_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> 
 
 
 def _only_reordered(answers: list, wanted: list, tolerance: float) -> bool:
-    """Whether every answer holds the right values, all in one and the same other order."""
+    """Return whether all answers hold the right values in the same wrong order."""
     if not isinstance(wanted[0], tuple) or not all(_is_row_of(len(wanted[0]), answer) for answer in answers):
         return False
     return any(
@@ -60,7 +60,7 @@ def _only_reordered(answers: list, wanted: list, tolerance: float) -> bool:
 
 
 def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | None:
-    """What is wrong with the kind, shape or finiteness of an answer, in a sentence; None where that is not it."""
+    """Return a sentence about a wrong type or shape, or an unexpected NaN or infinity. Return None if all are right."""
     if isinstance(right, tuple) and not _is_row_of(len(right), answer):
         size = f" of {len(answer)}" if isinstance(answer, tuple | list) or getattr(answer, "ndim", 0) else ""
         return f"Return {len(right)} values, separated by commas; yours returns a {kind_of(answer)}{size}."
@@ -90,21 +90,21 @@ def _parts(right: object) -> tuple:
 
 
 def _is_row_of(n: int, answer: object) -> bool:
-    """Whether an answer holds n values one after the other, as a tuple, a list or an array."""
+    """Return whether an answer is a tuple, a list or an array of length n."""
     if isinstance(answer, np.ndarray) and answer.ndim == 0:
         return False
     return isinstance(answer, tuple | list | np.ndarray) and len(answer) == n
 
 
 def agree_all(answers: list, wanted: list, tolerance: float) -> bool:
-    """Whether each answer agrees with what is wanted."""
+    """Return whether each answer agrees with the wanted one."""
     return all(agree(answer, right, tolerance) for answer, right in zip(answers, wanted, strict=True))
 
 
 def agree(answer: object, right: object, tolerance: float) -> bool:
-    """Whether an answer has the right shape, and the right values within the tolerance.
+    """Return whether an answer has the right shape, and the right values within the tolerance.
 
-    Where a number is wanted, an array that holds this one number serves as well.
+    If a number is wanted, an array with this single number is right as well.
     """
     if isinstance(right, tuple):
         return _is_row_of(len(right), answer) and all(
@@ -119,12 +119,12 @@ def agree(answer: object, right: object, tolerance: float) -> bool:
 
 
 def _shaped(values: np.ndarray | None, right: object) -> np.ndarray | None:
-    """`values`, without its axes of length one where a single number is wanted."""
+    """Return `values`. If a single number is wanted, drop the axes of length one."""
     return values.reshape(()) if values is not None and values.size == 1 and np.shape(right) == () else values
 
 
 def _as_numbers(value: object) -> np.ndarray | None:
-    """The value as a float array; None for what is no number (text, None, ragged lists, complex)."""
+    """Return the value as a float array, or None if it is not real numbers (text, None, ragged lists, complex)."""
     try:
         array = np.asarray(value)
     except ValueError:
@@ -133,5 +133,5 @@ def _as_numbers(value: object) -> np.ndarray | None:
 
 
 def kind_of(value: object) -> str:
-    """What to call the kind of a value, such as "float"."""
+    """Return the name of a value's type, such as "float"."""
     return type(value).__name__

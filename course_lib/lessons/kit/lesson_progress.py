@@ -1,7 +1,7 @@
-"""How far a student has come in every lesson and project, counted from the records on this computer alone.
+"""Count a student's progress in every lesson and project.
 
-How many predictions and exercises a lesson has is read from the lesson itself; what was typed and what was right, from
-the student's record (`student_record`). `progress_page` shows it as a page, `show_progress` in the terminal.
+The notebooks say how many predictions and exercises there are. The student's record (`student_record`) says which of
+them are done. `progress_page` shows the counts as a page, and `show_progress` prints them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from course_lib.paths import notebook_paths, project_paths
 
 @dataclass(frozen=True)
 class Contents:
-    """What a lesson asks for: its title, the number of predictions, and the numbers of its exercises."""
+    """The contents of a lesson: its title, how many predictions it asks for, and its exercises' numbers ("03.1")."""
 
     title: str
     predictions: int
@@ -28,7 +28,7 @@ class Contents:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a student has come in one lesson or project; `said` is what is wrong with the record, or nothing."""
+    """A student's progress in one lesson or project. `said` is a sentence if the record is damaged, else ""."""
 
     contents: Contents
     typed: int = 0
@@ -38,7 +38,7 @@ class Progress:
 
     @property
     def state(self) -> str:
-        """In a word, for those who see no colours as well."""
+        """Return the state as a word, also for readers who cannot see colours."""
         if not self.typed and not self.attempted:
             return "not begun"
         done = self.typed >= self.contents.predictions and len(self.right) == len(self.contents.exercises)
@@ -46,20 +46,20 @@ class Progress:
 
     @property
     def not_yet_right(self) -> tuple[str, ...]:
-        """Exercises that were tried and are not right yet."""
+        """Return the exercises that were attempted and are not right yet."""
         return tuple(number for number in self.attempted if number not in self.right)
 
 
 @dataclass(frozen=True)
 class Table:
-    """The lessons or the projects, a row each, with their headings and their sums. The second column may be a bar."""
+    """A table of all lessons or all projects: headings, a row for each, and sums. The page adds a bar to column two."""
 
     name: str
     headings: tuple[str, ...]
     parts: tuple[Progress, ...]
 
     def cells(self, one: Progress) -> tuple[str, ...]:
-        """The row of one lesson."""
+        """Return the row of one lesson."""
         exercises = len(one.contents.exercises)
         checks = (f"{len(one.right)} of {exercises}", f"{len(one.attempted)} of {exercises}")
         typed = f"{one.typed} of {one.contents.predictions}" if one.contents.predictions else "none asked"
@@ -72,7 +72,7 @@ class Table:
         )
 
     def sums(self) -> tuple[str, ...]:
-        """The last row."""
+        """Return the last row."""
         exercises = sum(len(one.contents.exercises) for one in self.parts)
         typed = f"{sum(one.typed for one in self.parts)} of {sum(one.contents.predictions for one in self.parts)}"
         return (
@@ -85,7 +85,7 @@ class Table:
         )
 
     def in_words(self) -> str:
-        """The table as text."""
+        """Return the table as text."""
         rows = [self.headings, *(self.cells(one) for one in self.parts), self.sums()]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         return "\n".join(
@@ -94,7 +94,7 @@ class Table:
 
 
 def tables() -> tuple[Table, Table]:
-    """How far the student has come in every lesson, and in every project, whose exercises are its stages."""
+    """Return the progress in all lessons and in all projects. The exercises of a project are its stages."""
     lessons = ("lesson", "checks right", "attempted", "predictions typed", "state", "not right yet")
     projects = ("project", "stages right", "attempted", "state", "not right yet")
     return (
@@ -104,7 +104,7 @@ def tables() -> tuple[Table, Table]:
 
 
 def strangers() -> list[str]:
-    """A sentence for each file in the folder of records that is of no lesson; what was set aside is expected there."""
+    """Return a sentence for each file in the folder of the records that belongs to no lesson."""
     folder, ours = record_folder(), {path.name[:2] for path in [*notebook_paths(), *project_paths()]}
     found = sorted(folder.glob("*")) if folder is not None else []
     return [
@@ -115,7 +115,7 @@ def strangers() -> list[str]:
 
 
 def progress_in(paths: Sequence[Path]) -> tuple[Progress, ...]:
-    """How far the student has come in these notebooks."""
+    """Return the student's progress in these notebooks."""
     return tuple(_progress(path) for path in paths)
 
 
@@ -136,13 +136,13 @@ def _progress(path: Path) -> Progress:
 
 
 def contents(path: Path) -> Contents:
-    """What a lesson's notebook asks for."""
+    """Return the contents of a lesson's notebook."""
     return _contents(path, path.stat().st_mtime_ns)
 
 
 @functools.lru_cache(maxsize=100)
 def _contents(path: Path, written: int) -> Contents:
-    """The same, read once for each time that the file was written."""
+    """Read the contents. The cache forgets them when the file was written again (`written`: its time in ns)."""
     try:
         cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
         heading = "".join(cells[0]["source"]).partition("\n")[0].lstrip("# ")
@@ -150,12 +150,12 @@ def _contents(path: Path, written: int) -> Contents:
         numbers = dict.fromkeys(metadata["exercise"] for metadata in checks)
         code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
         return Contents(heading.partition(":")[0], sum(map(_questions, code)), tuple(numbers))
-    except (ValueError, KeyError, IndexError, TypeError, SyntaxError):  # a merge that stopped half-way
+    except (ValueError, KeyError, IndexError, TypeError, SyntaxError):  # for example in the middle of a git merge
         return Contents(f"{path.name[:2]} (its notebook cannot be read)", 0, ())
 
 
 def _questions(source: str) -> int:
-    """Number of questions that a cell's `predict(lesson, question, ...)` asks."""
+    """Return the number of questions in a cell's `predict(lesson, question, ...)`."""
     if "predict(" not in source:
         return 0
     calls = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call) and node.args]

@@ -1,4 +1,4 @@
-"""The page of a student's progress, `work/progress.html`: `check` and `predict` bring it up to date as one works."""
+"""Write the page of a student's progress, `work/progress.html`. `check` and `predict` update it."""
 
 from __future__ import annotations
 
@@ -53,9 +53,10 @@ A check that was right once stays right.</p>
 
 
 def bring_up_to_date() -> None:
-    """Write the page anew, beside the folder of the records; where there is none, or no room, do nothing.
+    """Write the page again, beside the folder of the records. Without records, do nothing.
 
-    A page that cannot be written must not disturb a lesson: the records count, and `course.py progress` shows them.
+    A write error is ignored, because it must not disturb a lesson. The records are complete without the page, and
+    `course.py progress` shows them.
     """
     folder = record_folder()
     if folder is not None:
@@ -64,12 +65,12 @@ def bring_up_to_date() -> None:
 
 
 def write_page(path: Path) -> None:
-    """Write the page of the present progress."""
+    """Write the page of the present progress to `path`."""
     atomic_write(path, as_page(tables(), strangers(), datetime.datetime.now()))
 
 
 def as_page(parts: Sequence[Table], said: Sequence[str], now: datetime.datetime) -> str:
-    """Tables, and sentences, as a page of its own: nothing is fetched, and every state is a word."""
+    """Return the tables and sentences as HTML. The page loads nothing, and it shows every state as a word."""
     faults = [f"{one.contents.title}: {one.said}" for part in parts for one in part.parts if one.said]
     paragraphs = "".join(f"<p>{html.escape(sentence)}</p>\n" for sentence in [*faults, *said])
     return _HTML.format(now=f"{now:%Y-%m-%d %H:%M}", said=paragraphs, tables="\n".join(map(_table, parts)))

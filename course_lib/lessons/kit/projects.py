@@ -1,19 +1,19 @@
-"""Projects: two to four hours of work whose end is scored by a number that can always be better.
+"""Projects: two to four hours of work, scored with a number that can always be improved.
 
-`score("P1", function)` runs the student's function on the hidden seeds of the project, a line a seed, and tells the
-median beside the paper's own method and ours on the same seeds. `score("P1", function, seeds=[...])` runs it on seeds
-of the student's own, for development. Stages on the way there are exercises ("P1.1"), in `exercises.py` of the folder
-`course_lib/lessons/project_1/`; the project itself is `PROJECT` in its `project.py`:
+`score("P1", function)` runs the student's function on the project's hidden seeds and prints a line for each seed. Then
+it prints the median beside the medians of the paper's method and ours, on the same seeds. For development,
+`score("P1", function, seeds=[...])` runs it on seeds that the student chooses. The stages of a project are exercises
+("P1.1") in `course_lib/lessons/project_1/exercises.py`. The project itself is `PROJECT` in `project.py` beside it:
 
     PROJECT = Project(
         name="P1", title="...", unit="m", better="lower", digits=3, function="localize",
-        seeds=(...),                       # hidden: others than any that the notebook prints
+        seeds=(...),                       # hidden: the notebook prints none of them
         prepare=lambda seed: Task(arguments, truth),
-        measure=lambda task, answer: Result(value, "what else is worth a line"),   # AnswerError: a sentence
+        measure=lambda task, answer: Result(value, "a remark"),   # or it raises AnswerError
         rivals=(Rival("paper", "the paper's own method", f), Rival("ours", "ours", g)),
     )
 
-What the rivals reach is stored in data/projects/P1.json by `python -m course_lib.lessons.kit.score P1 --store`.
+`python -m course_lib.lessons.kit.score P1 --store` stores the rivals' results in data/projects/P1.json.
 """
 
 from __future__ import annotations
@@ -31,32 +31,32 @@ import numpy as np
 from course_lib.experiments.intervals import median_interval
 from course_lib.experiments.results import write_results
 from course_lib.lessons.kit.attempt import Attempt, attempt
-from course_lib.lessons.kit.exercises import SHOWN, is_stub
+from course_lib.lessons.kit.exercises import MAX_SHOWN, is_stub
 from course_lib.lessons.kit.hints import kind_of
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.paths import REPOSITORY, data_path
 
 
 class Task(NamedTuple):
-    """What one seed asks. arguments: given to the student's function. truth: whatever `measure` compares with."""
+    """The task of one seed. arguments: for the student's function. truth: `measure` compares the answer with it."""
 
     arguments: tuple
     truth: object
 
 
 class Result(NamedTuple):
-    """What an answer is worth: the number that is ranked, and what else is worth saying of it."""
+    """The result of one answer: the value that counts, and a remark for the reader."""
 
     value: float
     remark: str = ""
 
 
 class AnswerError(ValueError):
-    """An answer that cannot be measured; its text ends the sentence "Your function ...": "returns 3 states, not 40"."""
+    """An answer that cannot be measured. Its text completes "Your function ...", such as "returns 3 states, not 40"."""
 
 
 class UnknownProjectError(KeyError):
-    """There is no project of that name."""
+    """No project has this name."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -64,7 +64,7 @@ class UnknownProjectError(KeyError):
 
 @dataclass(frozen=True)
 class Rival:
-    """A method whose result on the hidden seeds stands beside the student's: a submission like any other."""
+    """A method that we compare with the student's. It runs on the same seeds and by the same rules."""
 
     key: Literal["paper", "ours", "none", "other"]
     name: str
@@ -75,11 +75,11 @@ class Rival:
 class Project:
     """One project.
 
-    name: "P1". title: what is measured, in words. unit: of the number, "" for none. better: which way is up. digits:
-    after the point. function: what the student's function is called in the notebook and in a file that is handed in.
-    seeds: the hidden ones, at least six (fewer have no interval). prepare: a seed's `Task`. measure: what an answer to
-    it is worth. rivals: what to compare with. seconds: longest time that one call of the student's function may take.
-    many: a task's arguments are those of many calls, a tuple for each, and the answer is the list of what they return.
+    name: "P1". title: the measured quantity in words. unit: of the value, "" for none. better: whether lower or higher
+    values win. digits: decimals of a printed value. function: the name of the student's function, in the notebook and
+    in a submitted file. seeds: hidden, at least six, because fewer have no interval. prepare: makes a seed's `Task`.
+    measure: makes the `Result` of an answer. rivals: the methods to compare with. seconds: time limit of one call.
+    many: True if a task holds the arguments of many calls, a tuple for each; its answer is the list of their results.
     """
 
     name: str
@@ -97,16 +97,16 @@ class Project:
 
     @property
     def worst(self) -> float:
-        """What a seed counts on which the function fails."""
+        """Return the value of a seed on which the function fails."""
         return np.inf if self.better == "lower" else -np.inf
 
     def told(self, value: float) -> str:
-        """A value with its digits and unit."""
+        """Return a value as text, with its unit."""
         return f"{value:.{self.digits}f} {self.unit}".rstrip() if np.isfinite(value) else "failed"
 
 
 class Outcome(NamedTuple):
-    """What came of one seed: the value, a remark, and whether it failed (the remark then says how)."""
+    """The outcome of one seed. If the function failed, the remark says how."""
 
     value: float
     remark: str
@@ -116,7 +116,7 @@ class Outcome(NamedTuple):
 
 
 def find_project(name: str) -> Project:
-    """The project of that name. Raises `UnknownProjectError`, which names those that there are."""
+    """Return the project of this name. Raises `UnknownProjectError`, which lists all names."""
     names = project_names()
     if name not in names:
         raise UnknownProjectError(f"there is no project {name!r}; there are {', '.join(names)}")
@@ -124,15 +124,15 @@ def find_project(name: str) -> Project:
 
 
 def project_names() -> list[str]:
-    """Names ("P1") of the projects."""
+    """Return the names ("P1") of the projects."""
     folders = Path(__file__).parents[1].glob("project_[0-9]/project.py")
     return sorted(f"P{path.parent.name.removeprefix('project_')}" for path in folders)
 
 
 def score(name: str, function: Callable, seeds: Sequence[int] | None = None, rivals: bool = True) -> None:
-    """Print what `function` reaches in project `name`: on its hidden seeds, or for development on `seeds` of your own.
+    """Print the score of `function` in project `name`, on the hidden seeds or on `seeds` that you choose.
 
-    On the hidden seeds the rivals' results are stored; on seeds of your own they run too, unless `rivals` is False.
+    The rivals' results on the hidden seeds are stored. On your seeds the rivals run too, unless `rivals` is False.
     """
     project = find_project(name)
     if not callable(function):
@@ -151,17 +151,17 @@ def score(name: str, function: Callable, seeds: Sequence[int] | None = None, riv
 
 
 def own_seeds(project: Project, seeds: Sequence[int]) -> list[int]:
-    """The seeds that somebody develops on. Raises `ValueError` for none, bad ones, or hidden ones."""
+    """Return the seeds for development. Raises `ValueError` if there is none, or one is negative or hidden."""
     numbers = [int(seed) for seed in np.atleast_1d(seeds)]
     if not numbers or min(numbers) < 0:
-        raise ValueError(f"seeds must be whole numbers, 0 or more, at least one; got {seeds!r}")
+        raise ValueError(f"seeds must be one or more whole numbers, each 0 or larger; got {seeds!r}")
     if set(numbers) & set(project.seeds):
-        raise ValueError("one of these seeds is a hidden one: choose others to develop on, such as 10001")
+        raise ValueError("one of these seeds is hidden: choose other seeds for development, such as 10001")
     return numbers
 
 
 def outcomes(project: Project, function: Callable, seeds: Sequence[int], who: str = "your function") -> list[Outcome]:
-    """Outcome of every seed, with a progress bar; none runs after one that takes too long."""
+    """Return the outcome of every seed. After a seed that takes too long, no other seed runs."""
     found: list[Outcome] = []
     for seed in progress(seeds, f"{project.name}, {who}"):
         if found and found[-1].out_of_time:
@@ -172,7 +172,7 @@ def outcomes(project: Project, function: Callable, seeds: Sequence[int], who: st
 
 
 def one_outcome(project: Project, function: Callable, seed: int) -> Outcome:
-    """What a function reaches on one seed, whatever it does."""
+    """Run a function on one seed and return the outcome, even if the function fails."""
     task = project.prepare(seed)
     started = time.monotonic()
     trial = answered(project, function, task)
@@ -189,7 +189,7 @@ def one_outcome(project: Project, function: Callable, seed: int) -> Outcome:
 
 
 def answered(project: Project, function: Callable, task: Task) -> Attempt:
-    """What a function answers to a task: one value, or where the task asks for many calls the list of theirs."""
+    """Return a function's answer to a task. If the project asks for many calls, it is the list of their answers."""
     if not project.many:
         return attempt(function, task.arguments, project.seconds)
     answers, printed = [], ""
@@ -209,12 +209,12 @@ def report(
     hidden: bool = False,
     seeds: Sequence[int] = (),
 ) -> None:
-    """Print a line a seed, the median with its interval, the rivals' beside it, and what is still to beat.
+    """Print a line for each seed, the median with its interval, the rivals' medians, and the next rival to beat.
 
-    What the function itself printed on the first seed stands before it.
+    The text that the function itself printed on the first seed comes first.
     """
     if found[0].printed:
-        print(f"(your function prints) {found[0].printed[:SHOWN].rstrip()}")
+        print(f"(your function prints) {found[0].printed[:MAX_SHOWN].rstrip()}")
     print(f"{project.name}: {project.title}; {project.better} is better")
     names = [f"hidden seed {i + 1}" for i in range(len(found))] if hidden else [f"seed {seed}" for seed in seeds]
     for name, outcome in zip(names, found, strict=True):
@@ -232,7 +232,7 @@ def report(
 
 
 def told_median(project: Project, values: Sequence[float]) -> str:
-    """The median of values over seeds, with its 95 % interval where there are enough that did not fail."""
+    """Return the median over the seeds in words, with its 95 % interval if no seed failed and there are enough."""
     failed = sum(not np.isfinite(value) for value in values)
     lost = f", {failed} of {len(values)} failed" if failed else ""
     middle = float(np.median(values))
@@ -246,18 +246,18 @@ def told_median(project: Project, values: Sequence[float]) -> str:
 
 
 def told_wins(project: Project, values: Sequence[float], theirs: Sequence[float]) -> str:
-    """On how many of the seeds the student's function did better."""
+    """Return a phrase that says on how many seeds the student's function is better."""
     wins = sum(is_better(project, mine, other) for mine, other in zip(values, theirs, strict=True))
     return f"yours is better on {wins} of {len(theirs)}"
 
 
 def is_better(project: Project, value: float, other: float) -> bool:
-    """Whether a value is strictly better than another."""
+    """Return whether `value` is strictly better than `other`."""
     return value < other if project.better == "lower" else value > other
 
 
 def to_beat(project: Project, values: Sequence[float], others: dict[str, tuple[str, list[float]]]) -> str:
-    """One sentence: what is still to beat."""
+    """Return a sentence that says what the student can beat next."""
     mine = float(np.median(values))
     if not np.isfinite(mine):
         return "To beat: get it to run on every seed first."
@@ -272,22 +272,23 @@ def to_beat(project: Project, values: Sequence[float], others: dict[str, tuple[s
     return f"To beat next: {name}, which is ahead of yours by {project.told(abs(best - mine))}."
 
 
-# What the rivals reach on the hidden seeds: made once, stored, and compared with a recomputation by a test.
+# The rivals' results on the hidden seeds are computed once and stored. A test computes them again and compares.
 
 
 def stored_rivals(project: Project) -> dict[str, tuple[str, list[float]]]:
-    """The rivals' values on the hidden seeds by key, with their names. Raises `ValueError` for stale numbers."""
+    """Return key -> (name, values on the hidden seeds) of the rivals. Raises `ValueError` if the file is outdated."""
     stored = json.loads(data_path(f"projects/{project.name}.json").read_text(encoding="utf-8"))
     keys = [rival.key for rival in project.rivals]
     if stored["seeds"] != list(project.seeds) or list(stored["rivals"]) != keys:
         raise ValueError(
-            f"data/projects/{project.name}.json is of other seeds or rivals: run the command `store` again"
+            f"data/projects/{project.name}.json holds other seeds or rivals: run "
+            f"`python -m course_lib.lessons.kit.score {project.name} --store` again"
         )
     return {key: (rival["name"], rival["values"]) for key, rival in stored["rivals"].items()}
 
 
 def store_rivals(project: Project) -> Path:
-    """Run the rivals on the hidden seeds and write what they reach to data/projects/."""
+    """Run the rivals on the hidden seeds, write their results to data/projects/, and return the path."""
     rivals = {}
     for rival in project.rivals:
         found = outcomes(project, rival.function, project.seeds, rival.name)

@@ -1,4 +1,4 @@
-"""What the matcher gets of the experiment's room, from exact boxes, for lessons 15 and 16."""
+"""Load the matcher's input for the experiment's room, made from exact boxes. Lessons 15 to 18 use it."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from course_lib.spherical_stereo.semantic_map.association import Observation
 
 
 class MatchingScene(NamedTuple):
-    """One pair of photographs as the matcher gets it, and the truth that it does not get."""
+    """The matcher's input from one pair of photographs, and the truth that the matcher does not get."""
 
     observations: tuple[Observation, ...]
     true_landmarks: tuple[int, ...]
-    """For every observation the landmark it shows."""
+    """Index of the landmark that each observation shows."""
     pose: Pose2D
 
 
 def in_body_frame(points: np.ndarray, pose: Sequence[float]) -> np.ndarray:
-    """World points `(n, 2)` as seen from [x, y, theta]: R(theta)' (p - t), metres; the way back of `Pose2D.apply`."""
+    """Return R(theta)' (p - t): world points p `(n, 2)` [m] in the body frame [x, y, theta]. Inverts `Pose2D.apply`."""
     return (np.asarray(points) - np.asarray(pose[:2])) @ rotation_2d(pose[2])
 
 
 @functools.cache
 def room_scenes(experiment: int = 1) -> dict[str, MatchingScene]:
-    """Name of a pair of photographs -> its observations, from exact boxes: no network takes part."""
+    """Return name of a pair of photographs -> its scene. The boxes are exact, so no network runs."""
     recording = room_recording(experiment)
     results = run_experiment(
         recording, SemanticLocalizer(recording.rig, room_map(), reject_implausible=False), "exact_boxes"
@@ -41,7 +41,7 @@ def room_scenes(experiment: int = 1) -> dict[str, MatchingScene]:
 
 
 def _scene(result: PairResult, rng: np.random.Generator) -> MatchingScene:
-    # Exact boxes come in the order of the map. Among equal penalties the matcher takes the first: it would be told.
+    # Exact boxes have the order of the map, which would help the matcher: of equal penalties it takes the first.
     order = rng.permutation(len(result.true_landmarks))
     seen, shows = result.localization.observations, result.true_landmarks
     pose = Pose2D(*(float(value) for value in result.pair.pose))

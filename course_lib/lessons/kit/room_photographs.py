@@ -1,4 +1,4 @@
-"""The experiment's room: its map, its two recordings, and the pair of panoramas with a sofa across the seam."""
+"""Load the experiment's room: its map, its two recordings, and a pair of panoramas with a sofa across the seam."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ SEAM_PAIR = 9  # of the room's experiment 1: a sofa lies across the seam
 
 @functools.cache
 def room_map() -> SemanticMap:
-    """The surveyed map of the room."""
+    """Return the surveyed map of the room."""
     return SemanticMap.load(data_path("room/semantic_map.json"))
 
 
 @functools.cache
 def room_recording(experiment: int) -> StereoRecording:
-    """The 20 pairs of panoramas of experiment 1 or 2."""
+    """Return the 20 pairs of panoramas of experiment 1 or 2."""
     return read_stereo_recording(data_path(f"room/experiment_{experiment}"))
 
 
 def pair_of(recording: StereoRecording, name: str) -> StereoPair:
-    """The pair of that name, such as "09_a". Raises `KeyError` where there is none."""
+    """Return the pair of this name, such as "09_a". Raises `KeyError` if there is none."""
     pairs = {pair.name: pair for pair in recording.pairs}
     return pairs[name]
 
 
 @functools.cache
 def the_pair() -> StereoPair:
-    """The pair of panoramas that lessons 11 and 12 look at."""
+    """Return the pair of panoramas that lessons 11 and 12 show."""
     return room_recording(1).pairs[SEAM_PAIR]
 
 
 @functools.cache
 def the_image() -> np.ndarray:
-    """Its upper panorama, `(640, 1280, 3)` uint8 BGR."""
+    """Return the upper panorama of `the_pair`, `(640, 1280, 3)` uint8 BGR."""
     return the_pair().images()[0]

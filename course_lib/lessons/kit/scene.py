@@ -1,7 +1,7 @@
-"""How a lesson shows a scene in three dimensions: a page to be turned by hand, and its picture where no script runs.
+"""Show a 3D scene as a page that the reader can turn, and as a picture for browsers without scripts.
 
-The page that comes with the lesson is `notebooks/scenes/NAME.html`; only `tools.refresh` writes it. Whoever changes
-the lines of a cell sees a page of their own, `scenes/yours/NAME.html`, which git ignores.
+The lesson's own page is `notebooks/scenes/NAME.html`. Only `tools.refresh` writes it. A student who changes the cell
+gets another page, `scenes/yours/NAME.html`, which git ignores.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 
 HEIGHT = 500  # pixels of the frame
 MAX_PICTURE_BYTES = 60_000
-_WIDTHS = (800, 640, 480, 320)  # of the picture, fewer pixels until it is small enough
+_WIDTHS = (800, 640, 480, 320)  # of the picture; the first that is small enough in bytes is used
 
 
 class Scene:
-    """A page in a titled frame that fits, and below it, folded, the same as a picture.
+    """A page in a frame, and below it a folded picture of the same scene.
 
-    source: of the page, from the notebook's folder. height: pixels.
+    source: path of the page, relative to the notebook's folder. height: of the frame [pixels].
     """
 
     def __init__(self, source: str, title: str, height: int = HEIGHT, picture: Picture | None = None) -> None:
@@ -56,7 +56,7 @@ class Scene:
 
 
 class PictureOfAScene(Scene):
-    """Where no page can be written: the picture alone, and the reason with its cure."""
+    """The picture of a scene whose page cannot be written, with the reason."""
 
     def __init__(self, title: str, picture: Picture, reason: str) -> None:
         super().__init__("", title, picture=picture)
@@ -67,13 +67,14 @@ class PictureOfAScene(Scene):
 
 
 def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> None:
-    """Display a scene as a page to be turned by hand, and its picture for where no script runs; closes the plotter.
+    """Display a scene as a page that the reader can turn, with a picture of it. Closes the plotter.
 
-    name: of its page, the lesson's number first ("01_frustum"). title: of frame and page. alt: what it shows, in a
-    sentence. Raises `SceneError` for another kind of name, an empty scene, or words that are missing.
+    name: of the page; it starts with the lesson's number ("01_frustum"). title: of the frame and the page. alt: a
+    sentence that says what the scene shows. Raises `SceneError` for an invalid name or an empty scene, and
+    `FigureError` for an `alt` that is too short.
     """
     if not re.fullmatch(r"(\d\d|P\d)_[a-z0-9_]+", name):
-        raise SceneError(f"a scene's name is the lesson's number and a word, such as '01_frustum'; got {name!r}")
+        raise SceneError(f"a scene's name must be the lesson's number and a word, such as '01_frustum'; got {name!r}")
     try:
         picture = Picture(small_picture(plotter), alt)
         display(Scene(_written(page_html(plotter, title, alt), name), title, picture=picture))
@@ -84,7 +85,7 @@ def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> Non
 
 
 def small_picture(plotter: pyvista.Plotter) -> bytes:
-    """The scene as it is first seen, as a PNG of at most 60 kB. Raises `SceneError` where that cannot be."""
+    """Return the scene's first view as a PNG of at most 60 kB. Raises `SceneError` if it is empty or too large."""
     if not plotter.actors:
         raise SceneError("the scene is empty: add something with plotter.add_mesh(...)")
     picture = Image.fromarray(plotter.screenshot(return_img=True))
@@ -97,7 +98,7 @@ def small_picture(plotter: pyvista.Plotter) -> bytes:
 
 
 def _written(page: str, name: str) -> str:
-    """Where the page is to be found from the notebook's folder, the kernel's own; written if it is not there yet."""
+    """Return the page's path, relative to the notebook's folder. Write the page if it is new or has changed."""
     stored = Path("scenes") / f"{name}.html"
     if os.environ.get(STORE_SCENES):
         return _write(stored, page)

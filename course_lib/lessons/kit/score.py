@@ -1,10 +1,10 @@
-"""A file that was handed in, scored: for teachers, and for us who store the rivals' numbers.
+"""Score a submitted file (for teachers), or store the rivals' results (for maintainers).
 
-    python -m course_lib.lessons.kit.score P1 FILE        the score of the function in FILE, which is a Python file or a
-                                                          notebook (`course.py score P1 FILE`)
-    python -m course_lib.lessons.kit.score P1 --store     data/projects/P1.json made again
+    python -m course_lib.lessons.kit.score P1 FILE        scores the function in FILE, a Python file or a notebook
+                                                          (`course.py score P1 FILE`)
+    python -m course_lib.lessons.kit.score P1 --store     writes data/projects/P1.json again
 
-Of a notebook only imports, definitions and assignments run: no check, no figure, no score of its own.
+In a notebook only imports, definitions and assignments run, so its checks, figures and scores do not.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from course_lib.lessons.kit.projects import Project, UnknownProjectError, find_p
 
 
 def main(words: list[str]) -> int:
-    """Score or store; returns the exit code: 2 for what the caller can mend."""
+    """Score a file or store the rivals' results. Return the exit code; 2 is an error that the user can correct."""
     parser = argparse.ArgumentParser(prog="course.py score", description=__doc__.split("\n")[0])
     parser.add_argument("project", metavar="P1")
     parser.add_argument("file", nargs="?", type=Path, help="a Python file or a notebook with the project's function")
@@ -43,9 +43,9 @@ def main(words: list[str]) -> int:
 
 
 def handed_in(project: Project, path: Path) -> Callable:
-    """The project's function in a file. Raises `ValueError` where there is none, or the file does not run."""
+    """Return the project's function in a file. Raises `ValueError` if there is none, or if the file does not run."""
     if path.suffix not in (".py", ".ipynb") or not path.is_file():
-        raise ValueError(f"{path} is no Python file and no notebook")
+        raise ValueError(f"{path} is neither a Python file nor a notebook")
     names: dict = {"__name__": "handed_in", "__file__": str(path)}
     try:
         for text in [path.read_text(encoding="utf-8")] if path.suffix == ".py" else definitions(path):
@@ -53,7 +53,7 @@ def handed_in(project: Project, path: Path) -> Callable:
     except (Exception, SystemExit) as error:
         raise ValueError(f"{path} does not run: {type(error).__name__}: {error}") from error
     if not callable(names.get(project.function)):
-        raise ValueError(f"{path} defines no function {project.function}(), which is what {project.name} asks for")
+        raise ValueError(f"{path} defines no function {project.function}(), which {project.name} asks for")
     return names[project.function]
 
 
@@ -61,8 +61,7 @@ DEFINING = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef, ast.Assig
 
 
 def definitions(path: Path) -> list[ast.Module]:
-    """The imports, definitions and assignments of a notebook's code cells, a cell each; lines for IPython are left
-    out."""
+    """Return the imports, definitions and assignments of each code cell of a notebook, without IPython's commands."""
     cells = []
     for cell in nbformat.read(path, as_version=4).cells:
         if cell.cell_type == "code":

@@ -1,4 +1,4 @@
-"""The small picture of every lesson in notebooks/README.md, taken from the lessons' stored outputs.
+"""Make the small pictures of notebooks/README.md from the lessons' stored outputs.
 
     python -m course_lib.lessons.kit.series_pictures
 
@@ -41,21 +41,21 @@ CHOSEN = {
     "19": "19-stages",
     "20": "20-check-picture",
 }
-"""Lesson -> the cell whose picture stands for it; a lesson that is not here gives its first picture."""
+"""Lesson -> the cell whose picture we use. For a lesson that is not listed, we use the first picture."""
 
-SIZE = (420, 230)  # pixels, at most
+MAX_SIZE = (420, 230)  # (width, height) in pixels
 MAX_BYTES = 30_000
-_COLOURS = (128, 64, 32, 16)  # of the palette, fewer until the picture is small enough
+_COLOURS = (128, 64, 32, 16)  # in the palette; the first that makes the picture small enough is used
 
 
 class SeriesPictureError(ValueError):
-    """A lesson without a stored picture, or one that cannot be made small enough."""
+    """A lesson without a stored picture, or with a picture that stays too large."""
 
 
 def stored_picture(path: Path, cell_id: str | None = None) -> Image.Image:
-    """The picture that a cell of a notebook stored, in RGB; None: the notebook's first.
+    """Return the stored picture (RGB) of a cell. If `cell_id` is None, return the notebook's first picture.
 
-    Raises `SeriesPictureError` where there is none.
+    Raises `SeriesPictureError` if there is no picture.
     """
     for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
         if cell_id is not None and cell["id"] != cell_id:
@@ -66,13 +66,13 @@ def stored_picture(path: Path, cell_id: str | None = None) -> Image.Image:
             if found:
                 return Image.open(io.BytesIO(base64.b64decode(found.group(1)))).convert("RGB")
     where = "no cell" if cell_id is None else f"no cell {cell_id}"
-    raise SeriesPictureError(f"{path.name}: {where} with a stored picture; refresh the lesson, or choose another cell")
+    raise SeriesPictureError(f"{path.name}: {where} has a stored picture; refresh the lesson, or choose another cell")
 
 
 def small_png(picture: Image.Image) -> bytes:
-    """The picture within SIZE as a PNG of at most MAX_BYTES. Raises `SeriesPictureError` where that cannot be."""
+    """Return a PNG within `MAX_SIZE` and `MAX_BYTES`. Raises `SeriesPictureError` if that is impossible."""
     picture = picture.copy()
-    picture.thumbnail(SIZE, Image.Resampling.LANCZOS)
+    picture.thumbnail(MAX_SIZE, Image.Resampling.LANCZOS)
     for colours in _COLOURS:
         buffer = io.BytesIO()
         reduced = picture.quantize(colours, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
@@ -83,7 +83,7 @@ def small_png(picture: Image.Image) -> bytes:
 
 
 def write_pictures(folder: Path) -> list[Path]:
-    """Write NN.png of every lesson into `folder`; returns the paths. Raises `SeriesPictureError`."""
+    """Write NN.png of every lesson into `folder` and return the paths. Raises `SeriesPictureError`."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for path in notebook_paths():

@@ -1,4 +1,4 @@
-"""Print how far a student has come, and write the page; `course.py progress` runs this in a process of its own.
+"""Print a student's progress and write it as a page. `course.py progress` runs this in another process.
 
 python -m course_lib.lessons.kit.show_progress [--out PAGE]
 """
@@ -17,6 +17,7 @@ from course_lib.paths import REPOSITORY
 
 
 def main(words: list[str]) -> int:
+    """Print the progress, write the page, and return the exit code."""
     parser = argparse.ArgumentParser(prog="course.py progress")
     parser.add_argument(
         "--out", type=Path, metavar="PAGE", help="where to write the page (default: work/progress.html)"

@@ -1,7 +1,7 @@
-"""What a student predicted and which checks said right: kept on this computer, in the folder of the student's work.
+"""Keep a student's predictions and the results of the checks, on this computer only.
 
-One file a lesson, `06.json`, in the folder that the environment variable `COURSE_RECORD` names (`course.py lab` does).
-Without it nothing is read or written: a refresh, a test or somebody else's server leaves no trace.
+Each lesson has one file, such as `06.json`, in the folder that the environment variable `COURSE_RECORD` names.
+`course.py lab` sets the variable. Without it nothing is read or written, so tests and refreshes leave no trace.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ RECORD = "COURSE_RECORD"
 
 
 class RecordError(ValueError):
-    """A record that is no record of ours: says which file, and what to do."""
+    """A file that is not a valid record. The message names the file and says what to do."""
 
 
 def record_folder() -> Path | None:
-    """Where records are kept, or None where they are not."""
+    """Return the folder of the records, or None if no records are kept."""
     return Path(folder) if (folder := os.environ.get(RECORD)) else None
 
 
 def read_record(lesson: str) -> dict:
-    """`{"predictions": {"1": text}, "checks": {"06.1": {"status": ..., "attempts": n}}}` of a lesson; empty for none.
+    """Return a lesson's `{"predictions": {"1": text}, "checks": {"06.1": {"status": ..., "attempts": n}}}`.
 
-    Raises `RecordError` for a file that is something else.
+    Both are empty if there is no record. Raises `RecordError` for a file that is not a valid record of this lesson.
     """
     folder = record_folder()
     path = folder / f"{lesson}.json" if folder else None
@@ -49,7 +49,7 @@ def read_record(lesson: str) -> dict:
 
 
 def record_prediction(lesson: str, index: int, text: str) -> str:
-    """Keep what was typed for question `index`, counted from 1; a sentence where a damaged record was set aside."""
+    """Keep the prediction for question `index` (1, 2, ...). Return a sentence if a damaged record was set aside."""
     record, said = _record_to_change(lesson)
     record["predictions"][str(index)] = text
     _write(lesson, record)
@@ -57,9 +57,9 @@ def record_prediction(lesson: str, index: int, text: str) -> str:
 
 
 def record_check(number: str, status: str) -> str:
-    """Keep the outcome of one check of exercise `number`; what once was right stays right.
+    """Keep the result of one check of exercise `number`. An exercise that was right once stays right.
 
-    Returns a sentence where a damaged record was set aside, else nothing.
+    Return a sentence if a damaged record was set aside, else "".
     """
     lesson = number.partition(".")[0]
     record, said = _record_to_change(lesson)
@@ -72,7 +72,7 @@ def record_check(number: str, status: str) -> str:
 
 
 def _record_to_change(lesson: str) -> tuple[dict, str]:
-    """The record, and nothing to say; where it cannot be read, an empty one and where the damaged one is kept."""
+    """Return (record, ""). A damaged file is renamed; then return an empty record and a sentence that says so."""
     try:
         return read_record(lesson), ""
     except RecordError:

@@ -105,7 +105,8 @@ def test_a_slider_that_is_dragged_shows_each_place(panel):
     for name, control in panel.controls.items():
         if isinstance(control, Slider):
             for share in (0.3, 0.6):
-                value = control.minimum + round(share * (control.maximum - control.minimum) / control.step) * control.step
+                steps = round(share * (control.maximum - control.minimum) / control.step)
+                value = control.minimum + steps * control.step
                 panel.set(**{name: value})
                 assert panel.values()[name] == pytest.approx(value)
                 assert panel.error is None
