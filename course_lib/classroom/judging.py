@@ -24,7 +24,7 @@ from course_lib.classroom.points import earned, points_of
 from course_lib.classroom.sandbox import Run, Sandbox
 from course_lib.classroom.sandbox_process import Assignment
 from course_lib.classroom.sandboxed_score import outcomes
-from course_lib.classroom.score_worlds import MOST, graded_project, score_points, score_sentence
+from course_lib.classroom.score_worlds import MAX_POINTS, graded_project, score_points, score_sentence
 from course_lib.classroom.submissions import SubmissionError, read_cells
 from course_lib.lessons.kit.exercises import Exercise, fault, find_exercise, right_on
 
@@ -85,7 +85,7 @@ def grade(task: Task, sandbox: Sandbox, seed: int, limits: Limits = DEFAULT_LIMI
 
 def not_judged(task: Task, status: Status, sentence: str) -> Graded:
     """No points, for a reason that is not in the answer."""
-    most = MOST if task.number == task.lesson else points_of(find_exercise(task.number))
+    most = MAX_POINTS if task.number == task.lesson else points_of(find_exercise(task.number))
     return Graded(task.student, task.lesson, task.number, status, 0, most, 0, 0, sentence)
 
 
@@ -97,7 +97,7 @@ def scored(task: Task, code: NeededCode, sandbox: Sandbox, seed: int) -> Graded:
     failed = [outcome.remark for outcome in found if outcome.failed]
     points = int(score_points(project, values))
     sentence = score_sentence(project, values, len(failed)) + (f" {failed[0]}" if failed else "")
-    status: Status = "right" if points == MOST else "partly right" if points else "wrong"
+    status: Status = "right" if points == MAX_POINTS else "partly right" if points else "wrong"
     if len(failed) == len(found) and failed[0].endswith("is not attempted."):
         status, sentence = "not attempted", "Not attempted."
     folder = str(sandbox.folder)
@@ -107,7 +107,7 @@ def scored(task: Task, code: NeededCode, sandbox: Sandbox, seed: int) -> Graded:
         task.number,
         status,
         points,
-        MOST,
+        MAX_POINTS,
         len(found) - len(failed),
         len(found),
         tidy(sentence, folder),

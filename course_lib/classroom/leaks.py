@@ -16,9 +16,9 @@ from course_lib.classroom.assignment_cells import Assignment, tag_of
 from course_lib.classroom.model_answers import model_bodies
 from course_lib.classroom.nbgrader_course import MODULE
 
-LEAST_DIGITS = 8
+MIN_DIGITS = 8
 """A seed of fewer is found everywhere by chance."""
-LEAST_LETTERS = 20
+MIN_LETTERS = 20
 """A body of fewer, without its spaces, is a line that others write too."""
 
 
@@ -29,7 +29,7 @@ class LeakError(RuntimeError):
 def teachers_words(seed: int, canary: str) -> dict[str, str]:
     """What no file of a student may hold, whatever the student wrote: by what it is called."""
     words = {"the canary": canary, "the graded tests' module": f"from {MODULE} import"}
-    return words | ({"the secret seed": str(seed)} if len(str(seed)) >= LEAST_DIGITS else {})
+    return words | ({"the secret seed": str(seed)} if len(str(seed)) >= MIN_DIGITS else {})
 
 
 def solutions(assignments: list[Assignment]) -> dict[str, str]:
@@ -38,7 +38,7 @@ def solutions(assignments: list[Assignment]) -> dict[str, str]:
     for assignment in assignments:
         taught = "\n".join(plain(cell.source) for cell in assignment.stored.cells if tag_of(cell) != "solution")
         for name, body in model_bodies(assignment).items():
-            if len(plain(body)) >= LEAST_LETTERS and plain(body) not in taught:
+            if len(plain(body)) >= MIN_LETTERS and plain(body) not in taught:
                 found[f"the model answer of {name}() ({assignment.name})"] = body
     return found
 

@@ -18,7 +18,7 @@ import nbformat
 from course_lib.classroom.assignment_cells import Assignment, tag_of
 from course_lib.classroom.model_answers import function_name, model_bodies, solved_stub
 from course_lib.classroom.points import points_of
-from course_lib.classroom.score_worlds import MOST
+from course_lib.classroom.score_worlds import MAX_POINTS
 from course_lib.classroom.student_copies import (
     FOLDERS,
     NOTEBOOKS,
@@ -135,7 +135,7 @@ def source_notebook(
             number = cell.metadata["exercise"]
             cells.append(graded_cell(number, stub, points_of(find_exercise(number))))
         elif tag == "submission":
-            cells.append(graded_cell(assignment.name, find_project(assignment.name).function, MOST))
+            cells.append(graded_cell(assignment.name, find_project(assignment.name).function, MAX_POINTS))
     notebook.cells = cells
     reword_cells(notebook, REWORDED.get(assignment.name, ()))
     relink_cells(notebook, resolve)

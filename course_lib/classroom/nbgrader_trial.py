@@ -22,7 +22,7 @@ from course_lib.classroom.leaks import find_leaks, solutions, teachers_words
 from course_lib.classroom.model_answers import function_name, model_bodies, solved_stub
 from course_lib.classroom.nbgrader_course import canary_of, write_course, write_grading_module
 from course_lib.classroom.points import points_of
-from course_lib.classroom.score_worlds import MOST
+from course_lib.classroom.score_worlds import MAX_POINTS
 from course_lib.files import temporary_folder
 from course_lib.lessons.kit.exercises import Exercise, Mistake, find_exercise
 from course_lib.lessons.kit.projects import find_project
@@ -187,7 +187,7 @@ def arguments_of(stub: str) -> str:
 def most_of(assignment: Assignment) -> float:
     """Points of a whole assignment."""
     stages = sum(points_of(find_exercise(one.number)) for one in assignment.exercises())
-    return float(stages + (MOST if assignment.is_project else 0))
+    return float(stages + (MAX_POINTS if assignment.is_project else 0))
 
 
 def leaks_of(course: Path, assignment: Assignment, seed: int) -> list[str]:

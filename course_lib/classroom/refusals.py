@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-MOST_NOTED = 20
+MAX_NOTED = 20
 LONGEST = 200  # characters of one refusal
 
 WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
@@ -106,7 +106,7 @@ def refuse(readable: Iterable[Path], listable: Iterable[Path], own_folder: Path,
             if refused is None:
                 return
             refused = refused[:LONGEST]
-            if refused not in noted and len(noted) < MOST_NOTED:
+            if refused not in noted and len(noted) < MAX_NOTED:
                 noted.add(refused)
                 note(refused)
         finally:

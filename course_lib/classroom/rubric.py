@@ -6,7 +6,7 @@ import re
 
 from course_lib.classroom.assignment_cells import Assignment, ExerciseCells
 from course_lib.classroom.points import points_of
-from course_lib.classroom.score_worlds import LINES, MOST, paper_value
+from course_lib.classroom.score_worlds import LINES, MAX_POINTS, paper_value
 from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.kit.projects import find_project
 
@@ -20,7 +20,7 @@ def rubric(assignment: Assignment, canary: str) -> str:
     """The page of one lesson or project, Markdown."""
     exercises = assignment.exercises()
     most = sum(points_of(find_exercise(one.number)) for one in exercises)
-    score = MOST if assignment.is_project else 0
+    score = MAX_POINTS if assignment.is_project else 0
     parts = [
         f"# Rubric · {assignment.title}",
         f"For the teacher alone ({canary}).",
@@ -28,7 +28,7 @@ def rubric(assignment: Assignment, canary: str) -> str:
     ]
     parts += ["| exercise | level | points |\n|---|---|---|\n" + "\n".join(_row(one) for one in exercises)]
     if assignment.is_project:
-        parts[-1] += f"\n| {assignment.name}, the score | | {MOST} |"
+        parts[-1] += f"\n| {assignment.name}, the score | | {MAX_POINTS} |"
     parts += [_exercise(one) for one in exercises]
     if assignment.is_project:
         parts.append(_score(assignment.name))
@@ -69,11 +69,12 @@ def _score(name: str) -> str:
         else "cameras of the secret seed"
     )
     return (
-        f"## {name}, the score · {MOST} points\n\n`{project.function}` runs in other worlds: {worlds}. What counts is "
-        f"the median of: {project.title}.\n\n"
-        f"| the median is | points |\n|---|---|\n| {line.words} | {MOST} |\n"
-        f"| better than the paper's method ({project.told(paper_value(project))} on the hidden seeds) | {MOST // 2} |\n"
-        f"| worse, but the function runs in every world | {MOST // 4} |\n| else | 0 |\n\n"
+        f"## {name}, the score · {MAX_POINTS} points\n\n`{project.function}` runs in other worlds: {worlds}. What "
+        f"counts is the median of: {project.title}.\n\n"
+        f"| the median is | points |\n|---|---|\n| {line.words} | {MAX_POINTS} |\n"
+        f"| better than the paper's method ({project.told(paper_value(project))} on the hidden seeds) "
+        f"| {MAX_POINTS // 2} |\n"
+        f"| worse, but the function runs in every world | {MAX_POINTS // 4} |\n| else | 0 |\n\n"
         "The notebook's own rubric, of 100 points, is for marking the whole project by hand: it counts the same stages "
         "and the same score, and the written part, which no program reads.\n\n"
         "**To talk about.** What did you change, what did it gain on your own seeds, and how would you know that it "

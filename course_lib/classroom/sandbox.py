@@ -56,8 +56,8 @@ START = (
     "import sys; sys.path.insert(0, sys.argv[1]); "
     "from course_lib.classroom.sandbox_process import main; main(int(sys.argv[2]))"
 )
-MOST_MESSAGES = 1000
-MOST_FILES = 1000
+MAX_MESSAGES = 1000
+MAX_FILES = 1000
 SHOWN = 1000
 """Characters of what was printed that are kept."""
 
@@ -266,7 +266,7 @@ class _Watch:
         elif "call" in message:
             reply = self._serve(message) if self._serve else {"error": ["RuntimeError", "nothing to call"]}
             self._outgoing += dump(reply)
-        elif len(run.messages) < MOST_MESSAGES:
+        elif len(run.messages) < MAX_MESSAGES:
             run.messages.append(message)
         else:
             raise AnswerFormatError("more messages than there are calls")
@@ -286,10 +286,10 @@ class _Watch:
             if len(os.listdir(f"/proc/{self._child}/task")) > limits.threads:
                 return f"starts more than {limits.threads} threads; it was stopped"
         with contextlib.suppress(OSError):
-            entries = islice(os.scandir(self._folder), MOST_FILES + 1)  # no more: they may come as fast as one looks
+            entries = islice(os.scandir(self._folder), MAX_FILES + 1)  # no more: they may come as fast as one looks
             files = [entry.stat(follow_symlinks=False).st_blocks * 512 for entry in entries]
-            if sum(files) > limits.folder_mb << 20 or len(files) > MOST_FILES:
-                return f"writes more than {limits.folder_mb} MB or {MOST_FILES} files; it was stopped"
+            if sum(files) > limits.folder_mb << 20 or len(files) > MAX_FILES:
+                return f"writes more than {limits.folder_mb} MB or {MAX_FILES} files; it was stopped"
         return None
 
 

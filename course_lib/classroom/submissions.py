@@ -19,8 +19,8 @@ from pathlib import Path
 
 LARGEST_FILE_MB = 20
 """A lesson with all its pictures has 0.4 MB."""
-MOST_FILES = 20_000
-MOST_CELLS = 2_000
+MAX_FILES = 20_000
+MAX_CELLS = 2_000
 LARGEST_CODE = 1_000_000
 """Characters of code in one notebook; a lesson has 20,000."""
 READ = (".ipynb", ".py")
@@ -96,8 +96,8 @@ def _files(folder: Path, root: Path, not_read: list[NotRead]) -> list[tuple[Path
                 folders.append(Path(entry.path))
             else:
                 found.append((Path(entry.path), entry.stat(follow_symlinks=False)))
-        if len(found) > MOST_FILES or len(folders) > MOST_FILES:
-            raise SubmissionError(f"{root} holds more than {MOST_FILES:,} files: is it the right folder?")
+        if len(found) > MAX_FILES or len(folders) > MAX_FILES:
+            raise SubmissionError(f"{root} holds more than {MAX_FILES:,} files: is it the right folder?")
     return found
 
 
@@ -165,7 +165,7 @@ def _cells(path: Path) -> list[tuple[str, str]]:
     if not isinstance(cells, list):
         raise SubmissionError("is no notebook of today's format: open it in JupyterLab and save it again")
     found = []
-    for number, cell in enumerate(cells[:MOST_CELLS], start=1):
+    for number, cell in enumerate(cells[:MAX_CELLS], start=1):
         if isinstance(cell, dict) and cell.get("cell_type") == "code":
             source = cell.get("source", "")
             if isinstance(source, list) and all(isinstance(line, str) for line in source):

@@ -9,7 +9,7 @@ import pytest
 
 from course_lib.classroom.graded_tests import grade, grade_score
 from course_lib.classroom.model_answers import model_functions
-from course_lib.classroom.score_worlds import LINES, MOST, graded_project, moved, paper_value, score_points
+from course_lib.classroom.score_worlds import LINES, MAX_POINTS, graded_project, moved, paper_value, score_points
 from course_lib.lessons.kit.projects import Result, Task, find_project, outcomes, project_names
 from course_lib.lessons.project_2.project import pose_cost
 
@@ -18,20 +18,20 @@ def test_every_project_has_a_line_between_the_papers_method_and_ours():
     assert list(LINES) == project_names()
     for name, line in LINES.items():
         project = find_project(name)
-        assert score_points(project, [line.value] * 3) == MOST
-        assert score_points(project, [paper_value(project)] * 3) == MOST / 4
+        assert score_points(project, [line.value] * 3) == MAX_POINTS
+        assert score_points(project, [paper_value(project)] * 3) == MAX_POINTS / 4
 
 
 def test_the_points_of_a_score():
     project = find_project("P1")
-    assert score_points(project, [10.0, 69.0, 200.0]) == MOST
-    assert score_points(project, [10.0, 71.0, 200.0]) == MOST / 2
-    assert score_points(project, [110.0, 120.0, 130.0]) == MOST / 4
+    assert score_points(project, [10.0, 69.0, 200.0]) == MAX_POINTS
+    assert score_points(project, [10.0, 71.0, 200.0]) == MAX_POINTS / 2
+    assert score_points(project, [110.0, 120.0, 130.0]) == MAX_POINTS / 4
     assert score_points(project, [110.0, 120.0, np.inf]) == 0
     assert score_points(project, [np.inf, np.inf, 10.0]) == 0
-    assert score_points(project, [10.0, 20.0, np.inf]) == MOST, "a world that is lost is lost, the median counts"
-    assert score_points(find_project("P3"), [-1.0, 0.5, 2.0]) == MOST
-    assert score_points(find_project("P3"), [-1.0, -0.5, 2.0]) == MOST / 2
+    assert score_points(project, [10.0, 20.0, np.inf]) == MAX_POINTS, "a world that is lost is lost, the median counts"
+    assert score_points(find_project("P3"), [-1.0, 0.5, 2.0]) == MAX_POINTS
+    assert score_points(find_project("P3"), [-1.0, -0.5, 2.0]) == MAX_POINTS / 2
 
 
 @pytest.mark.parametrize("name", ["P1", "P4"])
@@ -78,12 +78,12 @@ def test_the_feedback_of_a_score_tells_its_median_and_the_lines():
         "median 20.0 mm over 3 other worlds (all points: below 20 mm; half: better than the paper's 49.1 mm).",
     )
     lost = grade_score(TOY, lambda seed: 30.0 if seed > 1 else 1 / 0)
-    assert lost.points == MOST / 2
+    assert lost.points == MAX_POINTS / 2
     assert "it failed in 1 of 3 worlds" in lost.sentence
 
 
 def test_the_model_solution_has_all_points_and_the_paper_fewer():
     project = find_project("P2")
-    assert grade("P2", model_functions("P2")["locate"], 4).points == MOST
+    assert grade("P2", model_functions("P2")["locate"], 4).points == MAX_POINTS
     paper = next(rival.function for rival in project.rivals if rival.key == "paper")
-    assert grade("P2", paper, 4).points < MOST
+    assert grade("P2", paper, 4).points < MAX_POINTS
