@@ -21,7 +21,7 @@ NO_ANSWER = 1.0
 """Metres: what no answer costs."""
 CORRECT = 0.5
 """Metres: an answer that costs no more is called correct."""
-LARGEST_GAP = 0.1  # radians between the azimuths of two boxes of one object, as the library's triangulation asks
+MAX_GAP = 0.1  # radians between the azimuths of two boxes of one object, as the library's triangulation asks
 
 
 class Rig(NamedTuple):
@@ -92,7 +92,7 @@ def pairs_of_boxes(upper: list, lower: list, rig: Rig) -> list[tuple[int, int]]:
     angles = [
         np.array([angles_of(np.array(one.box), rig.width) for one in side]).reshape(-1, 2) for side in (upper, lower)
     ]
-    partner = pair_boxes(labels[0], angles[0], labels[1], angles[1], LARGEST_GAP)
+    partner = pair_boxes(labels[0], angles[0], labels[1], angles[1], MAX_GAP)
     return [(i, int(j)) for i, j in enumerate(partner) if j >= 0]
 
 

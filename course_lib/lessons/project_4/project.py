@@ -6,7 +6,7 @@ import numpy as np
 
 from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
 from course_lib.lessons.project_4.rivals import as_told, calibrated, pinhole_alone
-from course_lib.lessons.project_4.sessions import FARTHEST, session
+from course_lib.lessons.project_4.sessions import MAX_RANGE, session
 
 WORST, REFUSED = 0.200, 0.050  # m: what a pixel costs at most, and one that is refused
 
@@ -32,9 +32,9 @@ def measure(task: Task, answer: object) -> Result:
     refused = np.isnan(found)
     with np.errstate(invalid="ignore"):
         cost = np.where(refused, REFUSED, np.minimum(np.abs(found - true), WORST))
-    scored = (true < FARTHEST) & (measured | ~refused)  # a depth where nothing was measured is invented
+    scored = (true < MAX_RANGE) & (measured | ~refused)  # a depth where nothing was measured is invented
     cost = np.where(measured, cost, WORST)[scored]
-    share = (refused & measured & (true < FARTHEST)).sum() / (measured & (true < FARTHEST)).sum()
+    share = (refused & measured & (true < MAX_RANGE)).sum() / (measured & (true < MAX_RANGE)).sum()
     errors = np.abs(found - true)[scored & ~refused & measured]
     median = f"median error {1000 * np.median(errors):.1f} mm" if len(errors) else "no depth at all"
     return Result(1000 * float(cost.mean()), f"{median}; {100 * share:.1f} % refused")

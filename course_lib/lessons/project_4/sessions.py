@@ -21,7 +21,7 @@ REPEAT = TimeOfFlightModel().unambiguous_range  # m, c / 2f: the one number of t
 WALLS = np.array([0.9, 1.3, 1.8, 2.4, 3.1, 3.9, 4.8, 5.8, 6.9, 8.1])  # m
 WALL_FRAMES, ROOM_FRAMES, VIEWS = 8, 8, 4
 TAPE_SIGMA = 0.002  # m
-FARTHEST = 9.0  # m, surfaces beyond it are not scored
+MAX_RANGE = 9.0  # m, surfaces beyond it are not scored
 UNITS = (500, 1000, 2000, 4000, 5000, 6000)  # per metre
 CODES = (0, 1, 32_001, 65_000, 65_535)
 

@@ -8,7 +8,7 @@ import pytest
 from course_lib.lessons.kit.projects import AnswerError
 from course_lib.lessons.project_4.project import measure, prepare
 from course_lib.lessons.project_4.rivals import calibrated, in_metres, without_flying
-from course_lib.lessons.project_4.sessions import CODES, FARTHEST, ROOM_FRAMES, UNITS, VIEWS, session
+from course_lib.lessons.project_4.sessions import CODES, MAX_RANGE, ROOM_FRAMES, UNITS, VIEWS, session
 
 SEED = 10_001
 
@@ -58,9 +58,9 @@ def test_the_truth_costs_nothing_and_refusing_costs_50_mm(task):
 def test_a_depth_where_nothing_was_measured_is_invented(task):
     true, measured = task.truth
     invented = np.where(np.isfinite(true), true, 1.0)
-    lost = ~measured & (true < FARTHEST)
+    lost = ~measured & (true < MAX_RANGE)
     assert lost.any()
-    share = lost.sum() / (true < FARTHEST).sum()
+    share = lost.sum() / (true < MAX_RANGE).sum()
     assert measure(task, invented).value == pytest.approx(200 * share)
 
 
