@@ -1,34 +1,35 @@
-"""What only the notebooks use: each lesson's figures, panel and exercises, and what several of them share.
+"""Code that only the notebooks use: each lesson's figures, panel and exercises, and the tools in `kit/`.
 
-`kit/` holds what several lessons share: `predictions` asks before and shows again after, `exercises` judges answers,
-`student_record` keeps both for the student, `lesson_progress` counts them and `progress_page` shows them, `projects`
-scores what a project ends in, `panel`, `live_figure` and `progress_bar` are the moving parts, `display` shows a figure,
-`scene` a scene in three dimensions, and `room_photographs`, `panorama_features`, `room_observations` and
-`corridor_views` load what more than one lesson looks at. A lesson's methods are never here: they are in
-`course_lib.depth_mcl` and `course_lib.spherical_stereo`; figures and objects of scenes that commands draw too are in
-`course_lib.plots`.
+Several lessons share `kit/`. `predictions` asks for predictions and prints them again beside the results. `exercises`
+checks answers, and `projects` scores projects. `student_record` keeps predictions and results, `lesson_progress` counts
+them, and `progress_page` shows the counts. `display` shows a figure and `scene` a 3D scene. `panel`, `live_figure` and
+`progress_bar` are the moving parts. `intervals` prints medians and shares with their intervals. `room_photographs`,
+`panorama_features`, `room_observations` and `corridor_views` load the data of several lessons. The methods are not
+here but in `course_lib.depth_mcl` and `course_lib.spherical_stereo`. Figures and scene objects that commands draw too
+are in `course_lib.plots`.
 
-A new lesson NN is a notebook and a folder:
+A new lesson NN needs a notebook and a folder:
 
-* `notebooks/NN_title.ipynb`, its cells with ids "NN-something"; the parts and their order are what
-  tests/notebooks/test_shape.py checks. The five cells of an exercise share `metadata.exercise = "NN.1"` and have one of
-  the tags task, exercise (the stub), check, hint, solution (with `metadata.jupyter.source_hidden = true`).
-* `lessons/lesson_NN/`, of which the notebook imports the package alone:
-  `__init__.py` hands on what the notebook calls as `lesson_NN.something`, and `PANELS`.
-  `figures.py`: a figure comes from `figures.new_figure` and goes to `show(figure, alt=lesson_NN.ALT["name"])`.
-  `alternative_texts.py`: `ALT`, what each figure shows, by name; out of the cells, where it would give answers away.
-  A scene comes from `plots.scenes.new_plotter`, the notebook's own cell adds what is seen (`plots.scenes`, PyVista),
-  and it goes to `show_scene(plotter, "NN_name", title=..., alt=...)`.
-  `panel.py`: `PANELS = {title: function that makes the panel}`; its figure is a `LiveFigure`, its `draw` a plain
-  function of the controls' values that returns a `Drawing`.
-  `exercises.py`: `EXERCISES`, each with a reference, an input generator and three mistakes or more with their hints.
-  What the three share (scenes, data, what is measured) has modules of its own, named after what they hold.
+* `notebooks/NN_title.ipynb`. The ids of its cells are "NN-something". tests/notebooks/test_shape.py checks its parts
+  and their order. The five cells of an exercise share `metadata.exercise = "NN.1"`, and each has one of the tags task,
+  exercise (the stub), check, hint, solution (with `metadata.jupyter.source_hidden = true`).
+* `lessons/lesson_NN/`. The notebook imports only the package itself.
+  `__init__.py` exports what the notebook calls as `lesson_NN.something`, and `PANELS`.
+  `figures.py`: make a figure with `figures.new_figure` and show it with `show(figure, alt=lesson_NN.ALT["name"])`.
+  `alternative_texts.py`: `ALT` says what each figure shows, by name. It is not in the cells, because it may give
+  answers away.
+  A scene starts with `plots.scenes.new_plotter`. The notebook's own cell adds the objects (`plots.scenes`, PyVista) and
+  shows them with `show_scene(plotter, "NN_name", title=..., alt=...)`.
+  `panel.py`: `PANELS = {title: function that makes the panel}`. A panel's figure is a `LiveFigure`. Its `draw` is a
+  plain function that takes the controls' values and returns a `Drawing`.
+  `exercises.py`: `EXERCISES`, each with a reference, an input generator, and three or more mistakes with hints.
+  Code that these files share (scenes, data, measurements) has its own modules, named after their contents.
 
-A project n is `notebooks/projects/Pn_title.ipynb` and `lessons/project_n/`: `exercises.py` as above, for its stages,
-and `project.py` with its `PROJECT` (`kit/projects.py`); tests/notebooks/test_projects.py checks its parts. Its model
-solution stands apart, in `notebooks/projects/solutions/`, and its rivals' numbers in data/projects/.
+A project n needs `notebooks/projects/Pn_title.ipynb` and `lessons/project_n/`. Its `exercises.py` holds the stages, as
+above, and `project.py` holds `PROJECT` (see `kit/projects.py`). tests/notebooks/test_projects.py checks the parts. The
+model solution is in `notebooks/projects/solutions/`, and the rivals' results are in data/projects/.
 
-Then `.venv/bin/python -m tools.refresh NN` runs the notebook and stores its outputs. The tests find all of it by the
+Then `.venv/bin/python -m tools.refresh NN` runs the notebook and stores its outputs. The tests find all files by their
 names.
 """
 
