@@ -15,8 +15,8 @@ import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 
-SECONDS = 20.0
-"""Time limit of one call. Right answers take milliseconds, even on a slow and busy machine."""
+TIME_LIMIT = 20.0
+"""Time limit of one call [s]. Right answers take milliseconds, even on a slow and busy machine."""
 
 MAX_CHARACTERS = 20_000
 """Upper limit on the characters that one call may print."""
@@ -31,32 +31,32 @@ class Attempt:
     printed: str = ""
 
 
-class _OutOfTime(BaseException):
+class _TimeLimitExceeded(BaseException):
     """Stops a function that takes too long. The function's own `except Exception` cannot catch it."""
 
 
-class _PrintsWithoutEnd(BaseException):
+class _PrintLimitExceeded(BaseException):
     """Stops a function that prints more than `MAX_CHARACTERS`."""
 
 
-class _Bounded(io.StringIO):
+class _LimitedOutput(io.StringIO):
     """Keeps the printed text and stops a function that prints too much."""
 
     def write(self, text: str) -> int:
         if self.tell() + len(text) > MAX_CHARACTERS:
-            raise _PrintsWithoutEnd
+            raise _PrintLimitExceeded
         return super().write(text)
 
 
-def attempt(function: Callable, arguments: tuple, seconds: float = SECONDS) -> Attempt:
+def attempt(function: Callable, arguments: tuple, seconds: float = TIME_LIMIT) -> Attempt:
     """Call `function(*arguments)` with a time limit [s]. Raises KeyboardInterrupt if the user interrupts the call."""
-    printed = _Bounded()
+    printed = _LimitedOutput()
     try:
-        with contextlib.redirect_stdout(printed), _limited(seconds):
+        with contextlib.redirect_stdout(printed), _time_limit(seconds):
             return Attempt(function(*arguments), None, printed.getvalue())
-    except _OutOfTime:
+    except _TimeLimitExceeded:
         failure = f"does not end within {seconds:g} seconds: does every loop come closer to its end?"
-    except _PrintsWithoutEnd:
+    except _PrintLimitExceeded:
         failure = f"prints more than {MAX_CHARACTERS:,} characters in one call: is there a print inside a loop?"
     except SystemExit:
         failure = "calls exit() or quit(): that would end the program. End with `return`."
@@ -65,13 +65,13 @@ def attempt(function: Callable, arguments: tuple, seconds: float = SECONDS) -> A
     except RecursionError:
         failure = "calls itself without end: when does it stop?"
     except BaseException as error:  # a student may derive an error from BaseException
-        failure = f"stops with {_described(error, function)}."
+        failure = f"stops with {_describe_error(error, function)}."
     return Attempt(None, failure, printed.getvalue())
 
 
 @contextlib.contextmanager
-def _limited(seconds: float):
-    """Raise `_OutOfTime` in this thread after so many seconds, then every second until the code stops."""
+def _time_limit(seconds: float):
+    """Raise `_TimeLimitExceeded` in this thread after so many seconds, then every second until the code stops."""
     thread, lock, ended = threading.get_ident(), threading.Lock(), threading.Event()
 
     def watch() -> None:
@@ -79,7 +79,7 @@ def _limited(seconds: float):
         while not ended.wait(wait):
             with lock:  # after the end, the exception would hit the code that runs next
                 if not ended.is_set():
-                    _raise_in(thread, _OutOfTime)
+                    _raise_in(thread, _TimeLimitExceeded)
             wait = 1.0
 
     watcher = threading.Thread(target=watch, daemon=True)
@@ -98,7 +98,7 @@ def _raise_in(thread: int, error: type[BaseException] | None) -> None:
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), asynchronous)
 
 
-def _described(error: BaseException, function: Callable) -> str:
+def _describe_error(error: BaseException, function: Callable) -> str:
     """Return an error's type, the line of the student's function that caused it, and the first line of its message."""
     code = getattr(function, "__code__", None)
     frames = traceback.walk_tb(error.__traceback__)

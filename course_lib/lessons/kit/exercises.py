@@ -18,9 +18,9 @@ from typing import Literal
 
 import numpy as np
 
-from course_lib.lessons.kit.attempt import SECONDS, attempt
+from course_lib.lessons.kit.attempt import TIME_LIMIT, attempt
 from course_lib.lessons.kit.hints import MISSING_RETURN, agree, agree_all, hint, kind_of, known_mistake
-from course_lib.lessons.kit.progress_page import bring_up_to_date
+from course_lib.lessons.kit.progress_page import update_page
 from course_lib.lessons.kit.student_record import record_check, record_folder
 
 # Random inputs per check. A case that one input in five has is missed in one of 200 checks only: 0.8^24 = 0.005.
@@ -103,7 +103,7 @@ def check(number: str, function: Callable) -> None:
                 print(f"({said})")
         except OSError as error:
             print(f"(not kept: {error})")
-        bring_up_to_date()
+        update_page()
 
 
 def find_exercise(number: str) -> Exercise:
@@ -130,7 +130,7 @@ def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
     return tuple(importlib.import_module(f"course_lib.lessons.{folder}.exercises").EXERCISES)
 
 
-def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float = SECONDS) -> Verdict:
+def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float = TIME_LIMIT) -> Verdict:
     """Run `function` on inputs drawn with `seed` and return the verdict. seconds: time limit of one call."""
     if not callable(function):
         return _wrong(f"Give the function itself, without calling it; this is a {kind_of(function)}.")

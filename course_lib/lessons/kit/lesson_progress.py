@@ -84,7 +84,7 @@ class Table:
             "",
         )
 
-    def in_words(self) -> str:
+    def as_text(self) -> str:
         """Return the table as text."""
         rows = [self.headings, *(self.cells(one) for one in self.parts), self.sums()]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -103,7 +103,7 @@ def tables() -> tuple[Table, Table]:
     )
 
 
-def strangers() -> list[str]:
+def unknown_files() -> list[str]:
     """Return a sentence for each file in the folder of the records that belongs to no lesson."""
     folder, ours = record_folder(), {path.name[:2] for path in [*notebook_paths(), *project_paths()]}
     found = sorted(folder.glob("*")) if folder is not None else []

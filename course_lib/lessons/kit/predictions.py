@@ -12,7 +12,7 @@ import html
 import ipywidgets as widgets
 from IPython.display import display
 
-from course_lib.lessons.kit.progress_page import bring_up_to_date
+from course_lib.lessons.kit.progress_page import update_page
 from course_lib.lessons.kit.student_record import RecordError, read_record, record_folder, record_prediction
 
 _ASKED: dict[str, tuple[str, ...]] = {}
@@ -58,7 +58,7 @@ class Predictions:
                 said = f"{record_prediction(self.lesson, number, text)} Prediction {number} is kept.".strip()
         except OSError as error:
             said = f"Prediction {number} could not be kept: {error}"
-        bring_up_to_date()
+        update_page()
         self._state.value = f'<p role="status">{html.escape(said)}</p>'
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:

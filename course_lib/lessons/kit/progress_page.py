@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from course_lib.files import atomic_write
-from course_lib.lessons.kit.lesson_progress import Progress, Table, strangers, tables
+from course_lib.lessons.kit.lesson_progress import Progress, Table, tables, unknown_files
 from course_lib.lessons.kit.student_record import record_folder
 
 PAGE = "progress.html"
@@ -52,7 +52,7 @@ A check that was right once stays right.</p>
 """
 
 
-def bring_up_to_date() -> None:
+def update_page() -> None:
     """Write the page again, beside the folder of the records. Without records, do nothing.
 
     A write error is ignored, because it must not disturb a lesson. The records are complete without the page, and
@@ -66,7 +66,7 @@ def bring_up_to_date() -> None:
 
 def write_page(path: Path) -> None:
     """Write the page of the present progress to `path`."""
-    atomic_write(path, as_page(tables(), strangers(), datetime.datetime.now()))
+    atomic_write(path, as_page(tables(), unknown_files(), datetime.datetime.now()))
 
 
 def as_page(parts: Sequence[Table], said: Sequence[str], now: datetime.datetime) -> str:

@@ -77,7 +77,7 @@ def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> Non
         raise SceneError(f"a scene's name must be the lesson's number and a word, such as '01_frustum'; got {name!r}")
     try:
         picture = Picture(small_picture(plotter), alt)
-        display(Scene(_written(page_html(plotter, title, alt), name), title, picture=picture))
+        display(Scene(_page_path(page_html(plotter, title, alt), name), title, picture=picture))
     except (ScenePageError, OSError) as reason:
         display(PictureOfAScene(title, picture, str(reason)))
     finally:
@@ -97,7 +97,7 @@ def small_picture(plotter: pyvista.Plotter) -> bytes:
     raise SceneError(f"the picture of this scene has {len(png)} bytes at {size[0]} pixels, at most {MAX_PICTURE_BYTES}")
 
 
-def _written(page: str, name: str) -> str:
+def _page_path(page: str, name: str) -> str:
     """Return the page's path, relative to the notebook's folder. Write the page if it is new or has changed."""
     stored = Path("scenes") / f"{name}.html"
     if os.environ.get(STORE_SCENES):

@@ -10,7 +10,7 @@ import os
 import sys
 from pathlib import Path
 
-from course_lib.lessons.kit.lesson_progress import strangers, tables
+from course_lib.lessons.kit.lesson_progress import tables, unknown_files
 from course_lib.lessons.kit.progress_page import PAGE, write_page
 from course_lib.lessons.kit.student_record import RECORD, record_folder
 from course_lib.paths import REPOSITORY
@@ -25,9 +25,9 @@ def main(words: list[str]) -> int:
     arguments = parser.parse_args(words)
     os.environ.setdefault(RECORD, str(REPOSITORY / "work" / "record"))
     parts = tables()
-    print("\n\n".join(part.in_words() for part in parts))
+    print("\n\n".join(part.as_text() for part in parts))
     faults = [f"{one.contents.title}: {one.said}" for part in parts for one in part.parts if one.said]
-    for sentence in [*faults, *strangers()]:
+    for sentence in [*faults, *unknown_files()]:
         print(f"\n{sentence}")
     page = arguments.out or record_folder().parent / PAGE
     if not arguments.out and not page.parent.is_dir():

@@ -62,7 +62,7 @@ def test_what_swallows_the_first_stop_meets_another():
         endless()
 
     assert "does not end" in attempt(swallows, (), seconds=0.2).failure
-    assert stops == ["_OutOfTime"]
+    assert stops == ["_TimeLimitExceeded"]
 
 
 def test_no_stop_arrives_after_the_call():

@@ -17,7 +17,7 @@ from course_lib.lessons.kit import lesson_progress
 from course_lib.lessons.kit.exercises import check, lesson_exercises
 from course_lib.lessons.kit.lesson_progress import Contents, Progress, Table, contents, tables
 from course_lib.lessons.kit.predictions import Predictions
-from course_lib.lessons.kit.progress_page import as_page, bring_up_to_date
+from course_lib.lessons.kit.progress_page import as_page, update_page
 from course_lib.lessons.kit.student_record import RECORD
 from course_lib.paths import notebook_paths, project_paths
 
@@ -112,8 +112,8 @@ def test_the_rows_add_up(record):
     assert row("06")["not right yet"] == "06.2"
     assert row("P1")["stages right"] == "1 of 7"
     assert row("P2")["state"] == "not begun"
-    column = lessons.in_words().splitlines()[0].index("checks right")
-    assert all(re.match(r"checks right|\d+ of \d+", line[column:]) for line in lessons.in_words().splitlines())
+    column = lessons.as_text().splitlines()[0].index("checks right")
+    assert all(re.match(r"checks right|\d+ of \d+", line[column:]) for line in lessons.as_text().splitlines())
 
 
 class Headings(HTMLParser):
@@ -196,7 +196,7 @@ def test_a_page_that_cannot_be_written_disturbs_no_check(record, capsys):
 def test_without_a_record_no_page_is_written(tmp_path, monkeypatch):
     monkeypatch.delenv(RECORD, raising=False)
     monkeypatch.chdir(tmp_path)
-    bring_up_to_date()
+    update_page()
     assert list(tmp_path.iterdir()) == []
 
 
