@@ -108,7 +108,7 @@ def unknown_files() -> list[str]:
     folder, ours = record_folder(), {path.name[:2] for path in [*notebook_paths(), *project_paths()]}
     found = sorted(folder.glob("*")) if folder is not None else []
     return [
-        f"{path} is the record of no lesson of this course; it is left as it is."
+        f"{path} belongs to no lesson of this course; it is not changed."
         for path in found
         if path.stem.partition(".")[0] not in ours and not path.name.startswith(".")
     ]

@@ -94,7 +94,7 @@ def small_picture(plotter: pyvista.Plotter) -> bytes:
         png = compress(picture.resize(size, Image.Resampling.LANCZOS))
         if len(png) <= MAX_PICTURE_BYTES:
             return png
-    raise SceneError(f"the picture of this scene has {len(png)} bytes at {size[0]} pixels, at most {MAX_PICTURE_BYTES}")
+    raise SceneError(f"the scene's picture has {len(png)} bytes at {size[0]} pixels; at most {MAX_PICTURE_BYTES} fit")
 
 
 def _page_path(page: str, name: str) -> str:

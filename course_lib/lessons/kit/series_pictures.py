@@ -79,7 +79,7 @@ def small_png(picture: Image.Image) -> bytes:
         reduced.save(buffer, format="PNG", optimize=True)
         if buffer.tell() <= MAX_BYTES:
             return buffer.getvalue()
-    raise SeriesPictureError(f"{buffer.tell()} bytes with {_COLOURS[-1]} colours, at most {MAX_BYTES}: make it smaller")
+    raise SeriesPictureError(f"{buffer.tell()} bytes with {_COLOURS[-1]} colours are too many; at most {MAX_BYTES} fit")
 
 
 def write_pictures(folder: Path) -> list[Path]:

@@ -40,9 +40,9 @@ def read_record(lesson: str) -> dict:
         texts = [*predictions.values(), *(entry["status"] for entry in checks.values())]
         counts = [entry["attempts"] for entry in checks.values()]
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise RecordError(f"{path} is no record of lesson {lesson} ({error!r}): move it away to begin anew") from error
+        raise RecordError(f"{path} is not a valid record of lesson {lesson} ({error!r}): move it away") from error
     if not all(isinstance(text, str) for text in texts) or not all(isinstance(count, int) for count in counts):
-        raise RecordError(f"{path} is no record of lesson {lesson}: move it away to begin anew")
+        raise RecordError(f"{path} is not a valid record of lesson {lesson}: move it away")
     if found.get("lesson", lesson) != lesson:
         raise RecordError(f"{path} is the record of lesson {found['lesson']}, not of {lesson}: move it away")
     return {"predictions": predictions, "checks": checks}
@@ -80,7 +80,7 @@ def _record_to_change(lesson: str) -> tuple[dict, str]:
         names = (damaged.with_name(f"{lesson}.unreadable-{n}.json") for n in itertools.count(1))
         kept = next(name for name in names if not name.exists())
         damaged.rename(kept)
-        said = f"{damaged} could not be read as a record; it is kept as {kept.name}, and a new one is begun."
+        said = f"{damaged} could not be read as a record; it is kept as {kept.name}, and a new record is started."
         return {"predictions": {}, "checks": {}}, said
 
 

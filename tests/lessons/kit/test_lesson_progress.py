@@ -167,13 +167,13 @@ def test_a_damaged_or_a_foreign_record_is_named_and_the_others_count(record, cap
     before = {path.name: path.read_text() for path in record.iterdir()}
     assert main(["progress"]) == 0
     printed = capfd.readouterr().out
-    assert re.search(r"06 · Likelihood and weights: .*06\.json is no record of lesson 06", printed)
+    assert re.search(r"06 · Likelihood and weights: .*06\.json is not a valid record of lesson 06", printed)
     assert re.search(r"07 · .* 1 of 4", printed)
     for name in ("notes.txt", "99.json"):
-        assert re.search(rf"{name} is the record of no lesson of this course; it is left as it is", printed)
+        assert re.search(rf"{name} belongs to no lesson of this course; it is not changed", printed)
         assert name in (record.parent / "progress.html").read_text()
     assert "unreadable" not in printed
-    assert "06.json is no record of lesson 06" in (record.parent / "progress.html").read_text()
+    assert "06.json is not a valid record of lesson 06" in (record.parent / "progress.html").read_text()
     assert {path.name: path.read_text() for path in record.iterdir()} == before
 
 
