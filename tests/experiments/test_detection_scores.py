@@ -3,66 +3,72 @@
 import numpy as np
 import pytest
 
-from course_lib.experiments.detection_scores import Boxes, match_detections
+from course_lib.experiments.room_evaluation import match_detections
+from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.recording import TrueObject
 
-WIDTH = 1280.0
-NONE = Boxes([], np.zeros((0, 4)))
-
-
-def objects(*boxes, label="chair"):
-    return Boxes([label] * len(boxes), np.array(boxes, float))
+WIDTH = 1280
 
 
-def found(*boxes, scores, label="chair"):
-    return Boxes([label] * len(boxes), np.array(boxes, float), np.array(scores, float))
+def matched(boxes, scores, wanted=(), ignored=(), label="chair", ignored_label="chair"):
+    """What becomes of detections; objects are chairs, and the ignored ones of a class of their own."""
+    detections = [Detection(label, score, tuple(box), 0.0, 0.0) for box, score in zip(boxes, scores, strict=True)]
+    things = [("chair", box) for box in wanted] + [(ignored_label, box) for box in ignored]
+    objects = [TrueObject(k, name, tuple(box), tuple(box), 1.0) for k, (name, box) in enumerate(things)]
+    return match_detections(detections, objects, WIDTH, [k < len(wanted) for k in range(len(objects))])
 
 
 BOX = [100, 0, 175, 100]
 HALF, LESS = [125, 0, 200, 100], [126, 0, 201, 100]  # IoU 50 / 100 and 49 / 101
 
 
+ACROSS, FROM_THE_OTHER_SIDE = [1270, 300, 1320, 400], [-8, 300, 42, 400]
+
+
 @pytest.mark.parametrize(
-    ("box", "label", "target", "ignored", "told"),
+    ("box", "label", "wanted", "ignored", "told"),
     [
-        (HALF, "chair", objects(BOX), NONE, [True]),
-        (LESS, "chair", objects(BOX), NONE, [False]),
-        (BOX, "table", objects(BOX), NONE, [False]),
-        ([1270, 300, 1320, 400], "chair", objects([1272, 300, 1322, 400]), NONE, [True]),
-        ([1270, 300, 1320, 400], "chair", objects([-8, 300, 42, 400]), NONE, [True]),
-        (HALF, "chair", NONE, objects(BOX), []),
-        (LESS, "chair", NONE, objects(BOX), [False]),
-        (BOX, "television", NONE, objects(BOX), [False]),
-        ([110, 10, 140, 40], "chair", NONE, objects(BOX), [False]),
-        ([1270, 300, 1320, 400], "chair", NONE, objects([-8, 300, 42, 400]), []),
-        (BOX, "chair", objects(BOX), objects(BOX, label="table"), [True]),
+        (HALF, "chair", [BOX], [], [True]),
+        (LESS, "chair", [BOX], [], [False]),
+        (BOX, "table", [BOX], [], [False]),
+        (ACROSS, "chair", [[1272, 300, 1322, 400]], [], [True]),
+        (ACROSS, "chair", [FROM_THE_OTHER_SIDE], [], [True]),
+        (HALF, "chair", [], [BOX], []),
+        (LESS, "chair", [], [BOX], [False]),
+        (BOX, "television", [], [BOX], [False]),
+        ([110, 10, 140, 40], "chair", [], [BOX], [False]),
+        (ACROSS, "chair", [], [FROM_THE_OTHER_SIDE], []),
     ],
     ids=["half", "less than half", "another class", "the seam", "the seam, from the other side", "ignored",
          "less than half of an ignored one", "another class than the ignored one", "small inside an ignored one",
-         "ignored across the seam", "found where an ignored one lies"],
+         "ignored across the seam"],
 )  # fmt: skip
-def test_a_detection_is_right_a_false_alarm_or_ignored(box, label, target, ignored, told):
-    assert match_detections(found(box, scores=[0.9], label=label), target, ignored, WIDTH).correct.tolist() == told
+def test_a_detection_is_right_a_false_alarm_or_ignored(box, label, wanted, ignored, told):
+    assert matched([box], [0.9], wanted, ignored, label).correct.tolist() == told
+
+
+def test_an_ignored_object_of_another_class_in_the_same_place_changes_nothing():
+    assert matched([BOX], [0.9], [BOX], [BOX], ignored_label="table").correct.tolist() == [True]
+    assert matched([BOX], [0.9], [BOX], [BOX]).n_objects == 1
 
 
 def test_the_best_score_takes_the_free_object_that_it_overlaps_most_and_a_second_one_is_a_false_alarm():
-    detections = found([100, 300, 150, 400], [105, 300, 155, 400], scores=[0.5, 0.9])
-    matching = match_detections(detections, objects([100, 300, 150, 400]), NONE, WIDTH)
+    matching = matched([[100, 300, 150, 400], [105, 300, 155, 400]], [0.5, 0.9], [[100, 300, 150, 400]])
     assert matching.scores.tolist() == [0.9, 0.5]
     assert matching.correct.tolist() == [True, False]
-    detections = found([100, 0, 200, 100], [100, 0, 200, 100], scores=[0.9, 0.8])
-    matching = match_detections(detections, objects([110, 0, 210, 100], [102, 0, 202, 100]), NONE, WIDTH)
-    assert matching.object_index.tolist() == [1, 0]
+    # The second one overlaps the first object alone: it is right only where that one is left free.
+    boxes, objects = [[100, 0, 200, 100], [130, 0, 230, 100]], [[120, 0, 220, 100], [95, 0, 195, 100]]
+    assert matched(boxes, [0.9, 0.8], objects).correct.tolist() == [True, True]
 
 
 def test_matching_does_not_depend_on_the_order_of_detections():
     rng = np.random.default_rng(3)
     low = rng.uniform([0, 0], [WIDTH, 500], (12, 2))
     boxes = np.concatenate([low, low + rng.uniform(20, 120, (12, 2))], axis=1)
-    targets = objects(*(boxes[:6] + rng.uniform(-8, 8, (6, 4))))
-    scores = rng.permutation(12) / 12
-    first = match_detections(found(*boxes, scores=scores), targets, NONE, WIDTH)
+    targets, scores = boxes[:6] + rng.uniform(-8, 8, (6, 4)), rng.permutation(12) / 12
+    first = matched(boxes, scores, targets)
     order = rng.permutation(12)
-    second = match_detections(found(*boxes[order], scores=scores[order]), targets, NONE, WIDTH)
+    second = matched(boxes[order], scores[order], targets)
     assert first.scores.tolist() == second.scores.tolist()
     assert first.correct.tolist() == second.correct.tolist()
     assert first.correct.sum() >= 4

@@ -1,13 +1,15 @@
 """Answers within half a metre and 10 degrees: who is counted as what, how surely, and what a threshold buys."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.experiments.look_alikes import (
     Answer,
     OdometryModel,
-    answers_of_evidence,
     answers_of_rooms,
     answers_of_sequences,
     answers_table,
@@ -74,12 +76,13 @@ def test_every_matcher_answers_and_only_the_consistent_one_says_that_it_cannot()
 def test_on_a_wrong_map_every_answer_is_wrong():
     rng = np.random.default_rng(27)
     rooms = [record_of(scattered(rng), seed=1), record_of(scattered(rng), seed=2)]
-    variants = {"everything": Evidence(), "gap_alone": Evidence(absolute=False)}
-    found = answers_of_evidence(rooms, variants, wrong_map=True)
+    kinds = {"everything": Evidence(), "gap_alone": Evidence(absolute=False)}
+    variants = {name: partial(associate_consistent, evidence=one) for name, one in kinds.items()}
+    found = answers_of_rooms(rooms, variants, wrong_map=True)
     assert {one.kind for one in found} <= {"wrong", "unanswered"}
     assert not any(one.all_matches_right or one.best_is_right for one in found)
     assert {one.kind for one in found if one.method == "everything"} == {"unanswered"}
-    own = answers_of_evidence(rooms, variants)
+    own = answers_of_rooms(rooms, variants)
     assert {one.kind for one in own if one.method == "everything"} == {"correct"}
 
 

@@ -7,16 +7,21 @@ import numpy as np
 import pytest
 
 from course_lib.experiments import observed_rooms
-from course_lib.experiments.observed_rooms import observe_room, stored_map, stored_observations
+from course_lib.experiments.observed_rooms import (
+    JudgedPose,
+    judged_poses,
+    observe_room,
+    stored_map,
+    stored_observations,
+)
 from course_lib.experiments.room import localize_pair
 from course_lib.experiments.room_evaluation import NO_OBJECT, PoseOutcome
-from course_lib.experiments.rooms import METHODS, JudgedPose, judge_rooms, rates_and_errors, rooms_summary
+from course_lib.experiments.rooms import METHODS, rates_and_errors, rooms_summary
 from course_lib.geometry import wrap_angle
 from course_lib.paths import data_path
 from course_lib.simulation.room.look_alike_recording import RecordingModels
 from course_lib.simulation.room.survey import RoomSurveyModel
 from course_lib.simulation.sensors.panorama_rig import RigModel
-from course_lib.spherical_stereo.detection.detector import YoloDetector
 
 MAP = [["sofa", 0.0, 0.0, 20.0, 60.0], ["sofa", 4.0, 0.0, 21.0, 60.0], ["table", 1.0, 3.0, None, 5.0]]
 NOISE = [[0.01, 0.0], [0.0, 0.01]]
@@ -59,7 +64,7 @@ def test_a_record_gives_its_map_and_observations_back_grey_ones_too():
 
 def test_poses_are_judged_by_the_truth_of_the_record():
     right, wrong = (
-        [one for one in judge_rooms([record(poses=[entry(shown=shown)])]) if one.method != "as_printed"]
+        [one for one in judged_poses([record(poses=[entry(shown=shown)])], METHODS) if one.method != "as_printed"]
         for shown in ((0, 1, 2), (1, 0, 2))
     )
     assert {one.outcome.kind for one in right} == {"correct"}
@@ -72,13 +77,13 @@ def test_poses_are_judged_by_the_truth_of_the_record():
 
 def test_as_printed_the_distance_term_prefers_what_is_too_near():
     """All stand where the map has them, and yet the cheapest pair is an object near the centroid with one far off."""
-    outcomes = {one.method: one.outcome.kind for one in judge_rooms([record(poses=[entry()])])}
+    outcomes = {one.method: one.outcome.kind for one in judged_poses([record(poses=[entry()])], METHODS)}
     assert outcomes["paper"] == "correct" != outcomes["as_printed"]
 
 
 def test_the_summary_counts_rooms_look_alikes_and_what_was_confused():
     rooms = [record(7), record(8, [entry(shown=(1, 0, -1)), entry() | {"experiment": 2}])]
-    found = rooms_summary(rooms, judge_rooms(rooms))
+    found = rooms_summary(rooms, list(judged_poses(rooms, METHODS)))
     assert (found["rooms"], found["poses_a_room_and_height"], found["look_alikes"]) == (2, 1, {"sofa": [2, 2]})
     assert found["both"]["images"]["paper"]["correct_percent"] == 75.0
     assert found["experiment_1"]["images"]["paper"]["correct_percent"] == 50.0
@@ -116,7 +121,7 @@ TINY = replace(PERFECT, width=320, survey=RoomSurveyModel(places=3, width=320, f
 @pytest.fixture(scope="module")
 def room():
     """A room that is really made: one pose at each height, a perfect rig, the course's detector."""
-    return observe_room(10_210, 1, PERFECT, YoloDetector.load(data_path("detector")))
+    return observe_room(10_210, 1, (str(data_path("detector")), "", None, None), None, PERFECT)
 
 
 @pytest.fixture(scope="module")
@@ -174,8 +179,9 @@ def test_judged_from_its_record_a_pose_is_what_the_localizer_said(room, monkeypa
         return result
 
     monkeypatch.setattr(observed_rooms, "localize_pair", note)
-    small = observe_room(10_211, 1, TINY, Nothing())
-    judged = [one for one in judge_rooms([json.loads(json.dumps(small))]) if one.method == "paper"]
+    monkeypatch.setattr(observed_rooms, "loaded", lambda network: Nothing())
+    small = observe_room(10_211, 1, (), None, TINY)
+    judged = [one for one in judged_poses([json.loads(json.dumps(small))], METHODS) if one.method == "paper"]
     assert len(judged) == len(direct) == 4
     for one, said in zip(judged, direct.values(), strict=True):
         assert one.outcome.kind == said.outcome.kind

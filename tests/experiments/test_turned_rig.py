@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.experiments.turned_rig import RolledPair, compare, turn_summary
+from course_lib.experiments.room import RolledPair, compare, turn_summary
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose.localization import UNABLE, Localization
