@@ -12,6 +12,7 @@ from itertools import islice
 from pathlib import Path
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
@@ -19,6 +20,7 @@ from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import MAP_MARGIN, NoMeasurementWarning
 from course_lib.depth_mcl.sequence import FAR
 from course_lib.experiments.observed_rooms import MODELS, photographed_pairs
+from course_lib.experiments.room_evaluation import median
 from course_lib.experiments.runner import Outcome, Runner
 from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.paths import data_path
@@ -40,6 +42,7 @@ MAX_ALTERNATIVES = 3
 REACHED = 0.03, 1.0  # metres, degrees
 VIEWS, VIEW_TURN = 12, np.deg2rad(30.0)  # at most so many views, the robot turning so far to the next: once around
 ODOMETRY_SIGMA = 0.05, np.deg2rad(1.0)  # share of a motion; least of a turn (chosen)
+MEDIANS = {"semantic_m": 3, "position_m": 4, "rotation_deg": 2}  # of what medians are told, with their digits
 
 
 def run(runner: Runner, *, seed: int, seeds: list[int] | None, places: int, detector: Path | None) -> Outcome:
@@ -55,7 +58,7 @@ def run(runner: Runner, *, seed: int, seeds: list[int] | None, places: int, dete
 def finale_room(seed: int, places: int, detector: str) -> list[dict]:
     """Run both methods one after the other from so many random places of a seed's room, at the rig's first height."""
 
-    def generator(*stream: int) -> np.random.Generator:
+    def generator(*stream: int) -> Generator:
         return np.random.default_rng([depth_world.STREAM, seed, *stream])
 
     room, semantic_map = surveyed_room(seed, MODELS)
@@ -63,7 +66,7 @@ def finale_room(seed: int, places: int, detector: str) -> list[dict]:
     sensor = TimeOfFlightCamera(DepthCamera.sr4000(), TimeOfFlightModel(), generator(depth_world.CAMERA))
     caster, results = depth_world.depth_caster(room), []
 
-    def capture(state: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    def capture(state: np.ndarray, rng: Generator) -> np.ndarray:
         return sensor.capture(caster, state, rng).depth
 
     options = {"association": associate_consistent, "reject_implausible": True}
@@ -77,7 +80,7 @@ def finale_room(seed: int, places: int, detector: str) -> list[dict]:
 
 
 def one_place(
-    found: Localization, true_pose: np.ndarray, renderer: DepthRenderer, capture: Callable, rng: np.random.Generator
+    found: Localization, true_pose: np.ndarray, renderer: DepthRenderer, capture: Callable, rng: Generator
 ) -> dict:
     """Return what the semantic pose is worth at one place, and what the depth filter makes of it."""
     starts = starts_of(found, renderer.scene_map)
@@ -99,16 +102,12 @@ def one_place(
 
 
 def look_around(
-    renderer: DepthRenderer,
-    starts: Sequence[Pose2D],
-    true_pose: np.ndarray,
-    capture: Callable[[np.ndarray, np.random.Generator], np.ndarray],
-    rng: np.random.Generator,
+    renderer: DepthRenderer, starts: Sequence[Pose2D], true_pose: np.ndarray, capture: Callable, rng: Generator
 ) -> tuple[AnnealedEstimate, np.ndarray, int]:
     """Return the first estimate that knows its pose, else the last one, the true state `(6,)` there, and the views.
 
     A view that leaves the pose open may have moved the filter along a wall: the next one starts from the panoramas
-    again, carried on by the odometer. true_pose: x, y, heading. capture: gives the depth image from a state.
+    again, carried on by the odometer. capture: gives the depth image from a state, and takes a generator.
     """
     pose = true_pose
     for views in range(1, VIEWS + 1):
@@ -128,7 +127,7 @@ def is_known(estimate: AnnealedEstimate) -> bool:
     return estimate.status == "tracked" and position <= REACHED[0] and np.rad2deg(rotation) <= REACHED[1]
 
 
-def odometry(ahead: float, turn: float, rng: np.random.Generator) -> tuple[float, float]:
+def odometry(ahead: float, turn: float, rng: Generator) -> tuple[float, float]:
     """What wheels tell of a motion: metres ahead and radians counterclockwise, each with noise of `ODOMETRY_SIGMA`."""
     share, least = ODOMETRY_SIGMA
     return ahead * (1.0 + share * rng.standard_normal()), turn + np.hypot(share * turn, least) * rng.standard_normal()
@@ -139,9 +138,7 @@ def carried_on(start: Pose2D, ahead: float, turn: float) -> Pose2D:
     return Pose2D(*map(float, start.apply(np.array([ahead, 0.0]))), float(wrap_angle(start.theta + turn)))
 
 
-def best_start(
-    renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence[np.ndarray], seed: int
-) -> AnnealedEstimate:
+def best_start(renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence, seed: int) -> AnnealedEstimate:
     """Return the last estimate of the start that explains the depth images best, by its mean raw score."""
     runs = [follow(renderer, start_state(start), depths, seed) for start in starts]
     return runs[int(np.argmax(np.nan_to_num([mean_score(run) for run in runs], nan=-np.inf)))][-1]
@@ -160,9 +157,7 @@ def start_state(pose: Pose2D) -> np.ndarray:
     return np.array([pose.x, pose.y, CAMERA_HEIGHT, 0.0, 0.0, pose.theta])
 
 
-def follow(
-    renderer: DepthRenderer, start: np.ndarray, depths: Sequence[np.ndarray], seed: int
-) -> list[AnnealedEstimate]:
+def follow(renderer: DepthRenderer, start: np.ndarray, depths: Sequence, seed: int) -> list[AnnealedEstimate]:
     """What the depth filter makes of the images from one start, a state `(6,)`."""
     localizer = AnnealedLocalizer(renderer, seed=seed)
     localizer.initialize(start)
@@ -175,7 +170,7 @@ def mean_score(estimates: Sequence[AnnealedEstimate]) -> float:
     return float(np.mean([estimate.score for estimate in estimates]))
 
 
-def robot_states(pose: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def robot_states(pose: np.ndarray, rng: Generator) -> np.ndarray:
     """True states `(FRAMES, 6)` of the depth camera on a robot that stands at x, y, heading and rolls on slowly."""
     x, y, heading = pose
     height, level = LEVEL_SIGMA
@@ -188,10 +183,6 @@ def robot_states(pose: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 def summarize(places: Sequence[dict]) -> dict[str, float | None]:
     """The numbers of the table; a median of nothing is None."""
-    values = {
-        name: [place[name] for place in places if name in place]
-        for name in ("semantic_m", "position_m", "rotation_deg")
-    }
     return {
         "places": len(places),
         "reached": sum(place["reached"] for place in places),
@@ -200,15 +191,14 @@ def summarize(places: Sequence[dict]) -> dict[str, float | None]:
         "looked_again": sum(place.get("views", 1) > 1 for place in places),
         "left_open": sum(place.get("status") == "open" for place in places),
         "wrong_called_tracked": sum(not p["reached"] and p.get("status") == "tracked" for p in places),
-        **{f"median_{name}": float(np.median(found)) if found else None for name, found in values.items()},
+        **{f"median_{name}": median([one[name] for one in places if name in one]) for name in MEDIANS},
     }
 
 
 def finale_text(result: dict) -> str:
     """Return the numbers of `summarize` in words."""
-    digits = {"semantic_m": 3, "position_m": 4, "rotation_deg": 2}
-    values = {name: result[f"median_{name}"] for name in digits}
-    semantic, position, rotation = ("-" if v is None else f"{v:.{digits[name]}f}" for name, v in values.items())
+    values = ((result[f"median_{name}"], digits) for name, digits in MEDIANS.items())
+    semantic, position, rotation = ("-" if value is None else f"{value:.{digits}f}" for value, digits in values)
     return (
         f"{result['reached']} of {result['places']} places reached within {REACHED[0]:g} m and {REACHED[1]:g} degree\n"
         f"panoramas: {result['semantic_ok']} answered, median {semantic} m; "

@@ -29,6 +29,8 @@ MAX_ERROR_M, MAX_TURN_DEG = 0.5, 10.0
 NOWHERE = (np.inf, np.inf, 0.0)  # the true pose on a map of another room
 ODOMETRY_STREAM = 0x0D0  # joins a room's seed
 THINNING_STREAM = 0x7117  # likewise
+MIN_STEP_SIGMA, MIN_TURN_SIGMA = 0.01, float(np.deg2rad(1.0))  # m, radians: of odometry that stands still; chosen
+SLIP = 0.05  # share of a step or a turn that is added to it; chosen: wheels slip
 LEFT_OUT = 0.5  # share of the observations, drawn one by one; chosen
 HEADS = ("n", *KINDS, "all matches right", "dx [m]", "dy [m]", "dtheta [deg]")
 # Without each part in turn: what it is worth.
@@ -43,15 +45,6 @@ ABLATION: dict[str, Evidence] = {
     "gap_alone": Evidence(absolute=False),
     "geometry_alone": Evidence(colour=False, negative=False, free_space=False),
 }
-
-
-class OdometryModel(NamedTuple):
-    """How well a rig on wheels knows its steps: standard deviations, least ones and shares; chosen: wheels slip."""
-
-    distance: float = 0.01  # metres
-    distance_share: float = 0.05  # of the step
-    turn: float = float(np.deg2rad(1.0))  # radians
-    turn_share: float = 0.05  # of the turn
 
 
 class Answer(NamedTuple):
@@ -85,10 +78,7 @@ def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None,
 
 
 def answers_of_rooms(
-    rooms: Sequence[dict],
-    associations: dict[str, Callable] = ASSOCIATIONS,
-    wrong_map: bool = False,
-    progress: Callable = iter,
+    rooms: Sequence[dict], associations: dict[str, Callable], wrong_map: bool = False, progress: Callable = iter
 ) -> list[Answer]:
     """Every pose of every room by every matcher, one view each; none is rejected by its residuals.
 
@@ -96,7 +86,8 @@ def answers_of_rooms(
     """
     methods = {name: {"association": one, "reject_implausible": False} for name, one in associations.items()}
     answers = []
-    for one in judged_poses(progress(rooms), methods, ("images",), [*rooms[1:], rooms[0]] if wrong_map else rooms):
+    maps = [*rooms[1:], rooms[0]] if wrong_map else rooms
+    for one in judged_poses(progress(rooms), maps, methods, ("images",)):
         found, true_pose = one.localization, NOWHERE if wrong_map else one.pose
         best = found.alternatives[0].pose if found.alternatives else found.pose
         confidence = float(found.pose is not None) if found.confidence is None else found.confidence
@@ -105,17 +96,12 @@ def answers_of_rooms(
     return answers
 
 
-def measured_motion(
-    start: np.ndarray,
-    end: np.ndarray,
-    rng: np.random.Generator,
-    model: OdometryModel = OdometryModel(),  # noqa: B008 (it cannot change)
-) -> Motion:
+def measured_motion(start: np.ndarray, end: np.ndarray, rng: np.random.Generator) -> Motion:
     """What odometry says of the way between two poses `(3,)` [x, y, theta], with its noise."""
     forward, left = rotations(np.array(start[2])).T @ (np.asarray(end[:2]) - start[:2])
     turn = wrap_angle(end[2] - start[2])
-    along = model.distance + model.distance_share * np.hypot(forward, left)
-    sigma = np.array([along, along, model.turn + model.turn_share * abs(turn)])
+    along = MIN_STEP_SIGMA + SLIP * np.hypot(forward, left)
+    sigma = np.array([along, along, MIN_TURN_SIGMA + SLIP * abs(turn)])
     return Motion(*(np.array([forward, left, turn]) + sigma * rng.standard_normal(3)), np.diag(sigma**2))
 
 

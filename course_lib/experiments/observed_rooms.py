@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.room import SOURCES, localize_pair
+from course_lib.experiments.room import SOURCES, localize_pair, paper_localizer
 from course_lib.experiments.room_evaluation import PoseOutcome, match_detections, outcome
 from course_lib.files import temporary_folder
 from course_lib.simulation.room.look_alike_recording import (
@@ -58,9 +58,7 @@ def loaded(network: Sequence) -> YoloDetector:
     return YoloDetector.load(folder, **{key: value for key, value in options.items() if value is not None})
 
 
-def observe_room(
-    seed: int, poses: int, network: Sequence, tilt_deg: float | None, models: RecordingModels = MODELS
-) -> dict:
+def observe_room(seed: int, poses: int, network: Sequence, tilt_deg: float | None, models=MODELS) -> dict:
     """Make a room, photograph and survey it, and note what the method sees from each pose at each height; for JSON.
 
     network: as in `loaded`. tilt_deg: of the lower camera against the upper one; None: drawn.
@@ -104,16 +102,11 @@ def observe_room(
 def photographed_pairs(
     room: Room, semantic_map: SemanticMap, seed: int, poses: int, models: RecordingModels, detector, **options
 ) -> Iterator[tuple[int, SemanticLocalizer, StereoPair]]:
-    """Photograph a room at both heights; yield the experiment's number, the paper's localizer, and each pair.
-
-    options: other ones of the localizer.
-    """
+    """Photograph a room at both heights; yield the experiment's number, `paper_localizer`, and each pair."""
     with temporary_folder() as temporary:
         for number, folder in enumerate(photograph_room(temporary, room, seed, poses, models), start=1):
             recording = read_stereo_recording(folder)
-            size = (recording.width, recording.height)
-            chosen = {"image_size": size, "reject_implausible": False, **options}
-            localizer = SemanticLocalizer(recording.rig, semantic_map, detector, **chosen)
+            localizer = paper_localizer(recording, semantic_map, detector, **options)
             for pair in recording.pairs:
                 yield number, localizer, pair
 
@@ -142,18 +135,15 @@ def rig_of_walk(k: int) -> StereoRig:
 
 
 def judged_poses(
-    rooms: Iterable[dict],
-    methods: dict[str, dict],
-    sources: Sequence[str] = SOURCES,
-    maps: Sequence[dict] | None = None,
+    rooms: Iterable[dict], maps: Iterable[dict], methods: dict[str, dict], sources: Sequence[str] = SOURCES
 ) -> Iterator[JudgedPose]:
     """Localize every pose of every room's record from its observations, and judge it; by every method in turn.
 
-    methods: options of `SemanticLocalizer`. maps: of which room's record each room's map is taken (None: its own).
+    maps: the record whose map each room is looked for on: its own. methods: options of `SemanticLocalizer`.
     Source: paper 2, sections 2.5, 2.6 and table 2.
     """
-    for number, room in enumerate(rooms):
-        semantic_map = stored_map(room if maps is None else maps[number])
+    for room, other in zip(rooms, maps, strict=True):
+        semantic_map = stored_map(other)
         # The observations are made: of the rig nothing is asked any more.
         localizers = {
             name: SemanticLocalizer(StereoRig(0.3), semantic_map, **options) for name, options in methods.items()

@@ -22,6 +22,7 @@ from course_lib.experiments.room_evaluation import (
     PoseOutcome,
     counts_as_object,
     identify_detections,
+    median,
     outcome,
     summary,
     true_landmarks_of,
@@ -33,9 +34,11 @@ from course_lib.geometry import wrap_angle
 from course_lib.paths import data_path
 from course_lib.simulation.room.data import make_room_data
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
-from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.panorama import pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization
+from course_lib.spherical_stereo.ranging.triangulation import OK, object_position, triangulation_outcome
 from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
@@ -65,7 +68,7 @@ def run(
     seed: int | None,
     poses: int | None,
     data: Path | None,
-    detector: object,
+    detector,
     association: str,
     roll: list[int],
 ) -> Outcome:
@@ -83,14 +86,7 @@ def run(
     for name in ("experiment_1", "experiment_2"):
         recording = read_stereo_recording(folder / name)
         recording, title = replace(recording, pairs=recording.pairs[:poses]), name.replace("_", " ")
-        localizer = SemanticLocalizer(
-            recording.rig,
-            semantic_map,
-            detector,
-            association=matched_by,
-            image_size=(recording.width, recording.height),
-            reject_implausible=False,  # the paper's method
-        )
+        localizer = paper_localizer(recording, semantic_map, detector, association=matched_by)
         experiments[name], summaries[name] = {}, {}
         for source, ending in zip(SOURCES, ("", "_exact_boxes"), strict=True):
             bar = runner.bar(f"{title}, {source.replace('_', ' ')}", "pose")
@@ -125,14 +121,11 @@ def _summarize(experiments: dict, summaries: dict, semantic_map: SemanticMap, ba
         **summaries,
         "stereo_matching": matching_rates(from_images),
         "median_relative_range_error_percent": {
-            key: 100.0 * float(np.median(errors)) if len(errors) else None for key, errors in ranges.items()
+            key: 100.0 * median(errors) if len(errors) else None for key, errors in ranges.items()
         },
         "objects_below_4_m": {key: len(errors) for key, errors in ranges.items()},
-        "incorrect_poses": {
-            "median_wrong_pairs": float(np.median(wrong)) if wrong else None,
-            "median_used_pairs": float(np.median(used)) if used else None,
-        },
-        "seconds_per_pose": float(np.median([one.seconds for one in from_images])),
+        "incorrect_poses": {"median_wrong_pairs": median(wrong), "median_used_pairs": median(used)},
+        "seconds_per_pose": median([one.seconds for one in from_images]),
     }
 
 
@@ -163,6 +156,12 @@ def pose_columns(true_pose: Sequence[float], found: Localization, judged: PoseOu
         "reason": found.reason or "",
         "used_pairs": len(found.used_pairs),
     }
+
+
+def paper_localizer(recording: StereoRecording, semantic_map: SemanticMap, detector, **options) -> SemanticLocalizer:
+    """Return the paper's method for a recording, with other options where they are given."""
+    options = {"image_size": (recording.width, recording.height), "reject_implausible": False, **options}
+    return SemanticLocalizer(recording.rig, semantic_map, detector, **options)
 
 
 def exact_detections(objects: Sequence[TrueObject], image: np.ndarray) -> tuple[list[Detection], list[int]]:
@@ -248,23 +247,25 @@ def range_errors(
 ) -> np.ndarray:
     """Return relative errors `(n,)` of the horizontal distances to the objects' centroids on the map, below 4 m.
 
-    |rho - rho_true| / rho_true for every right match; infinite without a distance. distance: "box_centre" (of results
-    that were so localized) or "disparity". Source: paper 2, section 2.4.
+    |rho - rho_true| / rho_true for every right match; infinite without a distance. distance: "box_centre", "disparity".
+    Source: paper 2, section 2.4.
     """
     errors = []
     for one in results:
-        for match, placed in zip(one.localization.matches, one.localization.objects, strict=True):
+        found = one.localization
+        for match, placed in zip(found.matches, found.objects, strict=True):
             number = one.upper_identity[placed.upper]
             if number == NO_OBJECT or one.lower_identity[placed.lower] != number:
                 continue
-            true = float(np.linalg.norm(semantic_map.positions[number] - one.pair.pose[:2]))
-            if true >= MAX_RANGE:
-                continue
+            true, measured = float(np.linalg.norm(semantic_map.positions[number] - one.pair.pose[:2])), np.inf
+            boxes = found.upper_detections[placed.upper].box, found.lower_detections[placed.lower].box
+            rays = [pixel_to_direction(box_centre(box), *one.size) for box in boxes]
             if distance == "disparity":
-                found = disparity_distance(match, *one.size, baseline).horizontal_range
-            else:
-                found = float(np.linalg.norm(placed.position[:2]))
-            errors.append(np.inf if np.isnan(found) else abs(found - true) / true)
+                measured = np.nan_to_num(disparity_distance(match, *one.size, baseline).horizontal_range, nan=np.inf)
+            elif triangulation_outcome(*rays) == OK:
+                measured = float(np.linalg.norm(object_position(*rays, baseline)[:2]))
+            if true < MAX_RANGE:
+                errors.append(abs(measured - true) / true)
     return np.array(errors)
 
 
@@ -310,7 +311,10 @@ def compare(pair: RolledPair) -> tuple[bool, float, float]:
     angle = 2 * np.pi * columns / width
     if straight.pose is None or rolled.pose is None:
         return False, np.nan, np.nan
-    before, after = _directions(straight), _directions(rolled)
+    before, after = (
+        {landmark: np.arctan2(one.observations[i].y, one.observations[i].x) for i, landmark in one.used_pairs}
+        for one in (straight, rolled)
+    )
     agree = before.keys() == after.keys() and all(
         abs(wrap_angle(after[landmark] - before[landmark] + angle)) < SAME_DIRECTION for landmark in before
     )
@@ -322,20 +326,13 @@ def turn_summary(pairs: Sequence[RolledPair]) -> dict:
     """Return how many of many pairs agree, and how far the pose of those moved and turned."""
     agreeing = np.array([(metres, radians) for agree, metres, radians in map(compare, pairs) if agree]).reshape(-1, 2)
     moved, turned = agreeing[:, 0], np.rad2deg(agreeing[:, 1])
-    found = len(agreeing) > 0
     return {
         "columns": sorted({pair.columns for pair in pairs}),
         "n": len(pairs),
         "associations_agree": len(agreeing),
-        "median_moved_m": float(np.median(moved)) if found else None,
-        "greatest_moved_m": float(moved.max()) if found else None,
+        "median_moved_m": median(moved),
+        "greatest_moved_m": float(moved.max()) if len(moved) else None,
         "within_0.10_m": int((moved <= 0.10).sum()),
-        "median_turned_deg": float(np.median(turned)) if found else None,
-        "greatest_turned_deg": float(turned.max()) if found else None,
+        "median_turned_deg": median(turned),
+        "greatest_turned_deg": float(turned.max()) if len(turned) else None,
     }
-
-
-def _directions(found: Localization) -> dict[int, float]:
-    """Azimuth, radians, of the observation that was taken for each landmark."""
-    seen = found.observations
-    return {landmark: float(np.arctan2(seen[i].y, seen[i].x)) for i, landmark in found.used_pairs}

@@ -63,9 +63,8 @@ def pose_errors(pose: Pose2D | None, true_pose: Sequence[float]) -> tuple[float,
 def outcome(localization: Localization, true_pose: Sequence[float], true_landmarks: Sequence[int]) -> PoseOutcome:
     """Judge one localization against [x, y, theta], and the landmark that each observation shows (or `NO_OBJECT`).
 
-    unable: no pose, or fewer than two pairs used. correct: every used pair is right, and the errors in x and in y are
-    at most 2 m each. incorrect: everything else. Table 2 calls unable only "one set or fewer used"; a fit that fails
-    with more pairs is unable here as well, since it has no error. Source: paper 2, table 2.
+    Table 2 calls unable only "one set or fewer used"; a fit that fails with more pairs is unable here as well, since
+    it has no error. Source: paper 2, table 2.
     """
     wrong = wrong_pairs(localization, true_landmarks)
     if localization.status != OK or len(localization.used_pairs) < MIN_PAIRS:
@@ -96,9 +95,8 @@ def _overlaps(detections: Sequence[Detection], objects: Sequence[TrueObject], bo
 def identify_detections(detections: Sequence[Detection], objects: Sequence[TrueObject], width: int) -> tuple[int, ...]:
     """Return the number of the object that each detection shows, or `NO_OBJECT`. width: of the panorama, pixels.
 
-    A detection shows an object of its class whose box it overlaps with IoU >= 0.5; each object is shown once, by the
-    detection that overlaps it most. An object half hidden has two boxes, around what is seen of it and around all of
-    it: the greater overlap counts. Source: paper 2, section 3 (where people judged it).
+    Each object is shown once, by the detection of its class that overlaps it most. An object half hidden has two boxes,
+    around what is seen of it and around all of it: the greater overlap counts. Source: paper 2, section 3 (by people).
     """
     found = [NO_OBJECT] * len(detections)
     overlap = np.maximum(*(_overlaps(detections, objects, f"{box}_box", width) for box in ("visible", "unoccluded")))
@@ -144,10 +142,7 @@ def match_detections(
 def true_landmarks_of(
     found: Localization, upper_shows: Sequence[int], lower_shows: Sequence[int], n_landmarks: int
 ) -> tuple[int, ...]:
-    """Return for every observation the landmark that both its detections show, or `NO_OBJECT`: landmark k is object k.
-
-    upper_shows, lower_shows: of the detections of each image (`identify_detections`).
-    """
+    """Return for every observation the landmark (object k is landmark k) that both its detections show, or -1."""
     true = [NO_OBJECT] * len(found.observations)
     for one in found.objects:
         shown = upper_shows[one.upper]
@@ -178,3 +173,8 @@ def statistics_of(errors: np.ndarray, **statistics) -> dict[str, float | None]:
         for name, reduce in statistics.items()
         for column, unit in enumerate(PoseOutcome._fields[1:])
     }
+
+
+def median(values: Sequence[float]) -> float | None:
+    """Return the median; None of nothing."""
+    return float(np.median(values)) if len(values) else None

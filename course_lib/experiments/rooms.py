@@ -67,10 +67,7 @@ def run(
             raise ValueError(f"--tilts must be between 0 and {MAX_TILT_DEG:g} degrees; got {tilt:g}")
     view_poses = poses if view_poses is None else view_poses
     if views < 1 or not 1 <= view_poses <= poses:
-        raise ValueError(
-            f"--views must be at least 1, and --view-poses between 1 and --poses ({poses}); "
-            f"got {views} and {view_poses}"
-        )
+        raise ValueError(f"--views must be 1 at least, --view-poses 1 to {poses} (--poses); got {views}, {view_poses}")
     if "consistent" not in association and (views > 1 or ablation):
         raise ValueError("--views above 1 and --ablation are of the consistent matcher: name it with --association")
 
@@ -78,13 +75,13 @@ def run(
         return runner.rows(function, [{"seed": seed, "network": network, **common} for seed in seeds], name, "room")
 
     rooms = rows(observe_room, "rooms", poses=poses, tilt_deg=None)
-    judged = list(judged_poses(rooms, METHODS))
+    judged = list(judged_poses(rooms, rooms, METHODS))
     result = rooms_summary(rooms, judged)
     further = rows(observe_views, "views", poses=view_poses, views=views) if views > 1 else None
     result["answers"] = answers_summary(rooms, association, further, ablation, runner.bar("matching", "room"))
     for tilt in tilts:
         tilted = rows(observe_room, "rooms_tilted", poses=poses, tilt_deg=tilt)
-        both = rooms_summary(tilted, list(judged_poses(tilted, METHODS)))["both"]
+        both = rooms_summary(tilted, list(judged_poses(tilted, tilted, METHODS)))["both"]
         result.setdefault("tilts", {})[f"{tilt:g}"] = both
     text = f"{tables(result)}\n\n{answer_tables(result['answers'])}"
     text += "\n\n" + tilt_table(result["tilts"]) if tilts else ""
@@ -134,10 +131,9 @@ def rates_and_errors(judged: Sequence[JudgedPose]) -> dict:
 
 
 def wrong_pair_causes(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> dict:
-    """The wrong pairs of the paper's method by source: how many poses have one, and between what they confuse.
+    """The wrong pairs of the paper's method by source: how many poses have one, and what was taken for its like.
 
-    look_alikes: an object of the look-alike class was taken for another of them. others: two other objects of one
-    class. nothing: a detection of nothing, or of two objects at once.
+    nothing: a detection of nothing, or of two objects at once.
     """
     alike = {room["seed"]: room["look_alike"]["label"] for room in rooms}
     causes = {source: {"poses": 0, "look_alikes": 0, "others": 0, "nothing": 0} for source in SOURCES}
@@ -202,17 +198,15 @@ def tilt_table(tilts: dict) -> str:
 
 
 def _behind(summary: dict) -> list[str]:
-    detector, lines = summary["detector"], []
-    if detector["precision"] is not None and detector["recall"] is not None:
-        lines.append(
-            f"Detector on these photographs: precision {detector['precision']:.3f}, recall {detector['recall']:.3f} "
-            f"({detector['objects']} objects)"
-        )
-    for source, found in summary["wrong_pairs"].items():
-        lines.append(
-            f"Wrong pairs from {WORDS[source]}, in {found['poses']} poses: {found['look_alikes']} between look-alikes, "
-            f"{found['others']} between other objects of one class, {found['nothing']} with a detection of no object"
-        )
+    precision, recall = (summary["detector"][name] for name in ("precision", "recall"))
+    lines, n = [], summary["detector"]["objects"]
+    if precision is not None and recall is not None:
+        lines.append(f"Detector on these photographs: precision {precision:.3f}, recall {recall:.3f} ({n} objects)")
+    lines += [
+        f"Wrong pairs from {WORDS[source]}, in {found['poses']} poses: {found['look_alikes']} between look-alikes, "
+        f"{found['others']} between other objects of one class, {found['nothing']} with a detection of no object"
+        for source, found in summary["wrong_pairs"].items()
+    ]
     return [*lines, f"{summary['seconds_per_pose']:.2f} s a pose (median), from two images in memory"]
 
 

@@ -7,6 +7,7 @@ again. So it has recovered with the first good pair, by construction.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from course_lib.files import temporary_folder
 from course_lib.simulation.room.look_alike_recording import WalkModel, photograph_walks, surveyed_room
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.pose.localization import OK
+from course_lib.spherical_stereo.pose.localization import OK, Localization
 
 GATE = Gate(MAX_ERROR_M, MAX_TURN_DEG)
 PERIOD = 1.0  # s between pairs; chosen: a few decimetres of a slow walk
@@ -58,34 +59,6 @@ SPOILS: dict[str, Spoil] = {
 LENGTHS = dict.fromkeys(("dropped", *SPOILS), 1)  # how many pairs one after the other each trouble lasts
 
 
-class RememberedAnswers:
-    """A `SemanticLocalizer` that is asked once for each pair of images: arrays that are the same objects."""
-
-    def __init__(self, localizer: SemanticLocalizer) -> None:
-        self._localizer, self._answers = localizer, {}
-
-    def localize(self, upper: np.ndarray, lower: np.ndarray):
-        key = id(upper), id(lower)
-        if key not in self._answers:
-            # The images are kept with the answer, so that no other array can come to have their identity.
-            self._answers[key] = upper, lower, self._localizer.localize(upper, lower)
-        return self._answers[key][2]
-
-
-def watched_pairs(localizer, arrivals: Sequence[Arrival], true_poses: np.ndarray) -> list[dict]:
-    """What became of every pair that was due: outcome, whether a pose was given, its errors (None without one)."""
-    rig, frames = GuardedRig(localizer, PERIOD), []
-    for arrival, true in zip(arrivals, true_poses, strict=True):
-        watched = None if arrival.image is None else rig.localize(*arrival.image, arrival.time)
-        outcome = NO_IMAGE if watched is None else watched.outcome
-        frame = {"outcome": outcome, "confident": outcome == OK, "position_m": None, "rotation_deg": None}
-        if outcome == OK:
-            dx, dy, frame["rotation_deg"] = pose_errors(watched.localization.pose, true)
-            frame["position_m"] = float(np.hypot(dx, dy))
-        frames.append(frame)
-    return frames
-
-
 def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float]) -> dict:
     """Return `troubles_of` the localizer, with a network of a folder, on a walk through a seed's room."""
     room, semantic_map = surveyed_room(seed, MODELS)
@@ -100,10 +73,27 @@ def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float])
 def walk_trouble(
     localizer: SemanticLocalizer, pairs: Sequence[Pair], true_poses: np.ndarray, seed: int, shares: Sequence[float]
 ) -> dict:
-    """`room_trouble` of a walk that was photographed."""
-    remembering, times = RememberedAnswers(localizer), PERIOD * np.arange(len(pairs))
+    """`room_trouble` of a walk that was photographed; the localizer is asked once for each pair of arrays."""
+    answers = {}
+
+    def localize(upper: np.ndarray, lower: np.ndarray) -> Localization:
+        key = id(upper), id(lower)
+        if key not in answers:
+            # The images are kept with the answer, so that no other array can come to have their identity.
+            answers[key] = upper, lower, localizer.localize(upper, lower)
+        return answers[key][2]
 
     def run(arrivals: Sequence[Arrival]) -> list[dict]:
-        return watched_pairs(remembering, arrivals, true_poses)
+        """What became of every pair that was due: outcome, whether a pose was given, its errors (None without one)."""
+        rig, frames = GuardedRig(SimpleNamespace(localize=localize), PERIOD), []
+        for arrival, true in zip(arrivals, true_poses, strict=True):
+            watched = None if arrival.image is None else rig.localize(*arrival.image, arrival.time)
+            outcome = NO_IMAGE if watched is None else watched.outcome
+            frame = {"outcome": outcome, "confident": outcome == OK, "position_m": None, "rotation_deg": None}
+            if outcome == OK:
+                dx, dy, frame["rotation_deg"] = pose_errors(watched.localization.pose, true)
+                frame["position_m"] = float(np.hypot(dx, dy))
+            frames.append(frame)
+        return frames
 
-    return troubles_of(run, LENGTHS, SPOILS, pairs, times, seed, shares)
+    return troubles_of(run, LENGTHS, SPOILS, pairs, PERIOD * np.arange(len(pairs)), seed, shares)

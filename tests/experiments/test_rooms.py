@@ -52,6 +52,10 @@ def record(seed=7, poses=None):
     }
 
 
+def judged(rooms):
+    return list(judged_poses(rooms, rooms, METHODS))
+
+
 def test_a_record_gives_its_map_and_observations_back_grey_ones_too():
     semantic_map = stored_map(record())
     assert semantic_map.labels == ("sofa", "sofa", "table")
@@ -64,7 +68,7 @@ def test_a_record_gives_its_map_and_observations_back_grey_ones_too():
 
 def test_poses_are_judged_by_the_truth_of_the_record():
     right, wrong = (
-        [one for one in judged_poses([record(poses=[entry(shown=shown)])], METHODS) if one.method != "as_printed"]
+        [one for one in judged([record(poses=[entry(shown=shown)])]) if one.method != "as_printed"]
         for shown in ((0, 1, 2), (1, 0, 2))
     )
     assert {one.outcome.kind for one in right} == {"correct"}
@@ -77,13 +81,13 @@ def test_poses_are_judged_by_the_truth_of_the_record():
 
 def test_as_printed_the_distance_term_prefers_what_is_too_near():
     """All stand where the map has them, and yet the cheapest pair is an object near the centroid with one far off."""
-    outcomes = {one.method: one.outcome.kind for one in judged_poses([record(poses=[entry()])], METHODS)}
+    outcomes = {one.method: one.outcome.kind for one in judged([record(poses=[entry()])])}
     assert outcomes["paper"] == "correct" != outcomes["as_printed"]
 
 
 def test_the_summary_counts_rooms_look_alikes_and_what_was_confused():
     rooms = [record(7), record(8, [entry(shown=(1, 0, -1)), entry() | {"experiment": 2}])]
-    found = rooms_summary(rooms, list(judged_poses(rooms, METHODS)))
+    found = rooms_summary(rooms, judged(rooms))
     assert (found["rooms"], found["poses_a_room_and_height"], found["look_alikes"]) == (2, 1, {"sofa": [2, 2]})
     assert found["both"]["images"]["paper"]["correct_percent"] == 75.0
     assert found["experiment_1"]["images"]["paper"]["correct_percent"] == 50.0
@@ -93,12 +97,12 @@ def test_the_summary_counts_rooms_look_alikes_and_what_was_confused():
 
 
 def test_rooms_that_differ_widen_the_interval_and_rooms_that_agree_do_not():
-    judged = [
+    poses = [
         JudgedPose(seed, 1, str(k), "images", "paper", (0, 0, 0), None, PoseOutcome(kind, 0.1, 0.1, 1.0), ())
         for seed in range(10)
         for k, kind in enumerate(["correct" if seed < 5 else "incorrect"] * 20)
     ]
-    found = rates_and_errors(judged)
+    found = rates_and_errors(poses)
     over_poses, over_rooms = (np.ptp(found[f"correct_{which}_percent"]) for which in ("wilson", "rooms"))
     assert over_rooms > 3 * over_poses
 
@@ -181,12 +185,12 @@ def test_judged_from_its_record_a_pose_is_what_the_localizer_said(room, monkeypa
     monkeypatch.setattr(observed_rooms, "localize_pair", note)
     monkeypatch.setattr(observed_rooms, "loaded", lambda network: Nothing())
     small = observe_room(10_211, 1, (), None, TINY)
-    judged = [one for one in judged_poses([json.loads(json.dumps(small))], METHODS) if one.method == "paper"]
-    assert len(judged) == len(direct) == 4
-    for one, said in zip(judged, direct.values(), strict=True):
+    found = [one for one in judged([json.loads(json.dumps(small))]) if one.method == "paper"]
+    assert len(found) == len(direct) == 4
+    for one, said in zip(found, direct.values(), strict=True):
         assert one.outcome.kind == said.outcome.kind
         if said.localization.pose is not None:
             np.testing.assert_allclose(one.localization.pose, said.localization.pose, atol=1e-9)
             np.testing.assert_allclose(one.localization.covariance, said.localization.covariance)
-    assert {one.outcome.kind for one in judged if one.source == "images"} == {"unable"}
-    assert any(one.localization.pose is not None for one in judged if one.source == "exact_boxes")
+    assert {one.outcome.kind for one in found if one.source == "images"} == {"unable"}
+    assert any(one.localization.pose is not None for one in found if one.source == "exact_boxes")
