@@ -117,8 +117,8 @@ def look_around(
         if is_known(estimate) or views == VIEWS:
             return estimate, states[-1], views
         pose = states[-1, [0, 1, 5]] + [0.0, 0.0, VIEW_TURN]
-        told = odometry((FRAMES - 1) * STEP, (FRAMES - 1) * TURN + VIEW_TURN, rng)
-        starts = [carried_on(start, *told) for start in starts]
+        ahead, turn = odometry((FRAMES - 1) * STEP, (FRAMES - 1) * TURN + VIEW_TURN, rng)
+        starts = [Pose2D(*map(float, one.apply([ahead, 0.0])), float(wrap_angle(one.theta + turn))) for one in starts]
 
 
 def is_known(estimate: AnnealedEstimate) -> bool:
@@ -131,11 +131,6 @@ def odometry(ahead: float, turn: float, rng: Generator) -> tuple[float, float]:
     """What wheels tell of a motion: metres ahead and radians counterclockwise, each with noise of `ODOMETRY_SIGMA`."""
     share, least = ODOMETRY_SIGMA
     return ahead * (1.0 + share * rng.standard_normal()), turn + np.hypot(share * turn, least) * rng.standard_normal()
-
-
-def carried_on(start: Pose2D, ahead: float, turn: float) -> Pose2D:
-    """A pose after so many metres ahead, then so many radians on the spot."""
-    return Pose2D(*map(float, start.apply(np.array([ahead, 0.0]))), float(wrap_angle(start.theta + turn)))
 
 
 def best_start(renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence, seed: int) -> AnnealedEstimate:

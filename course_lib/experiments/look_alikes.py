@@ -110,8 +110,8 @@ def answers_of_sequences(
 ) -> list[Answer]:
     """Follow every sequence of views (`observe_views`) with odometry and without, and judge the last answer.
 
-    thinned: without `LEFT_OUT` of all observations, after one view, after two, and so on. Where one view tells nearly
-    everything, more cannot tell more: this is what they are worth where it does not.
+    thinned: without `LEFT_OUT` of all observations, after one view, after two, and so on: where one view does not tell
+    nearly everything.
     """
     answers = []
     for room, further in progress(list(zip(rooms, views, strict=True))):
@@ -122,14 +122,12 @@ def answers_of_sequences(
             pose = first[where[1:]]
             poses = np.array([pose["pose"], *(view["pose"] for view in entry["views"])])
             seen = [stored_observations(one) for one in (pose["sources"]["images"], *entry["views"])]
-            if not thinned:
-                answers += followed(where, semantic_map, poses, seen, number)
-                continue
             rng = np.random.default_rng([THINNING_STREAM, room["seed"], number])
-            seen = [[one for one in view if rng.random() >= LEFT_OUT] for view in seen]
-            for n in range(1, len(seen) + 1):
-                for one in followed(where, semantic_map, poses[:n], seen[:n], number):
-                    answers.append(one._replace(method=f"{n}_views_{one.method}"))
+            if thinned:
+                seen = [[one for one in view if rng.random() >= LEFT_OUT] for view in seen]
+            for n in range(1 if thinned else len(seen), len(seen) + 1):
+                found = followed(where, semantic_map, poses[:n], seen[:n], number)
+                answers += [one._replace(method=f"{n}_views_{one.method}") for one in found] if thinned else found
     return answers
 
 

@@ -71,22 +71,25 @@ def run(
     if "consistent" not in association and (views > 1 or ablation):
         raise ValueError("--views above 1 and --ablation are of the consistent matcher: name it with --association")
 
-    def rows(function, name: str, **common) -> list:
+    def kept(function, name: str, **common) -> list:
         return runner.rows(function, [{"seed": seed, "network": network, **common} for seed in seeds], name, "room")
 
-    rooms = rows(observe_room, "rooms", poses=poses, tilt_deg=None)
+    rooms = kept(observe_room, "rooms", poses=poses, tilt_deg=None)
     judged = list(judged_poses(rooms, rooms, METHODS))
     result = rooms_summary(rooms, judged)
-    further = rows(observe_views, "views", poses=view_poses, views=views) if views > 1 else None
+    further = kept(observe_views, "views", poses=view_poses, views=views) if views > 1 else None
     result["answers"] = answers_summary(rooms, association, further, ablation, runner.bar("matching", "room"))
     for tilt in tilts:
-        tilted = rows(observe_room, "rooms_tilted", poses=poses, tilt_deg=tilt)
+        tilted = kept(observe_room, "rooms_tilted", poses=poses, tilt_deg=tilt)
         both = rooms_summary(tilted, list(judged_poses(tilted, tilted, METHODS)))["both"]
         result.setdefault("tilts", {})[f"{tilt:g}"] = both
     text = f"{tables(result)}\n\n{answer_tables(result['answers'])}"
     text += "\n\n" + tilt_table(result["tilts"]) if tilts else ""
-    files, curve = {"rooms.json": (result, pose_rows(judged))}, result["answers"].get("risk_coverage")
-    return Outcome(result, text, files, "risk_coverage" if curve else "", curve)
+    names, curve = ("seed", "experiment", "pose", "source", "method"), result["answers"].get("risk_coverage")
+    rows = [
+        dict(zip(names, one[:5], strict=True)) | pose_columns(one.pose, one.localization, one.outcome) for one in judged
+    ]
+    return Outcome(result, text, {"rooms.json": (result, rows)}, "risk_coverage" if curve else "", curve)
 
 
 def rooms_summary(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> dict:
@@ -146,21 +149,17 @@ def wrong_pair_causes(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> di
     return causes
 
 
-def pose_rows(judged: Sequence[JudgedPose]) -> list[dict]:
-    """A row for the CSV for every judged pose."""
-    names = ("seed", "experiment", "pose", "source", "method")
-    return [
-        dict(zip(names, one[:5], strict=True)) | pose_columns(one.pose, one.localization, one.outcome) for one in judged
-    ]
-
-
 def tables(summary: dict) -> str:
     """Everything about the rooms, the paper's numbers beside ours."""
     alike, objects, heights = summary["look_alikes"], summary["objects_a_room"], CAMERA_HEIGHTS.items()
+    # Seeds with their runs joined: 1-5, 8.
+    runs = [
+        [seed for _, seed in run] for _, run in groupby(enumerate(summary["seeds"]), key=lambda one: one[1] - one[0])
+    ]
+    seeds = ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs)
     kinds = ", ".join(f"{min(counts)} to {max(counts)} {label}s in {len(counts)}" for label, counts in alike.items())
     lines = [
-        f"{summary['rooms']} rooms (seeds {_ranges(summary['seeds'])}), "
-        f"{summary['poses_a_room_and_height']} poses at each height",
+        f"{summary['rooms']} rooms (seeds {seeds}), {summary['poses_a_room_and_height']} poses at each height",
         f"Objects a room: {objects['least']} to {objects['most']}, median {objects['median']:g}",
         f"Look-alikes: {kinds}",
         "",
@@ -179,7 +178,16 @@ def tables(summary: dict) -> str:
         means = [f"({PAPER[number][kind][f'mean_{error}']:.2f})" for error in ERRORS]
         lines += [f"Cameras at {upper:.2f} and {lower:.2f} m, {kind} poses", _row("paper", " " * 5 + _errors(means))]
         lines += _rows(summary[f"experiment_{number}"], _group, kind)
-    return "\n".join([*lines, "", *_behind(summary)])
+    precision, recall, n = (summary["detector"][name] for name in ("precision", "recall", "objects"))
+    lines.append("")
+    if precision is not None and recall is not None:
+        lines.append(f"Detector on these photographs: precision {precision:.3f}, recall {recall:.3f} ({n} objects)")
+    lines += [
+        f"Wrong pairs from {WORDS[source]}, in {found['poses']} poses: {found['look_alikes']} between look-alikes, "
+        f"{found['others']} between other objects of one class, {found['nothing']} with a detection of no object"
+        for source, found in summary["wrong_pairs"].items()
+    ]
+    return "\n".join([*lines, f"{summary['seconds_per_pose']:.2f} s a pose (median), from two images in memory"])
 
 
 def tilt_table(tilts: dict) -> str:
@@ -195,19 +203,6 @@ def tilt_table(tilts: dict) -> str:
         for tilt, by_source in tilts.items():
             lines += [f"{tilt} degrees", *_rows(by_source, _group, kind)]
     return "\n".join(lines)
-
-
-def _behind(summary: dict) -> list[str]:
-    precision, recall = (summary["detector"][name] for name in ("precision", "recall"))
-    lines, n = [], summary["detector"]["objects"]
-    if precision is not None and recall is not None:
-        lines.append(f"Detector on these photographs: precision {precision:.3f}, recall {recall:.3f} ({n} objects)")
-    lines += [
-        f"Wrong pairs from {WORDS[source]}, in {found['poses']} poses: {found['look_alikes']} between look-alikes, "
-        f"{found['others']} between other objects of one class, {found['nothing']} with a detection of no object"
-        for source, found in summary["wrong_pairs"].items()
-    ]
-    return [*lines, f"{summary['seconds_per_pose']:.2f} s a pose (median), from two images in memory"]
 
 
 def _row(name: str, cells: str) -> str:
@@ -257,9 +252,3 @@ def _group(values: dict, kind: str) -> str:
 
 def _errors(texts: Sequence[str]) -> str:
     return "{:>16}{:>16}{:>18}".format(*texts)
-
-
-def _ranges(seeds: list[int]) -> str:
-    """Seeds with their runs joined: 1-5, 8."""
-    runs = [[seed for _, seed in run] for _, run in groupby(enumerate(seeds), key=lambda one: one[1] - one[0])]
-    return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs)
