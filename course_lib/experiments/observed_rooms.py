@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.room import SOURCES, localize_pair, paper_localizer
+from course_lib.experiments.room import SOURCES, localize_pair
 from course_lib.experiments.room_evaluation import PoseOutcome, match_detections, outcome
 from course_lib.files import temporary_folder
 from course_lib.simulation.room.look_alike_recording import (
@@ -102,11 +102,12 @@ def observe_room(seed: int, poses: int, network: Sequence, tilt_deg: float | Non
 def photographed_pairs(
     room: Room, semantic_map: SemanticMap, seed: int, poses: int, models: RecordingModels, detector, **options
 ) -> Iterator[tuple[int, SemanticLocalizer, StereoPair]]:
-    """Photograph a room at both heights; yield the experiment's number, `paper_localizer`, and each pair."""
+    """Photograph a room at both heights; yield the experiment's number, the localizer, and each pair."""
     with temporary_folder() as temporary:
         for number, folder in enumerate(photograph_room(temporary, room, seed, poses, models), start=1):
             recording = read_stereo_recording(folder)
-            localizer = paper_localizer(recording, semantic_map, detector, **options)
+            options = {"reject_implausible": False} | options  # the paper's method
+            localizer = SemanticLocalizer(recording.rig, semantic_map, detector, **options)
             for pair in recording.pairs:
                 yield number, localizer, pair
 

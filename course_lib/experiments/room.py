@@ -86,7 +86,9 @@ def run(
     for name in ("experiment_1", "experiment_2"):
         recording = read_stereo_recording(folder / name)
         recording, title = replace(recording, pairs=recording.pairs[:poses]), name.replace("_", " ")
-        localizer = paper_localizer(recording, semantic_map, detector, association=matched_by)
+        # The paper's method rejects nothing.
+        options = {"association": matched_by, "reject_implausible": False}
+        localizer = SemanticLocalizer(recording.rig, semantic_map, detector, **options)
         experiments[name], summaries[name] = {}, {}
         for source, ending in zip(SOURCES, ("", "_exact_boxes"), strict=True):
             bar = runner.bar(f"{title}, {source.replace('_', ' ')}", "pose")
@@ -156,12 +158,6 @@ def pose_columns(true_pose: Sequence[float], found: Localization, judged: PoseOu
         "reason": found.reason or "",
         "used_pairs": len(found.used_pairs),
     }
-
-
-def paper_localizer(recording: StereoRecording, semantic_map: SemanticMap, detector, **options) -> SemanticLocalizer:
-    """Return the paper's method for a recording, with other options where they are given."""
-    options = {"image_size": (recording.width, recording.height), "reject_implausible": False, **options}
-    return SemanticLocalizer(recording.rig, semantic_map, detector, **options)
 
 
 def exact_detections(objects: Sequence[TrueObject], image: np.ndarray) -> tuple[list[Detection], list[int]]:
