@@ -1,7 +1,6 @@
 """Rooms that look alike: answers within half a metre and 10 degrees, wrong ones given out, and none given.
 
-Table 2 of the paper calls a pose correct when every match is right and the errors are below 2 m. Here a pose is judged
-by where it is. The paper's measure, all matches right, stands beside it.
+Here a pose is judged by where it is. The paper's measure, all matches right, stands beside it.
 """
 
 from __future__ import annotations

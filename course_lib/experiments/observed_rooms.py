@@ -1,7 +1,7 @@
 """What paper 2's method sees in generated rooms: a room a seed, poses at both heights, and views a few steps on.
 
-Photographs, detection, stereo matching and triangulation (sections 2.2 to 2.4) take long. They are done once for each
-room and kept as a record. Map matching and fit (2.5, 2.6) are done anew from the records, by every variant.
+Sections 2.2 to 2.4 take long: they are done once for each room and kept as a record. Map matching and fit (2.5, 2.6)
+are done anew from the records, by every variant.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """Run paper 2's room experiment: 20 poses at each of two heights, from images to poses; print tables 1 to 5.
 
-"images" is the whole method. "exact boxes" starts after a perfect detector and a perfect stereo matching: it tells how
-much of the error is the method's own.
+"exact boxes" starts after a perfect detector and a perfect stereo matching, to tell which error is the method's own.
 """
 
 from __future__ import annotations

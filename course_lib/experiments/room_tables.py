@@ -45,8 +45,22 @@ def tables(summary: dict) -> str:
         + ", ".join(f"{key.replace('_', ' ')} {value:.1f} %" for key, value in ranges.items() if value is not None),
         f"{summary['seconds_per_pose']:.2f} s a pose, from two images in memory",
     ]
-    if "rolled_images" in summary:
-        lines += ["", *_turns(summary["rolled_images"])]
+    rolled = summary.get("rolled_images", {})
+    if rolled:
+        first = rolled["alike"]
+        lines += [
+            "",
+            f"Images rolled by {', '.join(map(str, first['columns']))} columns: in {first['associations_agree']} of "
+            f"{first['n']} the same objects were taken for the same landmarks;",
+            "  there the pose moved, and its heading turned too much or too little, by",
+        ]
+    lines += [
+        f"  {FITS[name]:42} {turns['median_moved_m']:.3f} m and {turns['median_turned_deg']:.2f} degrees in the "
+        f"median, {turns['greatest_moved_m']:.2f} m and {turns['greatest_turned_deg']:.2f} degrees at most; "
+        f"{turns['within_0.10_m']} within 0.10 m"
+        for name, turns in rolled.items()
+        if turns["associations_agree"]
+    ]
     notes = remarks(summary)
     return "\n".join([*lines, "", *notes] if notes else lines)
 
@@ -70,24 +84,6 @@ def remarks(summary: dict) -> list[str]:
             f"{'is' if wrong < 1.5 else 'are'} wrong (medians), and the mean errors are below half of the paper's."
         )
     return sentences
-
-
-def _turns(rolled: dict) -> list[str]:
-    first = rolled["alike"]
-    lines = [
-        f"Images rolled by {', '.join(map(str, first['columns']))} columns: in {first['associations_agree']} of "
-        f"{first['n']} the same objects were taken for the same landmarks;",
-        "  there the pose moved, and its heading turned too much or too little, by",
-    ]
-    for name, words in FITS.items():
-        turns = rolled[name]
-        if turns["associations_agree"]:
-            lines.append(
-                f"  {words:42} {turns['median_moved_m']:.3f} m and {turns['median_turned_deg']:.2f} degrees in the "
-                f"median, {turns['greatest_moved_m']:.2f} m and {turns['greatest_turned_deg']:.2f} degrees at most; "
-                f"{turns['within_0.10_m']} within 0.10 m"
-            )
-    return lines
 
 
 def _source_of(key: str) -> str:

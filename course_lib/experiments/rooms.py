@@ -1,7 +1,7 @@
 """Run paper 2's room experiment in randomly generated rooms of look-alikes; print rates and errors with intervals.
 
-Poses of one room are not independent, because all of them see the same look-alikes. So beside the 95 % interval of a
-share of independent poses (Wilson's) stands one that draws whole rooms (bootstrap). Where it is wider, believe it.
+Poses of one room see the same look-alikes. So beside the 95 % interval of a share of independent poses (Wilson's)
+stands one that draws whole rooms (bootstrap). Where it is wider, believe it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """What goes wrong with pairs of panoramas, and what paper 2's method, with the library's own matcher, makes of it.
 
-The method has no memory: a good pair has the very answer that it had undisturbed, which is looked up and not computed
-again. So it has recovered with the first good pair, by construction.
+The method has no memory: a good pair has the very answer that it had undisturbed. So it has recovered with the first.
 """
 
 from __future__ import annotations
