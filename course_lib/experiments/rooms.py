@@ -67,7 +67,8 @@ def run(
             raise ValueError(f"--tilts must be between 0 and {MAX_TILT_DEG:g} degrees; got {tilt:g}")
     view_poses = poses if view_poses is None else view_poses
     if views < 1 or not 1 <= view_poses <= poses:
-        raise ValueError(f"--views must be 1 at least, --view-poses 1 to {poses} (--poses); got {views}, {view_poses}")
+        told = f"--views must be at least 1, and --view-poses between 1 and --poses ({poses})"
+        raise ValueError(f"{told}; got {views} and {view_poses}")
     if "consistent" not in association and (views > 1 or ablation):
         raise ValueError("--views above 1 and --ablation are of the consistent matcher: name it with --association")
 
