@@ -8,8 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.detection_scores import DetectionScoreError, Matching, match_image
+from course_lib.experiments.room_evaluation import Matching, match_detections
 from course_lib.spherical_stereo.recording import StereoRecording, TrueObject
+
+
+class DetectionScoreError(ValueError):
+    """Detections or objects that cannot be scored."""
 
 
 class DetectorScore(NamedTuple):
@@ -37,7 +41,7 @@ def score_detector(detector, labelled: Iterable[tuple[np.ndarray, Sequence[TrueO
     labelled: (panorama, all that can be seen on it); objects that do not count are neither hit nor false alarm.
     Raises `DetectionScoreError` when there is no object to find. Source: paper 2, section 2.2.
     """
-    matchings = [match_image(detector.detect(image), things, image.shape[1]) for image, things in labelled]
+    matchings = [match_detections(detector.detect(image), things, image.shape[1]) for image, things in labelled]
     n_objects, found = objects_in(matchings), sum(int(matching.correct.sum()) for matching in matchings)
     return DetectorScore(len(matchings), n_objects, found, sum(len(m.correct) for m in matchings) - found)
 

@@ -32,7 +32,7 @@ RUNS = {
     "corridor_seeds": "demo corridor --seeds 1-2 --frames 5",
     "corridor_dof6": "demo corridor --dof 6 --seeds 1-1 --frames 16 --methods annealed,floor",
     "room": "demo room --poses 3",
-    "room_consistent": "demo room --poses 2 --association consistent --views 2 --roll 100",
+    "room_consistent": "demo room --poses 2 --association consistent --roll 100",
     "rooms": "demo rooms --seeds 1 --poses 2 --views 2 --ablation --tilts 0.3",
     "walk": "demo walk --seed 1 --every 4 --methods annealed,floor",
     "lost": "demo lost --seeds 1-1",

@@ -94,8 +94,6 @@ def _room(parser: argparse.ArgumentParser) -> None:
     add_detector_arguments(parser)
     told = "how objects are matched to the map: greedy (the paper's), hungarian, consistent (default: greedy)"
     _text(parser, "--association", "NAME", told, "greedy")
-    told = "2: with --association consistent, also follow the two views of every place as the rig turns there"
-    _choice(parser, "--views", f"{told}, with and without odometry (default: 1)", (1, 2), 1)
     told = "also localize from the images rolled by K columns, and print how far the pose moves (default: not)"
     parser.add_argument("--roll", type=int, nargs="+", metavar="K", default=[], help=told)
 
@@ -213,16 +211,14 @@ def _check(parameters: dict) -> None:
     require_count("--particles", parameters.get("particles"), MAX_PARTICLES)
 
 
-def _network(detector: Path | None, input_size: list[int] | None, score_threshold: float | None):
-    """The detector as finished rooms know it: with a checksum of the network's files."""
-    from course_lib.experiments.observed_rooms import Network
-
+def _network(detector: Path | None, input_size: list[int] | None, score_threshold: float | None) -> list:
+    """The detector as finished rooms know it (`observed_rooms.loaded`): with a checksum of the network's files."""
     folder = (detector or data_path("detector")).absolute()
     digest = hashlib.sha256()
     for path in sorted(folder.iterdir()):
         if path.suffix in NETWORK_FILES and path.name != "scores.json":
             digest.update(path.name.encode() + path.read_bytes())
-    return Network(str(folder), digest.hexdigest()[:16], input_size, score_threshold)
+    return [str(folder), digest.hexdigest()[:16], input_size, score_threshold]
 
 
 def _write(out: Path, files: dict) -> list[str]:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from course_lib.experiments import corridor as corridor_experiment
-    from course_lib.experiments import room as room_experiment
+    from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 
 def corridor(out: Path, record: corridor_experiment.Record) -> list[str]:
@@ -54,7 +54,7 @@ def covariance(out: Path, runs: dict[str, list[dict]]) -> list[str]:
     return _save(out, {"covariance.png": covariance_figure(runs)})
 
 
-def room(out: Path, record: room_experiment.Record) -> list[str]:
+def room(out: Path, record: tuple[SemanticMap, dict]) -> list[str]:
     """All poses of both experiments from above; of one that is right and one that is wrong a figure and a scene."""
     semantic_map, results = record
     figures, scenes = {}, []

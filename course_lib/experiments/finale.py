@@ -1,48 +1,38 @@
 """Both papers in one world: panoramas find the robot in a furnished room, the depth camera makes it exact.
 
-Every seed makes a room of look-alike furniture and its two maps; the robot stands at random places. Its panoramas give
-x, y and heading (paper 2), and from there the depth filter goes on (paper 1). Where the panoramas leave several poses,
-the depth camera judges the best of them. While the filter's covariance leaves the pose open, the robot turns and looks
-again.
+Where the panoramas leave several poses, the depth camera judges the best of them. While the filter's covariance leaves
+the pose open, the robot turns and looks again.
 """
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.localizer import MAP_MARGIN, NoMeasurementWarning
 from course_lib.depth_mcl.sequence import FAR
+from course_lib.experiments.observed_rooms import MODELS, photographed_pairs
+from course_lib.experiments.room_evaluation import median
 from course_lib.experiments.runner import Outcome, Runner
-from course_lib.files import temporary_folder
 from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.paths import data_path
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.room.depth_world import (
-    CAMERA,
-    MAP,
-    PLACE,
-    STREAM,
-    DepthSurveyModel,
-    depth_caster,
-    surveyed_mesh,
-)
-from course_lib.simulation.room.look_alike_recording import RecordingModels, photograph_room, surveyed_room
-from course_lib.simulation.sensors.ray_casting import WorldCaster
+from course_lib.simulation.room import depth_world
+from course_lib.simulation.room.look_alike_recording import surveyed_room
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 from course_lib.spherical_stereo.detection.detector import YoloDetector
-from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.recording import read_stereo_recording
 
 CAMERA_HEIGHT = 1.0  # metres, of the depth camera on the robot (chosen)
 LEVEL_SIGMA = 0.005, np.deg2rad(0.3)  # metres, radians: how level the robot stands (chosen)
@@ -50,9 +40,9 @@ FRAMES = 3  # depth images of one view, the robot rolling on by a few centimetre
 STEP, TURN = 0.03, 0.02  # metres, radians a frame
 MAX_ALTERNATIVES = 3
 REACHED = 0.03, 1.0  # metres, degrees
-ON_THE_FLOOR = (0, 1, 5)  # of a state: x, y, yaw, what a semantic pose tells
 VIEWS, VIEW_TURN = 12, np.deg2rad(30.0)  # at most so many views, the robot turning so far to the next: once around
 ODOMETRY_SIGMA = 0.05, np.deg2rad(1.0)  # share of a motion; least of a turn (chosen)
+MEDIANS = {"semantic_m": 3, "position_m": 4, "rotation_deg": 2}  # of what medians are told, with their digits
 
 
 def run(runner: Runner, *, seed: int, seeds: list[int] | None, places: int, detector: Path | None) -> Outcome:
@@ -67,36 +57,30 @@ def run(runner: Runner, *, seed: int, seeds: list[int] | None, places: int, dete
 
 def finale_room(seed: int, places: int, detector: str) -> list[dict]:
     """Run both methods one after the other from so many random places of a seed's room, at the rig's first height."""
-    models = RecordingModels()
-    room, semantic_map = surveyed_room(seed, models)
-    scene_map = SceneMap(*surveyed_mesh(room, DepthSurveyModel(), np.random.default_rng([STREAM, seed, MAP])))
-    sensor = TimeOfFlightCamera(
-        DepthCamera.sr4000(), TimeOfFlightModel(), np.random.default_rng([STREAM, seed, CAMERA])
-    )
-    network, caster = YoloDetector.load(detector), depth_caster(room)
-    results = []
-    with temporary_folder() as temporary:
+
+    def generator(*stream: int) -> Generator:
+        return np.random.default_rng([depth_world.STREAM, seed, *stream])
+
+    room, semantic_map = surveyed_room(seed, MODELS)
+    survey = depth_world.surveyed_mesh(room, depth_world.DepthSurveyModel(), generator(depth_world.MAP))
+    sensor = TimeOfFlightCamera(DepthCamera.sr4000(), TimeOfFlightModel(), generator(depth_world.CAMERA))
+    caster, results = depth_world.depth_caster(room), []
+
+    def capture(state: np.ndarray, rng: Generator) -> np.ndarray:
+        return sensor.capture(caster, state, rng).depth
+
+    options = {"association": associate_consistent, "reject_implausible": True}
+    pairs = photographed_pairs(room, semantic_map, seed, 2 * places, MODELS, YoloDetector.load(detector), **options)
+    with DepthRenderer(SceneMap(*survey), DepthCamera.sr4000(far=FAR)) as renderer:
         # Two headings at each place of the paper's table; here every place is one of its own.
-        recording = read_stereo_recording(photograph_room(temporary, room, seed, 2 * places, models)[0])
-        size = (recording.width, recording.height)
-        localizer = SemanticLocalizer(
-            recording.rig, semantic_map, network, image_size=size, association=associate_consistent
-        )
-        with DepthRenderer(scene_map, DepthCamera.sr4000(far=FAR)) as renderer:
-            for k, pair in enumerate(recording.pairs[::2]):
-                rng = np.random.default_rng([STREAM, seed, PLACE, k])
-                found = localizer.localize(*pair.images())
-                results.append(one_place(found, pair.pose, renderer, sensor, caster, rng))
+        for k, (_, localizer, pair) in enumerate(islice(pairs, 0, 2 * places, 2)):
+            found = localizer.localize(*pair.images())
+            results.append(one_place(found, pair.pose, renderer, capture, generator(depth_world.PLACE, k)))
     return results
 
 
 def one_place(
-    found: Localization,
-    true_pose: np.ndarray,
-    renderer: DepthRenderer,
-    sensor: TimeOfFlightCamera,
-    caster: WorldCaster,
-    rng: np.random.Generator,
+    found: Localization, true_pose: np.ndarray, renderer: DepthRenderer, capture: Callable, rng: Generator
 ) -> dict:
     """Return what the semantic pose is worth at one place, and what the depth filter makes of it."""
     starts = starts_of(found, renderer.scene_map)
@@ -105,7 +89,7 @@ def one_place(
         result["semantic_m"] = float(np.hypot(found.pose.x - true_pose[0], found.pose.y - true_pose[1]))
     if not starts:
         return result | {"reached": False}
-    estimate, state, views = look_around(renderer, starts, true_pose, sensor, caster, rng)
+    estimate, state, views = look_around(renderer, starts, true_pose, capture, rng)
     position, rotation = pose_errors(optical_pose(estimate.state), optical_pose(state))
     degrees = float(np.rad2deg(rotation))
     return result | {
@@ -118,32 +102,23 @@ def one_place(
 
 
 def look_around(
-    renderer: DepthRenderer,
-    starts: Sequence[Pose2D],
-    true_pose: np.ndarray,
-    sensor: TimeOfFlightCamera,
-    caster: WorldCaster,
-    rng: np.random.Generator,
+    renderer: DepthRenderer, starts: Sequence[Pose2D], true_pose: np.ndarray, capture: Callable, rng: Generator
 ) -> tuple[AnnealedEstimate, np.ndarray, int]:
     """Return the first estimate that knows its pose, else the last one, the true state `(6,)` there, and the views.
 
     A view that leaves the pose open may have moved the filter along a wall: the next one starts from the panoramas
-    again, carried on by the odometer. true_pose: x, y, heading.
+    again, carried on by the odometer. capture: gives the depth image from a state, and takes a generator.
     """
-    x, y, heading = true_pose
-    views = 0
-    for _ in range(VIEWS):
-        views += 1
-        states = robot_states(np.array([x, y, heading]), rng)
-        depths = [sensor.capture(caster, state, rng).depth for state in states]
+    pose = true_pose
+    for views in range(1, VIEWS + 1):
+        states = robot_states(pose, rng)
+        depths = [capture(state, rng) for state in states]
         estimate = best_start(renderer, starts, depths, seed=int(rng.integers(2**31)))
-        if is_known(estimate):
-            break
-        x, y, heading = states[-1, [0, 1, 5]] + [0.0, 0.0, VIEW_TURN]
-        ahead, turn = (FRAMES - 1) * STEP, (FRAMES - 1) * TURN + VIEW_TURN
-        told = odometry(ahead, turn, rng)
-        starts = [carried_on(start, *told) for start in starts]
-    return estimate, states[-1], views
+        if is_known(estimate) or views == VIEWS:
+            return estimate, states[-1], views
+        pose = states[-1, [0, 1, 5]] + [0.0, 0.0, VIEW_TURN]
+        ahead, turn = odometry((FRAMES - 1) * STEP, (FRAMES - 1) * TURN + VIEW_TURN, rng)
+        starts = [Pose2D(*map(float, one.apply([ahead, 0.0])), float(wrap_angle(one.theta + turn))) for one in starts]
 
 
 def is_known(estimate: AnnealedEstimate) -> bool:
@@ -152,29 +127,16 @@ def is_known(estimate: AnnealedEstimate) -> bool:
     return estimate.status == "tracked" and position <= REACHED[0] and np.rad2deg(rotation) <= REACHED[1]
 
 
-def odometry(ahead: float, turn: float, rng: np.random.Generator) -> tuple[float, float]:
+def odometry(ahead: float, turn: float, rng: Generator) -> tuple[float, float]:
     """What wheels tell of a motion: metres ahead and radians counterclockwise, each with noise of `ODOMETRY_SIGMA`."""
     share, least = ODOMETRY_SIGMA
     return ahead * (1.0 + share * rng.standard_normal()), turn + np.hypot(share * turn, least) * rng.standard_normal()
 
 
-def carried_on(start: Pose2D, ahead: float, turn: float) -> Pose2D:
-    """A pose after so many metres ahead, then so many radians on the spot."""
-    x, y = start.apply(np.array([ahead, 0.0]))
-    return Pose2D(float(x), float(y), float(wrap_angle(start.theta + turn)))
-
-
-def best_start(
-    renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence[np.ndarray], seed: int
-) -> AnnealedEstimate:
+def best_start(renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequence, seed: int) -> AnnealedEstimate:
     """Return the last estimate of the start that explains the depth images best, by its mean raw score."""
-    best, best_score = None, -np.inf
-    for start in starts:
-        estimates = follow(renderer, start_state(start), depths, seed)
-        score = mean_score(estimates)
-        if best is None or score > best_score:
-            best, best_score = estimates[-1], -np.inf if np.isnan(score) else score
-    return best
+    runs = [follow(renderer, start_state(start), depths, seed) for start in starts]
+    return runs[int(np.argmax(np.nan_to_num([mean_score(run) for run in runs], nan=-np.inf)))][-1]
 
 
 def starts_of(found: Localization, scene_map: SceneMap) -> list[Pose2D]:
@@ -190,9 +152,7 @@ def start_state(pose: Pose2D) -> np.ndarray:
     return np.array([pose.x, pose.y, CAMERA_HEIGHT, 0.0, 0.0, pose.theta])
 
 
-def follow(
-    renderer: DepthRenderer, start: np.ndarray, depths: Sequence[np.ndarray], seed: int
-) -> list[AnnealedEstimate]:
+def follow(renderer: DepthRenderer, start: np.ndarray, depths: Sequence, seed: int) -> list[AnnealedEstimate]:
     """What the depth filter makes of the images from one start, a state `(6,)`."""
     localizer = AnnealedLocalizer(renderer, seed=seed)
     localizer.initialize(start)
@@ -205,40 +165,15 @@ def mean_score(estimates: Sequence[AnnealedEstimate]) -> float:
     return float(np.mean([estimate.score for estimate in estimates]))
 
 
-def robot_states(pose: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def robot_states(pose: np.ndarray, rng: Generator) -> np.ndarray:
     """True states `(FRAMES, 6)` of the depth camera on a robot that stands at x, y, heading and rolls on slowly."""
     x, y, heading = pose
     height, level = LEVEL_SIGMA
     tilt = level * rng.standard_normal((FRAMES, 2))
-    headings = heading + TURN * np.arange(FRAMES)
     ahead = STEP * np.arange(FRAMES)
     z = CAMERA_HEIGHT + height * rng.standard_normal(FRAMES)
+    headings = heading + TURN * np.arange(FRAMES)
     return np.column_stack([x + ahead * np.cos(headings), y + ahead * np.sin(headings), z, tilt, headings])
-
-
-def start_covariance(covariance: np.ndarray) -> np.ndarray:
-    """Return the covariance `(6, 6)` of `start_state`: a semantic pose's `(3, 3)`, and how high and level it stands."""
-    height, level = LEVEL_SIGMA
-    known = np.diag([0.0, 0.0, height**2, level**2, level**2, 0.0])
-    known[np.ix_(ON_THE_FLOOR, ON_THE_FLOOR)] = covariance
-    return known
-
-
-def joined(
-    start: np.ndarray, covariance: np.ndarray, state: np.ndarray, state_covariance: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Join two answers, each weighed by its covariance, into a state `(6,)` and its covariance: a Kalman update.
-
-        K = P_0 (P_0 + P_1)^-1        x = x_0 + K (x_1 - x_0)        P = (1 - K) P_0
-
-    start, covariance: the semantic pose. state, state_covariance: what the depth filter makes of the first image.
-    """
-    difference = state - start
-    difference[3:] = wrap_angle(difference[3:])
-    gain = covariance @ np.linalg.inv(covariance + state_covariance)
-    found = start + gain @ difference
-    found[3:] = wrap_angle(found[3:])
-    return found, (np.eye(6) - gain) @ covariance
 
 
 def summarize(places: Sequence[dict]) -> dict[str, float | None]:
@@ -251,27 +186,19 @@ def summarize(places: Sequence[dict]) -> dict[str, float | None]:
         "looked_again": sum(place.get("views", 1) > 1 for place in places),
         "left_open": sum(place.get("status") == "open" for place in places),
         "wrong_called_tracked": sum(not p["reached"] and p.get("status") == "tracked" for p in places),
-        **{f"median_{name}": _median(places, name) for name in ("semantic_m", "position_m", "rotation_deg")},
+        **{f"median_{name}": median([one[name] for one in places if name in one]) for name in MEDIANS},
     }
-
-
-def _median(places: Sequence[dict], name: str) -> float | None:
-    values = [place[name] for place in places if name in place]
-    return float(np.median(values)) if values else None
 
 
 def finale_text(result: dict) -> str:
     """Return the numbers of `summarize` in words."""
-
-    def told(value: float | None, digits: int) -> str:
-        return "-" if value is None else f"{value:.{digits}f}"
-
+    values = ((result[f"median_{name}"], digits) for name, digits in MEDIANS.items())
+    semantic, position, rotation = ("-" if value is None else f"{value:.{digits}f}" for value, digits in values)
     return (
         f"{result['reached']} of {result['places']} places reached within {REACHED[0]:g} m and {REACHED[1]:g} degree\n"
-        f"panoramas: {result['semantic_ok']} answered, median {told(result['median_semantic_m'], 3)} m; "
+        f"panoramas: {result['semantic_ok']} answered, median {semantic} m; "
         f"{result['started_from_several']} left several poses to the depth camera\n"
-        f"then the depth camera: median {told(result['median_position_m'], 4)} m, "
-        f"{told(result['median_rotation_deg'], 2)} degrees; at {result['looked_again']} places only after the robot "
-        "had turned and looked again\n"
+        f"then the depth camera: median {position} m, {rotation} degrees; at {result['looked_again']} places only "
+        "after the robot had turned and looked again\n"
         f"not reached: {result['wrong_called_tracked']} called tracked, {result['left_open']} left open"
     )

@@ -1,20 +1,20 @@
 """What paper 2's method sees in generated rooms: a room a seed, poses at both heights, and views a few steps on.
 
-Photographs, detection, stereo matching and triangulation (sections 2.2 to 2.4) take long. They are done once for each
-room and kept as a record. Map matching and fit (2.5, 2.6) are done anew from the records, by every variant.
+Sections 2.2 to 2.4 take long: they are done once for each room and kept as a record. Map matching and fit (2.5, 2.6)
+are done anew from the records, by every variant.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from functools import cache
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.detection_scores import match_image
-from course_lib.experiments.room import SOURCES, PairResult, localize_pair
+from course_lib.experiments.room import SOURCES, localize_pair
+from course_lib.experiments.room_evaluation import PoseOutcome, match_detections, outcome
 from course_lib.files import temporary_folder
 from course_lib.simulation.room.look_alike_recording import (
     RecordingModels,
@@ -29,49 +29,67 @@ from course_lib.simulation.room.scene import Room
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
+from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.recording import StereoPair, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
-
-class Network(NamedTuple):
-    """A detector as a point of `kept_rows` names it."""
-
-    folder: str
-    checksum: str  # Of the files: observations of another network are not used again
-    input_size: tuple[int, int] | None = None
-    score_threshold: float | None = None
+MODELS = RecordingModels()  # those of the reported tables
 
 
-def room_record(seed: int, poses: int, network: Sequence, tilt_deg: float | None) -> dict:
-    """Return `observe_room` of the reported models, of a rig whose lower camera is tilted by so much (None: drawn)."""
-    return observe_room(seed, poses, replace(RecordingModels(), tilt_deg=tilt_deg), _loaded(network))
+class JudgedPose(NamedTuple):
+    """One pose of one room, localized and judged."""
+
+    seed: int
+    experiment: int
+    name: str
+    source: str
+    method: str
+    pose: tuple[float, float, float]
+    localization: Localization
+    outcome: PoseOutcome
+    true_landmarks: tuple[int, ...]
 
 
-def views_record(seed: int, poses: int, network: Sequence, views: int) -> list[dict]:
-    """Return `observe_views` of the reported models."""
-    return observe_views(seed, poses, views, RecordingModels(), _loaded(network))
-
-
-def _loaded(network: Sequence) -> YoloDetector:
-    folder, checksum, size, threshold = network
-    return _load(folder, checksum, None if size is None else tuple(size), threshold)
-
-
-@cache
-def _load(folder: str, checksum: str, input_size: tuple[int, int] | None, score_threshold: float | None):
-    """The detector, loaded once in each process."""
-    options = {"input_size": input_size, "score_threshold": score_threshold}
+def loaded(network: Sequence) -> YoloDetector:
+    """Return the detector of [folder, checksum of its files, input size, score threshold]; None is the folder's own."""
+    folder, _, size, threshold = network
+    options = {"input_size": size and tuple(size), "score_threshold": threshold}
     return YoloDetector.load(folder, **{key: value for key, value in options.items() if value is not None})
 
 
-def observe_room(seed: int, poses: int, models: RecordingModels, detector) -> dict:
-    """Make a room, photograph and survey it, and note what the method sees from each pose at each height; for JSON."""
+def observe_room(seed: int, poses: int, network: Sequence, tilt_deg: float | None, models=MODELS) -> dict:
+    """Make a room, photograph and survey it, and note what the method sees from each pose at each height; for JSON.
+
+    network: as in `loaded`. tilt_deg: of the lower camera against the upper one; None: drawn.
+    """
+    models, detector = replace(models, tilt_deg=tilt_deg), loaded(network)
     room, semantic_map = surveyed_room(seed, models)
     alike, seen = room.objects[0].label, []
     for number, localizer, pair in photographed_pairs(room, semantic_map, seed, poses, models, detector):
         results = {source: localize_pair(pair, localizer, source) for source in SOURCES}
-        seen.append({"experiment": number, "name": pair.name, "pose": pair.pose.tolist()} | _seen(results))
+        sources = {
+            source: {
+                "observations": record_of_observations(one.localization.observations),
+                "true_landmarks": list(one.true_landmarks),
+            }
+            for source, one in results.items()
+        }
+        found, width = results["images"].localization, results["images"].size[0]
+        sides = (found.upper_detections, pair.upper_objects), (found.lower_detections, pair.lower_objects)
+        counted = [match_detections(*side, width) for side in sides]
+        seen.append(
+            {
+                "experiment": number,
+                "name": pair.name,
+                "pose": pair.pose.tolist(),
+                "sources": sources,
+                "objects": sum(one.n_objects for one in counted),
+                "found": sum(int(one.correct.sum()) for one in counted),
+                "detections": sum(len(one.correct) for one in counted),
+                "seconds": results["images"].seconds,
+            }
+        )
     return {
         "seed": seed,
         "look_alike": {"label": alike, "n": sum(thing.label == alike for thing in room.objects)},
@@ -82,83 +100,64 @@ def observe_room(seed: int, poses: int, models: RecordingModels, detector) -> di
 
 
 def photographed_pairs(
-    room: Room, semantic_map: SemanticMap, seed: int, poses: int, models: RecordingModels, detector
+    room: Room, semantic_map: SemanticMap, seed: int, poses: int, models: RecordingModels, detector, **options
 ) -> Iterator[tuple[int, SemanticLocalizer, StereoPair]]:
-    """Photograph a room at both heights; yield the experiment's number, the paper's localizer, and each pair."""
+    """Photograph a room at both heights; yield the experiment's number, the localizer, and each pair."""
     with temporary_folder() as temporary:
         for number, folder in enumerate(photograph_room(temporary, room, seed, poses, models), start=1):
             recording = read_stereo_recording(folder)
-            size = (recording.width, recording.height)
-            localizer = SemanticLocalizer(
-                recording.rig, semantic_map, detector, image_size=size, reject_implausible=False
-            )
+            options = {"reject_implausible": False} | options  # the paper's method
+            localizer = SemanticLocalizer(recording.rig, semantic_map, detector, **options)
             for pair in recording.pairs:
                 yield number, localizer, pair
 
 
-def _seen(results: dict[str, PairResult]) -> dict:
-    """Observations and their truth by source; how the detector did on the two images; seconds from images to pose."""
-    from_images = results["images"]
-    found, pair, width = from_images.localization, from_images.pair, from_images.size[0]
-    counted = [
-        match_image(found.upper_detections, pair.upper_objects, width),
-        match_image(found.lower_detections, pair.lower_objects, width),
-    ]
-    return {
-        "sources": {
-            source: {
-                "observations": record_of_observations(result.localization.observations),
-                "true_landmarks": list(result.true_landmarks),
-            }
-            for source, result in results.items()
-        },
-        "objects": sum(one.n_objects for one in counted),
-        "found": sum(int(one.correct.sum()) for one in counted),
-        "detections": sum(len(one.correct) for one in counted),
-        "seconds": from_images.seconds,
-    }
-
-
-def observe_views(seed: int, poses: int, views: int, models: RecordingModels, detector) -> list[dict]:
+def observe_views(seed: int, poses: int, network: Sequence, views: int) -> list[dict]:
     """Make the room of a seed anew, walk on from each of its first poses, and note what is seen there; for JSON.
 
     views: of a sequence, the first one counted, which is a pose of `observe_room` as it stands there.
     """
-    room, semantic_map = surveyed_room(seed, models)
-    sequences = []
+    detector, (room, semantic_map), sequences = loaded(network), surveyed_room(seed, MODELS), []
     with temporary_folder() as folder:
-        for k, walk in enumerate(photograph_walks(folder, room, seed, poses, views - 1, models, WalkModel())):
-            upper, lower = CAMERA_HEIGHTS[experiment_of(k)]
-            rig, size = StereoRig(round(upper - lower, 6), upper), (models.width, models.width // 2)
-            localizer = SemanticLocalizer(rig, semantic_map, detector, image_size=size, reject_implausible=False)
-            found = [localizer.localize(view.upper_image, view.lower_image) for view in walk]
-            seen = [
-                {"pose": view.pose.tolist(), "observations": record_of_observations(one.observations)}
-                for view, one in zip(walk, found, strict=True)
-            ]
+        for k, walk in enumerate(photograph_walks(folder, room, seed, poses, views - 1, MODELS, WalkModel())):
+            localizer = SemanticLocalizer(rig_of_walk(k), semantic_map, detector, reject_implausible=False)
+            seen = []
+            for view in walk:
+                found = localizer.localize(view.upper_image, view.lower_image)
+                seen.append({"pose": view.pose.tolist(), "observations": record_of_observations(found.observations)})
             sequences.append({"experiment": experiment_of(k), "name": f"{k:02d}", "views": seen})
     return sequences
 
 
-class ViewSequence(NamedTuple):
-    """Views of one room from places near each other, the first one a pose of `observe_room`."""
-
-    experiment: int
-    name: str
-    poses: np.ndarray  # `(n, 3)` [x, y, heading] where the rig really stood
-    observations: tuple[list[Observation], ...]  # What was seen from each
+def rig_of_walk(k: int) -> StereoRig:
+    """Return the rig of the walk from pose k."""
+    upper, lower = CAMERA_HEIGHTS[experiment_of(k)]
+    return StereoRig(round(upper - lower, 6), upper)
 
 
-def stored_sequences(room: dict, views: Sequence[dict]) -> list[ViewSequence]:
-    """Return the sequences of a room: its records of `observe_room` and of `observe_views` joined."""
-    first = {(pose["experiment"], pose["name"]): pose for pose in room["poses"]}
-    sequences = []
-    for entry in views:
-        pose = first[entry["experiment"], entry["name"]]
-        poses = np.array([pose["pose"], *(view["pose"] for view in entry["views"])])
-        seen = tuple(stored_observations(one) for one in (pose["sources"]["images"], *entry["views"]))
-        sequences.append(ViewSequence(entry["experiment"], entry["name"], poses, seen))
-    return sequences
+def judged_poses(
+    rooms: Iterable[dict], maps: Iterable[dict], methods: dict[str, dict], sources: Sequence[str] = SOURCES
+) -> Iterator[JudgedPose]:
+    """Localize every pose of every room's record from its observations, and judge it; by every method in turn.
+
+    maps: the record whose map each room is looked for on: its own. methods: options of `SemanticLocalizer`.
+    Source: paper 2, sections 2.5, 2.6 and table 2.
+    """
+    for room, other in zip(rooms, maps, strict=True):
+        semantic_map = stored_map(other)
+        # The observations are made: of the rig nothing is asked any more.
+        localizers = {
+            name: SemanticLocalizer(StereoRig(0.3), semantic_map, **options) for name, options in methods.items()
+        }
+        for pose, source in product(room["poses"], sources):
+            entry = pose["sources"][source]
+            seen = zip(stored_observations(entry), entry["true_landmarks"], strict=True)
+            known = [one for one in seen if one[0].label in semantic_map.labels]
+            truth = tuple(landmark for _, landmark in known)
+            for name, localizer in localizers.items():
+                found = localizer.localize_observations([one for one, _ in known])
+                where = (room["seed"], pose["experiment"], pose["name"], source, name, tuple(pose["pose"]))
+                yield JudgedPose(*where, found, outcome(found, pose["pose"], truth), truth)
 
 
 def record_of_observations(observations: Sequence[Observation]) -> list[list]:

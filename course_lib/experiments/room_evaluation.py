@@ -1,130 +1,180 @@
-"""How good is it: tables 2 to 5 of paper 2 (section 3). The paper's own numbers are in `paper_tables`.
-
-One pose is judged by `outcome`: correct, incorrect or unable to calculate, by table 2, with its absolute errors. Many
-are counted and averaged by `summary`. What a detection really shows is told by the true boxes (`identify_detections`).
-"""
+"""How good is it: tables 2 to 5 of paper 2 (section 3), and the paper's own numbers to stand beside ours."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.detection.detected_object import box_iou, canonical_label
+from course_lib.spherical_stereo.detection.detected_object import Detection, box_iou, canonical_label
 from course_lib.spherical_stereo.pose.localization import OK, Localization
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.recording import TrueObject
 
-CORRECT, INCORRECT, UNABLE = "correct", "incorrect", "unable"
+KINDS = CORRECT, INCORRECT, UNABLE = "correct", "incorrect", "unable"
 MAX_ERROR = 2.0  # m in x and in y; by table 2 exactly 2 m is correct and incorrect, here it is correct
 MIN_PAIRS = 2  # table 2: "one set or fewer used" is unable to calculate
-IDENTITY_IOU = 0.5  # overlap from which on a detection shows an object
-NO_OBJECT = -1
-"""In place of an index: the detection shows no object, or the object is on no map."""
+IOU_THRESHOLD = 0.5  # overlap from which on a detection shows an object
+MIN_VISIBLE = 0.5  # share of an object's pixels that must be seen for it to count; chosen
+MIN_HEIGHT = 30.0  # pixels at a width of 1280 that its visible box must be high to count; chosen
+NO_OBJECT = -1  # in place of an object's or a landmark's number: none is shown, or it is on no map
+ERRORS = ("mean_dx_m", "mean_dy_m", "mean_dtheta_deg", "std_dx_m", "std_dy_m", "std_dtheta_deg")
+
+
+def _rows(**rows: tuple[float, ...]) -> dict[str, dict[str, float]]:
+    return {kind: dict(zip(ERRORS, values, strict=True)) for kind, values in rows.items()}
+
+
+# Table 3, experiment 1. The text gives the mean heading error of the correct ones as 11.92 degrees, the table 11.94;
+# only the table's fits the row "All": (13 * 11.94 + 5 * 69.70) / 18 = 27.98, against 27.99 printed.
+PAPER_TABLE_3 = _rows(
+    all=(0.53, 0.62, 27.99, 0.81, 0.60, 41.85),
+    correct=(0.23, 0.44, 11.94, 0.19, 0.41, 25.42),
+    incorrect=(1.31, 1.10, 69.70, 1.19, 0.74, 47.09),
+)
+PAPER_TABLE_4 = _rows(  # experiment 2
+    all=(0.59, 0.31, 14.75, 0.98, 0.29, 25.34),
+    correct=(0.19, 0.20, 2.79, 0.19, 0.21, 1.82),
+    incorrect=(1.65, 0.59, 45.85, 1.34, 0.29, 31.05),
+)
+# Table 5, percent of 20 poses, experiment by experiment: 13 correct, 5 incorrect, 2 unable.
+PAPER_TABLE_5 = {k: {"correct_percent": 65.0, "incorrect_percent": 25.0, "unable_percent": 10.0} for k in (1, 2)}
 
 
 class PoseOutcome(NamedTuple):
-    """One pose judged by table 2."""
+    """One pose judged by table 2: its kind, and absolute errors (m, m, degrees [0, 180]), which are NaN when unable."""
 
-    kind: str  # "correct", "incorrect" or "unable"
-    dx_m: float  # |x - true x|, metres; NaN when unable, as are the others
-    dy_m: float  # |y - true y|, metres
-    dtheta_deg: float  # |theta - true theta| on the circle, degrees [0, 180]
+    kind: str
+    dx_m: float
+    dy_m: float
+    dtheta_deg: float
+
+
+def pose_errors(pose: Pose2D | None, true_pose: Sequence[float]) -> tuple[float, float, float]:
+    """|dx|, |dy| in metres and |dtheta| in degrees; NaN without a pose."""
+    if pose is None:
+        return (np.nan,) * 3
+    dx, dy = (abs(float(a - b)) for a, b in zip(pose[:2], true_pose[:2], strict=True))
+    return dx, dy, abs(float(np.degrees(wrap_angle(pose.theta - true_pose[2]))))
 
 
 def outcome(localization: Localization, true_pose: Sequence[float], true_landmarks: Sequence[int]) -> PoseOutcome:
-    """Judge one localization by table 2; its errors are absolute differences.
+    """Judge one localization against [x, y, theta], and the landmark that each observation shows (or `NO_OBJECT`).
 
-    unable: no pose, or fewer than two pairs used. correct: every used pair joins an observation to the landmark it
-    really shows, and the errors in x and in y are at most 2 m each. incorrect: everything else. Table 2 calls unable
-    only "one set or fewer used"; a fit that fails with more pairs is unable here as well, since it has no error.
-
-    true_pose: [x, y, theta], metres and radians. true_landmarks: for every observation the index of its landmark, or
-    `NO_OBJECT` (`true_landmarks_of` makes it). Source: paper 2, table 2.
+    Table 2 calls unable only "one set or fewer used"; a fit that fails with more pairs is unable here as well, since
+    it has no error. Source: paper 2, table 2.
     """
     wrong = wrong_pairs(localization, true_landmarks)
     if localization.status != OK or len(localization.used_pairs) < MIN_PAIRS:
-        return PoseOutcome(UNABLE, math.nan, math.nan, math.nan)
-    dx, dy = abs(float(localization.pose.x - true_pose[0])), abs(float(localization.pose.y - true_pose[1]))
-    dtheta = abs(math.degrees(wrap_angle(localization.pose.theta - true_pose[2])))
-    return PoseOutcome(CORRECT if not wrong and max(dx, dy) <= MAX_ERROR else INCORRECT, dx, dy, dtheta)
+        return PoseOutcome(UNABLE, *pose_errors(None, true_pose))
+    errors = pose_errors(localization.pose, true_pose)
+    return PoseOutcome(CORRECT if not wrong and max(errors[:2]) <= MAX_ERROR else INCORRECT, *errors)
 
 
 def wrong_pairs(localization: Localization, true_landmarks: Sequence[int]) -> tuple[tuple[int, int, int], ...]:
     """Return the used pairs that are wrong: (observation, landmark it was given, landmark it shows or `NO_OBJECT`)."""
-    if len(true_landmarks) != len(localization.observations):
-        raise ValueError(
-            f"one true landmark an observation is needed; got {len(true_landmarks)} for "
-            f"{len(localization.observations)} observations"
-        )
     return tuple((i, j, int(true_landmarks[i])) for i, j in localization.used_pairs if int(true_landmarks[i]) != j)
 
 
-def identify_detections(
-    detections: Sequence, true_objects: Sequence[tuple[str, Sequence[float], Sequence[float]]], width: float
-) -> tuple[int, ...]:
-    """Return which true object each detection shows: its index, or `NO_OBJECT`.
+def counts_as_object(thing: TrueObject, width: int) -> bool:
+    """Whether an object is one to be found: half of it visible, its visible box 30 pixels high at a width of 1280."""
+    _, v_min, _, v_max = thing.visible_box
+    return thing.visible_fraction >= MIN_VISIBLE and (v_max - v_min) * 1280 / width >= MIN_HEIGHT
 
-    A detection shows an object of its class whose box it overlaps with IoU >= 0.5, on the circle of columns; each
-    object is shown once, by the detection that overlaps it most. An object half hidden has two boxes, around what is
-    seen of it and around all of it, and a detector may give either: the greater overlap counts. true_objects: (label,
-    visible box, unoccluded box). width: of the panorama, pixels. Source: paper 2, section 3 (where people judged it).
+
+def _overlaps(detections: Sequence[Detection], objects: Sequence[TrueObject], boxes: str, width: int) -> np.ndarray:
+    """IoU `(n, m)` with the visible or the unoccluded boxes of the objects, 0 where the classes differ."""
+    found, true = [one.box for one in detections], [getattr(thing, boxes) for thing in objects]
+    overlap = box_iou(found, true, width) if found and true else np.zeros((len(found), len(true)))
+    labels = [np.array([canonical_label(one.label) for one in side], object) for side in (detections, objects)]
+    return np.where(labels[0][:, None] == labels[1], overlap, 0.0)
+
+
+def identify_detections(detections: Sequence[Detection], objects: Sequence[TrueObject], width: int) -> tuple[int, ...]:
+    """Return the number of the object that each detection shows, or `NO_OBJECT`. width: of the panorama, pixels.
+
+    Each object is shown once, by the detection of its class that overlaps it most. An object half hidden has two boxes,
+    around what is seen of it and around all of it: the greater overlap counts. Source: paper 2, section 3 (by people).
     """
     found = [NO_OBJECT] * len(detections)
-    if not len(detections) or not len(true_objects):
-        return tuple(found)
-    boxes = [one.box for one in detections]
-    overlap = np.maximum(*(box_iou(boxes, [thing[k] for thing in true_objects], width) for k in (1, 2)))
-    labels = [canonical_label(thing[0]) for thing in true_objects]
-    for i, one in enumerate(detections):
-        overlap[i, [label != canonical_label(one.label) for label in labels]] = 0.0
-    while overlap.max() >= IDENTITY_IOU:
+    overlap = np.maximum(*(_overlaps(detections, objects, f"{box}_box", width) for box in ("visible", "unoccluded")))
+    while overlap.size and overlap.max() >= IOU_THRESHOLD:
         i, k = np.unravel_index(np.argmax(overlap), overlap.shape)
-        found[i] = int(k)
+        found[i] = objects[k].number
         overlap[i, :] = overlap[:, k] = 0.0
     return tuple(found)
 
 
-def true_landmarks_of(
-    localization: Localization,
-    upper_identity: Sequence[int],
-    landmark_of_object: Mapping[int, int] | Sequence[int],
-    lower_identity: Sequence[int] | None = None,
-) -> tuple[int, ...]:
-    """Return for every observation the landmark it really shows, or `NO_OBJECT`.
+class Matching(NamedTuple):
+    """What became of the k detections of one panorama that count."""
 
-    upper_identity, lower_identity: true object of each detection (`identify_detections`); an observation made from two
-    different objects shows neither. landmark_of_object: index on the map of each true object that is on it.
+    scores: np.ndarray  # `(k,)` falling
+    correct: np.ndarray  # `(k,)` bool: found an object that no better detection had found
+    n_objects: int  # Objects to be found
+
+
+def match_detections(
+    detections: Sequence[Detection], objects: Sequence[TrueObject], width: int, counts: Sequence[bool] | None = None
+) -> Matching:
+    """The detections of one panorama, best score first: each takes the free object of its class that it overlaps most.
+
+    IoU must be 0.5 at least. counts: whether each object is to be found (None: `counts_as_object`). The others are
+    ignored: what finds none, but overlaps one of these that much, is left out of the count.
+    Source: paper 2, section 2.2 (the detector); the rules are the PASCAL VOC challenge's.
     """
-    landmarks = landmark_of_object if isinstance(landmark_of_object, Mapping) else dict(enumerate(landmark_of_object))
-    true = [NO_OBJECT] * len(localization.observations)
-    for one in localization.objects:
-        if one.observation is None:
-            continue
-        shown = int(upper_identity[one.upper])
-        if lower_identity is None or int(lower_identity[one.lower]) == shown:
-            true[one.observation] = int(landmarks.get(shown, NO_OBJECT))
+    wanted = np.array([counts_as_object(one, width) for one in objects] if counts is None else counts, bool)
+    scores, overlap = np.array([one.score for one in detections]), _overlaps(detections, objects, "visible_box", width)
+    excused = (overlap[:, ~wanted] >= IOU_THRESHOLD).any(axis=1)
+    overlap[:, ~wanted] = 0.0
+    kept, correct = [], []
+    for index in np.argsort(-scores, kind="stable"):
+        is_right = bool((overlap[index] >= IOU_THRESHOLD).any())
+        if is_right:
+            overlap[:, overlap[index].argmax()] = 0.0  # taken
+        if is_right or not excused[index]:
+            kept.append(index)
+            correct.append(is_right)
+    return Matching(scores[kept], np.array(correct, bool), int(wanted.sum()))
+
+
+def true_landmarks_of(
+    found: Localization, upper_shows: Sequence[int], lower_shows: Sequence[int], n_landmarks: int
+) -> tuple[int, ...]:
+    """Return for every observation the landmark (object k is landmark k) that both its detections show, or -1."""
+    true = [NO_OBJECT] * len(found.observations)
+    for one in found.objects:
+        shown = upper_shows[one.upper]
+        if one.observation is not None and shown == lower_shows[one.lower] and shown < n_landmarks:
+            true[one.observation] = shown
     return tuple(true)
 
 
 def summary(outcomes: Sequence[PoseOutcome]) -> dict:
     """Return tables 3 to 5 of one experiment: rates, and means, standard deviations and medians of the errors.
 
-    Keys: n, correct_percent, incorrect_percent, unable_percent, and for "all" (everything but unable), "correct" and
-    "incorrect": n, mean_dx_m, mean_dy_m, mean_dtheta_deg, the same with std_ and median_; None where there is nothing
-    to average. The standard deviation is that of the *absolute* differences about their mean, with divisor n:
-    so reckoned, the paper's rows "correct" (13 poses) and "incorrect" (5) give its row "All" (18).
+    "all" is everything but unable. The standard deviation is that of the *absolute* differences about their mean, with
+    divisor n: so reckoned, the paper's rows "correct" (13 poses) and "incorrect" (5) give its row "All" (18).
     Source: paper 2, tables 3 to 5.
     """
     kinds = [one.kind for one in outcomes]
-    result: dict = {"n": len(kinds)}
-    result |= {f"{kind}_percent": 100.0 * kinds.count(kind) / len(kinds) for kind in (CORRECT, INCORRECT, UNABLE)}
+    result: dict = {"n": len(kinds)} | {f"{kind}_percent": 100.0 * kinds.count(kind) / len(kinds) for kind in KINDS}
     for name, members in (("all", (CORRECT, INCORRECT)), (CORRECT, (CORRECT,)), (INCORRECT, (INCORRECT,))):
         errors = np.array([one[1:] for one in outcomes if one.kind in members]).reshape(-1, 3)
-        group: dict = {"n": len(errors)}
-        for statistic, reduce in (("mean", np.mean), ("std", np.std), ("median", np.median)):
-            for column, unit in enumerate(PoseOutcome._fields[1:]):
-                group[f"{statistic}_{unit}"] = float(reduce(errors[:, column])) if len(errors) else None
-        result[name] = group
+        result[name] = {"n": len(errors)} | statistics_of(errors, mean=np.mean, std=np.std, median=np.median)
     return result
+
+
+def statistics_of(errors: np.ndarray, **statistics) -> dict[str, float | None]:
+    """Return every statistic of |dx|, |dy|, |dtheta| `(n, 3)` by name, such as mean_dx_m; None where n is 0."""
+    return {
+        f"{name}_{unit}": float(reduce(errors[:, column])) if len(errors) else None
+        for name, reduce in statistics.items()
+        for column, unit in enumerate(PoseOutcome._fields[1:])
+    }
+
+
+def median(values: Sequence[float]) -> float | None:
+    """Return the median; None of nothing."""
+    return float(np.median(values)) if len(values) else None

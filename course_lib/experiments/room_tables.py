@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
+from course_lib.experiments.room_evaluation import ERRORS, KINDS, PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 
 HEAD = f"{'':46} {'dx [m]':>8} {'dy [m]':>8} {'dtheta [deg]':>13}   {'std x':>6} {'std y':>6} {'std theta':>9}"
-MEANS = ("mean_dx_m", "mean_dy_m", "mean_dtheta_deg")
-COLUMNS = (*MEANS, "std_dx_m", "std_dy_m", "std_dtheta_deg")
 EXACT = "_exact_boxes"  # ends the key of the numbers from exact boxes
 WEIGHTED = "_weighted"  # in the key of the numbers from the same associations, pairs weighted by their covariance
 FITS = {"alike": "all pairs counted alike, the paper's way", "by_covariance": "pairs weighted by their covariance"}
@@ -47,29 +45,37 @@ def tables(summary: dict) -> str:
         + ", ".join(f"{key.replace('_', ' ')} {value:.1f} %" for key, value in ranges.items() if value is not None),
         f"{summary['seconds_per_pose']:.2f} s a pose, from two images in memory",
     ]
-    if "rolled_images" in summary:
-        lines += ["", *_turns(summary["rolled_images"])]
+    rolled = summary.get("rolled_images", {})
+    if rolled:
+        first = rolled["alike"]
+        lines += [
+            "",
+            f"Images rolled by {', '.join(map(str, first['columns']))} columns: in {first['associations_agree']} of "
+            f"{first['n']} the same objects were taken for the same landmarks;",
+            "  there the pose moved, and its heading turned too much or too little, by",
+        ]
+    lines += [
+        f"  {FITS[name]:42} {turns['median_moved_m']:.3f} m and {turns['median_turned_deg']:.2f} degrees in the "
+        f"median, {turns['greatest_moved_m']:.2f} m and {turns['greatest_turned_deg']:.2f} degrees at most; "
+        f"{turns['within_0.10_m']} within 0.10 m"
+        for name, turns in rolled.items()
+        if turns["associations_agree"]
+    ]
     notes = remarks(summary)
-    return "\n".join([*lines, *([""] if notes else []), *notes])
+    return "\n".join([*lines, "", *notes] if notes else lines)
 
 
 def remarks(summary: dict) -> list[str]:
     """What sets the numbers from images apart from the paper's: a sentence for each difference that is there."""
-    ours = [
-        next(values for key, values in summary[f"experiment_{number}"].items() if not key.endswith(EXACT))
-        for number in (1, 2)
-    ]
+    ours = [next(iter(summary[f"experiment_{number}"].values())) for number in (1, 2)]
     sentences = []
     if all(values["unable_percent"] <= FEW_UNABLE_PERCENT for values in ours):
         sentences.append(
             "Hardly any pose is unable here: with a dozen objects in view there are two pairs to fit, right or wrong."
         )
-    incorrect = [
-        (values["incorrect"], paper["incorrect"])
-        for values, paper in zip(ours, (PAPER_TABLE_3, PAPER_TABLE_4), strict=True)
-        if values["incorrect"]["n"]
-    ]
-    small = all(own[column] < paper[column] / 2 for own, paper in incorrect for column in MEANS)
+    both = zip(ours, (PAPER_TABLE_3, PAPER_TABLE_4), strict=True)
+    incorrect = [[one["incorrect"] for one in pair] for pair in both if pair[0]["incorrect"]["n"]]
+    small = all(own[column] < paper[column] / 2 for own, paper in incorrect for column in ERRORS[:3])
     wrong, used = (summary["incorrect_poses"][f"median_{which}_pairs"] for which in ("wrong", "used"))
     # Two look-alikes that change places make two wrong pairs.
     if incorrect and small and 1 <= wrong <= 2 and used >= MANY_PAIRS:
@@ -78,25 +84,6 @@ def remarks(summary: dict) -> list[str]:
             f"{'is' if wrong < 1.5 else 'are'} wrong (medians), and the mean errors are below half of the paper's."
         )
     return sentences
-
-
-def _turns(rolled: dict) -> list[str]:
-    first = rolled["alike"]
-    columns = ", ".join(str(k) for k in first["columns"])
-    lines = [
-        f"Images rolled by {columns} columns: in {first['associations_agree']} of {first['n']} the same objects were "
-        "taken for the same landmarks;",
-        "  there the pose moved, and its heading turned too much or too little, by",
-    ]
-    for name, words in FITS.items():
-        turns = rolled[name]
-        if turns["associations_agree"]:
-            lines.append(
-                f"  {words:42} {turns['median_moved_m']:.3f} m and {turns['median_turned_deg']:.2f} degrees in the "
-                f"median, {turns['greatest_moved_m']:.2f} m and {turns['greatest_turned_deg']:.2f} degrees at most; "
-                f"{turns['within_0.10_m']} within 0.10 m"
-            )
-    return lines
 
 
 def _source_of(key: str) -> str:
@@ -108,10 +95,9 @@ def _source_of(key: str) -> str:
 def _row(name: str, values: dict) -> str:
     if values["mean_dx_m"] is None:
         return f"{name:46} {'none':>8}"
-    x, y, theta, *deviations = (values[column] for column in COLUMNS)
+    x, y, theta, *deviations = (values[column] for column in ERRORS)
     return f"{name:46} {x:8.2f} {y:8.2f} {theta:13.2f}   " + "{:6.2f} {:6.2f} {:9.2f}".format(*deviations)
 
 
 def _rates(name: str, values: dict) -> str:
-    correct, incorrect, unable = (values[f"{kind}_percent"] for kind in ("correct", "incorrect", "unable"))
-    return f"  {name:50} {correct:7.0f} {incorrect:10.0f} {unable:7.0f}"
+    return f"  {name:50} " + "{:7.0f} {:10.0f} {:7.0f}".format(*(values[f"{kind}_percent"] for kind in KINDS))

@@ -1,32 +1,25 @@
 """What goes wrong with pairs of panoramas, and what paper 2's method, with the library's own matcher, makes of it.
 
-The method has no memory: a good pair has the very answer that it had undisturbed, which is looked up and not computed
-again. So it has recovered with the first good pair, by construction.
+The method has no memory: a good pair has the very answer that it had undisturbed. So it has recovered with the first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import SimpleNamespace
 
 import numpy as np
 
 from course_lib.beyond.guarded_stereo import NO_IMAGE, GuardedRig
 from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.experiments.look_alikes import MAX_ERROR_M, MAX_TURN_DEG, pose_errors
+from course_lib.experiments.observed_rooms import MODELS, rig_of_walk
 from course_lib.experiments.troubled_frames import Arrival, Gate, Spoil, troubles_of
 from course_lib.files import temporary_folder
-from course_lib.simulation.room.look_alike_recording import (
-    RecordingModels,
-    WalkModel,
-    experiment_of,
-    photograph_walks,
-    surveyed_room,
-)
-from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
+from course_lib.simulation.room.look_alike_recording import WalkModel, photograph_walks, surveyed_room
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.pose.localization import OK
+from course_lib.spherical_stereo.pose.localization import OK, Localization
 
 GATE = Gate(MAX_ERROR_M, MAX_TURN_DEG)
 PERIOD = 1.0  # s between pairs; chosen: a few decimetres of a slow walk
@@ -39,28 +32,11 @@ Pair = tuple[np.ndarray, np.ndarray]
 
 def one_dark(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
     """Upper or lower, drawn, shows the noise of a covered lens and a few hot pixels."""
-    images = list(pair)
-    which = int(rng.integers(2))
+    images, which = list(pair), int(rng.integers(2))
     noise = np.abs(rng.normal(0.0, DARK_NOISE, images[which].shape))
-    dark = np.minimum(noise, 255).astype(np.uint8)
-    dark[rng.random(dark.shape[:2]) < HOT_PIXELS] = 255
-    images[which] = dark
+    images[which] = np.minimum(noise, 255).astype(np.uint8)
+    images[which][rng.random(noise.shape[:2]) < HOT_PIXELS] = 255
     return images[0], images[1]
-
-
-def exchanged(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
-    """The upper camera's image as the lower one's, and the other way round."""
-    return pair[1], pair[0]
-
-
-def different_moments(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
-    """The lower image is that of the pair before: the rig has moved between the two."""
-    return pair[0], earlier[1]
-
-
-def repeated(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
-    """The pair that arrived before, once more."""
-    return before[0].copy(), before[1].copy()
 
 
 def exposure_jump(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
@@ -73,59 +49,22 @@ def exposure_jump(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Genera
 
 SPOILS: dict[str, Spoil] = {
     "one camera dark": one_dark,
-    "cameras exchanged": exchanged,
-    "different moments": different_moments,
-    "repeated": repeated,
+    "cameras exchanged": lambda pair, earlier, before, rng: (pair[1], pair[0]),
+    # The lower image is that of the pair before: the rig has moved between the two.
+    "different moments": lambda pair, earlier, before, rng: (pair[0], earlier[1]),
+    "repeated": lambda pair, earlier, before, rng: (before[0].copy(), before[1].copy()),
     "exposure jump": exposure_jump,
 }
-LENGTHS = dict.fromkeys(("dropped", *SPOILS), 1)
-"""How many pairs one after the other each trouble lasts."""
-
-
-class RememberedAnswers:
-    """A `SemanticLocalizer` that is asked once for each pair of images: arrays that are the same objects."""
-
-    def __init__(self, localizer: SemanticLocalizer) -> None:
-        self._localizer, self._answers = localizer, {}
-
-    def localize(self, upper: np.ndarray, lower: np.ndarray):
-        key = id(upper), id(lower)
-        if key not in self._answers:
-            # The images are kept with the answer, so that no other array can come to have their identity.
-            self._answers[key] = upper, lower, self._localizer.localize(upper, lower)
-        return self._answers[key][2]
-
-
-def watched_pairs(localizer, arrivals: Sequence[Arrival], true_poses: np.ndarray) -> list[dict]:
-    """What became of every pair that was due: outcome, whether a pose was given, its errors (None without one)."""
-    rig = GuardedRig(localizer, PERIOD)
-    frames = []
-    for arrival, true in zip(arrivals, true_poses, strict=True):
-        if arrival.image is None:
-            outcome, pose = NO_IMAGE, None
-        else:
-            watched = rig.localize(*arrival.image, arrival.time)
-            outcome, pose = watched.outcome, None if watched.localization is None else watched.localization.pose
-        dx, dy, turn = pose_errors(pose, true)
-        position, rotation = (None, None) if pose is None else (float(np.hypot(dx, dy)), turn)
-        errors = {"position_m": position, "rotation_deg": rotation}
-        frames.append({"outcome": outcome, "confident": outcome == OK, **errors})
-    return frames
+LENGTHS = dict.fromkeys(("dropped", *SPOILS), 1)  # how many pairs one after the other each trouble lasts
 
 
 def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float]) -> dict:
     """Return `troubles_of` the localizer, with a network of a folder, on a walk through a seed's room."""
-    models = RecordingModels()
-    room, semantic_map = surveyed_room(seed, models)
+    room, semantic_map = surveyed_room(seed, MODELS)
     with temporary_folder() as folder:
-        walk = next(photograph_walks(folder, room, seed, 1, frames, models, WalkModel()))
-    upper, lower = CAMERA_HEIGHTS[experiment_of(0)]
-    localizer = SemanticLocalizer(
-        StereoRig(round(upper - lower, 6), upper),
-        semantic_map,
-        YoloDetector.load(detector),
-        association=associate_consistent,
-    )
+        walk = next(photograph_walks(folder, room, seed, 1, frames, MODELS, WalkModel()))
+    network = YoloDetector.load(detector)
+    localizer = SemanticLocalizer(rig_of_walk(0), semantic_map, network, association=associate_consistent)
     pairs = [(view.upper_image, view.lower_image) for view in walk]
     return walk_trouble(localizer, pairs, np.array([view.pose for view in walk]), seed, shares)
 
@@ -133,10 +72,27 @@ def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float])
 def walk_trouble(
     localizer: SemanticLocalizer, pairs: Sequence[Pair], true_poses: np.ndarray, seed: int, shares: Sequence[float]
 ) -> dict:
-    """`room_trouble` of a walk that was photographed."""
-    remembering, times = RememberedAnswers(localizer), PERIOD * np.arange(len(pairs))
+    """`room_trouble` of a walk that was photographed; the localizer is asked once for each pair of arrays."""
+    answers = {}
+
+    def localize(upper: np.ndarray, lower: np.ndarray) -> Localization:
+        key = id(upper), id(lower)
+        if key not in answers:
+            # The images are kept with the answer, so that no other array can come to have their identity.
+            answers[key] = upper, lower, localizer.localize(upper, lower)
+        return answers[key][2]
 
     def run(arrivals: Sequence[Arrival]) -> list[dict]:
-        return watched_pairs(remembering, arrivals, true_poses)
+        """What became of every pair that was due: outcome, whether a pose was given, its errors (None without one)."""
+        rig, frames = GuardedRig(SimpleNamespace(localize=localize), PERIOD), []
+        for arrival, true in zip(arrivals, true_poses, strict=True):
+            watched = None if arrival.image is None else rig.localize(*arrival.image, arrival.time)
+            outcome = NO_IMAGE if watched is None else watched.outcome
+            frame = {"outcome": outcome, "confident": outcome == OK, "position_m": None, "rotation_deg": None}
+            if outcome == OK:
+                dx, dy, frame["rotation_deg"] = pose_errors(watched.localization.pose, true)
+                frame["position_m"] = float(np.hypot(dx, dy))
+            frames.append(frame)
+        return frames
 
-    return troubles_of(run, LENGTHS, SPOILS, pairs, times, seed, shares)
+    return troubles_of(run, LENGTHS, SPOILS, pairs, PERIOD * np.arange(len(pairs)), seed, shares)

@@ -145,7 +145,6 @@ def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypa
         ("corridor --data nowhere", "map.ply"),
         ("corridor --dof 6 --idealizations", "--idealizations does not go with --dof 6"),
         ("room --poses 0", "--poses must be at least 1"),
-        ("room --views 2", "--views 2 needs --association consistent"),
         ("room --data elsewhere --seed 7", "give one of the two"),
         ("room --seed 7 --detector nowhere", "no detector folder nowhere"),
         ("room --seed 7 --association psychic", "association must be one of"),

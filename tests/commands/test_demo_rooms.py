@@ -7,7 +7,7 @@ import re
 import pytest
 
 from course_lib.cli import main
-from course_lib.experiments import observed_rooms
+from course_lib.experiments import rooms
 from course_lib.experiments.depth_trouble import LENGTHS
 from course_lib.experiments.rooms import METHODS
 from course_lib.experiments.trouble import FRAMES, PAIRS, told
@@ -64,19 +64,18 @@ def made(monkeypatch):
     """Rooms are not photographed: the record of every asked room, one pose in four wrong; and what was asked."""
     asked = []
 
-    def note(seed, poses, models, detector):
-        asked.append((seed, poses, models.tilt_deg))
-        assert hasattr(detector, "detect")
+    def note(seed, poses, network, tilt_deg):
+        asked.append((seed, poses, tilt_deg))
         seen = [entry(shown=(1, 0, 2) if k == 3 else (0, 1, 2)) | {"experiment": 1 + k % 2} for k in range(4)]
         return record(seed, seen)
 
-    def follow(seed, poses, views, models, detector):
+    def follow(seed, poses, network, views):
         asked.append((seed, poses, f"{views} views"))
         seen = [{"pose": entry()["pose"], "observations": entry()["sources"]["images"]["observations"]}]
         return [{"experiment": 1, "name": "00", "views": seen}]
 
-    monkeypatch.setattr(observed_rooms, "observe_room", note)
-    monkeypatch.setattr(observed_rooms, "observe_views", follow)
+    monkeypatch.setattr(rooms, "observe_room", note)
+    monkeypatch.setattr(rooms, "observe_views", follow)
     return asked
 
 

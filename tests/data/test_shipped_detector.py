@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.room import localize_pair
-from course_lib.experiments.turned_rig import turn_summary, turn_the_rig, weigh_by_covariance
+from course_lib.experiments.room import localize_pair, turn_summary, turn_the_rig, weigh_by_covariance
 from course_lib.spherical_stereo.detection.darknet import check_weights, read_cfg
 from course_lib.spherical_stereo.detection.detected_object import CANONICAL_LABELS, box_iou
 from course_lib.spherical_stereo.detection.detector import YoloDetector

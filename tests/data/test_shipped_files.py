@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from course_lib.experiments.project_rooms import SEEDS
+from course_lib.lessons.project_2.rooms import SEEDS
 from course_lib.simulation.corridor.idealizations import corridor_parameters
 from course_lib.simulation.data_folder import checksums, parameter_tables
 from course_lib.simulation.room import data as room

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.project_rooms import POSES, SEEDS, project_rooms
 from course_lib.experiments.room_evaluation import NO_OBJECT
+from course_lib.lessons.project_2.rooms import POSES, SEEDS, project_rooms
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "projects"
 FILES = {name: FOLDER / f"rooms_{name}.json" for name in SEEDS}

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.room import counts_as_object
+from course_lib.experiments.room_evaluation import counts_as_object
 from course_lib.geometry import wrap_angle
 from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES

@@ -1,13 +1,15 @@
 """Answers within half a metre and 10 degrees: who is counted as what, how surely, and what a threshold buys."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
+from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.evidence import Evidence
+from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
 from course_lib.experiments.look_alikes import (
     Answer,
-    OdometryModel,
-    answers_of_evidence,
     answers_of_rooms,
     answers_of_sequences,
     answers_table,
@@ -62,11 +64,11 @@ def test_a_heading_is_wrong_the_short_way_round():
 
 
 def test_every_matcher_answers_and_only_the_consistent_one_says_that_it_cannot():
-    found = {one.method: one for one in answers_of_rooms([record_of(SYMMETRIC)])}
+    found = {one.method: one for one in answers_of_rooms([record_of(SYMMETRIC)], ASSOCIATIONS)}
     assert found["consistent"].kind == "unanswered"
     assert {found[name].kind for name in ("greedy", "hungarian")} <= {"correct", "wrong"}
     assert found["greedy"].confidence == 1.0
-    right = {one.method: one for one in answers_of_rooms([record_of(PLANTED)])}["consistent"]
+    right = {one.method: one for one in answers_of_rooms([record_of(PLANTED)], ASSOCIATIONS)}["consistent"]
     assert (right.kind, right.all_matches_right, right.best_is_right) == ("correct", True, True)
     assert right.dx_m < 0.01
 
@@ -74,12 +76,13 @@ def test_every_matcher_answers_and_only_the_consistent_one_says_that_it_cannot()
 def test_on_a_wrong_map_every_answer_is_wrong():
     rng = np.random.default_rng(27)
     rooms = [record_of(scattered(rng), seed=1), record_of(scattered(rng), seed=2)]
-    variants = {"everything": Evidence(), "gap_alone": Evidence(absolute=False)}
-    found = answers_of_evidence(rooms, variants, wrong_map=True)
+    kinds = {"everything": Evidence(), "gap_alone": Evidence(absolute=False)}
+    variants = {name: partial(associate_consistent, evidence=one) for name, one in kinds.items()}
+    found = answers_of_rooms(rooms, variants, wrong_map=True)
     assert {one.kind for one in found} <= {"wrong", "unanswered"}
     assert not any(one.all_matches_right or one.best_is_right for one in found)
     assert {one.kind for one in found if one.method == "everything"} == {"unanswered"}
-    own = answers_of_evidence(rooms, variants)
+    own = answers_of_rooms(rooms, variants)
     assert {one.kind for one in own if one.method == "everything"} == {"correct"}
 
 
@@ -93,11 +96,11 @@ def test_what_the_first_view_told_is_known_after_the_last():
 
 
 def test_odometry_is_the_true_motion_with_its_noise():
-    rng, model = np.random.default_rng(2), OdometryModel()
+    rng = np.random.default_rng(2)
     start, end = np.array([1.0, 1.0, np.pi / 2]), np.array([1.0, 3.0, np.pi / 2 + 0.5])
-    drawn = np.array([measured_motion(start, end, rng, model)[:3] for _ in range(400)])
+    drawn = np.array([measured_motion(start, end, rng)[:3] for _ in range(400)])
     np.testing.assert_allclose(drawn.mean(axis=0), [2.0, 0.0, 0.5], atol=0.03)
-    covariance = measured_motion(start, end, rng, model).covariance
+    covariance = measured_motion(start, end, rng).covariance
     np.testing.assert_allclose(np.sqrt(np.diag(covariance)), [0.11, 0.11, np.deg2rad(1.0) + 0.025])
     np.testing.assert_allclose(drawn.std(axis=0), np.sqrt(np.diag(covariance)), rtol=0.15)
 

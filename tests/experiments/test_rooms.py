@@ -7,29 +7,34 @@ import numpy as np
 import pytest
 
 from course_lib.experiments import observed_rooms
-from course_lib.experiments.observed_rooms import observe_room, stored_map, stored_observations
+from course_lib.experiments.observed_rooms import (
+    JudgedPose,
+    judged_poses,
+    observe_room,
+    stored_map,
+    stored_observations,
+)
 from course_lib.experiments.room import localize_pair
 from course_lib.experiments.room_evaluation import NO_OBJECT, PoseOutcome
-from course_lib.experiments.rooms import METHODS, JudgedPose, judge_rooms, rates_and_errors, rooms_summary
+from course_lib.experiments.rooms import METHODS, rates_and_errors, rooms_summary
 from course_lib.geometry import wrap_angle
 from course_lib.paths import data_path
 from course_lib.simulation.room.look_alike_recording import RecordingModels
 from course_lib.simulation.room.survey import RoomSurveyModel
 from course_lib.simulation.sensors.panorama_rig import RigModel
-from course_lib.spherical_stereo.detection.detector import YoloDetector
 
 MAP = [["sofa", 0.0, 0.0, 20.0, 60.0], ["sofa", 4.0, 0.0, 21.0, 60.0], ["table", 1.0, 3.0, None, 5.0]]
 NOISE = [[0.01, 0.0], [0.0, 0.01]]
 
 
-def entry(pose=(1.0, 1.0, 0.0), shown=(0, 1, 2), order=(0, 1, 2), seen=MAP):
-    """A pose's record: the map's objects as a rig at the pose with heading 0 sees them; `shown`: the truth told."""
-    observations = [[*one[:1], one[1] - pose[0], one[2] - pose[1], *one[3:], NOISE] for one in (seen[i] for i in order)]
+def entry(shown=(0, 1, 2)):
+    """A pose's record: the map's objects as a rig at (1, 1) with heading 0 sees them; `shown`: the truth told."""
+    observations = [[label, x - 1.0, y - 1.0, *colour, NOISE] for label, x, y, *colour in MAP]
     source = {"observations": observations, "true_landmarks": list(shown)}
     return {
         "experiment": 1,
         "name": "00",
-        "pose": list(pose),
+        "pose": [1.0, 1.0, 0.0],
         "sources": {"images": source, "exact_boxes": source},
         "objects": 4,
         "found": 3,
@@ -47,6 +52,10 @@ def record(seed=7, poses=None):
     }
 
 
+def judged(rooms):
+    return list(judged_poses(rooms, rooms, METHODS))
+
+
 def test_a_record_gives_its_map_and_observations_back_grey_ones_too():
     semantic_map = stored_map(record())
     assert semantic_map.labels == ("sofa", "sofa", "table")
@@ -59,7 +68,7 @@ def test_a_record_gives_its_map_and_observations_back_grey_ones_too():
 
 def test_poses_are_judged_by_the_truth_of_the_record():
     right, wrong = (
-        [one for one in judge_rooms([record(poses=[entry(shown=shown)])]) if one.method != "as_printed"]
+        [one for one in judged([record(poses=[entry(shown=shown)])]) if one.method != "as_printed"]
         for shown in ((0, 1, 2), (1, 0, 2))
     )
     assert {one.outcome.kind for one in right} == {"correct"}
@@ -72,13 +81,13 @@ def test_poses_are_judged_by_the_truth_of_the_record():
 
 def test_as_printed_the_distance_term_prefers_what_is_too_near():
     """All stand where the map has them, and yet the cheapest pair is an object near the centroid with one far off."""
-    outcomes = {one.method: one.outcome.kind for one in judge_rooms([record(poses=[entry()])])}
+    outcomes = {one.method: one.outcome.kind for one in judged([record(poses=[entry()])])}
     assert outcomes["paper"] == "correct" != outcomes["as_printed"]
 
 
 def test_the_summary_counts_rooms_look_alikes_and_what_was_confused():
     rooms = [record(7), record(8, [entry(shown=(1, 0, -1)), entry() | {"experiment": 2}])]
-    found = rooms_summary(rooms, judge_rooms(rooms))
+    found = rooms_summary(rooms, judged(rooms))
     assert (found["rooms"], found["poses_a_room_and_height"], found["look_alikes"]) == (2, 1, {"sofa": [2, 2]})
     assert found["both"]["images"]["paper"]["correct_percent"] == 75.0
     assert found["experiment_1"]["images"]["paper"]["correct_percent"] == 50.0
@@ -88,12 +97,12 @@ def test_the_summary_counts_rooms_look_alikes_and_what_was_confused():
 
 
 def test_rooms_that_differ_widen_the_interval_and_rooms_that_agree_do_not():
-    judged = [
+    poses = [
         JudgedPose(seed, 1, str(k), "images", "paper", (0, 0, 0), None, PoseOutcome(kind, 0.1, 0.1, 1.0), ())
         for seed in range(10)
         for k, kind in enumerate(["correct" if seed < 5 else "incorrect"] * 20)
     ]
-    found = rates_and_errors(judged)
+    found = rates_and_errors(poses)
     over_poses, over_rooms = (np.ptp(found[f"correct_{which}_percent"]) for which in ("wilson", "rooms"))
     assert over_rooms > 3 * over_poses
 
@@ -114,58 +123,43 @@ TINY = replace(PERFECT, width=320, survey=RoomSurveyModel(places=3, width=320, f
 
 
 @pytest.fixture(scope="module")
-def room():
-    """A room that is really made: one pose at each height, a perfect rig, the course's detector."""
-    return observe_room(10_210, 1, PERFECT, YoloDetector.load(data_path("detector")))
+def seen():
+    """What is seen in a room that is really made, by source: observation, landmark, the landmark's true place.
 
-
-@pytest.fixture(scope="module")
-def seen(room):
-    """Every observation of the made room: source, what it is, and the landmark that it shows, in the rig's frame."""
-    semantic_map, many = stored_map(room), []
+    One pose at each height, a perfect rig, the course's detector; places `(2,)` in the rig's frame.
+    """
+    room = observe_room(10_210, 1, (str(data_path("detector")), "", None, None), None, PERFECT)
+    semantic_map, many = stored_map(room), {"exact_boxes": [], "images": []}
     for pose in room["poses"]:
         x, y, heading = pose["pose"]
         turn = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
         for source, entry in pose["sources"].items():
-            for one, landmark in zip(stored_observations(entry), entry["true_landmarks"], strict=True):
-                if landmark != NO_OBJECT:
-                    many.append((source, one, semantic_map.landmarks[landmark], turn))
-                    many[-1] += (turn @ (semantic_map.positions[landmark] - (x, y)),)
+            for one, k in zip(stored_observations(entry), entry["true_landmarks"], strict=True):
+                if k != NO_OBJECT:
+                    place = turn @ (semantic_map.positions[k] - (x, y))
+                    many[source].append((one, semantic_map.landmarks[k], place))
     return many
 
 
 @pytest.mark.slow
-def test_in_a_made_room_observations_lie_where_their_landmarks_are(seen):
-    for source, least, limit in (("exact_boxes", 16, 0.08), ("images", 12, 0.12)):
-        errors = [
-            np.hypot(one.x - true[0], one.y - true[1]) / np.hypot(*true)
-            for its_source, one, _, _, true in seen
-            if its_source == source
-        ]
-        assert len(errors) >= least, "objects seen at two heights"
-        assert np.median(errors) < limit
-        azimuths = [
-            abs(wrap_angle(np.arctan2(one.y, one.x) - np.arctan2(true[1], true[0])))
-            for its_source, one, _, _, true in seen
-            if its_source == source
-        ]
-        assert np.median(azimuths) < np.deg2rad(2.0)
-
-
-@pytest.mark.slow
-def test_in_a_made_room_observations_have_about_the_colours_of_the_map(seen):
+@pytest.mark.parametrize(("source", "least", "limit"), [("exact_boxes", 16, 0.08), ("images", 12, 0.12)])
+def test_in_a_made_room_observations_lie_where_their_landmarks_are_and_have_about_their_colours(
+    seen, source, least, limit
+):
     """Other light, another part of the object; but a colour from elsewhere in the image would miss by 90 degrees."""
-    hues = [
-        abs((one.hue - landmark.hue + 180) % 360 - 180)
-        for _, one, landmark, _, _ in seen
-        if not np.isnan(one.hue + landmark.hue)
-    ]
-    assert np.median(hues) < 15
-    assert np.median([abs(one.saturation - landmark.saturation) for _, one, landmark, _, _ in seen]) < 15
+    assert len(seen[source]) >= least, "objects seen at two heights"
+    found = np.array([(one.x, one.y, one.hue, one.saturation) for one, _, _ in seen[source]])
+    true = np.array([(*place, landmark.hue, landmark.saturation) for _, landmark, place in seen[source]])
+    off = np.hypot(*(found - true)[:, :2].T) / np.hypot(*true[:, :2].T)
+    assert np.median(off) < limit
+    azimuths = [np.arctan2(places[:, 1], places[:, 0]) for places in (found, true)]
+    assert np.median(np.abs(wrap_angle(azimuths[0] - azimuths[1]))) < np.deg2rad(2.0)
+    assert np.nanmedian(np.abs((found[:, 2] - true[:, 2] + 180) % 360 - 180)) < 15
+    assert np.median(np.abs(found[:, 3] - true[:, 3])) < 15
 
 
 @pytest.mark.slow
-def test_judged_from_its_record_a_pose_is_what_the_localizer_said(room, monkeypatch):
+def test_judged_from_its_record_a_pose_is_what_the_localizer_said(monkeypatch):
     """Map matching and fit are done on what was stored, not on images: nothing may be lost on the way."""
     direct = {}
 
@@ -174,13 +168,14 @@ def test_judged_from_its_record_a_pose_is_what_the_localizer_said(room, monkeypa
         return result
 
     monkeypatch.setattr(observed_rooms, "localize_pair", note)
-    small = observe_room(10_211, 1, TINY, Nothing())
-    judged = [one for one in judge_rooms([json.loads(json.dumps(small))]) if one.method == "paper"]
-    assert len(judged) == len(direct) == 4
-    for one, said in zip(judged, direct.values(), strict=True):
+    monkeypatch.setattr(observed_rooms, "loaded", lambda network: Nothing())
+    small = observe_room(10_211, 1, (), None, TINY)
+    found = [one for one in judged([json.loads(json.dumps(small))]) if one.method == "paper"]
+    assert len(found) == len(direct) == 4
+    for one, said in zip(found, direct.values(), strict=True):
         assert one.outcome.kind == said.outcome.kind
         if said.localization.pose is not None:
             np.testing.assert_allclose(one.localization.pose, said.localization.pose, atol=1e-9)
             np.testing.assert_allclose(one.localization.covariance, said.localization.covariance)
-    assert {one.outcome.kind for one in judged if one.source == "images"} == {"unable"}
-    assert any(one.localization.pose is not None for one in judged if one.source == "exact_boxes")
+    assert {one.outcome.kind for one in found if one.source == "images"} == {"unable"}
+    assert any(one.localization.pose is not None for one in found if one.source == "exact_boxes")

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from course_lib.experiments.detection_scores import DetectionScoreError, Matching
+from course_lib.experiments.room_evaluation import Matching
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.recording import TrueObject
 from tools.detector_evaluation import (
+    DetectionScoreError,
     average_precision,
     best_threshold,
     precision_recall_curve,
@@ -35,8 +36,7 @@ def test_hits_misses_and_false_alarms_are_counted_and_what_does_not_count_is_lef
 
 
 def matching(scores, correct, n_objects):
-    nothing = np.zeros(len(scores), int)
-    return Matching(np.array(scores, float), np.array(correct, bool), nothing, nothing, n_objects)
+    return Matching(np.array(scores, float), np.array(correct, bool), n_objects)
 
 
 def test_the_curve_counts_all_panoramas_together():

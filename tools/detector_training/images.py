@@ -8,7 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from course_lib.experiments.room import counts_as_object
+from course_lib.experiments.room_evaluation import counts_as_object
 from course_lib.simulation.room.training_images import read_image_list
 from course_lib.spherical_stereo.recording import true_object
 

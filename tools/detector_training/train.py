@@ -9,10 +9,10 @@ from pathlib import Path
 
 import torch
 
-from course_lib.experiments.detection_scores import DetectionScoreError
 from course_lib.files import temporary_folder
 from course_lib.simulation.room.training_images import read_image_list
 from course_lib.spherical_stereo.detection.darknet import check_names, class_count, read_cfg, read_names
+from tools.detector_evaluation import DetectionScoreError
 from tools.detector_training import workers
 from tools.detector_training.augmentation import AugmentationRanges
 from tools.detector_training.batches import Batch, epoch_batches

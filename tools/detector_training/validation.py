@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.experiments.detection_scores import Boxes, Matching, match_detections
+from course_lib.experiments.room_evaluation import Matching, match_detections
 from course_lib.spherical_stereo.detection.darknet import read_names
+from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.detection.detector import YoloDetector
+from course_lib.spherical_stereo.recording import TrueObject
 from tools.detector_evaluation import average_precision, best_threshold, precision_recall_curve, scores_at
 from tools.detector_training.images import LabelledPanorama
 
@@ -40,33 +42,27 @@ class Validation:
 def measure_detector(cfg: Path, weights: Path, names_file: Path, panoramas: Iterable[LabelledPanorama]) -> Validation:
     """Precision and recall of the detector, run by OpenCV as the method runs it, on panoramas."""
     detector = YoloDetector(cfg, weights, names_file, score_threshold=MIN_SCORE)
-
-    def detect(panorama: LabelledPanorama) -> Boxes:
-        found = detector.detect(panorama.image)
-        boxes = np.array([item.box for item in found], dtype=np.float64).reshape(-1, 4)
-        return Boxes([item.label for item in found], boxes, np.array([item.score for item in found]))
-
-    return validate(detect, panoramas, read_names(names_file))
+    return validate(lambda panorama: detector.detect(panorama.image), panoramas, read_names(names_file))
 
 
 def validate(
-    detect: Callable[[LabelledPanorama], Boxes], panoramas: Iterable[LabelledPanorama], names: list[str]
+    detect: Callable[[LabelledPanorama], list[Detection]], panoramas: Iterable[LabelledPanorama], names: list[str]
 ) -> Validation:
     """Precision and recall at IoU 0.5 of `detect` over panoramas, at the threshold with the best F1.
 
-    `detect` gives the boxes of a panorama in pixels of its image. Raises `DetectionScoreError` when the panoramas hold
-    no object, or no detection is right.
+    Raises `DetectionScoreError` when the panoramas hold no object, or no detection is right.
     """
     found: list[Matching] = []
     of_class: dict[str, list[Matching]] = {name: [] for name in names}
     for panorama in panoramas:
-        detections = detect(panorama)
-        width = panorama.image.shape[1]
-        objects, ignored = (_objects(panorama, names, which) for which in (~panorama.ignored, panorama.ignored))
-        found.append(match_detections(detections, objects, ignored, width))
+        detections, width = detect(panorama), panorama.image.shape[1]
+        boxes = zip(panorama.labels, panorama.boxes, strict=True)
+        objects = [TrueObject(k, names[label], box, box, 1.0) for k, (label, box) in enumerate(boxes)]
+        found.append(match_detections(detections, objects, width, ~panorama.ignored))
         for name in names:
-            only = [_of_class(boxes, name) for boxes in (detections, objects)]
-            of_class[name].append(match_detections(*only, ignored, width))
+            only = [one for one in detections if one.label == name]
+            counts = ~panorama.ignored & [thing.label == name for thing in objects]
+            of_class[name].append(match_detections(only, objects, width, counts))
     curve = precision_recall_curve(found)
     threshold = best_threshold(curve)
     by_class = {}
@@ -81,13 +77,3 @@ def every_nth(panoramas: list[LabelledPanorama], count: int) -> list[LabelledPan
     """At most `count` panoramas, evenly spread over the folder: the same ones every time the folder is the same."""
     indices = np.unique(np.linspace(0, len(panoramas) - 1, min(count, len(panoramas))).round().astype(int))
     return [panoramas[int(index)] for index in indices]
-
-
-def _objects(panorama: LabelledPanorama, names: list[str], which: np.ndarray) -> Boxes:
-    return Boxes([names[label] for label in panorama.labels[which]], panorama.boxes[which])
-
-
-def _of_class(boxes: Boxes, name: str) -> Boxes:
-    which = np.array([label == name for label in boxes.labels], dtype=bool)
-    scores = None if boxes.scores is None else np.asarray(boxes.scores)[which]
-    return Boxes([name] * int(which.sum()), np.asarray(boxes.boxes).reshape(-1, 4)[which], scores)

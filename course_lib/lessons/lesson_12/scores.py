@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.detection_scores import match_image
-from course_lib.experiments.room import counts_as_object
+from course_lib.experiments.room_evaluation import counts_as_object, match_detections
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.lessons.lesson_12.seam_cuts import keen_detector
@@ -46,7 +45,7 @@ def precision_and_recall(thresholds: Sequence[float]) -> dict[float, ThresholdSc
     width, scores = room_recording(1).width, {}
     for threshold in thresholds:
         matchings = [
-            match_image([one for one in found if one.score >= threshold], pair.upper_objects, width)
+            match_detections([one for one in found if one.score >= threshold], pair.upper_objects, width)
             for pair, found in zip(pairs, seen, strict=True)
         ]
         right, made = (

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.room import counts_as_object
+from course_lib.experiments.room_evaluation import counts_as_object
 from course_lib.lessons.kit.intervals import median_text
 from course_lib.lessons.kit.panorama_features import scene
 from course_lib.lessons.kit.room_photographs import pair_of, room_map, room_recording

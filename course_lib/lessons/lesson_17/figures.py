@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from course_lib.experiments.paper_tables import PAPER_TABLE_5
-from course_lib.experiments.room_evaluation import CORRECT, INCORRECT, UNABLE
+from course_lib.experiments.room_evaluation import CORRECT, INCORRECT, PAPER_TABLE_5, UNABLE
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.lessons.lesson_17.experiments import EXPERIMENTS, KINDS
 from course_lib.lessons.lesson_17.room_runs import StoredRoom

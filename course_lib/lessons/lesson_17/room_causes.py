@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.experiments.room import PairResult
-from course_lib.experiments.room_evaluation import NO_OBJECT, UNABLE, PoseOutcome, outcome
+from course_lib.experiments.room_evaluation import NO_OBJECT, UNABLE, PoseOutcome, outcome, wrong_pairs
 from course_lib.lessons.kit.room_observations import in_body_frame
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.semantic_map.association import Observation, PenaltyWeights, penalty
@@ -123,3 +123,17 @@ def position_errors(found: Sequence[Thinned], kind: str) -> np.ndarray:
     if kind == UNABLE:
         return np.empty(0)
     return np.array([np.hypot(one.outcome.dx_m, one.outcome.dy_m) for one in found if one.outcome.kind == kind])
+
+
+def failures(result: PairResult, semantic_map: SemanticMap) -> list[str]:
+    """What went wrong with one pose, a line each: which observation was taken for which landmark."""
+    if result.localization.pose is None:
+        return [f"{result.localization.reason}: {result.localization.explanation}"]
+    lines = []
+    for observation, landmark, shown in wrong_pairs(result.localization, result.true_landmarks):
+        label = result.localization.observations[observation].label
+        x, y = semantic_map.positions[landmark]
+        at = "the {} at ({:.1f}, {:.1f})".format(semantic_map.labels[shown], *semantic_map.positions[shown])
+        truth = "nothing" if shown == NO_OBJECT else at
+        lines.append(f"the {label} that shows {truth} was taken for the one at ({x:.1f}, {y:.1f})")
+    return lines

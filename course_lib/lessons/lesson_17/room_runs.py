@@ -14,8 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.paper_tables import PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
-from course_lib.experiments.room_evaluation import CORRECT
+from course_lib.experiments.room_evaluation import CORRECT, PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
 from course_lib.paths import data_path
 
 METHODS = {"images": "greedy", "exact_boxes": "greedy_exact_boxes"}

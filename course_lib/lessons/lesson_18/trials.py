@@ -13,7 +13,6 @@ from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
 from course_lib.beyond.several_views import SemanticTracker
 from course_lib.experiments.look_alikes import (
     Answer,
-    OdometryModel,
     is_right,
     judged,
     measured_motion,
@@ -88,7 +87,7 @@ def answers_of_few(n_seen: int, draws: int, rng: np.random.Generator) -> list[An
 def answers_of_two_views(draws: int, rng: np.random.Generator) -> list[Answer]:
     """At every place of the room two half-seen views, the rig turned between them: after the first, after both.
 
-    Methods "one view" and "two views, odometry"; odometry with `OdometryModel`'s noise.
+    Methods "one view" and "two views, odometry"; odometry with its noise.
     """
     scenes = room_scenes()
     places = [name[:-2] for name in scenes if name.endswith("_a")]
@@ -98,7 +97,7 @@ def answers_of_two_views(draws: int, rng: np.random.Generator) -> list[Answer]:
         tracker = SemanticTracker(room_map())
         poses = np.array([one.pose for one in both])
         for k, method in enumerate(("one view", "two views, odometry")):
-            motion = measured_motion(poses[0], poses[1], rng, OdometryModel()) if k else None
+            motion = measured_motion(poses[0], poses[1], rng) if k else None
             track = tracker.step(half_seen(both[k], rng).observations, motion)
             best = track.alternatives[0][0] if track.alternatives else None
             answers.append(judged((0, 1, place), method, track.pose, best, track.confidence, poses[k], None))

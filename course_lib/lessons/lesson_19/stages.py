@@ -9,13 +9,14 @@ import numpy as np
 
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate
 from course_lib.depth_mcl.evaluation import pose_errors
-from course_lib.experiments.finale import REACHED, follow, mean_score, start_state, starts_of
+from course_lib.experiments.finale import LEVEL_SIGMA, REACHED, follow, mean_score, start_state, starts_of
 from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.lessons.lesson_19.world import hidden, world
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 
 FILTER_SEED = 1
+ON_THE_FLOOR = (0, 1, 5)  # of a state: x, y, yaw, what a semantic pose tells
 MAX_KEPT = 64
 STAGES = ("photographing two panoramas", "finding objects, places and the pose", "taking depth images", "the filter")
 
@@ -117,3 +118,28 @@ def _travelled(
     starts = starts_of(found, here.scene_map)
     runs = [follow(here.renderer, start_state(start), depths, FILTER_SEED) for start in starts]
     return Journey(pose, images, found, states, depths, starts, runs)
+
+
+def start_covariance(covariance: np.ndarray) -> np.ndarray:
+    """Return the covariance `(6, 6)` of `start_state`: a semantic pose's `(3, 3)`, and how high and level it stands."""
+    height, level = LEVEL_SIGMA
+    known = np.diag([0.0, 0.0, height**2, level**2, level**2, 0.0])
+    known[np.ix_(ON_THE_FLOOR, ON_THE_FLOOR)] = covariance
+    return known
+
+
+def joined(
+    start: np.ndarray, covariance: np.ndarray, state: np.ndarray, state_covariance: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Join two answers, each weighed by its covariance, into a state `(6,)` and its covariance: a Kalman update.
+
+        K = P_0 (P_0 + P_1)^-1        x = x_0 + K (x_1 - x_0)        P = (1 - K) P_0
+
+    start, covariance: the semantic pose. state, state_covariance: what the depth filter makes of the first image.
+    """
+    difference = state - start
+    difference[3:] = wrap_angle(difference[3:])
+    gain = covariance @ np.linalg.inv(covariance + state_covariance)
+    found = start + gain @ difference
+    found[3:] = wrap_angle(found[3:])
+    return found, (np.eye(6) - gain) @ covariance

@@ -55,10 +55,11 @@ class FinaleWorld:
         self.localizer = SemanticLocalizer(self.rig, self.semantic_map, network, association=associate_consistent)
         self.renderer = DepthRenderer(self.scene_map, DepthCamera.sr4000(far=FAR))
         self.footprints = [footprint(item) for item in self.room.objects]
-        self._sensor = TimeOfFlightCamera(
+        sensor = TimeOfFlightCamera(
             DepthCamera.sr4000(), TimeOfFlightModel(), np.random.default_rng([STREAM, SEED, CAMERA])
         )
-        self._caster = depth_caster(self.room)
+        caster = depth_caster(self.room)
+        self._capture = lambda state, rng: sensor.capture(caster, state, rng).depth
         self._photographer = PanoramaRenderer(self.room, self.models.width, number_scale=1)
         self._mount = mount_of(SEED, self.models)
 
@@ -74,12 +75,12 @@ class FinaleWorld:
         """True states `(3, 6)` of the depth camera while the robot rolls on a little, and its images `(144, 176)`."""
         rng = _generator(pose, DEPTH)
         states = robot_states(pose, rng)
-        return states, [self._sensor.capture(self._caster, state, rng).depth for state in states]
+        return states, [self._capture(state, rng) for state in states]
 
     def look_around(self, starts: Sequence[Pose2D], pose: np.ndarray) -> tuple[AnnealedEstimate, np.ndarray, int]:
         """The experiment's `look_around` here: estimate, true state `(6,)` of the camera then, number of views."""
         rng = _generator(pose, AROUND)
-        return look_around(self.renderer, starts, pose, self._sensor, self._caster, rng)
+        return look_around(self.renderer, starts, pose, self._capture, rng)
 
     def where(self, x: float, y: float) -> str:
         """What stands where the robot is put, in words: "free", or why nobody can stand there."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from course_lib.experiments.project_rooms import ProjectRoom, ProjectView
+from course_lib.lessons.project_2.rooms import ProjectRoom, ProjectView
 from course_lib.plots.figures import new_figure
 from course_lib.plots.panorama_drawing import draw_box
 from course_lib.plots.room_figures import draw_pose, map_axes

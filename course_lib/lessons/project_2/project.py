@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.beyond.look_alikes.matchers import matcher
-from course_lib.experiments.project_rooms import ProjectRoom, RoomSet, project_rooms
 from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
 from course_lib.lessons.project_2.exercises import angles_of, pair_boxes, rotation
+from course_lib.lessons.project_2.rooms import ProjectRoom, RoomSet, project_rooms
 from course_lib.paths import data_path
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig

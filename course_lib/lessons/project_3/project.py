@@ -10,9 +10,9 @@ from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
 from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.experiments.look_alikes import MAX_ERROR_M, is_right, pose_errors
-from course_lib.experiments.project_rooms import ProjectView
 from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
 from course_lib.lessons.project_2.project import room_of
+from course_lib.lessons.project_2.rooms import ProjectView
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_rigid_2d
 from course_lib.spherical_stereo.semantic_map.association import Association, Observation, associate_greedy
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from course_lib.experiments.project_rooms import SEEDS, record_room
-from course_lib.experiments.project_rooms import project_rooms as read_rooms
+from course_lib.lessons.project_2.rooms import SEEDS, record_room
+from course_lib.lessons.project_2.rooms import project_rooms as read_rooms
 from course_lib.simulation.room.look_alike_recording import RecordingModels
 from course_lib.spherical_stereo.detection.detected_object import Detection
 
