@@ -12,7 +12,7 @@ from IPython.display import display
 from matplotlib.figure import Figure
 from PIL import Image
 
-from course_lib.plots.figures import png_bytes, webp_bytes
+from course_lib.lessons.kit.compression import png_bytes, webp_bytes
 
 # Pixels: in a narrow window a figure is scrolled rather than made smaller than this, or its labels could not be read.
 LEAST_WIDTH = 640
