@@ -31,10 +31,8 @@ def figure_5(path: np.ndarray, estimates: dict[str, np.ndarray], walls: np.ndarr
         style = line_style(index) | {"linestyle": "none", "markersize": 3.2}
         axes.plot(positions[:, 0], positions[:, 1], label=name, **style)
     low, high = path[:, 0].min() - 1.5, path[:, 0].max() + 3.0
-    axes.set(
-        title="Ground truth and estimated positions (like the paper's figure 5)", xlim=(low, high), ylim=(-2.2, 2.9)
-    )
-    axes.set(xlabel="x along the corridor [m]", ylabel="y [m] (enlarged)")
+    axes.set_title("Ground truth and estimated positions (like the paper's figure 5)")
+    axes.set(xlim=(low, high), ylim=(-2.2, 2.9), xlabel="x along the corridor [m]", ylabel="y [m] (enlarged)")
     axes.legend(loc="upper center", ncols=3, fontsize=8, framealpha=0.95, markerscale=1.5)
     return figure
 
@@ -46,9 +44,8 @@ def figure_6(frames: np.ndarray, errors: dict[str, np.ndarray], title: str | Non
         style = line_style(index) | {"marker": "", "linewidth": 1.2}
         axes.semilogy(frames, np.maximum(values, 1e-3), label=name, **style)
     limit = 3 * PAPER_SIGMA
-    axes.axhline(
-        limit, color="black", linewidth=0.9, linestyle=(0, (6, 3)), label=f"3 sigma of the paper, {limit:.2f} m"
-    )
+    style = {"color": "black", "linewidth": 0.9, "linestyle": (0, (6, 3))}
+    axes.axhline(limit, label=f"3 sigma of the paper, {limit:.2f} m", **style)
     axes.set(title=title or "Error of every frame (like the paper's figure 6)", xlabel="frame [-]", ylabel="error [m]")
     axes.legend(loc="upper center", ncols=2, fontsize=8, framealpha=0.95)
     top = max(float(np.max(v)) for v in errors.values())

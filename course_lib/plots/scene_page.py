@@ -1,8 +1,6 @@
 """One offline HTML page of a PyVista scene: to be turned with the mouse, without a kernel, a network or a program.
 
-PyVista's `plotter.export_html` does the same, but starts a web server for it. This page has a title, words for those
-who cannot see it, and a line that says how to turn it. The browser unpacks the viewer. The same scene gives the same
-bytes, and the page forbids itself the network.
+Unlike `plotter.export_html` it starts no web server, has words for those who cannot see it, and is always the same.
 """
 
 from __future__ import annotations
@@ -74,27 +72,22 @@ class ScenePageError(RuntimeError):
     """No page can be made of a scene: what PyVista needs for it is missing, or it writes another kind of page."""
 
 
-def write_page(plotter: pyvista.Plotter, path: str | Path, title: str, alt: str, legend: str = "") -> Path:
-    """Write the scene as one HTML page and return its path (`page_html`)."""
-    path = Path(path)
-    text = page_html(plotter, title, alt, legend)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    atomic_write(path, text)
-    return path
+def write_page(plotter: pyvista.Plotter, path: Path, title: str, alt: str, legend: str = "") -> None:
+    """Write the scene as one HTML page (`page_html`) into a folder that exists."""
+    atomic_write(path, page_html(plotter, title, alt, legend))
 
 
 def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") -> str:
     """Return the scene of a plotter as the text of one HTML page; the same text for the same scene.
 
-    alt: what the scene shows, in a sentence, for those who cannot see it. legend: what is what, written below the
-    scene. Raises `SceneError` for a scene without objects or words, `ScenePageError` where PyVista cannot write pages.
+    alt: what the scene shows, in a sentence, for those who cannot see it. legend: what is what, below the scene.
     """
     title, alt, legend = (" ".join(text.split()) for text in (title, alt, legend))
     if not title or len(alt.split()) < 4:
         raise SceneError(f"a scene has a title, and a text that says what it shows; got {title!r}, {alt!r}")
     if not plotter.actors:
         raise SceneError("the scene is empty: add something with plotter.add_mesh(...)")
-    script = _SCRIPT.search(_viewer())
+    script = _SCRIPT.search(_trame("tools.vtksz2html").HTML_VIEWER_PATH.read_text(encoding="utf-8"))
     if script is None:
         raise ScenePageError(f"trame-vtk comes with a viewer of an unknown kind: {CURE} in environment.txt's versions")
     offline = _ICON.sub('"data:,"', script[1])
@@ -102,11 +95,6 @@ def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") 
     caption = f"{title}. {legend}." if legend else f"{title}."
     words = {"title": html.escape(title), "alt": html.escape(alt), "caption": html.escape(caption)}
     return _PAGE.format(**words, viewer=packed, scene=_archive(_scene_of(plotter)))
-
-
-def _viewer() -> str:
-    """The page of the viewer, without a scene, as trame-vtk ships it."""
-    return _trame("tools.vtksz2html").HTML_VIEWER_PATH.read_text(encoding="utf-8")
 
 
 def _trame(module: str) -> ModuleType:

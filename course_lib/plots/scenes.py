@@ -1,16 +1,6 @@
-"""Objects of a scene in three dimensions: map, frustum, axes, ellipsoids, paths, posts, words.
+"""Objects of a scene, `pyvista.PolyData` in the world (metres, z up) for `plotter.add_mesh`: map, frustum, axes, paths.
 
-Every function returns a `pyvista.PolyData` in the world frame (metres, z up), to be drawn with `plotter.add_mesh`:
-
-    plotter = new_plotter(viewpoint=(4, -6, 5), focus=(4, 0, 1))
-    plotter.add_mesh(map_mesh(scene_map, below=2.3), color="lightgrey")
-    plotter.add_mesh(frustum(camera, state, far=4.0), color=BLUE, line_width=3)
-    plotter.add_mesh(body_axes(state, 0.5), rgb=True)
-
-`scene_page.write_page` makes one HTML file of a plotter, a lesson's `show_scene` shows it. What the page's viewer
-(vtk.js) does not draw is not used here: labels on the screen, scalar bars and lines with a width that follows the zoom.
-PyVista is imported when a scene is made, because that takes a second. Wrong shapes and values that are not finite raise
-`ValueError`.
+What a page's viewer (vtk.js) does not draw is not used: labels on the screen, scalar bars, lines whose width zooms.
 """
 
 from __future__ import annotations
@@ -29,9 +19,7 @@ if TYPE_CHECKING:
 
 AXIS_COLOURS = np.array([[213, 40, 0], [0, 158, 60], [0, 80, 200]], dtype=np.uint8)
 """Red x, green y, blue z, as robotics draws them; each axis also carries its letter."""
-
-MAP_FACES = 20_000
-"""Triangles of a map that a page shows: it stays below 1.3 MB, of which the viewer is 1.07."""
+MAP_FACES = 20_000  # triangles of a map that a page shows: it stays below 1.3 MB, of which the viewer is 1.07
 
 # The strokes of the letters x, y and z in a unit square, each stroke a pair of points.
 _LETTERS = (
@@ -48,11 +36,10 @@ class SceneError(ValueError):
 def new_plotter(
     viewpoint: np.ndarray | None = None, focus: np.ndarray | None = None, size: tuple[int, int] = (800, 500)
 ) -> pyvista.Plotter:
-    """An empty scene: white, z up, off the screen.
+    """An empty scene: white, z up, off the screen; raises `OpenGLError` where nothing can be drawn.
 
-    viewpoint: from where it is seen, `(3,)` metres; focus: the point in its middle, `(3,)` metres. Without them the
-    whole scene is seen from a corner above. size: pixels (width, height) of its picture.
-    Raises `OpenGLError` where nothing can be drawn.
+    viewpoint: from where it is seen, focus: the point in its middle, `(3,)` metres; without them the whole scene is
+    seen from a corner above. size: pixels (width, height) of its picture.
     """
     pyvista = _pyvista()
     theme = pyvista.themes.DocumentTheme()  # white, whatever the reader's own theme is

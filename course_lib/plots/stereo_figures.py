@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.plots.figures import BLUE, ORANGE, VERMILION, new_figure
-from course_lib.plots.panorama_drawing import add_list, draw_box, draw_numbers, panorama
+from course_lib.plots.panorama_drawing import add_list, draw_objects, panorama
 from course_lib.spherical_stereo.panorama import View
 
 # Share of the disparities that the colours span; a few wild matches would else use up the scale.
@@ -53,10 +53,8 @@ def distances_figure(views: Sequence[View], objects: Sequence, names: Sequence[s
     title = "number, object, horizontal range from disparities (from box centres)"
     add_list(figure, lines, 3, title, labels)
     for axes, view, side in zip(rows, views, ("upper", "lower"), strict=True):
-        shown = [view.detections[getattr(measured, side)].box for measured in objects]
-        for box, label in zip(shown, labels, strict=True):
-            draw_box(axes, box, view.width, label)
-        draw_numbers(axes, shown, labels, view.width)
+        boxes = [view.detections[getattr(measured, side)].box for measured in objects]
+        draw_objects(axes, boxes, labels, view.width)
     return figure
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from course_lib.experiments.ambiguity import AmbiguityMap
-from course_lib.plots.look_alike_figures import ambiguity_figure
+from course_lib.plots.room_figures import ambiguity_figure
 from tests.beyond.look_alikes.look_alike_scene import SYMMETRIC
 
 
