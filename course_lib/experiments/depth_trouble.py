@@ -13,7 +13,8 @@ and returns whose amplitude falls below the camera's threshold are lost: far one
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -92,44 +93,13 @@ LENGTHS = dict.fromkeys(("dropped", *SPOILS, "time backwards"), 1) | {"frozen fo
 """How many frames one after the other each trouble lasts."""
 
 
-def watched_frames(
-    dof: Dof, renderer: DepthRenderer, arrivals: Sequence[Arrival], true_poses: np.ndarray, period: float, seed: int
-) -> list[dict]:
-    """Return what became of every frame: outcome, whether the pose is one to go by, its errors.
-
-    true_poses: `(T, 4, 4)` camera-to-world, optical, z up. A frame that never came, or came out of order, has the pose
-    to which the filter was moved when the next one told of the gap.
-    """
-    localizer = GuardedLocalizer(FILTERS[dof](renderer, seed=seed), period)
-    localizer.initialize(state_from_optical_pose(true_poses[0]))
-    outcomes, states = [], []
-    for arrival in arrivals:
-        if arrival.image is None:
-            outcomes.append("no image")
-            states.append(states[-1])
-            continue
-        watched = localizer.step(arrival.image, arrival.time)
-        for back, estimate in enumerate(reversed(watched.missed), start=1):
-            states[-back] = estimate.state
-        outcomes.append(watched.outcome)
-        states.append(watched.estimate.state)
-    position, rotation = pose_errors(optical_pose(np.array(states)), true_poses)
-    return [
-        {"outcome": outcome, "confident": outcome == "tracked", "position_m": float(p), "rotation_deg": float(r)}
-        for outcome, p, r in zip(outcomes, position, np.rad2deg(rotation), strict=True)
-    ]
-
-
 def corridor_trouble(data: str, seed: int, frames: int, shares: Sequence[float], dof: Dof) -> dict:
     """Return `troubles_of` a filter on a seed's recording of the corridor."""
-    scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
+    camera, carried = DepthCamera.sr4000().resized(*IMAGE), "wagon" if dof == "xyyaw" else "hand"
     with temporary_folder() as temporary:
         folder = temporary / "recording"
-        camera = DepthCamera.sr4000().resized(*IMAGE)
-        carried = "wagon" if dof == "xyyaw" else "hand"
-        record_seed(folder, building, seed, camera=camera, frames=frames, carried=carried)
-        recording = read_sequence(folder)
-        return recording_trouble(recording, scene_map, seed, shares, dof)
+        record_seed(folder, building_of_data(data), seed, camera=camera, frames=frames, carried=carried)
+        return recording_trouble(read_sequence(folder), SceneMap.load(Path(data) / "map.ply"), seed, shares, dof)
 
 
 def recording_trouble(
@@ -142,10 +112,32 @@ def recording_trouble(
 ) -> dict:
     """`corridor_trouble` of a recording with its truth and times, z up."""
     images = [recording.depth(index) for index in range(len(recording))]
-    period = float(np.median(np.diff(recording.times)))
     with DepthRenderer(scene_map, recording.camera()) as renderer:
-
-        def run(arrivals: Sequence[Arrival]) -> list[dict]:
-            return watched_frames(dof, renderer, arrivals, recording.camera_to_world, period, seed)
-
+        run = partial(watched_frames, recording, partial(FILTERS[dof], renderer, seed=seed))
         return troubles_of(run, lengths, SPOILS, images, recording.times, seed, shares)
+
+
+def watched_frames(recording: DepthSequence, make: Callable, arrivals: Sequence[Arrival]) -> list[dict]:
+    """Return what became of every frame: outcome, whether the pose is one to go by, its errors. make: the filter.
+
+    A frame that never came, or came out of order, has the pose to which the filter was moved when the next one told of
+    the gap.
+    """
+    localizer = GuardedLocalizer(make(), float(np.median(np.diff(recording.times))))
+    localizer.initialize(state_from_optical_pose(recording.camera_to_world[0]))
+    outcomes, states = [], []
+    for arrival in arrivals:
+        if arrival.image is None:
+            outcomes.append("no image")
+            states.append(states[-1])
+            continue
+        watched = localizer.step(arrival.image, arrival.time)
+        for back, estimate in enumerate(reversed(watched.missed), start=1):
+            states[-back] = estimate.state
+        outcomes.append(watched.outcome)
+        states.append(watched.estimate.state)
+    position, rotation = pose_errors(optical_pose(np.array(states)), recording.camera_to_world)
+    return [
+        {"outcome": outcome, "confident": outcome == "tracked", "position_m": float(p), "rotation_deg": float(r)}
+        for outcome, p, r in zip(outcomes, position, np.rad2deg(rotation), strict=True)
+    ]

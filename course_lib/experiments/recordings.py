@@ -6,7 +6,6 @@ import time
 import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
-from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -19,7 +18,7 @@ from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocali
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
 from course_lib.depth_mcl.likelihood import Weighting
-from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, Estimate, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, Motion
 from course_lib.depth_mcl.sequence import FAR, NEAR, DepthSequence
 from course_lib.depth_mcl.uncertainty import normalized_error
@@ -98,35 +97,23 @@ def run_sequence(
     sequence: DepthSequence,
     *,
     sigma: np.ndarray = SIGMA_XY_YAW,
-    n_particles: int = 200,
-    seed: int = 0,
     motion: Motion = BODY_AXES,
     weighting: Weighting | None = None,
     **options: object,
 ) -> Run:
     """Localize a recording by the paper's filter: arguments of `MonteCarloLocalizer`; options: `run_localizer`'s."""
-    arguments = {"n_particles": n_particles, "seed": seed, "motion": motion, "weighting": weighting}
-    make = partial(MonteCarloLocalizer, sigma=sigma, **arguments)
+    make = partial(MonteCarloLocalizer, sigma=sigma, motion=motion, weighting=weighting)
     return run_localizer(make, scene_map, sequence, motion=motion, **options)
 
 
 def run_annealed(
-    scene_map: SceneMap,
-    sequence: DepthSequence,
-    *,
-    n_particles: int = 200,
-    seed: int = 0,
-    parts: Mapping[str, object] = MappingProxyType({}),
-    **options: object,
+    scene_map: SceneMap, sequence: DepthSequence, *, parts: Mapping[str, object] | None = None, **options: object
 ) -> Run:
     """Localize a recording, annealed and refined. parts: of `AnnealedLocalizer`; options: `run_localizer`'s."""
-    make = partial(AnnealedLocalizer, n_particles=n_particles, seed=seed, **parts)
-    return run_localizer(make, scene_map, sequence, **options)
+    return run_localizer(partial(AnnealedLocalizer, **(parts or {})), scene_map, sequence, **options)
 
 
-def run_recovering(
-    scene_map: SceneMap, sequence: DepthSequence, *, n_particles: int = 200, seed: int = 0, **options: object
-) -> Run:
+def run_recovering(scene_map: SceneMap, sequence: DepthSequence, **options: object) -> Run:
     """Localize a recording as `run_annealed` does, and where it is lost, search globally (`RecoveringLocalizer`)."""
 
     def step(localizer: RecoveringLocalizer, depth: np.ndarray, index: int) -> AnnealedEstimate:
@@ -134,20 +121,17 @@ def run_recovering(
         searched = 0 if found.candidates is None else found.candidates.renders
         return found.estimate._replace(renders=found.estimate.renders + searched)
 
-    make = partial(RecoveringLocalizer, n_particles=n_particles, seed=seed)
-    return run_localizer(make, scene_map, sequence, step=step, **options)
-
-
-def _plain_step(localizer: MonteCarloLocalizer | AnnealedLocalizer, depth: np.ndarray, index: int) -> object:
-    return localizer.step(depth)
+    return run_localizer(RecoveringLocalizer, scene_map, sequence, step=step, **options)
 
 
 def run_localizer(
-    make: Callable[[DepthRenderer], object],
+    make: Callable[..., MonteCarloLocalizer | AnnealedLocalizer | RecoveringLocalizer],
     scene_map: SceneMap,
     sequence: DepthSequence,
     *,
-    step: Callable[[object, np.ndarray, int], Estimate | AnnealedEstimate] = _plain_step,
+    n_particles: int = 200,
+    seed: int = 0,
+    step: Callable = lambda localizer, depth, index: localizer.step(depth),
     motion: Motion = TANGENT_SPACE,
     coarse: bool = False,
     up: str | None = None,
@@ -184,7 +168,7 @@ def run_localizer(
         DepthRenderer(scene_map.transformed(to_z_up), used, backend, exact=exact) as renderer,
     ):
         warnings.simplefilter("ignore", NoMeasurementWarning)  # they are counted instead, below
-        localizer = make(renderer)
+        localizer = make(renderer, n_particles=n_particles, seed=seed)
         localizer.initialize(state_from_optical_pose(to_z_up @ start))
         for index in progress(range(count)):
             depth = sequence.depth(index)
@@ -206,7 +190,7 @@ def run_localizer(
         statuses = ["doubtful" if e.status == "no measurement" else e.status for e in estimates]
     else:
         statuses = judge_track(agreements)
-    blind = [e.status == "no measurement" for e in estimates]
+    looked_at = zip(estimates, faults or [None] * count, strict=True)
     return Run(
         frames=sequence.frames[:count],
         states=states,
@@ -220,9 +204,7 @@ def run_localizer(
         error_sigmas=np.sqrt([np.diag(c) for c in covariances]),
         renders=np.array([getattr(e, "renders", len(e.particles)) for e in estimates]),
         ms_per_frame=1000 * seconds / count,
-        frames_without_measurement=sum(
-            one and fault in (None, "no return") for one, fault in zip(blind, faults or [None] * count, strict=True)
-        ),
+        frames_without_measurement=sum(e.status == "no measurement" and f in (None, "no return") for e, f in looked_at),
         faults=tuple(faults),
     )
 

@@ -8,9 +8,9 @@ import pytest
 from course_lib.experiments.troubled_frames import (
     LEFT_AT_THE_END,
     Gate,
+    confident_wrong,
     frames_to_judge,
     generator,
-    is_confident_wrong,
     summary,
     troubled_frames,
     troubled_runs,
@@ -57,12 +57,18 @@ def test_the_tenth_good_frame_after_each_trouble_is_judged():
     assert frames_to_judge([(25, 26)], 30) == [], "the recording ends before"
 
 
-def test_wrong_is_what_was_given_out_and_lies_beyond_either_gate():
-    assert not is_confident_wrong(frame(), GATE)
-    assert is_confident_wrong(frame(metres=0.31), GATE)
-    assert is_confident_wrong(frame(degrees=15.1), GATE)
-    assert not is_confident_wrong(frame("lost", metres=3.0), GATE)
-    assert not is_confident_wrong(frame("no image", metres=None), GATE)
+@pytest.mark.parametrize(
+    ("one", "wrong"),
+    [
+        (frame(), 0),
+        (frame(metres=0.31), 1),
+        (frame(degrees=15.1), 1),
+        (frame("lost", metres=3.0), 0),
+        (frame("no image", metres=None), 0),
+    ],
+)
+def test_wrong_is_what_was_given_out_and_lies_beyond_either_gate(one, wrong):
+    assert confident_wrong([one], GATE) == wrong
 
 
 def test_a_row_counts_outcomes_recovery_and_wrong_poses():
