@@ -149,9 +149,10 @@ def _run_idealizations(runner: Runner, seeds: list[int], data: Path, particles: 
     common = {"data": str(data), "n_particles": particles, **options}
     points = [{"seed": seed, "hardships": list(own), **common} for own in every.values() for seed in seeds]
     errors = iter(runner.rows(hardship_errors, points, "idealizations", "run"))
-    hardships = {name: _over_seeds([next(errors) for _ in seeds], ("median_m", "median_timed_m")) for name in every}
-    numbers = {"seeds": seeds, "image": list(IDEALIZATION_SIZE), "n_particles": particles, **options}
-    result = {**numbers, "hardships": hardships}
+    result = {"seeds": seeds, "image": list(IDEALIZATION_SIZE), "n_particles": particles, **options, "hardships": {}}
+    for name in every:
+        own = [next(errors) for _ in seeds]
+        result["hardships"][name] = {key: spread([one[key] for one in own]) for key in own[0]}
     return Outcome(result, table_of_idealizations(result), {"idealizations.json": (result, None)})
 
 
@@ -236,24 +237,10 @@ def hardship_errors(
 
 
 def summarize(rows: dict[str, Row], settings: dict) -> dict:
-    """Return the numbers of table 1: the paper's experiment at the top level, every method below `methods`."""
-    parts = rows_by_part(rows)
-    even = parts["methods"]
-    copied = ("median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "ms_per_frame")
-    return {
-        "seed": settings["seed"],
-        "n_particles": settings["particles"],
-        "frames": len(rows["proposed"].run.frames),
-        "sigma_noise": [float(s) for s in SIGMA_XY_YAW],
-        "settings": settings,
-        **{name: even["proposed"][name] for name in copied},
-        "fallon_median_m": even["fallon"]["median_m"],
-        **parts,
-    }
+    """Return the numbers of table 1: the paper's experiment at the top level, every method below `methods`.
 
-
-def rows_by_part(rows: dict[str, Row]) -> dict[str, dict[str, dict]]:
-    """Return what table 1 tells of every row: "methods" on the even recording, "methods_by_hand" on the other."""
+    Those on the recording that is pushed by hand are below `methods_by_hand`.
+    """
     parts: dict[str, dict[str, dict]] = {}
     for key, row in rows.items():
         method = key.removesuffix(BY_HAND)
@@ -266,7 +253,18 @@ def rows_by_part(rows: dict[str, Row]) -> dict[str, dict[str, dict]]:
             "median_effective_sample_size": float(np.median(row.run.ess)),
             "ms_per_frame": row.run.ms_per_frame,
         }
-    return parts
+    left_out = ("name", "median_effective_sample_size")
+    proposed = {key: value for key, value in parts["methods"]["proposed"].items() if key not in left_out}
+    return {
+        "seed": settings["seed"],
+        "n_particles": settings["particles"],
+        "frames": len(rows["proposed"].run.frames),
+        "sigma_noise": [float(s) for s in SIGMA_XY_YAW],
+        "settings": settings,
+        **proposed,
+        "fallon_median_m": parts["methods"]["fallon"]["median_m"],
+        **parts,
+    }
 
 
 def rows_of_frames(rows: dict[str, Row]) -> list[dict]:
@@ -286,18 +284,13 @@ def _rounded(values: np.ndarray, digits: int) -> list[float]:
 
 def over_recordings(summaries: Sequence[dict], tell: Callable = spread) -> dict[str, dict[str, dict]]:
     """Return what `tell` makes of every number of every row over seeds, for "methods" and "methods_by_hand"."""
-    parts = [part for part in ("methods", "methods_by_hand") if part in summaries[0]]
-    return {
-        part: {
-            key: {"name": row["name"], **_over_seeds([summary[part][key] for summary in summaries], TOLD, tell)}
-            for key, row in summaries[0][part].items()
-        }
-        for part in parts
-    }
-
-
-def _over_seeds(rows: Sequence[dict], keys: Sequence[str], tell: Callable = spread) -> dict[str, dict]:
-    return {key: tell([row[key] for row in rows]) for key in keys}
+    result: dict[str, dict[str, dict]] = {}
+    for part in (part for part in ("methods", "methods_by_hand") if part in summaries[0]):
+        own = [summary[part] for summary in summaries]
+        for key, row in own[0].items():
+            told = {name: tell([one[key][name] for one in own]) for name in TOLD}
+            result.setdefault(part, {})[key] = {"name": row["name"], **told}
+    return result
 
 
 def table_1(summary: dict) -> str:

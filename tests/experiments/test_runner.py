@@ -56,10 +56,9 @@ def test_results_come_in_the_order_of_the_points(processes, tmp_path):
 
 def test_only_missing_points_are_run_and_counted(tmp_path):
     counted = []
-    for last in (3, 5):
-        points = [{"seed": seed} for seed in range(last)]
+    for seeds, more in ((range(3), {}), (range(5), {}), ([1], {"scale": 2.0})):
+        points = [{"seed": seed, **more} for seed in seeds]
         kept_rows(draw, points, tmp_path / "rows.jsonl", 1, lambda missing: counted.append(len(missing)) or missing)
-    kept_rows(draw, [{"seed": 1, "scale": 2.0}], tmp_path / "rows.jsonl", 1, lambda m: counted.append(len(m)) or m)
     assert counted == [3, 2, 1]
 
 
@@ -72,10 +71,8 @@ def test_a_run_that_is_killed_goes_on_with_no_row_lost_or_doubled(tmp_path):
         f"kept_rows(note_call, {points!r}, Path({str(results)!r}), 1)"
     )
     process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT)
-    begun = time.monotonic()
     while not (tmp_path / "calls_2").exists():  # it waits for "go"; rows 0 and 1 are written
         assert process.poll() is None
-        assert time.monotonic() - begun < 600
         time.sleep(0.02)
     with pytest.raises(RuntimeError, match="is being written by another run"):
         kept_rows(note_call, points[:1], results)
