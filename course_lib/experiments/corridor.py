@@ -301,17 +301,16 @@ def table_1(summary: dict) -> str:
         f"{'':36} {'nearest point of the path':^33}  {'same frame':>10}  {'particles':>9}",
         f"{'':36} {'median [m]':>10} {'sigma [m]':>10} {'<= 0.30 m':>11}  {'median [m]':>10}  {'effective':>9}",
     ]
+    line = (
+        "{name:36} {median_m:>10.3f} {sigma_m:>10.3f} {within_3sigma_percent:>9.1f} %  {median_timed_m:>10.3f}  "
+        "{median_effective_sample_size:>9.1f}"
+    )
     for name, (median, sigma, within) in PAPER_TABLE_1.items():
         sigma_text = "n/a" if sigma is None else f"{sigma:.2f}"
         lines.append(f"{'paper: ' + name:36} {median:>10.2f} {sigma_text:>10} {within:>9.0f} %  {'-':>10}  {'-':>9}")
     for part in ("methods", "methods_by_hand"):
         lines += ["", BY_HAND_TITLE] if part == "methods_by_hand" and part in summary else []
-        for row in summary.get(part, {}).values():
-            lines.append(
-                f"{row['name']:36} {row['median_m']:>10.3f} {row['sigma_m']:>10.3f} "
-                f"{row['within_3sigma_percent']:>9.1f} %  {row['median_timed_m']:>10.3f}  "
-                f"{row['median_effective_sample_size']:>9.1f}"
-            )
+        lines += [line.format(**row) for row in summary.get(part, {}).values()]
     lines += [
         "",
         "sigma is the root mean square about zero. Fallon-style rows use a planar simplification of the map. At full",

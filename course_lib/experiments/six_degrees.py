@@ -148,19 +148,17 @@ def six_degrees_table(rows: dict[str, dict]) -> str:
         f"{'':44} {'':>7} {'[m]':>9} {'[deg]':>8} {'and 5 deg [%]':>12} {'10 cm':>7} {'':>7} "
         f"{'wrong':>8} {'good':>7} {'most':>9}",
     ]
-    for name, row in rows.items():
-        lines.append(
-            f"{name:44} {row['frames']:>7} {row['median_position_m']:>9.4f} {row['median_rotation_deg']:>8.2f} "
-            f"{row['within_5cm_5deg_percent']:>12.1f} {row['within_10cm_percent']:>8.1f} {row['wrong']:>7} "
-            f"{row['wrong_called_lost']:>8} {row['good_called_lost']:>7} {row['most_renders']:>9}"
-        )
+    line = (
+        "{name:44} {frames:>7} {median_position_m:>9.4f} {median_rotation_deg:>8.2f} {within_5cm_5deg_percent:>12.1f} "
+        "{within_10cm_percent:>8.1f} {wrong:>7} {wrong_called_lost:>8} {good_called_lost:>7} {most_renders:>9}"
+    )
+    covered = (
+        "{name}: squared error in units of its covariance {mean_normalized_error:.2f} in the mean; "
+        "{within_3_sigma_percent:.1f} % of errors within three sigma"
+    )
+    lines += [line.format(name=name, **row) for name, row in rows.items()]
     lines += ["", "wrong: by more than 0.20 m or 20 degrees; good: within 5 cm and 5 degrees."]
-    for name, row in rows.items():
-        if "mean_normalized_error" in row:
-            lines.append(
-                f"{name}: squared error in units of its covariance {row['mean_normalized_error']:.2f} in the mean; "
-                f"{row['within_3_sigma_percent']:.1f} % of errors within three sigma"
-            )
+    lines += [covered.format(name=name, **row) for name, row in rows.items() if "mean_normalized_error" in row]
     return "\n".join(lines)
 
 

@@ -1,7 +1,5 @@
 """Figures: their style and depth images."""
 
-from __future__ import annotations
-
 import pkgutil
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Objects of a scene: where their points lie, what they refuse."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
