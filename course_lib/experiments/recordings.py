@@ -31,6 +31,7 @@ from course_lib.rendering.sensor import subsample_depth
 # steps of a camera carried by hand, median 0.04 m and 2 degrees in the kitchen recording; for x, y, yaw one and a half
 # of a wagon's longest steps, 0.1 m).
 SIGMA = {"6": (0.05, 2.0), "xyyaw": (0.15, 1.5)}
+START_FRAMES = 20  # in which it must become clear where a recording begins
 
 
 class Run(NamedTuple):
@@ -63,28 +64,20 @@ def system_noise(dof: Literal["6", "xyyaw"], position: float, rotation_deg: floa
 
 
 def find_start(
-    scene_map: SceneMap,
-    sequence: DepthSequence,
-    *,
-    seed: int = 0,
-    up: str | None = None,
-    near: float = NEAR,
-    far: float = FAR,
-    frames: int = 20,
-    progress: Callable = iter,
+    scene_map: SceneMap, sequence: DepthSequence, *, seed: int, up: str, near: float, far: float, progress: Callable
 ) -> tuple[int, PoseCandidates, np.ndarray]:
     """Search where a recording begins: the frame in which it was clear, what was found, and the first place's pose.
 
     The pose is a camera-to-world matrix `(4, 4)` in the recording's own world, all NaN where none was found. Without
     gravity.txt the camera is taken to be held upright, to within `UNKNOWN_TILT_SIGMA`.
     """
-    to_z_up = rotation_to_z_up(up or sequence.up or "z")
+    to_z_up = rotation_to_z_up(up)
     gravity, tilt_sigma = sequence.gravity, TILT_SIGMA
     if gravity is None:
         gravity, tilt_sigma = np.tile([0.0, 1.0, 0.0], (len(sequence), 1)), UNKNOWN_TILT_SIGMA
     with DepthRenderer(scene_map.transformed(to_z_up), sequence.camera(near, far)) as renderer:
         search = GlobalSearch(renderer, seed=seed)
-        for index in progress(range(min(frames, len(sequence)))):
+        for index in progress(range(min(START_FRAMES, len(sequence)))):
             candidates = search.step(sequence.depth(index), gravity[index], tilt_sigma)
             if candidates.status == "found":
                 break

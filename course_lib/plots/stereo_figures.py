@@ -16,10 +16,7 @@ _COLOUR_PERCENTILES = (2, 98)
 
 
 def disparity_figure(upper_image: np.ndarray, features) -> Figure:
-    """The upper panorama with every matched feature, coloured by its vertical disparity; crosses break the constraint.
-
-    features: `FeatureMatches`.
-    """
+    """The upper panorama with every `FeatureMatches`, coloured by vertical disparity; crosses break the constraint."""
     figure, axes = new_figure(size=(11, 6))
     share = f", {100 * features.epipolar_share:.1f} % of equal azimuth" if len(features) else ": nothing to measure"
     panorama(axes, upper_image, f"{len(features)} matches{share}")
@@ -34,10 +31,7 @@ def disparity_figure(upper_image: np.ndarray, features) -> Figure:
 
 
 def distances_figure(views: Sequence[View], objects: Sequence, names: Sequence[str]) -> Figure:
-    """Both panoramas, one above the other, with the boxes of matched objects, numbered; their distances below.
-
-    views: (upper, lower). objects: `MeasuredObject` of each match. names: of the objects.
-    """
+    """Both panoramas, upper and lower, with the boxes of matched objects (`MeasuredObject`); their distances below."""
     boxes = np.array([d.box for view in views for d in view.detections])
     margin = 0.06 * views[0].height
     labels = [measured.label for measured in objects]
