@@ -88,11 +88,12 @@ def test_a_run_that_is_killed_goes_on_with_no_row_lost_or_doubled(tmp_path):
 
 def test_a_point_that_fails_is_named_and_what_was_finished_is_kept(tmp_path):
     points = [{"seed": seed, "folder": str(tmp_path)} for seed in range(1, 4)]
+    rows = tmp_path / "rows.jsonl"
     with pytest.raises(RuntimeError, match="seed 2: two is not to be had"):
-        kept_rows(fail_for_two, points, tmp_path / "rows.jsonl", 1)
-    assert [row["point"]["seed"] for row in lines_of(tmp_path / "rows.jsonl")] == [1]
+        kept_rows(fail_for_two, points, rows, 1)
+    assert [row["point"]["seed"] for row in lines_of(rows)] == [1]
     (tmp_path / "mended").touch()
-    assert [row["seed"] for row in kept_rows(fail_for_two, points, tmp_path / "rows.jsonl", 1)] == [1, 2, 3]
+    assert [row["seed"] for row in kept_rows(fail_for_two, points, rows, 1)] == [1, 2, 3]
 
 
 def test_results_hold_their_versions_and_rows(tmp_path):
