@@ -1,10 +1,9 @@
 """What goes wrong with a depth camera's frames, and what paper 1's filter and the annealed one make of it.
 
 Both filters are guarded (`beyond/guarded_depth.py`): what is not a frame is not used. Images are of half the SR4000's
-size each way, and recordings are short, so that all troubles at all shares take minutes and not hours.
-
-An exposure that jumps is modelled after the simulated camera (simulation/sensors/time_of_flight.py). With a share of
-the light amplitudes fall to that share, and ranges are noisier, by
+size each way, so that all troubles at all shares take minutes and not hours. An exposure that jumps is modelled after
+the simulated camera (simulation/sensors/time_of_flight.py). With a share of the light amplitudes fall to that share,
+and ranges are noisier, by
 
     sigma_r = c / (4 pi f) sqrt(shot^2 / A + dark^2 / A^2),      A = share * WHITE_SHARE * 4 / r^2
 
@@ -44,16 +43,6 @@ WHITE_SHARE = 0.3  # reflectivity times cosine of what is seen, which a depth im
 MAX_RANGE = 9.99  # m, where a saturated sensor stops: the SR4000's unambiguous range
 
 
-def black(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """No return in any pixel."""
-    return np.full_like(image, np.nan)
-
-
-def repeated(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """The image that arrived before, once more."""
-    return before.copy()
-
-
 def half_covered(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """One half, upper, lower, left or right, without returns: a hand before the lens is too near for any."""
     covered = image.copy()
@@ -80,17 +69,21 @@ def underexposed(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng
     return np.where(amplitude < model.least_amplitude, np.nan, image + noise).astype(image.dtype)
 
 
+def repeated(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """The image that arrived before, once more."""
+    return before.copy()
+
+
 SPOILS: dict[str, Spoil] = {
     "repeated": repeated,
-    "black": black,
+    "black": lambda image, *_: np.full_like(image, np.nan),  # no return in any pixel
     "frozen for a second": repeated,
     "half covered": half_covered,
     "saturated": saturated,
     "exposure jump": underexposed,
 }
-LONGEST_RUN = round(SECOND * FRAME_RATE)  # frames of the longest trouble
-LENGTHS = dict.fromkeys(("dropped", *SPOILS, "time backwards"), 1) | {"frozen for a second": LONGEST_RUN}
-"""How many frames one after the other each trouble lasts."""
+# How many frames one after the other each trouble lasts.
+LENGTHS = dict.fromkeys(("dropped", *SPOILS, "time backwards"), 1) | {"frozen for a second": round(SECOND * FRAME_RATE)}
 
 
 def corridor_trouble(data: str, seed: int, frames: int, shares: Sequence[float], dof: Dof) -> dict:

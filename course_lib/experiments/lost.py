@@ -58,7 +58,7 @@ def trial(map_file: str, sequence: str, seed: int) -> dict[str, dict]:
 
 
 def corridor_trial(data: str, seed: int) -> dict[str, dict]:
-    """The same on a recording of the seed's own, carried by hand through the corridor."""
+    """One trial on a recording of the seed's own, carried by hand through the corridor."""
     with temporary_folder() as temporary:
         record_seed(temporary / "hand", building_of_data(data), seed, carried="hand")
         return trial(str(Path(data) / "map.ply"), str(temporary / "hand"), seed)
@@ -87,18 +87,15 @@ def summarize(trials: Sequence[dict[str, dict]]) -> dict[str, float | None]:
 
 def lost_table(s: dict) -> str:
     """Return `summarize` in words."""
-    of = f"of {s['trials']}"
     median = "-" if s["frames_to_recover"] is None else f"{s['frames_to_recover']:.0f}"
-    return "\n".join(
-        [
-            f"kidnapped           {s['kidnapped_recovered']} {of} recovered within 30 frames (median {median})",
-            f"started anywhere    {s['started_right']} {of} in the right place within 20 frames, "
-            f"{s['started_wrong']} in a wrong one, {s['started_several']} said: several",
-            f"                    median {s['frames_to_start']:.0f} frames, {s['particles_to_start']:,.0f} particles, "
-            f"{s['seconds_to_start']:.0f} s",
-            f"left in peace       {s['false_alarms']} false alarms in {s['undisturbed_frames']} frames",
-        ]
-    )
+    return (
+        "kidnapped           {kidnapped_recovered} of {trials} recovered within 30 frames (median {median})\n"
+        "started anywhere    {started_right} of {trials} in the right place within 20 frames, {started_wrong} in a "
+        "wrong one, {started_several} said: several\n"
+        "                    median {frames_to_start:.0f} frames, {particles_to_start:,.0f} particles, "
+        "{seconds_to_start:.0f} s\n"
+        "left in peace       {false_alarms} false alarms in {undisturbed_frames} frames"
+    ).format(median=median, **s)
 
 
 def kidnapping(recording: DepthSequence, renderer: DepthRenderer, seed: int) -> dict:
