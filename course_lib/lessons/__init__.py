@@ -17,8 +17,8 @@ A new lesson NN is a notebook and a folder:
   `__init__.py` hands on what the notebook calls as `lesson_NN.something`, and `PANELS`.
   `figures.py`: a figure comes from `figures.new_figure` and goes to `show(figure, alt=lesson_NN.ALT["name"])`.
   `alternative_texts.py`: `ALT`, what each figure shows, by name; out of the cells, where it would give answers away.
-  A scene comes from `plots.scenes.new_plotter`, the notebook's own cell adds what is seen (`plots.scenes`, PyVista),
-  and it goes to `show_scene(plotter, "NN_name", title=..., alt=...)`.
+  A scene comes from `plots.scenes.new_plotter`, the notebook's own cell adds what is seen (`plots.scenes`,
+  `kit.scene_objects`, PyVista), and it goes to `show_scene(plotter, "NN_name", title=..., alt=...)`.
   `panel.py`: `PANELS = {title: function that makes the panel}`; its figure is a `LiveFigure`, its `draw` a plain
   function of the controls' values that returns a `Drawing`.
   `exercises.py`: `EXERCISES`, each with a reference, an input generator and three mistakes or more with their hints.
