@@ -25,8 +25,8 @@ def figure_5(path: np.ndarray, estimates: dict[str, np.ndarray], walls: np.ndarr
     figure, axes = new_figure(size=(8.0, 3.4))
     if walls is not None:
         axes.plot(walls[:, 0], walls[:, 1], ".", color="#B8B8B8", markersize=0.6, label="map, cut at camera height")
-    # On top of the markers, or 300 of them would hide it.
-    axes.plot(path[:, 0], path[:, 1], color="black", linewidth=1.1, zorder=4, label="ground truth: line on the floor")
+    line = {"color": "black", "linewidth": 1.1, "zorder": 4}  # on top of the markers, or 300 of them would hide it
+    axes.plot(path[:, 0], path[:, 1], label="ground truth: line on the floor", **line)
     for index, (name, positions) in enumerate(estimates.items()):
         style = line_style(index) | {"linestyle": "none", "markersize": 3.2}
         axes.plot(positions[:, 0], positions[:, 1], label=name, **style)
@@ -48,8 +48,7 @@ def figure_6(frames: np.ndarray, errors: dict[str, np.ndarray], title: str | Non
     axes.axhline(limit, label=f"3 sigma of the paper, {limit:.2f} m", **style)
     axes.set(title=title or "Error of every frame (like the paper's figure 6)", xlabel="frame [-]", ylabel="error [m]")
     axes.legend(loc="upper center", ncols=2, fontsize=8, framealpha=0.95)
-    top = max(float(np.max(v)) for v in errors.values())
-    axes.set_ylim(1e-3, max(2.0, 6 * top))
+    axes.set_ylim(1e-3, max(2.0, *(6 * float(np.max(values)) for values in errors.values())))
     return figure
 
 

@@ -21,7 +21,6 @@ YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 _ORDER = (BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY_BLUE, BLACK)
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 _LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 3)), (0, (1, 1)))
-_DOTS_PER_INCH = 100
 
 # Fonts that have the letters that matplotlib's own lacks, such as Japanese ones: object names are the reader's.
 _OTHER_SCRIPTS = (
@@ -44,7 +43,7 @@ def line_style(index: int) -> dict:
 
 def new_figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4, 3.6)) -> tuple[Figure, np.ndarray]:
     """A figure of `size` inches and its axes: one `Axes` for 1 x 1, else an array of them."""
-    figure = Figure(figsize=size, dpi=_DOTS_PER_INCH, layout="constrained")
+    figure = Figure(figsize=size, dpi=100, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns)
     for a in np.atleast_1d(axes).flat:

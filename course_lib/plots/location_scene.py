@@ -82,8 +82,8 @@ def _add_places(plotter: pyvista.Plotter, semantic_map: SemanticMap, found: Loca
             plotter.add_mesh(_disc(place, turn @ observation.covariance @ turn.T), color=colour, opacity=0.5)
         if one.observation in landmark_of:
             landmark = np.array([*semantic_map.positions[landmark_of[one.observation]], place[2]])
-            ends = path(np.stack([place, landmark]))
-            plotter.add_mesh(ends, color=BLUE if found.pose else VERMILION, line_width=4)
+            colour = BLUE if found.pose else VERMILION
+            plotter.add_mesh(path(np.stack([place, landmark])), color=colour, line_width=4)
 
 
 def _disc(middle: np.ndarray, covariance: np.ndarray) -> pyvista.PolyData:

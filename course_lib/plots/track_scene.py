@@ -58,9 +58,8 @@ def track_scene(
     for index, points in zip(worst, measured, strict=True):
         if len(points):
             plotter.add_mesh(points, color=PURPLE, point_size=3)
-        plotter.add_mesh(
-            frustum(camera, state_from_optical_pose(estimated[index]), max(_FRUSTUM, 1.1 * camera.near)), color=PURPLE
-        )
+        shape = frustum(camera, state_from_optical_pose(estimated[index]), max(_FRUSTUM, 1.1 * camera.near))
+        plotter.add_mesh(shape, color=PURPLE)
     words = "Estimate: blue line" + (", truth: black, dashed" if true is not None else "")
     words += ", orange where doubtful, red where lost" if set(result.statuses) != {"tracked"} else ""
     frames = ", ".join(str(result.frames[index]) for index in worst)
