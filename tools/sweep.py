@@ -1,7 +1,6 @@
 """Run table 1 of paper 1 for many seeds on every processor, and tell its numbers with confidence intervals.
 
-Each seed makes a recording of its own and one that is pushed by hand, and the methods run on both. Every seed is
-written to the results file when it is done; called again, the command runs what is missing.
+Each seed makes a recording of its own and one that is pushed by hand; called again, the command runs what is missing.
 """
 
 from __future__ import annotations
@@ -71,29 +70,25 @@ def seeds_of(text: str) -> list[int]:
 
 
 def dask(address: str) -> contextlib.AbstractContextManager:
-    """Let joblib run on Dask's workers. Raises `ValueError` where Dask is not installed or nobody answers."""
+    """Let joblib run on Dask's workers. Raises `ValueError` where nobody answers."""
     import joblib
+    from dask.distributed import Client
 
     try:
-        from dask.distributed import Client
-
         return joblib.parallel_config("dask", client=Client(address, timeout=CONNECT_S))
-    except ImportError as error:
-        raise ValueError("--dask needs Dask's scheduler: pip install distributed") from error
     except (OSError, ValueError) as error:
         raise ValueError(f"--dask {address}: no scheduler answers there ({error}): dask scheduler") from error
 
 
 def corridor(seed: int, frames: int | None, n_particles: int) -> dict:
     """Table 1 of one seed, in any process: two recordings made, the paper's method and Fallon's run on each."""
-    from course_lib.experiments.corridor import METHODS_BY_HAND, record_of_seed, rows_by_part
-    from course_lib.files import temporary_folder
+    from course_lib.experiments.corridor import METHODS_BY_HAND, table_1_of_seed
     from course_lib.paths import data_path
 
     settings = {"recording": "own", "backend": "raster", "exact": False, "methods": METHODS_BY_HAND}
-    with temporary_folder() as folder:
-        rows = record_of_seed(seed, folder, str(data_path("corridor")), n_particles, frames, **settings).rows
-    return {"seed": seed, "frames": len(rows["proposed"].run.frames), **rows_by_part(rows)}
+    data = str(data_path("corridor"))
+    summary = table_1_of_seed(seed, data=data, particles=n_particles, frames=frames, **settings)["summary"]
+    return {key: summary[key] for key in ("seed", "frames", "methods", "methods_by_hand")}
 
 
 if __name__ == "__main__":

@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.commands.progress import progress_bar
     from course_lib.experiments.ambiguity import ambiguity_map
     from course_lib.experiments.results import write_results
-    from course_lib.plots.look_alike_figures import ambiguity_figure
+    from course_lib.plots.room_figures import ambiguity_figure
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
     names = arguments.association.split(",")

@@ -65,9 +65,12 @@ def run(arguments: argparse.Namespace) -> int:
     recording = read_sequence(arguments.sequence)
     recording.require_poses()  # told now, not after the first run
     recording.thinned(max(everies), max(everies) - 1)
-    points = six_degrees.thinned_points(
-        arguments.map.absolute(), arguments.sequence.absolute(), methods, everies, seeds
-    )
+    files = {"map_file": str(arguments.map.absolute()), "sequence": str(arguments.sequence.absolute())}
+    points = [
+        {**files, "method": method, "every": every, "offset": offset, "seed": seed}
+        for method, every, offset in six_degrees.thinnings(methods, everies)
+        for seed in (seeds[:1] if method == "floor" else seeds)
+    ]
     bar = progress_bar("comparing", "run")
     runs = kept_rows(six_degrees.thinned_run, points, arguments.out / "compare.jsonl", progress=bar)
     grouped: dict[str, list[dict]] = {}

@@ -206,8 +206,8 @@ def _write(
     """Write numbers, figure and scene, and return their names."""
     from course_lib.commands.scene_output import write_scene
     from course_lib.experiments.results import write_results
-    from course_lib.plots.location_figure import location_figure
     from course_lib.plots.location_scene import location_scene
+    from course_lib.plots.room_figures import location_figure
 
     write_results(folder / "locate.json", summary, summary["objects"])
     lines = [f"{n:2d} {_row(row)}" for n, row in enumerate(summary["objects"], start=1)]

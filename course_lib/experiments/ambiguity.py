@@ -1,7 +1,6 @@
 """Ambiguity of a room before any run: from where would which objects be taken for which others?
 
-Only the map is needed. At every place of a grid the rig is imagined to stand; what it would observe is drawn from the
-stereo camera's covariance and the chances of detection, and a matcher says what it makes of it.
+At every place of a grid, what a rig would observe is drawn from the map, and a matcher says what it makes of it.
 """
 
 from __future__ import annotations
@@ -28,9 +27,8 @@ class AmbiguityMap(NamedTuple):
     """k places of a grid, and what would be believed there."""
 
     places: np.ndarray  # `(k, 2)` metres, on the map; only where a rig can stand
-    confidence: np.ndarray
-    """`(k,)` mean confidence of the right pose, 0 where it is not the most believed one. Of a matcher without
-    confidence, the share of draws in which all its matches are right."""
+    confidence: np.ndarray  # `(k,)` mean confidence of the right pose, 0 where it is not the most believed one
+    """Of a matcher without confidence: the share of draws in which all its matches are right."""
     confused: np.ndarray  # `(k, m, m)` share of the belief by which landmark i is taken for landmark j
     step: float  # Metres between neighbours
 
@@ -44,31 +42,30 @@ class AmbiguityMap(NamedTuple):
 
 
 def imagined_observations(
-    semantic_map: SemanticMap, pose: np.ndarray, rng: np.random.Generator, rig: StereoRig = RIG
+    semantic_map: SemanticMap, pose: np.ndarray, rng: np.random.Generator
 ) -> tuple[list[Observation], list[int]]:
     """Draw what a rig at a pose `(3,)` [x, y, theta] would observe, and which landmark each observation shows.
 
-    Every landmark is seen with its chance (`detection_probabilities`), with noise of the stereo covariance, in the
-    colour of the map: what is confused here is confused by its place.
+    Every landmark is seen with its chance, with stereo noise, in the map's colour: confused is what its place confuses.
     """
     chance = detection_probabilities(semantic_map, np.asarray(pose, dtype=np.float64)[None])[0]
     seen = np.flatnonzero(rng.random(len(semantic_map)) < chance)
     places = (semantic_map.positions[seen] - pose[:2]) @ rotations(np.array(pose[2]))  # R^T (m - t), row by row
     observations = []
     for landmark, place in zip(seen, places, strict=True):
-        covariance = stereo_covariance(place, rig)
+        covariance = stereo_covariance(place)
         x, y = rng.multivariate_normal(place, covariance)
         one = semantic_map.landmarks[landmark]
         observations.append(Observation(one.label, float(x), float(y), one.hue, one.saturation, covariance))
     return observations, [int(landmark) for landmark in seen]
 
 
-def stereo_covariance(place: np.ndarray, rig: StereoRig = RIG) -> np.ndarray:
+def stereo_covariance(place: np.ndarray) -> np.ndarray:
     """`(2, 2)` of an object at a place `(2,)` in the body frame, square metres, as `object_places` gives it."""
-    upper = np.array([*place, OBJECT_HEIGHT - rig.upper_height])
-    lower = upper + np.array([0.0, 0.0, rig.baseline])
+    upper = np.array([*place, OBJECT_HEIGHT - RIG.upper_height])
+    lower = upper + np.array([0.0, 0.0, RIG.baseline])
     sigma = BOX_CENTRE_SIGMA
-    return triangulation_covariance(upper, lower, rig.baseline, sigma, sigma)[:2, :2] + CENTROID_SIGMA**2 * np.eye(2)
+    return triangulation_covariance(upper, lower, RIG.baseline, sigma, sigma)[:2, :2] + CENTROID_SIGMA**2 * np.eye(2)
 
 
 def ambiguity_map(
@@ -76,7 +73,6 @@ def ambiguity_map(
     rng: np.random.Generator,
     step: float = 0.5,
     draws: int = 4,
-    rig: StereoRig = RIG,
     association: str = "consistent",
     progress: Callable = iter,
 ) -> AmbiguityMap:
@@ -93,7 +89,7 @@ def ambiguity_map(
     for k, place in enumerate(progress(grid)):
         for _ in range(draws):
             pose = np.array([*place, rng.uniform(-np.pi, np.pi)])
-            observations, shown = imagined_observations(semantic_map, pose, rng, rig)
+            observations, shown = imagined_observations(semantic_map, pose, rng)
             if not observations:
                 continue
             found = matcher(association)(observations, semantic_map)

@@ -1,13 +1,12 @@
 """Run paper 1's experiment on the simulated corridor: estimate x, y and yaw, print table 1, save figures 5 and 6.
 
-Every seed makes a recording of its own: another day in the building of the map, another run of the wagon, other noise.
-A second recording of each seed is pushed by hand, with the usual errors of calibration and mount. Fallon's scoring runs
-on the same recordings, with the same motion noise and number of particles.
+Every seed makes two recordings: another day in the building of the map, and one pushed by hand, with the usual errors
+of calibration and mount. Fallon's scoring runs on both, with the same motion noise and number of particles.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -63,8 +62,8 @@ class Maps(NamedTuple):
     planar: SceneMap
 
     @classmethod
-    def load(cls, data: Path) -> Maps:
-        return cls(SceneMap.load(data / "map.ply"), SceneMap.load(data / "planar_map.ply"))
+    def load(cls, data: str | Path) -> Maps:
+        return cls(*(SceneMap.load(Path(data) / name) for name in ("map.ply", "planar_map.ply")))
 
 
 class Row(NamedTuple):
@@ -89,25 +88,25 @@ def run(
     *,
     seed: int,
     seeds: list[int] | None,
-    recording: str,
     idealizations: bool,
     dof: str,
     methods: str | None,
-    particles: int,
-    frames: int | None,
     data: Path | None,
-    backend: str,
-    exact: bool,
+    **options: object,
 ) -> Outcome:
-    """Run `demo corridor`: one seed with its figures, several seeds, what idealizations are worth, or `--dof 6`."""
+    """Run `demo corridor`: one seed with its figures, several seeds, what idealizations are worth, or `--dof 6`.
+
+    options: recording, particles, frames, backend, exact.
+    """
     data = (data or data_path("corridor")).absolute()
     if dof == "6":
-        usual = {"recording": recording == "own", "idealizations": not idealizations, "particles": particles == 200}
-        for option in (name for name, fits in {**usual, "backend": backend == "raster"}.items() if not fits):
-            raise ValueError(f"--{option} does not go with --dof 6")
-        return six_degrees.run_corridor(runner, seeds or [seed], data, frames, methods)
+        usual = {"recording": "own", "particles": 200, "backend": "raster", "idealizations": False}
+        given = options | {"idealizations": idealizations}
+        if unusual := [name for name, value in usual.items() if given[name] != value]:
+            raise ValueError(f"--{unusual[0]} does not go with --dof 6")
+        return six_degrees.run_corridor(runner, seeds or [seed], data, options["frames"], methods)
     names = _require_methods(methods, seeds)
-    options = {"particles": particles, "frames": frames, "backend": backend, "exact": exact}
+    recording = options.pop("recording")
     if idealizations:
         return _run_idealizations(runner, seeds or IDEALIZATION_SEEDS, data, **options)
     settings = {"data": str(data), **options, "recording": recording, "methods": names}
@@ -126,10 +125,7 @@ def _require_methods(methods: str | None, seeds: list[int] | None) -> list[str]:
         raise ValueError("--methods goes with --seeds: a single seed runs every row of the table")
     names = methods.split(",")
     if not set(METHODS_BY_HAND) <= set(names) <= set(METHODS):
-        raise ValueError(
-            f"--methods must name {' and '.join(METHODS_BY_HAND)}, and besides them only rows of "
-            f"{', '.join(METHODS)}; got {methods}"
-        )
+        raise ValueError(f"--methods must name {' and '.join(METHODS_BY_HAND)}, others of {', '.join(METHODS)}")
     return names
 
 
@@ -149,13 +145,13 @@ def _run_seeds(runner: Runner, seeds: list[int], settings: dict) -> Outcome:
 
 def _run_idealizations(runner: Runner, seeds: list[int], data: Path, particles: int, **options: object) -> Outcome:
     """The paper's method on recordings with no hardship, with each alone, and with all."""
-    result = {"seeds": seeds, "image": list(IDEALIZATION_SIZE), "n_particles": particles, **options, "hardships": {}}
     every = {"none": (), **{name: (name,) for name in HARDSHIPS}, "all": HARDSHIPS}
     common = {"data": str(data), "n_particles": particles, **options}
     points = [{"seed": seed, "hardships": list(own), **common} for own in every.values() for seed in seeds]
-    errors = runner.rows(hardship_errors, points, "idealizations", "run")
-    for k, name in enumerate(every):
-        own = errors[k * len(seeds) : (k + 1) * len(seeds)]
+    errors = iter(runner.rows(hardship_errors, points, "idealizations", "run"))
+    result = {"seeds": seeds, "image": list(IDEALIZATION_SIZE), "n_particles": particles, **options, "hardships": {}}
+    for name in every:
+        own = [next(errors) for _ in seeds]
         result["hardships"][name] = {key: spread([one[key] for one in own]) for key in own[0]}
     return Outcome(result, table_of_idealizations(result), {"idealizations.json": (result, None)})
 
@@ -165,42 +161,40 @@ def record_of_seed(
     folder: Path,
     data: str,
     particles: int,
-    frames: int | None,
     recording: str,
-    backend: str,
-    exact: bool,
     methods: Collection[str],
     bar: Callable = no_bar,
+    **options: object,
 ) -> Record:
-    """Return every row of table 1 of a seed. Recordings of its own are made below `folder`."""
-    maps = Maps.load(Path(data))
+    """Return every row of table 1 of a seed. Recordings of its own are made below `folder`.
+
+    options: frames, backend, exact.
+    """
+    maps = Maps.load(data)
     if recording == "shipped":
         even, by_hand = read_sequence(Path(data) / "wagon"), None
     else:
-        try:
-            even, by_hand = own_recordings(Path(data), folder, seed, frames, bar)
-        except ImportError as error:
-            raise ImportError(f"{error}; --recording shipped makes none") from error
-    options = {"n_particles": particles, "backend": backend, "exact": exact, "frames": frames, "seed": seed}
-    return Record(maps, even, run_rows(maps, even, by_hand, methods, bar, **options), backend)
+        even, by_hand = own_recordings(data, folder, seed, options["frames"], bar)
+    rows = run_rows(maps, even, by_hand, methods, bar, n_particles=particles, seed=seed, **options)
+    return Record(maps, even, rows, options["backend"])
 
 
 def table_1_of_seed(seed: int, **settings: object) -> dict:
     """Return table 1 of a seed as JSON holds it: the summary, and a row a frame."""
     with temporary_folder() as folder:
-        record = record_of_seed(seed, folder, **settings)
-    return {"summary": summarize(record.rows, {"seed": seed, **settings}), "frames": rows_of_frames(record.rows)}
+        rows = record_of_seed(seed, folder, **settings).rows
+    return {"summary": summarize(rows, {"seed": seed, **settings}), "frames": rows_of_frames(rows)}
 
 
 def own_recordings(
-    data: Path, folder: Path, seed: int, frames: int | None = None, bar: Callable = no_bar
-) -> tuple[DepthSequence, DepthSequence]:
+    data: str | Path, folder: Path, seed: int, frames: int | None = None, bar: Callable = no_bar
+) -> list[DepthSequence]:
     """Make the two recordings of a seed, even and by hand, in the building whose map lies in `data`."""
-    building = building_of_data(data)
-    for name, hardships in (("even", ()), ("by hand", HARDSHIPS)):
+    building, hardships_of = building_of_data(Path(data)), {"even": (), "by hand": HARDSHIPS}
+    for name, hardships in hardships_of.items():
         progress = bar(f"recording seed {seed}, {name}", "frame")
         record_seed(folder / name, building, seed, hardships, frames=frames, progress=progress)
-    return read_sequence(folder / "even"), read_sequence(folder / "by hand")
+    return [read_sequence(folder / name) for name in hardships_of]
 
 
 def run_rows(
@@ -212,33 +206,22 @@ def run_rows(
     **options: object,
 ) -> dict[str, Row]:
     """Return every row of table 1. options: `run_sequence`'s."""
-    rows = {key: _row(key, maps, even, bar(METHODS[key].name, "frame"), **options) for key in METHODS if key in methods}
-    for key in METHODS_BY_HAND if by_hand is not None else ():
-        if key in methods:
-            progress = bar(f"{METHODS[key].name}, by hand", "frame")
-            rows[key + BY_HAND] = _row(key, maps, by_hand, progress, **options)
+    rows = {}
+    for sequence, keys, end in ((even, METHODS, ""), (by_hand, METHODS_BY_HAND, BY_HAND)):
+        for key in (key for key in keys if key in methods and sequence is not None):
+            progress = bar(METHODS[key].name + (", by hand" if end else ""), "frame")
+            rows[key + end] = run_row(METHODS[key], maps, sequence, progress=progress, **options)
     return rows
 
 
-def _row(key: str, maps: Maps, sequence: DepthSequence, progress: Callable = iter, **options: object) -> Row:
-    run = run_method(METHODS[key], *maps, sequence, progress=progress, **options)
-    return Row(run, *path_errors(run, sequence))
-
-
-def run_method(
-    method: Method, scene_map: SceneMap, planar_map: SceneMap, sequence: DepthSequence, **options: object
-) -> Run:
-    """Localize a recording in x, y and yaw by the method of one row of table 1."""
-    used_map = planar_map if method.planar else scene_map
-    return run_sequence(used_map, sequence, weighting=method.weighting, coarse=method.coarse, **options)
-
-
-def path_errors(run: Run, sequence: DepthSequence) -> tuple[PositionError, PositionError]:
-    """Return the paper's nearest-path error and the timed error; the recording must hold its path on the floor."""
+def run_row(method: Method, maps: Maps, sequence: DepthSequence, **options: object) -> Row:
+    """Localize a recording, which holds its path on the floor, in x, y and yaw by the method of one row of table 1."""
+    used_map = maps.planar if method.planar else maps.detailed
+    run = run_sequence(used_map, sequence, weighting=method.weighting, coarse=method.coarse, **options)
     if sequence.path_on_floor is None:
         raise ValueError(f"{sequence.folder} holds no path_on_floor.txt, which the paper's error needs")
     estimated, true = run.camera_to_world[:, :3, 3], sequence.camera_to_world[: len(run.frames), :3, 3]
-    return nearest_path_error(estimated, sequence.path_on_floor), timed_error(estimated, true)
+    return Row(run, nearest_path_error(estimated, sequence.path_on_floor), timed_error(estimated, true))
 
 
 def hardship_errors(
@@ -249,32 +232,20 @@ def hardship_errors(
     with temporary_folder() as folder:
         record_seed(folder / "run", building_of_data(data), seed, tuple(hardships), camera=camera, frames=frames)
         sequence = read_sequence(folder / "run")
-        row = _row("proposed", Maps.load(Path(data)), sequence, seed=seed, frames=frames, **options)
+        row = run_row(METHODS["proposed"], Maps.load(data), sequence, seed=seed, frames=frames, **options)
     return {"median_m": row.nearest.median, "median_timed_m": row.timed.median}
 
 
 def summarize(rows: dict[str, Row], settings: dict) -> dict:
-    """Return the numbers of table 1: the paper's experiment at the top level, every method below `methods`."""
-    parts = rows_by_part(rows)
-    even = parts["methods"]
-    copied = ("median_m", "sigma_m", "within_3sigma_percent", "median_timed_m", "ms_per_frame")
-    return {
-        "seed": settings["seed"],
-        "n_particles": settings["particles"],
-        "frames": len(rows["proposed"].run.frames),
-        "sigma_noise": [float(s) for s in SIGMA_XY_YAW],
-        "settings": settings,
-        **{name: even["proposed"][name] for name in copied},
-        "fallon_median_m": even["fallon"]["median_m"],
-        **parts,
-    }
+    """Return the numbers of table 1: the paper's experiment at the top level, every method below `methods`.
 
-
-def rows_by_part(rows: dict[str, Row]) -> dict[str, dict[str, dict]]:
-    """Return what table 1 tells of every row: "methods" on the even recording, "methods_by_hand" on the other."""
-    numbers = {
-        key: {
-            "name": METHODS[key.removesuffix(BY_HAND)].name,
+    Those on the recording that is pushed by hand are below `methods_by_hand`.
+    """
+    parts: dict[str, dict[str, dict]] = {}
+    for key, row in rows.items():
+        method = key.removesuffix(BY_HAND)
+        parts.setdefault("methods" + key[len(method) :], {})[method] = {
+            "name": METHODS[method].name,
             "median_m": row.nearest.median,
             "sigma_m": row.nearest.sigma,
             "within_3sigma_percent": 100 * row.nearest.within_3sigma,
@@ -282,40 +253,42 @@ def rows_by_part(rows: dict[str, Row]) -> dict[str, dict[str, dict]]:
             "median_effective_sample_size": float(np.median(row.run.ess)),
             "ms_per_frame": row.run.ms_per_frame,
         }
-        for key, row in rows.items()
+    left_out = ("name", "median_effective_sample_size")
+    proposed = {key: value for key, value in parts["methods"]["proposed"].items() if key not in left_out}
+    return {
+        "seed": settings["seed"],
+        "n_particles": settings["particles"],
+        "frames": len(rows["proposed"].run.frames),
+        "sigma_noise": [float(s) for s in SIGMA_XY_YAW],
+        "settings": settings,
+        **proposed,
+        "fallon_median_m": parts["methods"]["fallon"]["median_m"],
+        **parts,
     }
-    by_hand = {key.removesuffix(BY_HAND): row for key, row in numbers.items() if key.endswith(BY_HAND)}
-    even = {key: row for key, row in numbers.items() if not key.endswith(BY_HAND)}
-    return {"methods": even, **({"methods_by_hand": by_hand} if by_hand else {})}
 
 
 def rows_of_frames(rows: dict[str, Row]) -> list[dict]:
     """Return a row a frame for a CSV file: errors, positions and scores of every method."""
-    return [
-        {
-            "frame": frame,
-            **{f"{key}_nearest_m": round(float(row.nearest.errors[i]), 5) for key, row in rows.items()},
-            **{f"{key}_timed_m": round(float(row.timed.errors[i]), 5) for key, row in rows.items()},
-            **{
-                f"{key}_{axis}_m": round(float(row.run.camera_to_world[i, j, 3]), 4)
-                for key, row in rows.items()
-                for j, axis in enumerate("xy")
-            },
-            **{f"{key}_score": round(float(row.run.scores[i]), 5) for key, row in rows.items()},
-        }
-        for i, frame in enumerate(rows["proposed"].run.frames)
-    ]
+    columns = {"frame": rows["proposed"].run.frames}
+    columns |= {f"{key}_nearest_m": _rounded(row.nearest.errors, 5) for key, row in rows.items()}
+    columns |= {f"{key}_timed_m": _rounded(row.timed.errors, 5) for key, row in rows.items()}
+    for key, row in rows.items():
+        columns |= {f"{key}_{axis}_m": _rounded(row.run.camera_to_world[:, j, 3], 4) for j, axis in enumerate("xy")}
+    columns |= {f"{key}_score": _rounded(row.run.scores, 5) for key, row in rows.items()}
+    return [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
 
 
-def over_recordings(
-    summaries: Iterable[dict], tell: Callable[[Sequence[float]], dict] = spread
-) -> dict[str, dict[str, dict]]:
+def _rounded(values: np.ndarray, digits: int) -> list[float]:
+    return [round(float(value), digits) for value in values]
+
+
+def over_recordings(summaries: Sequence[dict], tell: Callable = spread) -> dict[str, dict[str, dict]]:
     """Return what `tell` makes of every number of every row over seeds, for "methods" and "methods_by_hand"."""
-    summaries = list(summaries)
-    result: dict = {}
-    for part in ("methods", "methods_by_hand"):
-        for key, row in summaries[0].get(part, {}).items():
-            told = {name: tell([summary[part][key][name] for summary in summaries]) for name in TOLD}
+    result: dict[str, dict[str, dict]] = {}
+    for part in (part for part in ("methods", "methods_by_hand") if part in summaries[0]):
+        own = [summary[part] for summary in summaries]
+        for key, row in own[0].items():
+            told = {name: tell([one[key][name] for one in own]) for name in TOLD}
             result.setdefault(part, {})[key] = {"name": row["name"], **told}
     return result
 
@@ -328,12 +301,16 @@ def table_1(summary: dict) -> str:
         f"{'':36} {'nearest point of the path':^33}  {'same frame':>10}  {'particles':>9}",
         f"{'':36} {'median [m]':>10} {'sigma [m]':>10} {'<= 0.30 m':>11}  {'median [m]':>10}  {'effective':>9}",
     ]
+    line = (
+        "{name:36} {median_m:>10.3f} {sigma_m:>10.3f} {within_3sigma_percent:>9.1f} %  {median_timed_m:>10.3f}  "
+        "{median_effective_sample_size:>9.1f}"
+    )
     for name, (median, sigma, within) in PAPER_TABLE_1.items():
         sigma_text = "n/a" if sigma is None else f"{sigma:.2f}"
         lines.append(f"{'paper: ' + name:36} {median:>10.2f} {sigma_text:>10} {within:>9.0f} %  {'-':>10}  {'-':>9}")
-    lines += [_line(row) for row in summary["methods"].values()]
-    if "methods_by_hand" in summary:  # only a recording of the seed's own has one by hand beside it
-        lines += ["", BY_HAND_TITLE, *(_line(row) for row in summary["methods_by_hand"].values())]
+    for part in ("methods", "methods_by_hand"):
+        lines += ["", BY_HAND_TITLE] if part == "methods_by_hand" and part in summary else []
+        lines += [line.format(**row) for row in summary.get(part, {}).values()]
     lines += [
         "",
         "sigma is the root mean square about zero. Fallon-style rows use a planar simplification of the map. At full",
@@ -342,13 +319,6 @@ def table_1(summary: dict) -> str:
         f"{summary['ms_per_frame']:.0f} ms a frame (paper: 125 ms, on a graphics card)",
     ]
     return "\n".join(lines)
-
-
-def _line(row: dict) -> str:
-    return (
-        f"{row['name']:36} {row['median_m']:>10.3f} {row['sigma_m']:>10.3f} {row['within_3sigma_percent']:>9.1f} %"
-        f"  {row['median_timed_m']:>10.3f}  {row['median_effective_sample_size']:>9.1f}"
-    )
 
 
 def table_over_recordings(result: dict, told: str = "least to greatest") -> str:
@@ -360,11 +330,10 @@ def table_over_recordings(result: dict, told: str = "least to greatest") -> str:
         "",
         f"{'':36} {'nearest median [m]':>22} {'sigma [m]':>22} {'<= 0.30 m [%]':>22} {'same frame median [m]':>22}",
     ]
-    columns = (("median_m", 3), ("sigma_m", 3), ("within_3sigma_percent", 1), ("median_timed_m", 3))
+    columns = {"median_m": 3, "sigma_m": 3, "within_3sigma_percent": 1, "median_timed_m": 3}
     for part, rows in result["over_recordings"].items():
         lines += ["", BY_HAND_TITLE] if part == "methods_by_hand" else []
-        for row in rows.values():
-            lines.append(f"{row['name']:36} " + " ".join(_spread(row[name], digits) for name, digits in columns))
+        lines += [f"{row['name']:36} {_spreads(row, columns)}" for row in rows.values()]
     if any("?" in line for line in lines):
         lines += ["", "?: so few recordings leave the interval unknown; six are enough."]
     return "\n".join(lines)
@@ -372,18 +341,21 @@ def table_over_recordings(result: dict, told: str = "least to greatest") -> str:
 
 def table_of_idealizations(result: dict) -> str:
     """Return median errors of the paper's method with each hardship alone: median over seeds (least to greatest)."""
-    seeds, size = result["seeds"], result["image"]
+    seeds, (width, height) = result["seeds"], result["image"]
     lines = [
         f"What idealizations are worth: {len(seeds)} recordings, seeds {seeds[0]} to {seeds[-1]}, "
-        f"{size[0]} x {size[1]} pixels, {result['n_particles']} particles",
+        f"{width} x {height} pixels, {result['n_particles']} particles",
         "",
         f"{'hardship':18} {'nearest median [m]':>22} {'same frame median [m]':>22}",
     ]
-    for name, row in result["hardships"].items():
-        lines.append(f"{name:18} {_spread(row['median_m'], 3)} {_spread(row['median_timed_m'], 3)}")
-    return "\n".join(lines)
+    columns = {"median_m": 3, "median_timed_m": 3}
+    return "\n".join([*lines, *(f"{name:18} {_spreads(row, columns)}" for name, row in result["hardships"].items())])
 
 
-def _spread(spread: dict, digits: int) -> str:
-    middle, least, greatest = ("?" if value is None else f"{value:.{digits}f}" for value in spread.values())
-    return f"{f'{middle} ({least} to {greatest})':>22}"
+def _spreads(row: dict, columns: dict[str, int]) -> str:
+    """Some spreads of a row, with so many digits: "median (least to greatest)" each."""
+    told = []
+    for key, digits in columns.items():
+        middle, low, high = ("?" if value is None else f"{value:.{digits}f}" for value in row[key].values())
+        told.append(f"{f'{middle} ({low} to {high})':>22}")
+    return " ".join(told)

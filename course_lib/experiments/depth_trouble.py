@@ -1,10 +1,9 @@
 """What goes wrong with a depth camera's frames, and what paper 1's filter and the annealed one make of it.
 
 Both filters are guarded (`beyond/guarded_depth.py`): what is not a frame is not used. Images are of half the SR4000's
-size each way, and recordings are short, so that all troubles at all shares take minutes and not hours.
-
-An exposure that jumps is modelled after the simulated camera (simulation/sensors/time_of_flight.py). With a share of
-the light amplitudes fall to that share, and ranges are noisier, by
+size each way, so that all troubles at all shares take minutes and not hours. An exposure that jumps is modelled after
+the simulated camera (simulation/sensors/time_of_flight.py). With a share of the light amplitudes fall to that share,
+and ranges are noisier, by
 
     sigma_r = c / (4 pi f) sqrt(shot^2 / A + dark^2 / A^2),      A = share * WHITE_SHARE * 4 / r^2
 
@@ -13,7 +12,8 @@ and returns whose amplitude falls below the camera's threshold are lost: far one
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -43,16 +43,6 @@ WHITE_SHARE = 0.3  # reflectivity times cosine of what is seen, which a depth im
 MAX_RANGE = 9.99  # m, where a saturated sensor stops: the SR4000's unambiguous range
 
 
-def black(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """No return in any pixel."""
-    return np.full_like(image, np.nan)
-
-
-def repeated(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """The image that arrived before, once more."""
-    return before.copy()
-
-
 def half_covered(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """One half, upper, lower, left or right, without returns: a hand before the lens is too near for any."""
     covered = image.copy()
@@ -79,57 +69,30 @@ def underexposed(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng
     return np.where(amplitude < model.least_amplitude, np.nan, image + noise).astype(image.dtype)
 
 
+def repeated(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """The image that arrived before, once more."""
+    return before.copy()
+
+
 SPOILS: dict[str, Spoil] = {
     "repeated": repeated,
-    "black": black,
+    "black": lambda image, *_: np.full_like(image, np.nan),  # no return in any pixel
     "frozen for a second": repeated,
     "half covered": half_covered,
     "saturated": saturated,
     "exposure jump": underexposed,
 }
-LONGEST_RUN = round(SECOND * FRAME_RATE)  # frames of the longest trouble
-LENGTHS = dict.fromkeys(("dropped", *SPOILS, "time backwards"), 1) | {"frozen for a second": LONGEST_RUN}
-"""How many frames one after the other each trouble lasts."""
-
-
-def watched_frames(
-    dof: Dof, renderer: DepthRenderer, arrivals: Sequence[Arrival], true_poses: np.ndarray, period: float, seed: int
-) -> list[dict]:
-    """Return what became of every frame: outcome, whether the pose is one to go by, its errors.
-
-    true_poses: `(T, 4, 4)` camera-to-world, optical, z up. A frame that never came, or came out of order, has the pose
-    to which the filter was moved when the next one told of the gap.
-    """
-    localizer = GuardedLocalizer(FILTERS[dof](renderer, seed=seed), period)
-    localizer.initialize(state_from_optical_pose(true_poses[0]))
-    outcomes, states = [], []
-    for arrival in arrivals:
-        if arrival.image is None:
-            outcomes.append("no image")
-            states.append(states[-1])
-            continue
-        watched = localizer.step(arrival.image, arrival.time)
-        for back, estimate in enumerate(reversed(watched.missed), start=1):
-            states[-back] = estimate.state
-        outcomes.append(watched.outcome)
-        states.append(watched.estimate.state)
-    position, rotation = pose_errors(optical_pose(np.array(states)), true_poses)
-    return [
-        {"outcome": outcome, "confident": outcome == "tracked", "position_m": float(p), "rotation_deg": float(r)}
-        for outcome, p, r in zip(outcomes, position, np.rad2deg(rotation), strict=True)
-    ]
+# How many frames one after the other each trouble lasts.
+LENGTHS = dict.fromkeys(("dropped", *SPOILS, "time backwards"), 1) | {"frozen for a second": round(SECOND * FRAME_RATE)}
 
 
 def corridor_trouble(data: str, seed: int, frames: int, shares: Sequence[float], dof: Dof) -> dict:
     """Return `troubles_of` a filter on a seed's recording of the corridor."""
-    scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
+    camera, carried = DepthCamera.sr4000().resized(*IMAGE), "wagon" if dof == "xyyaw" else "hand"
     with temporary_folder() as temporary:
         folder = temporary / "recording"
-        camera = DepthCamera.sr4000().resized(*IMAGE)
-        carried = "wagon" if dof == "xyyaw" else "hand"
-        record_seed(folder, building, seed, camera=camera, frames=frames, carried=carried)
-        recording = read_sequence(folder)
-        return recording_trouble(recording, scene_map, seed, shares, dof)
+        record_seed(folder, building_of_data(data), seed, camera=camera, frames=frames, carried=carried)
+        return recording_trouble(read_sequence(folder), SceneMap.load(Path(data) / "map.ply"), seed, shares, dof)
 
 
 def recording_trouble(
@@ -142,10 +105,32 @@ def recording_trouble(
 ) -> dict:
     """`corridor_trouble` of a recording with its truth and times, z up."""
     images = [recording.depth(index) for index in range(len(recording))]
-    period = float(np.median(np.diff(recording.times)))
     with DepthRenderer(scene_map, recording.camera()) as renderer:
-
-        def run(arrivals: Sequence[Arrival]) -> list[dict]:
-            return watched_frames(dof, renderer, arrivals, recording.camera_to_world, period, seed)
-
+        run = partial(watched_frames, recording, partial(FILTERS[dof], renderer, seed=seed))
         return troubles_of(run, lengths, SPOILS, images, recording.times, seed, shares)
+
+
+def watched_frames(recording: DepthSequence, make: Callable, arrivals: Sequence[Arrival]) -> list[dict]:
+    """Return what became of every frame: outcome, whether the pose is one to go by, its errors. make: the filter.
+
+    A frame that never came, or came out of order, has the pose to which the filter was moved when the next one told of
+    the gap.
+    """
+    localizer = GuardedLocalizer(make(), float(np.median(np.diff(recording.times))))
+    localizer.initialize(state_from_optical_pose(recording.camera_to_world[0]))
+    outcomes, states = [], []
+    for arrival in arrivals:
+        if arrival.image is None:
+            outcomes.append("no image")
+            states.append(states[-1])
+            continue
+        watched = localizer.step(arrival.image, arrival.time)
+        for back, estimate in enumerate(reversed(watched.missed), start=1):
+            states[-back] = estimate.state
+        outcomes.append(watched.outcome)
+        states.append(watched.estimate.state)
+    position, rotation = pose_errors(optical_pose(np.array(states)), recording.camera_to_world)
+    return [
+        {"outcome": outcome, "confident": outcome == "tracked", "position_m": float(p), "rotation_deg": float(r)}
+        for outcome, p, r in zip(outcomes, position, np.rad2deg(rotation), strict=True)
+    ]

@@ -48,130 +48,119 @@ def run(runner: Runner, *, seeds: list[int], recording: Path | None, data: Path 
 
 def trial(map_file: str, sequence: str, seed: int) -> dict[str, dict]:
     """One trial: a kidnapping, a start from anywhere, and the recording in peace."""
-    return {
-        "kidnapped": kidnapping(map_file, sequence, seed),
-        "start": start_anywhere(map_file, sequence, seed),
-        "in peace": undisturbed(map_file, sequence, seed),
-    }
+    recording = read_sequence(sequence)
+    with DepthRenderer(SceneMap.load(map_file), recording.camera()) as renderer:
+        return {
+            "kidnapped": kidnapping(recording, renderer, seed),
+            "start": start_anywhere(recording, renderer, seed),
+            "in peace": undisturbed(recording, renderer, seed),
+        }
 
 
 def corridor_trial(data: str, seed: int) -> dict[str, dict]:
-    """The same on a recording of the seed's own, carried by hand through the corridor."""
+    """One trial on a recording of the seed's own, carried by hand through the corridor."""
     with temporary_folder() as temporary:
-        folder = temporary / "hand"
-        record_seed(folder, building_of_data(data), seed, carried="hand")
-        return trial(str(Path(data) / "map.ply"), str(folder), seed)
+        record_seed(temporary / "hand", building_of_data(data), seed, carried="hand")
+        return trial(str(Path(data) / "map.ply"), str(temporary / "hand"), seed)
 
 
 def summarize(trials: Sequence[dict[str, dict]]) -> dict[str, float | None]:
     """The numbers of the table, of some trials; `frames_to_recover` is None where no camera recovered."""
-    recovered = (one["kidnapped"]["frames_to_recover"] for one in trials)
-    frames_to_recover = [frames for frames in recovered if frames is not None]
-    starts = [t["start"] for t in trials]
-    found = [s for s in starts if s["status"] == "found"]
+    kidnapped, starts, peace = ([one[part] for one in trials] for part in ("kidnapped", "start", "in peace"))
+    recovered = [one["frames_to_recover"] for one in kidnapped if one["frames_to_recover"] is not None]
+    found = [one["right"] for one in starts if one["status"] == "found"]
     return {
         "trials": len(trials),
-        "kidnapped_recovered": len(frames_to_recover),
-        "frames_to_recover": float(np.median(frames_to_recover)) if frames_to_recover else None,
-        "started_right": sum(s["right"] for s in found),
-        "started_wrong": sum(not s["right"] for s in found),
-        "started_several": sum(s["status"] == "several" for s in starts),
-        "frames_to_start": float(np.median([s["frames"] for s in starts])),
-        "particles_to_start": float(np.median([s["particles"] for s in starts])),
-        "seconds_to_start": float(np.median([s["seconds"] for s in starts])),
-        "undisturbed_frames": sum(t["in peace"]["frames"] for t in trials),
-        "false_alarms": sum(t["in peace"]["alarms"] for t in trials),
+        "kidnapped_recovered": len(recovered),
+        "frames_to_recover": float(np.median(recovered)) if recovered else None,
+        "started_right": sum(found),
+        "started_wrong": len(found) - sum(found),
+        "started_several": sum(one["status"] == "several" for one in starts),
+        **{
+            f"{name}_to_start": float(np.median([s[name] for s in starts]))
+            for name in ("frames", "particles", "seconds")
+        },
+        "undisturbed_frames": sum(one["frames"] for one in peace),
+        "false_alarms": sum(one["alarms"] for one in peace),
     }
 
 
 def lost_table(s: dict) -> str:
     """Return `summarize` in words."""
-    of = f"of {s['trials']}"
     median = "-" if s["frames_to_recover"] is None else f"{s['frames_to_recover']:.0f}"
-    return "\n".join(
-        [
-            f"kidnapped           {s['kidnapped_recovered']} {of} recovered within 30 frames (median {median})",
-            f"started anywhere    {s['started_right']} {of} in the right place within 20 frames, "
-            f"{s['started_wrong']} in a wrong one, {s['started_several']} said: several",
-            f"                    median {s['frames_to_start']:.0f} frames, {s['particles_to_start']:,.0f} particles, "
-            f"{s['seconds_to_start']:.0f} s",
-            f"left in peace       {s['false_alarms']} false alarms in {s['undisturbed_frames']} frames",
-        ]
-    )
+    return (
+        "kidnapped           {kidnapped_recovered} of {trials} recovered within 30 frames (median {median})\n"
+        "started anywhere    {started_right} of {trials} in the right place within 20 frames, {started_wrong} in a "
+        "wrong one, {started_several} said: several\n"
+        "                    median {frames_to_start:.0f} frames, {particles_to_start:,.0f} particles, "
+        "{seconds_to_start:.0f} s\n"
+        "left in peace       {false_alarms} false alarms in {undisturbed_frames} frames"
+    ).format(median=median, **s)
 
 
-def kidnapping(map_file: str, sequence: str, seed: int) -> dict:
+def kidnapping(recording: DepthSequence, renderer: DepthRenderer, seed: int) -> dict:
     """One kidnapping, drawn with the seed: whether and after how many frames the camera was found again."""
-    recording, rng = read_sequence(sequence), np.random.default_rng([seed, 11])
+    rng = np.random.default_rng([seed, 11])
     first, after = _places_of_kidnapping(recording, rng)
     frames = [*range(first, first + BEFORE), *[None] * COVERED, *range(after, after + AFTER)]
-    statuses, recovered = [], None
-    with warnings.catch_warnings(), DepthRenderer(SceneMap.load(map_file), recording.camera()) as renderer:
+    localizer, recovered = RecoveringLocalizer(renderer, seed=seed), None
+    localizer.initialize(state_from_optical_pose(recording.camera_to_world[first]))
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore", NoMeasurementWarning)  # the camera is covered on purpose
-        localizer = RecoveringLocalizer(renderer, seed=seed)
-        localizer.initialize(state_from_optical_pose(recording.camera_to_world[first]))
-        for number, depth, pose in _played(recording, frames):
-            found = localizer.step(depth, gravity=None if pose is None else gravity_in_camera(pose, rng))
-            statuses.append(found.estimate.status)
-            if number >= BEFORE + COVERED and recovered is None and found.estimate.status == "tracked":
-                if _right(found.estimate.state, pose):
-                    recovered = number - BEFORE - COVERED + 1
-    return {"from": first, "to": after, "frames_to_recover": recovered, "last_status": statuses[-1]}
+        for number, (depth, gravity, pose) in enumerate(_played(recording, frames, rng)):
+            estimate = localizer.step(depth, gravity=gravity).estimate
+            back = number >= BEFORE + COVERED and estimate.status == "tracked" and _right(estimate.state, pose)
+            if back and recovered is None:
+                recovered = number - BEFORE - COVERED + 1
+    return {"from": first, "to": after, "frames_to_recover": recovered, "last_status": estimate.status}
 
 
-def undisturbed(map_file: str, sequence: str, seed: int) -> dict:
+def undisturbed(recording: DepthSequence, renderer: DepthRenderer, seed: int) -> dict:
     """A recording in peace: in how many of its frames a search began."""
-    recording, rng = read_sequence(sequence), np.random.default_rng([seed, 12])
-    alarms = 0
-    with DepthRenderer(SceneMap.load(map_file), recording.camera()) as renderer:
-        localizer = RecoveringLocalizer(renderer, seed=seed)
-        localizer.initialize(state_from_optical_pose(recording.camera_to_world[0]))
-        for _, depth, pose in _played(recording, range(len(recording))):
-            before = localizer.searching
-            localizer.step(depth, gravity=gravity_in_camera(pose, rng))
-            alarms += localizer.searching and not before
+    localizer, alarms = RecoveringLocalizer(renderer, seed=seed), 0
+    localizer.initialize(state_from_optical_pose(recording.camera_to_world[0]))
+    for depth, gravity, _ in _played(recording, range(len(recording)), np.random.default_rng([seed, 12])):
+        before = localizer.searching
+        localizer.step(depth, gravity=gravity)
+        alarms += localizer.searching and not before
     return {"frames": len(recording), "alarms": alarms}
 
 
-def start_anywhere(map_file: str, sequence: str, seed: int) -> dict:
+def start_anywhere(recording: DepthSequence, renderer: DepthRenderer, seed: int) -> dict:
     """A global start at a frame that the seed draws: when it was found, whether rightly, with how many particles."""
-    recording, rng = read_sequence(sequence), np.random.default_rng([seed, 13])
+    rng = np.random.default_rng([seed, 13])
     first = int(rng.integers(0, len(recording) - START_FRAMES))
-    with DepthRenderer(SceneMap.load(map_file), recording.camera()) as renderer:
-        search, begun = GlobalSearch(renderer, seed=seed), time.perf_counter()
-        particles, renders, frames = 0, 0, 0
-        for _, depth, pose in _played(recording, range(first, first + START_FRAMES)):
-            candidates = search.step(depth, gravity_in_camera(pose, rng))
-            particles, renders, frames = particles + candidates.particles, renders + candidates.renders, frames + 1
-            if candidates.status == "found":
-                break
-    right = [_right(one.state, pose) for one in candidates.poses]
+    search, begun, answers = GlobalSearch(renderer, seed=seed), time.perf_counter(), []
+    for depth, gravity, pose in _played(recording, range(first, first + START_FRAMES), rng):
+        answers.append(search.step(depth, gravity))
+        right = [_right(one.state, pose) for one in answers[-1].poses]
+        if answers[-1].status == "found":
+            break
     return {
         "frame": first,
-        "status": candidates.status,
+        "status": answers[-1].status,
         "right": any(right[:1]),
         "right_among_places": any(right),
-        "frames": frames,
-        "particles": particles,
-        "renders": renders,
+        "frames": len(answers),
+        "particles": sum(one.particles for one in answers),
+        "renders": sum(one.renders for one in answers),
         "seconds": time.perf_counter() - begun,
     }
 
 
-def gravity_in_camera(camera_to_world: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """What an accelerometer at rest says is down, `(3,)` in the optical frame, with noise."""
-    return -camera_to_world[2, :3] + GRAVITY_SIGMA * rng.standard_normal(3)
-
-
 def _played(
-    recording: DepthSequence, frames: Iterable[int | None]
-) -> Iterator[tuple[int, np.ndarray, np.ndarray | None]]:
-    """Number, depth image and true pose of frames; None among them is a frame in which nothing is seen."""
-    for number, index in enumerate(frames):
+    recording: DepthSequence, frames: Iterable[int | None], rng: np.random.Generator
+) -> Iterator[tuple[np.ndarray, np.ndarray | None, np.ndarray | None]]:
+    """Depth image, gravity and true pose of frames; None among them is a frame in which nothing is seen.
+
+    Gravity is what an accelerometer at rest says is down, `(3,)` in the optical frame, with noise.
+    """
+    for index in frames:
         if index is None:
-            yield number, np.full(recording.image_shape, np.nan, dtype=np.float32), None
+            yield np.full(recording.image_shape, np.nan, dtype=np.float32), None, None
         else:
-            yield number, recording.depth(index), recording.camera_to_world[index]
+            pose = recording.camera_to_world[index]
+            yield recording.depth(index), -pose[2, :3] + GRAVITY_SIGMA * rng.standard_normal(3), pose
 
 
 def _places_of_kidnapping(recording: DepthSequence, rng: np.random.Generator) -> tuple[int, int]:

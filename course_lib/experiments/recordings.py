@@ -6,7 +6,6 @@ import time
 import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
-from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -19,7 +18,7 @@ from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocali
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
 from course_lib.depth_mcl.likelihood import Weighting
-from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, Estimate, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.localizer import SIGMA_XY_YAW, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, Motion
 from course_lib.depth_mcl.sequence import FAR, NEAR, DepthSequence
 from course_lib.depth_mcl.uncertainty import normalized_error
@@ -32,10 +31,11 @@ from course_lib.rendering.sensor import subsample_depth
 # steps of a camera carried by hand, median 0.04 m and 2 degrees in the kitchen recording; for x, y, yaw one and a half
 # of a wagon's longest steps, 0.1 m).
 SIGMA = {"6": (0.05, 2.0), "xyyaw": (0.15, 1.5)}
+START_FRAMES = 20  # in which it must become clear where a recording begins
 
 
 class Run(NamedTuple):
-    """What the filter made of a recording, frame by frame."""
+    """What the filter made of a recording of T frames."""
 
     frames: list[int]
     states: np.ndarray  # `(T, 6)` estimates, in the world of the map that was used
@@ -43,11 +43,10 @@ class Run(NamedTuple):
     scores: np.ndarray  # `(T,)` raw score of the best particle; NaN where the frame held no measurement
     ess: np.ndarray  # `(T,)` effective sample size
     agreements: list[Agreement]  # How each frame's image agrees with the map as seen from its estimate
-    statuses: list[TrackStatus]  # Whether the filter believes itself on the track, frame by frame
-    normalized_errors: np.ndarray
-    """`(T,)` squared error in units of the covariance; NaN with too few particles; empty where no truth is known."""
-    deviations: np.ndarray
-    """`(T, 6)` the true states from the estimates, as the motion measures them; empty where no truth is known."""
+    statuses: list[TrackStatus]  # Whether the filter believes itself on the track
+    normalized_errors: np.ndarray  # `(T,)` squared, in units of the covariance; NaN with too few particles
+    deviations: np.ndarray  # `(T, 6)` the true states from the estimates, as the motion measures them
+    """This and `normalized_errors` are empty where no truth is known."""
     error_sigmas: np.ndarray  # `(T, 6)` how far off the filter expects to be in each, one sigma
     renders: np.ndarray  # `(T,)` how many images were drawn to find each estimate
     ms_per_frame: float  # Milliseconds, the mean over steps; reading the images is not counted
@@ -64,62 +63,26 @@ def system_noise(dof: Literal["6", "xyyaw"], position: float, rotation_deg: floa
     return {"sigma": [position, position, 0.0, 0.0, 0.0, rotation], "motion": BODY_AXES}
 
 
-def run_recovering(
-    scene_map: SceneMap, sequence: DepthSequence, *, n_particles: int = 200, seed: int = 0, **options: object
-) -> Run:
-    """Localize a recording as `run_annealed` does, and where it is lost, search globally (`RecoveringLocalizer`)."""
-    make = partial(_Recovering, gravity=sequence.gravity, n_particles=n_particles, seed=seed)
-    run, estimates = run_localizer(make, scene_map, sequence, **options)
-    return run._replace(statuses=_own_statuses(estimates))
-
-
-class _Recovering:
-    """`RecoveringLocalizer` as a recording is run: an image at a time."""
-
-    def __init__(self, renderer: DepthRenderer, gravity: np.ndarray | None, n_particles: int, seed: int) -> None:
-        self.motion = TANGENT_SPACE
-        self._localizer = RecoveringLocalizer(renderer, n_particles, seed=seed)
-        self._gravity = iter(()) if gravity is None else iter(gravity)
-
-    def initialize(self, state0: np.ndarray) -> None:
-        self._localizer.initialize(state0)
-
-    def step(self, depth: np.ndarray) -> AnnealedEstimate:
-        found = self._localizer.step(depth, gravity=next(self._gravity, None))
-        searched = 0 if found.candidates is None else found.candidates.renders
-        return found.estimate._replace(renders=found.estimate.renders + searched)
-
-
 def find_start(
-    scene_map: SceneMap,
-    sequence: DepthSequence,
-    *,
-    seed: int = 0,
-    up: str | None = None,
-    near: float = NEAR,
-    far: float = FAR,
-    frames: int = 20,
-    progress: Callable = iter,
+    scene_map: SceneMap, sequence: DepthSequence, *, seed: int, up: str, near: float, far: float, progress: Callable
 ) -> tuple[int, PoseCandidates, np.ndarray]:
     """Search where a recording begins: the frame in which it was clear, what was found, and the first place's pose.
 
     The pose is a camera-to-world matrix `(4, 4)` in the recording's own world, all NaN where none was found. Without
     gravity.txt the camera is taken to be held upright, to within `UNKNOWN_TILT_SIGMA`.
     """
-    to_z_up = rotation_to_z_up(up or sequence.up or "z")
-    upright, tilt_sigma = np.array([0.0, 1.0, 0.0]), UNKNOWN_TILT_SIGMA
-    if sequence.gravity is not None:
-        tilt_sigma = TILT_SIGMA
+    to_z_up = rotation_to_z_up(up)
+    gravity, tilt_sigma = sequence.gravity, TILT_SIGMA
+    if gravity is None:
+        gravity, tilt_sigma = np.tile([0.0, 1.0, 0.0], (len(sequence), 1)), UNKNOWN_TILT_SIGMA
     with DepthRenderer(scene_map.transformed(to_z_up), sequence.camera(near, far)) as renderer:
         search = GlobalSearch(renderer, seed=seed)
-        for index in progress(range(min(frames, len(sequence)))):
-            gravity = upright if sequence.gravity is None else sequence.gravity[index]
-            candidates = search.step(sequence.depth(index), gravity, tilt_sigma)
+        for index in progress(range(min(START_FRAMES, len(sequence)))):
+            candidates = search.step(sequence.depth(index), gravity[index], tilt_sigma)
             if candidates.status == "found":
                 break
-    if not candidates.poses:
-        return index, candidates, np.full((4, 4), np.nan)
-    return index, candidates, np.linalg.inv(to_z_up) @ optical_pose(candidates.poses[0].state)
+    pose = optical_pose(candidates.poses[0].state) if candidates.poses else np.full((4, 4), np.nan)
+    return index, candidates, np.linalg.inv(to_z_up) @ pose
 
 
 def run_sequence(
@@ -127,41 +90,42 @@ def run_sequence(
     sequence: DepthSequence,
     *,
     sigma: np.ndarray = SIGMA_XY_YAW,
-    n_particles: int = 200,
-    seed: int = 0,
     motion: Motion = BODY_AXES,
     weighting: Weighting | None = None,
     **options: object,
 ) -> Run:
     """Localize a recording by the paper's filter: arguments of `MonteCarloLocalizer`; options: `run_localizer`'s."""
-    arguments = {"n_particles": n_particles, "seed": seed, "motion": motion, "weighting": weighting}
-    return run_localizer(partial(MonteCarloLocalizer, sigma=sigma, **arguments), scene_map, sequence, **options)[0]
+    make = partial(MonteCarloLocalizer, sigma=sigma, motion=motion, weighting=weighting)
+    return run_localizer(make, scene_map, sequence, motion=motion, **options)
 
 
 def run_annealed(
+    scene_map: SceneMap, sequence: DepthSequence, *, parts: Mapping[str, object] | None = None, **options: object
+) -> Run:
+    """Localize a recording, annealed and refined. parts: of `AnnealedLocalizer`; options: `run_localizer`'s."""
+    return run_localizer(partial(AnnealedLocalizer, **(parts or {})), scene_map, sequence, **options)
+
+
+def run_recovering(scene_map: SceneMap, sequence: DepthSequence, **options: object) -> Run:
+    """Localize a recording as `run_annealed` does, and where it is lost, search globally (`RecoveringLocalizer`)."""
+
+    def step(localizer: RecoveringLocalizer, depth: np.ndarray, index: int) -> AnnealedEstimate:
+        found = localizer.step(depth, gravity=None if sequence.gravity is None else sequence.gravity[index])
+        searched = 0 if found.candidates is None else found.candidates.renders
+        return found.estimate._replace(renders=found.estimate.renders + searched)
+
+    return run_localizer(RecoveringLocalizer, scene_map, sequence, step=step, **options)
+
+
+def run_localizer(
+    make: Callable[..., MonteCarloLocalizer | AnnealedLocalizer | RecoveringLocalizer],
     scene_map: SceneMap,
     sequence: DepthSequence,
     *,
     n_particles: int = 200,
     seed: int = 0,
-    parts: Mapping[str, object] = MappingProxyType({}),
-    **options: object,
-) -> Run:
-    """Localize a recording, annealed and refined. parts: of `AnnealedLocalizer`; options: `run_localizer`'s."""
-    make = partial(AnnealedLocalizer, n_particles=n_particles, seed=seed, **parts)
-    run, estimates = run_localizer(make, scene_map, sequence, **options)
-    return run._replace(statuses=_own_statuses(estimates))
-
-
-def _own_statuses(estimates: list[AnnealedEstimate]) -> list[TrackStatus]:
-    return ["doubtful" if e.status == "no measurement" else e.status for e in estimates]
-
-
-def run_localizer(
-    make: Callable[[DepthRenderer], object],
-    scene_map: SceneMap,
-    sequence: DepthSequence,
-    *,
+    step: Callable = lambda localizer, depth, index: localizer.step(depth),
+    motion: Motion = TANGENT_SPACE,
     coarse: bool = False,
     up: str | None = None,
     start: np.ndarray | None = None,
@@ -172,17 +136,17 @@ def run_localizer(
     far: float = FAR,
     watched: bool = False,
     progress: Callable = iter,
-) -> tuple[Run, list[Estimate] | list[AnnealedEstimate]]:
-    """Localize a recording: every frame's estimate as plain arrays, judged as `judge_track` does, and the estimates.
+) -> Run:
+    """Localize a recording: every frame's estimate as plain arrays.
 
-    make: gives the filter from a renderer of the map. coarse: compare 20 x 15 pixels. start: camera-to-world matrix
-    `(4, 4)` in the recording's own world, optical convention (None: the first true pose). up: the axis of map and
-    recording that points up (None: what the recording says, else z). watched: treat a frame at fault as one without
-    measurement. progress: wraps the frame indices. Other arguments as in `DepthRenderer`.
+    make: gives the filter from a renderer of the map. step: gives the filter a frame's image. motion: how errors are
+    measured. coarse: compare 20 x 15 pixels. start: camera-to-world matrix `(4, 4)` in the recording's own world,
+    optical convention (None: the first true pose). up: the axis of map and recording that points up (None: what the
+    recording says, else z). watched: treat a frame at fault as one without measurement. progress: wraps the frame
+    indices. Statuses of the paper's filter are those of `judge_track`. Other arguments as in `DepthRenderer`.
     """
     to_z_up = rotation_to_z_up(up or sequence.up or "z")
-    check = FrameCheck(near, far) if watched else None
-    faults: list[Fault | None] = []
+    check, faults = FrameCheck(near, far), []
     camera = used = sequence.camera(near, far)
     if coarse:
         used = camera.resized(COARSE_WIDTH, COARSE_HEIGHT)
@@ -192,49 +156,50 @@ def run_localizer(
     start = sequence.camera_to_world[0] if start is None else start
     true = state_from_optical_pose(to_z_up @ sequence.camera_to_world[:count]) if sequence.has_poses else ()
     estimates, agreements, seconds = [], [], 0.0
-    with DepthRenderer(scene_map.transformed(to_z_up), used, backend, exact=exact) as renderer:
-        localizer = make(renderer)
+    with (
+        warnings.catch_warnings(),
+        DepthRenderer(scene_map.transformed(to_z_up), used, backend, exact=exact) as renderer,
+    ):
+        warnings.simplefilter("ignore", NoMeasurementWarning)  # they are counted instead, below
+        localizer = make(renderer, n_particles=n_particles, seed=seed)
         localizer.initialize(state_from_optical_pose(to_z_up @ start))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", NoMeasurementWarning)  # they are counted instead, below
-            for index in progress(range(count)):
-                depth = sequence.depth(index)
-                if check is not None:
-                    time_of_frame = None if sequence.times is None else float(sequence.times[index])
-                    faults.append(check.look(depth, time_of_frame).fault)
-                    depth = depth if faults[-1] is None else np.full_like(depth, np.nan)
-                if coarse:
-                    depth = subsample_depth(depth, camera, used)
-                begun = time.perf_counter()
-                estimates.append(localizer.step(depth))
-                seconds += time.perf_counter() - begun
-                measured = renderer.render_points(used.points(depth))
-                agreements.append(agreement(measured, renderer.render(estimates[-1].state)[0]))
+        for index in progress(range(count)):
+            depth = sequence.depth(index)
+            if watched:
+                time_of_frame = None if sequence.times is None else float(sequence.times[index])
+                faults.append(check.look(depth, time_of_frame).fault)
+                depth = depth if faults[-1] is None else np.full_like(depth, np.nan)
+            if coarse:
+                depth = subsample_depth(depth, camera, used)
+            begun = time.perf_counter()
+            estimates.append(step(localizer, depth, index))
+            seconds += time.perf_counter() - begun
+            measured = renderer.render_points(used.points(depth))
+            agreements.append(agreement(measured, renderer.render(estimates[-1].state)[0]))
     states = np.array([e.state for e in estimates])
-    deviations = np.array(
-        [localizer.motion.deviations(t[None], e.state)[0] for e, t in zip(estimates, true, strict=False)]
-    )
+    deviations = [motion.deviations(t[None], e.state)[0] for t, e in zip(true, estimates, strict=False)]
     covariances = [e.error_covariance for e in estimates]
-    run = Run(
+    if isinstance(estimates[0], AnnealedEstimate):  # which says itself what it is worth
+        statuses = ["doubtful" if e.status == "no measurement" else e.status for e in estimates]
+    else:
+        statuses = judge_track(agreements)
+    looked_at = zip(estimates, faults or [None] * count, strict=True)
+    return Run(
         frames=sequence.frames[:count],
         states=states,
         camera_to_world=np.linalg.inv(to_z_up) @ optical_pose(states),
         scores=np.array([e.score for e in estimates]),
         ess=np.array([e.ess for e in estimates]),
         agreements=agreements,
-        statuses=judge_track(agreements),
+        statuses=statuses,
         normalized_errors=np.array([normalized_error(d, c) for d, c in zip(deviations, covariances, strict=False)]),
-        deviations=deviations,
+        deviations=np.array(deviations),
         error_sigmas=np.sqrt([np.diag(c) for c in covariances]),
         renders=np.array([getattr(e, "renders", len(e.particles)) for e in estimates]),
         ms_per_frame=1000 * seconds / count,
-        frames_without_measurement=sum(
-            e.status == "no measurement" and (not faults or faults[k] in (None, "no return"))
-            for k, e in enumerate(estimates)
-        ),
+        frames_without_measurement=sum(e.status == "no measurement" and f in (None, "no return") for e, f in looked_at),
         faults=tuple(faults),
     )
-    return run, estimates
 
 
 def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float | None]:
@@ -244,14 +209,12 @@ def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float | N
     too few particles for a covariance.
     """
     position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
-    rotation_deg = np.rad2deg(rotation)
+    rotation_deg, normalized = np.rad2deg(rotation), float(np.mean(run.normalized_errors))
     return {
         "median_position_m": float(np.median(position)),
         "p90_position_m": float(np.percentile(position, 90)),
         "median_rotation_deg": float(np.median(rotation_deg)),
         "p90_rotation_deg": float(np.percentile(rotation_deg, 90)),
         "within_5cm_5deg_percent": float(100 * np.mean((position <= 0.05) & (rotation_deg <= 5.0))),
-        "mean_normalized_error": None
-        if np.isnan(run.normalized_errors).any()
-        else float(np.mean(run.normalized_errors)),
+        "mean_normalized_error": None if np.isnan(normalized) else normalized,
     }

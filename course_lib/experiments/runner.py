@@ -1,7 +1,5 @@
 """Run an experiment for many seeds: on every processor, each result kept as a line of a file and used again.
 
-    rows = kept_rows(room_walk, [{"seed": seed, "everies": [1]} for seed in range(1, 101)], Path("walk.jsonl"))
-
 An experiment is a module with a function of a seed and a few parameters, a table, and a `run` that puts both together
 for the command `demo`. A file of rows holds one JSON object a line, {"point": parameters, "result": what came out}.
 """
@@ -10,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,8 +21,7 @@ class Outcome(NamedTuple):
 
     summary: dict  # The numbers, for JSON
     text: str  # The table
-    files: dict[str, tuple[dict, list[dict] | None]]
-    """Results to be written, by the JSON file's name: numbers, and rows for a CSV file beside it."""
+    files: dict[str, tuple[dict, list[dict] | None]]  # By the JSON file's name: numbers, rows for a CSV file beside it
     figures: str = ""  # Which function of `commands.demo_figures` draws the figures; none where it is empty
     drawn: object = None  # What they are drawn from
 
@@ -40,8 +37,7 @@ class Runner(NamedTuple):
     folder: Path  # Of the files of rows
     temporary: Path  # An empty folder, which is removed when the figures are drawn
     processes: int | None = None  # At a time; None: one for each processor
-    bar: Callable[..., Callable[[Iterable], Iterable]] = no_bar
-    """Makes a wrapper of a loop that draws a progress bar, from words and the unit that is counted."""
+    bar: Callable[..., Callable[[Iterable], Iterable]] = no_bar  # Wraps a loop, given words and the unit of the count
 
     def rows(self, function: Callable, points: Sequence[dict], name: str, unit: str = "seed") -> list:
         """`kept_rows` in the file `name`.jsonl."""
@@ -59,35 +55,28 @@ def kept_rows(
 
     function: of a module; its result is what JSON can hold. A result is written as soon as it is there, so that a run
     that was stopped goes on where it was. processes: calls at a time (None: one for each processor).
-    Raises `RuntimeError` where another process writes the file, or a call fails.
     """
-    keys = [_key(point) for point in points]
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         with FileLock(path.with_name(f".{path.name}.lock"), timeout=0):
             results = _read(path)
-            missing = [point for point, key in zip(points, keys, strict=True) if key not in results]
+            missing = [point for point in points if _key(point) not in results]
             workers = max(1, min(processes or cpu_count(), len(missing)))
-            computed = _computed(function, missing, workers)
+            parallel = Parallel(workers, batch_size=1, return_as="generator_unordered")
+            computed = parallel(delayed(_call)(function, point, workers > 1) for point in missing)
             with path.open("ab") as file:
                 for _ in progress(missing):
-                    row = next(computed)
-                    file.write(json.dumps(row, allow_nan=False).encode() + b"\n")
+                    line = json.dumps(next(computed), allow_nan=False).encode() + b"\n"
+                    file.write(line)
                     file.flush()
-                    results[_key(row["point"])] = json.loads(json.dumps(row["result"]))
+                    results |= _results([line])
     except Timeout:
         raise RuntimeError(f"{path} is being written by another run: wait for it, or give another --out") from None
-    return [results[key] for key in keys]
+    return [results[_key(point)] for point in points]
 
 
 def _key(point: dict) -> str:
     return json.dumps(point, sort_keys=True)
-
-
-def _computed(function: Callable, points: Sequence[dict], workers: int) -> Iterator[dict]:
-    """Rows in the order in which they are finished."""
-    parallel = Parallel(workers, batch_size=1, return_as="generator_unordered")
-    return parallel(delayed(_call)(function, point, workers > 1) for point in points)
 
 
 def _call(function: Callable, point: dict, beside_others: bool) -> dict:
@@ -101,11 +90,13 @@ def _call(function: Callable, point: dict, beside_others: bool) -> dict:
 
 def _read(path: Path) -> dict[str, object]:
     """Results by point; a last line that a stopped run left half-written is removed."""
-    if not path.exists():
-        return {}
-    text = path.read_bytes()
+    text = path.read_bytes() if path.exists() else b""
     whole = text[: text.rfind(b"\n") + 1]
     if whole != text:
         os.truncate(path, len(whole))
-    rows = [json.loads(line) for line in whole.splitlines()]
+    return _results(whole.splitlines())
+
+
+def _results(lines: Iterable[bytes]) -> dict[str, object]:
+    rows = [json.loads(line) for line in lines]
     return {_key(row["point"]): row["result"] for row in rows if "point" in row}

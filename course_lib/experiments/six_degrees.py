@@ -55,8 +55,11 @@ ABLATIONS: dict[str, dict] = {
 }
 FLOOR_SCALES = (0.1, 0.05, 0.05, 0.03, 0.03)  # metres, of the steps from the truth
 WRONG_POSITION, WRONG_ROTATION_DEG = 0.20, 20.0  # beyond either a pose is wrong, and should be said to be lost
-# What a camera that is carried by hand may have wrong: all but how a wagon is pushed.
-HAND_HARDSHIPS = tuple(h for h in HARDSHIPS if h != "pushed by hand")
+# Recordings by hand: what is wrong with the camera, and how the table calls them. No wagon is pushed.
+HAND_PARTS = {
+    "methods": ((), ""),
+    "methods_less_kind": (tuple(h for h in HARDSHIPS if h != "pushed by hand"), ", less kind"),
+}
 
 
 def require_methods(text: str, known: Sequence[str] = (*METHODS, *ABLATIONS)) -> list[str]:
@@ -95,27 +98,26 @@ def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callabl
 
     score: at the truth itself, before refinement.
     """
-    position, rotation, scores, statuses = [], [], [], []
-    true = sequence.camera_to_world
+    frames: dict[str, list] = {name: [] for name in ("position_m", "rotation_deg", "status", "renders", "score")}
     with DepthRenderer(scene_map, sequence.camera()) as renderer:
         fine = pyramid(renderer)[-1]
         for index in progress(range(len(sequence))):
+            true = sequence.camera_to_world[index][None]
             fine.measure(sequence.depth(index))
-            scores.append(float(fine.score(fine.renderer.render_poses(true[index][None]))[0]))
-            refined = refine(fine.renderer, fine.measured, true[index][None], FLOOR_SCALES)
-            off = pose_errors(refined[0], true[index])
-            position.append(float(off[0]))
-            rotation.append(float(np.rad2deg(off[1])))
-            statuses.append(judge_refined(agreement(fine.measured, fine.renderer.render_poses(refined)[0])))
-    renders = [len(FLOOR_SCALES)] * len(position)
-    return {"position_m": position, "rotation_deg": rotation, "status": statuses, "renders": renders, "score": scores}
+            score = float(fine.score(fine.renderer.render_poses(true))[0])
+            refined = refine(fine.renderer, fine.measured, true, FLOOR_SCALES)
+            position, rotation = pose_errors(refined[0], true[0])
+            status = judge_refined(agreement(fine.measured, fine.renderer.render_poses(refined)[0]))
+            found = float(position), float(np.rad2deg(rotation)), status, len(FLOOR_SCALES), score
+            for own, value in zip(frames.values(), found, strict=True):
+                own.append(value)
+    return frames
 
 
 def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:
     """The numbers of a row of the table, of all frames of some runs together."""
-    position, rotation = (np.concatenate([run[name] for run in runs]) for name in ("position_m", "rotation_deg"))
-    scores = np.concatenate([run["score"] for run in runs])
-    lost = np.concatenate([run["status"] for run in runs]) == "lost"
+    frames = {key: np.concatenate([run[key] for run in runs]) for key in runs[0]}
+    position, rotation, lost = frames["position_m"], frames["rotation_deg"], frames["status"] == "lost"
     wrong = (position > WRONG_POSITION) | (rotation > WRONG_ROTATION_DEG)
     close = (position <= 0.05) & (rotation <= 5.0)
     row = {
@@ -128,13 +130,13 @@ def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:
         "wrong_called_lost": int((wrong & lost).sum()),
         "good": int(close.sum()),
         "good_called_lost": int((close & lost).sum()),
-        "median_score": None if np.isnan(scores).all() else float(np.nanmedian(scores)),
-        "mean_renders": float(np.mean(np.concatenate([run["renders"] for run in runs]))),
-        "most_renders": int(max(max(run["renders"]) for run in runs)),
+        "median_score": None if np.isnan(frames["score"]).all() else float(np.nanmedian(frames["score"])),
+        "mean_renders": float(np.mean(frames["renders"])),
+        "most_renders": int(frames["renders"].max()),
     }
-    if "normalized_error" in runs[0]:
-        row["mean_normalized_error"] = float(np.mean(np.concatenate([run["normalized_error"] for run in runs])))
-        row["within_3_sigma_percent"] = float(100 * np.mean(np.concatenate([run["within_3_sigma"] for run in runs])))
+    if "normalized_error" in frames:
+        row["mean_normalized_error"] = float(np.mean(frames["normalized_error"]))
+        row["within_3_sigma_percent"] = float(100 * np.mean(frames["within_3_sigma"]))
     return row
 
 
@@ -146,40 +148,34 @@ def six_degrees_table(rows: dict[str, dict]) -> str:
         f"{'':44} {'':>7} {'[m]':>9} {'[deg]':>8} {'and 5 deg [%]':>12} {'10 cm':>7} {'':>7} "
         f"{'wrong':>8} {'good':>7} {'most':>9}",
     ]
-    for name, row in rows.items():
-        lines.append(
-            f"{name:44} {row['frames']:>7} {row['median_position_m']:>9.4f} {row['median_rotation_deg']:>8.2f} "
-            f"{row['within_5cm_5deg_percent']:>12.1f} {row['within_10cm_percent']:>8.1f} {row['wrong']:>7} "
-            f"{row['wrong_called_lost']:>8} {row['good_called_lost']:>7} {row['most_renders']:>9}"
-        )
+    line = (
+        "{name:44} {frames:>7} {median_position_m:>9.4f} {median_rotation_deg:>8.2f} {within_5cm_5deg_percent:>12.1f} "
+        "{within_10cm_percent:>8.1f} {wrong:>7} {wrong_called_lost:>8} {good_called_lost:>7} {most_renders:>9}"
+    )
+    covered = (
+        "{name}: squared error in units of its covariance {mean_normalized_error:.2f} in the mean; "
+        "{within_3_sigma_percent:.1f} % of errors within three sigma"
+    )
+    lines += [line.format(name=name, **row) for name, row in rows.items()]
     lines += ["", "wrong: by more than 0.20 m or 20 degrees; good: within 5 cm and 5 degrees."]
-    for name, row in rows.items():
-        if "mean_normalized_error" in row:
-            lines.append(
-                f"{name}: squared error in units of its covariance {row['mean_normalized_error']:.2f} in the mean; "
-                f"{row['within_3_sigma_percent']:.1f} % of errors within three sigma"
-            )
+    lines += [covered.format(name=name, **row) for name, row in rows.items() if "mean_normalized_error" in row]
     return "\n".join(lines)
+
+
+def thinnings(methods: Iterable[str], everies: Sequence[int]) -> list[tuple[str, int, int]]:
+    """Return (method, every, offset) of every offset of each thinning; the floor has none."""
+    return [
+        (method, every, offset)
+        for method in methods
+        for every in ((1,) if method == "floor" else everies)
+        for offset in range(every)
+    ]
 
 
 def thinned_run(map_file: str, sequence: str, method: str, every: int, offset: int, seed: int) -> dict[str, list]:
     """Run one method on every so many frames of a recording from an offset on."""
     recording = read_sequence(sequence).thinned(every, offset)
     return run_frames(method, SceneMap.load(map_file), recording, seed)
-
-
-def thinned_points(
-    map_file: Path, sequence: Path, methods: Iterable[str], everies: Iterable[int], seeds: Sequence[int]
-) -> list[dict]:
-    """Return points of `thinned_run`, every offset of each thinning; the floor has neither thinning nor seeds."""
-    points = []
-    for method in methods:
-        for every in (1,) if method == "floor" else everies:
-            for offset in range(every):
-                for seed in seeds[:1] if method == "floor" else seeds:
-                    where = {"map_file": str(map_file), "sequence": str(sequence)}
-                    points.append({**where, "method": method, "every": every, "offset": offset, "seed": seed})
-    return points
 
 
 def corridor_hand(data: str, seed: int, frames: int | None, methods: list[str]) -> dict[str, dict[str, dict]]:
@@ -190,10 +186,9 @@ def corridor_hand(data: str, seed: int, frames: int | None, methods: list[str]) 
     scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
     result = {}
     with temporary_folder() as temporary:
-        for part, hardships in (("methods", ()), ("methods_less_kind", HAND_HARDSHIPS)):
-            folder = temporary / part
-            record_seed(folder, building, seed, hardships, frames=frames, carried="hand")
-            recording = read_sequence(folder)
+        for part, (hardships, _) in HAND_PARTS.items():
+            record_seed(temporary / part, building, seed, hardships, frames=frames, carried="hand")
+            recording = read_sequence(temporary / part)
             result[part] = {method: run_frames(method, scene_map, recording, seed) for method in methods}
     return result
 
@@ -202,13 +197,10 @@ def run_corridor(runner: Runner, seeds: list[int], data: Path, frames: int | Non
     """Run `demo corridor --dof 6`: recordings carried by hand, made anew from each seed."""
     names = require_methods(methods or "all", METHODS)
     points = [{"data": str(data), "frames": frames, "methods": names, "seed": seed} for seed in seeds]
-    runs = runner.rows(corridor_hand, points, "hand")
-    by_row = {
-        NAMES[method] + told: [run[part][method] for run in runs]
-        for part, told in (("methods", ""), ("methods_less_kind", ", less kind"))
-        for method in names
-    }
-    rows = {name: pooled(own) for name, own in by_row.items()}
-    each = {name: [pooled([run]) for run in own] for name, own in by_row.items()}
-    files = {"hand.json": ({"seeds": seeds, "rows": rows, "recordings": each}, None)}
-    return Outcome({"seeds": seeds, "rows": rows}, six_degrees_table(rows), files, "covariance", by_row)
+    found = runner.rows(corridor_hand, points, "hand")
+    parts = [(part, method, told) for part, (_, told) in HAND_PARTS.items() for method in names]
+    runs = {NAMES[method] + told: [one[part][method] for one in found] for part, method, told in parts}
+    result = {"seeds": seeds, "rows": {name: pooled(own) for name, own in runs.items()}}
+    each = {name: [pooled([run]) for run in own] for name, own in runs.items()}
+    files = {"hand.json": (result | {"recordings": each}, None)}
+    return Outcome(result, six_degrees_table(result["rows"]), files, "covariance", runs)

@@ -1,7 +1,6 @@
 """Trouble the sensors of both methods, and tell what becomes of every frame: named, recovered, never confidently wrong.
 
-Frames are dropped, repeated, black, frozen, half covered, saturated, out of order, badly exposed; panoramas dark,
-exchanged, of different moments; at shares of the frames that --share names.
+Frames are dropped, repeated, black, half covered, out of order, panoramas dark or exchanged, at shares of the frames.
 """
 
 from __future__ import annotations
@@ -42,19 +41,16 @@ def run(
     if max(share) > MAX_SHARE:
         raise ValueError(f"--share must be at most {MAX_SHARE} percent; got {max(share)}")
     shares = [percent / 100 for percent in share]
+    experiments = {}  # Module, function, and parameters beside seed and shares
+    if method != "stereo":
+        common = {"data": str((data or data_path("corridor")).absolute()), "frames": frames or FRAMES, "dof": dof}
+        experiments[f"depth_{dof}"] = depth_trouble, depth_trouble.corridor_trouble, common
+    if method != "depth":
+        common = {"detector": str((detector or data_path("detector")).absolute()), "frames": frames or PAIRS}
+        YoloDetector.load(common["detector"])  # what is wrong with it is told now, not after the first room
+        experiments["stereo"] = stereo_trouble, stereo_trouble.room_trouble, common
     results = {}
-    for name in (f"depth_{dof}", "stereo"):
-        if method and not name.startswith(method):
-            continue
-        if name == "stereo":
-            network = (detector or data_path("detector")).absolute()
-            YoloDetector.load(network)  # what is wrong with it is told now, not after the first room
-            module, function = stereo_trouble, stereo_trouble.room_trouble
-            common = {"detector": str(network), "frames": frames or PAIRS}
-        else:
-            folder = (data or data_path("corridor")).absolute()
-            module, function = depth_trouble, depth_trouble.corridor_trouble
-            common = {"data": str(folder), "frames": frames or FRAMES, "dof": dof}
+    for name, (module, function, common) in experiments.items():
         for length, part in product(set(module.LENGTHS.values()), shares):
             troubled_runs(common["frames"], part, length, np.random.default_rng(0))  # one that does not fit is told now
         rows = runner.rows(function, [{**common, "shares": shares, "seed": seed} for seed in seeds], name)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -36,12 +37,10 @@ def troubled_runs(n_frames: int, share: float, length: int, rng: np.random.Gener
     """Draw stretches (first, end) of troubled frames in a recording, ascending, none touching another.
 
     share: of all frames, 0 to 1. length: of each stretch. The first frame and the last `LEFT_AT_THE_END` are good.
-    Raises `ValueError` for a recording that is too short.
     """
     count = max(1, round(share * n_frames / length))
-    room = n_frames - 1 - LEFT_AT_THE_END
     # Each stretch but the first takes a good frame before it along, so that none touch.
-    spare = room - (count * (length + 1) - 1)
+    spare = n_frames - 1 - LEFT_AT_THE_END - (count * (length + 1) - 1)
     if length < 1 or not 0 < share < 1 or spare < 0:
         raise ValueError(
             f"{count} stretches of {length} troubled frames do not fit into {n_frames} frames, of which the first and "
@@ -68,13 +67,13 @@ def troubled_recording(
     runs = troubled_runs(len(images), share, length, rng)
     arrivals = [Arrival(image, float(time)) for image, time in zip(images, times, strict=True)]
     for index in (index for first, end in runs for index in range(first, end)):
-        image, time = arrivals[index]
+        (image, time), before = arrivals[index], arrivals[index - 1]
         if trouble == "dropped":
             image = None
         elif trouble == "time backwards":
-            time = arrivals[index - 1].time - rng.uniform(0.0, SECOND)
+            time = before.time - rng.uniform(0.0, SECOND)
         else:
-            image = spoils[trouble](image, images[index - 1], arrivals[index - 1].image, rng)
+            image = spoils[trouble](image, images[index - 1], before.image, rng)
         arrivals[index] = Arrival(image, time)
     return arrivals, runs
 
@@ -95,20 +94,16 @@ def troubles_of(
     """
     calm = run([Arrival(image, float(time)) for image, time in zip(images, times, strict=True)])
     rows = []
-    for trouble, length in lengths.items():
-        for share in shares:
-            rng = generator(seed, trouble, share)
-            arrivals, runs = troubled_recording(trouble, spoils, images, times, share, rng, length)
-            rows.append({"trouble": trouble, "share": share, "runs": runs, "frames": run(arrivals)})
+    for trouble, share in product(lengths, shares):
+        rng = generator(seed, trouble, share)
+        arrivals, runs = troubled_recording(trouble, spoils, images, times, share, rng, lengths[trouble])
+        rows.append({"trouble": trouble, "share": share, "runs": runs, "frames": run(arrivals)})
     return {"undisturbed": calm, "troubles": rows}
 
 
-def troubled_frames(runs: list[tuple[int, int]], n_frames: int) -> np.ndarray:
+def troubled_frames(runs: Iterable[tuple[int, int]], n_frames: int) -> np.ndarray:
     """Return which frames lie in a stretch, bool `(n_frames,)`."""
-    mask = np.zeros(n_frames, bool)
-    for first, end in runs:
-        mask[first:end] = True
-    return mask
+    return np.array([any(first <= index < end for first, end in runs) for index in range(n_frames)])
 
 
 def generator(seed: int, name: str, share: float) -> np.random.Generator:
@@ -122,76 +117,66 @@ class Gate(NamedTuple):
     metres: float
     degrees: float
 
-
-def usual_error(frames: Sequence[dict]) -> Gate:
-    """Return a method's usual error: `USUAL_QUANTILE` of undisturbed frames; those without a pose are not counted."""
-    known = [(one["position_m"], one["rotation_deg"]) for one in frames if one["position_m"] is not None]
-    return Gate(*np.quantile(known, USUAL_QUANTILE, axis=0).tolist())
+    def holds(self, frame: dict) -> bool:
+        """Whether a pose was given for a frame, and lies within the limits."""
+        known = frame["position_m"] is not None
+        return known and frame["position_m"] <= self.metres and frame["rotation_deg"] <= self.degrees
 
 
 def frames_to_judge(runs: Sequence[tuple[int, int]], n_frames: int) -> list[int]:
     """Return for each troubled stretch the frame with which `GOOD_FRAMES` good ones have come after it, if any."""
-    good = np.flatnonzero(~troubled_frames(list(runs), n_frames))
+    good = np.flatnonzero(~troubled_frames(runs, n_frames))
     after = [good[good >= end][GOOD_FRAMES - 1 : GOOD_FRAMES] for _, end in runs]
     return sorted({int(one[0]) for one in after if len(one)})
 
 
-def within(frame: dict, usual: Gate) -> bool:
-    """Whether a pose was given for a frame, and its error is usual."""
-    return (
-        frame["position_m"] is not None
-        and frame["position_m"] <= usual.metres
-        and frame["rotation_deg"] <= usual.degrees
-    )
-
-
-def is_confident_wrong(frame: dict, gate: Gate) -> bool:
-    """Whether a frame's pose was given out as one to go by, and lies beyond the gate."""
-    return bool(frame["confident"] and (frame["position_m"] > gate.metres or frame["rotation_deg"] > gate.degrees))
-
-
-def row(troubled: Sequence[dict], undisturbed: Sequence[Sequence[dict]], gate: Gate, usual: Gate) -> dict:
-    """Return one row of the table: a trouble at a share, over all recordings with (`troubled`) and without trouble."""
-    outcomes, good_outcomes, recovered, beside, wrong = Counter(), Counter(), [], [], 0
-    for one, calm in zip(troubled, undisturbed, strict=True):
-        frames = one["frames"]
-        for frame, bad in zip(frames, troubled_frames(one["runs"], len(frames)), strict=True):
-            (outcomes if bad else good_outcomes)[frame["outcome"]] += 1
-        judged = frames_to_judge(one["runs"], len(frames))
-        recovered += [within(frames[index], usual) for index in judged]
-        beside += [within(calm[index], usual) for index in judged]
-        wrong += sum(is_confident_wrong(frame, gate) for frame in frames)
-    return {
-        "frames": outcomes.total() + good_outcomes.total(),
-        "troubled": outcomes.total(),
-        "outcomes": dict(sorted(outcomes.items())),
-        "good_frames": dict(sorted(good_outcomes.items())),
-        "judged": len(recovered),
-        "recovered": sum(recovered),
-        "undisturbed": sum(beside),
-        "confident_wrong": wrong,
-    }
+def confident_wrong(frames: Iterable[dict], gate: Gate) -> int:
+    """How many frames' poses were given out as ones to go by, and lie beyond the gate."""
+    return sum(bool(frame["confident"]) and not gate.holds(frame) for frame in frames)
 
 
 def summary(results: Sequence[dict], gate: Gate) -> dict:
-    """Return the table of one method, over the `troubles_of` all recordings."""
-    calm = [one["undisturbed"] for one in results]
-    all_calm = [frame for frames in calm for frame in frames]
-    usual = usual_error(all_calm)
-    names = [(one["trouble"], one["share"]) for one in results[0]["troubles"]]
-    rows = []
-    for k, (trouble, share) in enumerate(names):
-        numbers = row([one["troubles"][k] for one in results], calm, gate, usual)
-        rows.append({"trouble": trouble, "share": share, **numbers})
-    outcomes = Counter(frame["outcome"] for frame in all_calm)
+    """Return the table of one method over the `troubles_of` all recordings: a row a trouble and share."""
+    calm = [frame for one in results for frame in one["undisturbed"]]
+    known = [(one["position_m"], one["rotation_deg"]) for one in calm if one["position_m"] is not None]
+    usual = Gate(*np.quantile(known, USUAL_QUANTILE, axis=0).tolist())
+    outcomes = _counts(calm)
     return {
         "gate": gate._asdict(),
         "usual": usual._asdict(),
         "undisturbed": {
-            "frames": len(all_calm),
-            "good_frames": dict(sorted(outcomes.items())),
+            "frames": len(calm),
+            "good_frames": outcomes,
             "false_alarms": sum(count for name, count in outcomes.items() if name in FAULTS),
-            "confident_wrong": sum(is_confident_wrong(frame, gate) for frame in all_calm),
+            "confident_wrong": confident_wrong(calm, gate),
         },
-        "rows": rows,
+        "rows": [_row(results, k, gate, usual) for k in range(len(results[0]["troubles"]))],
     }
+
+
+def _row(results: Sequence[dict], k: int, gate: Gate, usual: Gate) -> dict:
+    """The k-th trouble and share, over all recordings, beside what they were undisturbed."""
+    bad, good, judged, beside = [], [], [], []
+    for one in results:
+        frames, runs = one["troubles"][k]["frames"], one["troubles"][k]["runs"]
+        for frame, is_bad in zip(frames, troubled_frames(runs, len(frames)), strict=True):
+            (bad if is_bad else good).append(frame)
+        indices = frames_to_judge(runs, len(frames))
+        judged += [frames[index] for index in indices]
+        beside += [one["undisturbed"][index] for index in indices]
+    return {
+        "trouble": results[0]["troubles"][k]["trouble"],
+        "share": results[0]["troubles"][k]["share"],
+        "frames": len(bad) + len(good),
+        "troubled": len(bad),
+        "outcomes": _counts(bad),
+        "good_frames": _counts(good),
+        "judged": len(judged),
+        "recovered": sum(map(usual.holds, judged)),
+        "undisturbed": sum(map(usual.holds, beside)),
+        "confident_wrong": confident_wrong([*bad, *good], gate),
+    }
+
+
+def _counts(frames: Iterable[dict]) -> dict[str, int]:
+    return dict(sorted(Counter(frame["outcome"] for frame in frames).items()))

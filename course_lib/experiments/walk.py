@@ -1,7 +1,6 @@
 """A depth camera carried by hand through generated rooms: errors in six degrees of freedom, and being lost said.
 
-Each seed makes a room, its laser-scanned map and a walk. Every `--every`-th frame, from every offset, is as if the
-camera had been moved so much faster. A seed takes a minute or two; finished seeds are kept and used again.
+Every `--every`-th frame, from every offset, is as if the camera had been moved so much faster.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ from collections.abc import Sequence
 
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments.runner import Outcome, Runner
-from course_lib.experiments.six_degrees import NAMES, pooled, require_methods, run_frames, six_degrees_table
+from course_lib.experiments.six_degrees import NAMES, pooled, require_methods, run_frames, six_degrees_table, thinnings
 from course_lib.files import temporary_folder
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.room.depth_world import record_walk
@@ -23,10 +22,8 @@ def room_walk(seed: int, methods: Sequence[str], everies: Sequence[int]) -> list
         record_walk(folder, seed)
         recording, scene_map = read_sequence(folder), SceneMap.load(folder / "map.ply")
         return [
-            {"method": method, "every": every, "run": run_frames(method, scene_map, thinned, seed)}
-            for method in methods
-            for every in ([1] if method == "floor" else everies)
-            for thinned in (recording.thinned(every, offset) for offset in range(every))
+            {"method": name, "every": every, "run": run_frames(name, scene_map, recording.thinned(every, offset), seed)}
+            for name, every, offset in thinnings(methods, everies)
         ]
 
 

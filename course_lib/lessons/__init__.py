@@ -18,8 +18,8 @@ A new lesson NN needs a notebook and a folder:
   `figures.py`: make a figure with `figures.new_figure` and show it with `show(figure, alt=lesson_NN.ALT["name"])`.
   `alternative_texts.py`: `ALT` says what each figure shows, by name. It is not in the cells, because it may give
   answers away.
-  A scene starts with `plots.scenes.new_plotter`. The notebook's own cell adds the objects (`plots.scenes`, PyVista) and
-  shows them with `show_scene(plotter, "NN_name", title=..., alt=...)`.
+  A scene starts with `plots.scenes.new_plotter`. The notebook's own cell adds the objects (`plots.scenes`,
+  `kit.scene_objects`, PyVista) and shows them with `show_scene(plotter, "NN_name", title=..., alt=...)`.
   `panel.py`: `PANELS = {title: function that makes the panel}`. A panel's figure is a `LiveFigure`. Its `draw` is a
   plain function that takes the controls' values and returns a `Drawing`.
   `exercises.py`: `EXERCISES`, each with a reference, an input generator, and three or more mistakes with hints.

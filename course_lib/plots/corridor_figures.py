@@ -25,16 +25,14 @@ def figure_5(path: np.ndarray, estimates: dict[str, np.ndarray], walls: np.ndarr
     figure, axes = new_figure(size=(8.0, 3.4))
     if walls is not None:
         axes.plot(walls[:, 0], walls[:, 1], ".", color="#B8B8B8", markersize=0.6, label="map, cut at camera height")
-    # On top of the markers, or 300 of them would hide it.
-    axes.plot(path[:, 0], path[:, 1], color="black", linewidth=1.1, zorder=4, label="ground truth: line on the floor")
+    line = {"color": "black", "linewidth": 1.1, "zorder": 4}  # on top of the markers, or 300 of them would hide it
+    axes.plot(path[:, 0], path[:, 1], label="ground truth: line on the floor", **line)
     for index, (name, positions) in enumerate(estimates.items()):
         style = line_style(index) | {"linestyle": "none", "markersize": 3.2}
         axes.plot(positions[:, 0], positions[:, 1], label=name, **style)
     low, high = path[:, 0].min() - 1.5, path[:, 0].max() + 3.0
-    axes.set(
-        title="Ground truth and estimated positions (like the paper's figure 5)", xlim=(low, high), ylim=(-2.2, 2.9)
-    )
-    axes.set(xlabel="x along the corridor [m]", ylabel="y [m] (enlarged)")
+    axes.set_title("Ground truth and estimated positions (like the paper's figure 5)")
+    axes.set(xlim=(low, high), ylim=(-2.2, 2.9), xlabel="x along the corridor [m]", ylabel="y [m] (enlarged)")
     axes.legend(loc="upper center", ncols=3, fontsize=8, framealpha=0.95, markerscale=1.5)
     return figure
 
@@ -46,13 +44,11 @@ def figure_6(frames: np.ndarray, errors: dict[str, np.ndarray], title: str | Non
         style = line_style(index) | {"marker": "", "linewidth": 1.2}
         axes.semilogy(frames, np.maximum(values, 1e-3), label=name, **style)
     limit = 3 * PAPER_SIGMA
-    axes.axhline(
-        limit, color="black", linewidth=0.9, linestyle=(0, (6, 3)), label=f"3 sigma of the paper, {limit:.2f} m"
-    )
+    style = {"color": "black", "linewidth": 0.9, "linestyle": (0, (6, 3))}
+    axes.axhline(limit, label=f"3 sigma of the paper, {limit:.2f} m", **style)
     axes.set(title=title or "Error of every frame (like the paper's figure 6)", xlabel="frame [-]", ylabel="error [m]")
     axes.legend(loc="upper center", ncols=2, fontsize=8, framealpha=0.95)
-    top = max(float(np.max(v)) for v in errors.values())
-    axes.set_ylim(1e-3, max(2.0, 6 * top))
+    axes.set_ylim(1e-3, max(2.0, *(6 * float(np.max(values)) for values in errors.values())))
     return figure
 
 

@@ -15,9 +15,7 @@ MIN_ERROR, MAX_ERROR = 0.02, 1000.0  # of the axis; what is farther off is drawn
 _TITLES = {"depth_xyyaw": "depth filter, wagon", "depth_6": "annealed filter, by hand", "stereo": "panoramas"}
 
 
-def covariance_figure(
-    runs: Mapping[str, Sequence[dict[str, list]]], title: str = "Does the covariance cover?"
-) -> Figure:
+def covariance_figure(runs: Mapping[str, Sequence[dict[str, list]]]) -> Figure:
     """Share of the frames whose normalized error squared, e' C^-1 e / 6, is at most x; a line for each row's runs.
 
     Left of the dashed line of the chi-squared distribution a filter is more exact than it says, right of it less.
@@ -37,7 +35,7 @@ def covariance_figure(
         share = 100 * np.arange(1, len(errors) + 1) / len(errors)
         label = f"{name}: {100 * within.mean():.1f} % within three sigma"
         axes.step(errors, share, where="post", **line_style(index) | {"marker": "", "label": label})
-    axes.set(title=title, xscale="log", xlim=(MIN_ERROR, MAX_ERROR), ylim=(0, 101))
+    axes.set(title="Does the covariance cover?", xscale="log", xlim=(MIN_ERROR, MAX_ERROR), ylim=(0, 101))
     axes.set_xlabel("squared error in units of its covariance, e' C$^{-1}$ e / 6")
     axes.set_ylabel("frames with at most this error [%]")
     figure.legend(loc="outside lower left", fontsize=8)
@@ -50,7 +48,7 @@ def trouble_figure(results: Mapping[str, dict]) -> Figure:
     results: by method, as `demo trouble` stores them. Rows without a frame to judge have no bar.
     """
     figure = Figure(figsize=(1.0 + 4.2 * len(results), 4.4), layout="constrained")
-    panels = np.atleast_1d(figure.subplots(1, len(results), squeeze=False)[0])
+    panels = figure.subplots(1, len(results), squeeze=False)[0]
     for axes, (name, result) in zip(panels, results.items(), strict=True):
         rows = result["rows"]
         troubles = list(dict.fromkeys(row["trouble"] for row in rows))
@@ -71,15 +69,13 @@ def trouble_figure(results: Mapping[str, dict]) -> Figure:
     return figure
 
 
-def risk_coverage_figure(
-    curves: Mapping[str, Mapping[str, list[float]]], title: str = "What a threshold buys"
-) -> Figure:
+def risk_coverage_figure(curves: Mapping[str, Mapping[str, list[float]]]) -> Figure:
     """Share of the answers that are wrong over the share of poses answered, as the threshold falls; a line a name."""
     figure, axes = new_figure()
     for index, (name, curve) in enumerate(curves.items()):
         style = line_style(index) | {"marker": ""}
         axes.step(curve["coverage_percent"], curve["risk_percent"], where="post", label=name, **style)
-    axes.set(title=title, xlabel="poses answered [%]", ylabel="of them wrong [%]", xlim=(0, 101))
+    axes.set(title="What a threshold buys", xlabel="poses answered [%]", ylabel="of them wrong [%]", xlim=(0, 101))
     axes.set_ylim(0, max(0.5, 1.05 * max(max(curve["risk_percent"]) for curve in curves.values())))
     axes.legend()
     return figure

@@ -1,4 +1,4 @@
-"""One style for every figure that lessons and commands draw, and their pictures as PNG.
+"""One style for every figure that lessons and commands draw.
 
 Colours are those of Okabe and Ito ("Color Universal Design", 2008), for readers with any common form of colour
 blindness; marker and line style change along with the colour. Depth is coloured with cividis (Nunez, Anderton, Renslow,
@@ -7,7 +7,6 @@ PLOS ONE 13(7), 2018). Figures are drawn with Agg and never through matplotlib's
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,16 +15,12 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
-from PIL import Image
 
 BLACK, ORANGE, SKY_BLUE, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 _ORDER = (BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY_BLUE, BLACK)
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 _LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 3)), (0, (1, 1)))
-_DOTS_PER_INCH = 100
-_COLOURS_IN_PNG = 128  # smooth enough for a colour bar, a third of the bytes of full colour
-_WEBP_QUALITY = 85  # lines and letters of a figure stay clean; two thirds of the bytes of JPEG (chosen)
 
 # Fonts that have the letters that matplotlib's own lacks, such as Japanese ones: object names are the reader's.
 _OTHER_SCRIPTS = (
@@ -48,7 +43,7 @@ def line_style(index: int) -> dict:
 
 def new_figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4, 3.6)) -> tuple[Figure, np.ndarray]:
     """A figure of `size` inches and its axes: one `Axes` for 1 x 1, else an array of them."""
-    figure = Figure(figsize=size, dpi=_DOTS_PER_INCH, layout="constrained")
+    figure = Figure(figsize=size, dpi=100, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns)
     for a in np.atleast_1d(axes).flat:
@@ -86,33 +81,3 @@ def depth_images(
 def colour_bar(figure: Figure, image: AxesImage, axes: Axes | np.ndarray, label: str = "depth Z [m]") -> None:
     """The colour bar that goes with `depth_image`."""
     figure.colorbar(image, ax=axes, label=label, shrink=0.85)
-
-
-def png_bytes(figure: Figure) -> bytes:
-    """The figure as PNG with a palette of 128 colours: a third of the size of full colour."""
-    figure.canvas.draw()
-    return compress(np.asarray(figure.canvas.buffer_rgba())[..., :3])
-
-
-def webp_bytes(figure: Figure) -> bytes:
-    """The figure as WebP, for one that is mostly a photograph: all its colours, in fewer bytes than a palette PNG."""
-    figure.canvas.draw()
-    return compress_photograph(np.asarray(figure.canvas.buffer_rgba())[..., :3])
-
-
-def compress(rgb: np.ndarray) -> bytes:
-    """Picture `(H, W, 3)` uint8 as a palette PNG."""
-    # Maximum coverage keeps the colour of a thin line, which the usual median cut gives up for one more shade of blue.
-    picture = Image.fromarray(np.ascontiguousarray(rgb))
-    reduced = picture.quantize(_COLOURS_IN_PNG, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
-    buffer = io.BytesIO()
-    reduced.save(buffer, format="PNG", optimize=True)
-    return buffer.getvalue()
-
-
-def compress_photograph(rgb: np.ndarray) -> bytes:
-    """Picture `(H, W, 3)` uint8 as WebP."""
-    buffer = io.BytesIO()
-    picture = Image.fromarray(np.ascontiguousarray(rgb))
-    picture.save(buffer, format="WEBP", quality=_WEBP_QUALITY)
-    return buffer.getvalue()

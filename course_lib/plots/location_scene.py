@@ -11,7 +11,7 @@ from course_lib.plots.figures import BLACK, BLUE, ORANGE, VERMILION
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.scenes import body_axes, ellipsoid, new_plotter, path, post, text
 from course_lib.spherical_stereo.pose.localization import Localization
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 if TYPE_CHECKING:
@@ -78,12 +78,12 @@ def _add_places(plotter: pyvista.Plotter, semantic_map: SemanticMap, found: Loca
         colour = class_style(one.label)[0]
         plotter.add_mesh(path(np.stack([camera, place])), color="dimgrey", line_width=1)
         if observation.covariance is not None:
-            turn = np.array([[np.cos(pose.theta), -np.sin(pose.theta)], [np.sin(pose.theta), np.cos(pose.theta)]])
+            turn = rotation_2d(pose.theta)
             plotter.add_mesh(_disc(place, turn @ observation.covariance @ turn.T), color=colour, opacity=0.5)
         if one.observation in landmark_of:
             landmark = np.array([*semantic_map.positions[landmark_of[one.observation]], place[2]])
-            ends = path(np.stack([place, landmark]))
-            plotter.add_mesh(ends, color=BLUE if found.pose else VERMILION, line_width=4)
+            colour = BLUE if found.pose else VERMILION
+            plotter.add_mesh(path(np.stack([place, landmark])), color=colour, line_width=4)
 
 
 def _disc(middle: np.ndarray, covariance: np.ndarray) -> pyvista.PolyData:

@@ -58,6 +58,13 @@ def draw_box(axes: Axes, box: Sequence[float], width: int, label: str, text: str
             _write(axes, u_min + turn, v_min - 4, text, colour, "baseline")
 
 
+def draw_objects(axes: Axes, boxes: Sequence[Sequence[float]], labels: Sequence[str], width: int) -> None:
+    """Boxes and their numbers (`draw_numbers`)."""
+    for box, label in zip(boxes, labels, strict=True):
+        draw_box(axes, box, width, label)
+    draw_numbers(axes, boxes, labels, width)
+
+
 def draw_numbers(axes: Axes, boxes: Sequence[Sequence[float]], labels: Sequence[str], width: int) -> None:
     """Number boxes from 1 on, each number on an edge of its box, where it covers no other.
 

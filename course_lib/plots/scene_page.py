@@ -1,8 +1,6 @@
 """One offline HTML page of a PyVista scene: to be turned with the mouse, without a kernel, a network or a program.
 
-PyVista's `plotter.export_html` does the same, but starts a web server for it. This page has a title, words for those
-who cannot see it, and a line that says how to turn it. The browser unpacks the viewer. The same scene gives the same
-bytes, and the page forbids itself the network.
+Unlike `plotter.export_html` it starts no web server, has words for those who cannot see it, and is always the same.
 """
 
 from __future__ import annotations
@@ -19,8 +17,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from course_lib.files import atomic_write
 from course_lib.plots.scenes import SceneError
 
@@ -28,13 +24,10 @@ if TYPE_CHECKING:
     import pyvista
 
 CURE = 'pip install "pyvista[jupyter]"'
-ROUNDING = 1e-3  # of numbers and of coordinates in metres: what another processor may round otherwise
 
 _ADDRESS = re.compile(r"""(?<=["{])[0-9A-Fa-f]{16}\b""")  # after a quote, or as instance:${...}; never a fraction
 _SCRIPT = re.compile(r'<script type="module">(.*?)</script>', re.DOTALL)
 _ICON = re.compile(r"`https://kitware\.github\.io/vtk-js/icon/[^`]*`")  # the viewer fetches its icons from there
-_DATA = re.compile(r'base64Str = "([A-Za-z0-9+/=]+)"')
-_WORDS = re.compile(r'<title>.*?</title>|<meta name="description".*?/>', re.DOTALL)
 _PAGE = """<!doctype html>
 <html lang="en">
   <head>
@@ -79,27 +72,22 @@ class ScenePageError(RuntimeError):
     """No page can be made of a scene: what PyVista needs for it is missing, or it writes another kind of page."""
 
 
-def write_page(plotter: pyvista.Plotter, path: str | Path, title: str, alt: str, legend: str = "") -> Path:
-    """Write the scene as one HTML page and return its path (`page_html`)."""
-    path = Path(path)
-    text = page_html(plotter, title, alt, legend)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    atomic_write(path, text)
-    return path
+def write_page(plotter: pyvista.Plotter, path: Path, title: str, alt: str, legend: str = "") -> None:
+    """Write the scene as one HTML page (`page_html`) into a folder that exists."""
+    atomic_write(path, page_html(plotter, title, alt, legend))
 
 
 def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") -> str:
     """Return the scene of a plotter as the text of one HTML page; the same text for the same scene.
 
-    alt: what the scene shows, in a sentence, for those who cannot see it. legend: what is what, written below the
-    scene. Raises `SceneError` for a scene without objects or words, `ScenePageError` where PyVista cannot write pages.
+    alt: what the scene shows, in a sentence, for those who cannot see it. legend: what is what, below the scene.
     """
     title, alt, legend = (" ".join(text.split()) for text in (title, alt, legend))
     if not title or len(alt.split()) < 4:
         raise SceneError(f"a scene has a title, and a text that says what it shows; got {title!r}, {alt!r}")
     if not plotter.actors:
         raise SceneError("the scene is empty: add something with plotter.add_mesh(...)")
-    script = _SCRIPT.search(_viewer())
+    script = _SCRIPT.search(_trame("tools.vtksz2html").HTML_VIEWER_PATH.read_text(encoding="utf-8"))
     if script is None:
         raise ScenePageError(f"trame-vtk comes with a viewer of an unknown kind: {CURE} in environment.txt's versions")
     offline = _ICON.sub('"data:,"', script[1])
@@ -107,20 +95,6 @@ def page_html(plotter: pyvista.Plotter, title: str, alt: str, legend: str = "") 
     caption = f"{title}. {legend}." if legend else f"{title}."
     words = {"title": html.escape(title), "alt": html.escape(alt), "caption": html.escape(caption)}
     return _PAGE.format(**words, viewer=packed, scene=_archive(_scene_of(plotter)))
-
-
-def same_scene(page: str, other: str) -> bool:
-    """Whether two pages show the same: title, words and objects, up to rounding; their viewers may differ."""
-    try:
-        scenes = [_scene(text) for text in (page, other)]
-    except (ValueError, KeyError, TypeError, zipfile.BadZipFile):  # not one of our pages, or a damaged one
-        return False
-    return _WORDS.findall(page) == _WORDS.findall(other) and _agree(*scenes)
-
-
-def _viewer() -> str:
-    """The page of the viewer, without a scene, as trame-vtk ships it."""
-    return _trame("tools.vtksz2html").HTML_VIEWER_PATH.read_text(encoding="utf-8")
 
 
 def _trame(module: str) -> ModuleType:
@@ -163,32 +137,3 @@ def _archive(scene: dict) -> str:
         entry = zipfile.ZipInfo("index.json", date_time=(1980, 1, 1, 0, 0, 0))
         archive.writestr(entry, text, zipfile.ZIP_DEFLATED, 9)
     return base64.b64encode(file.getvalue()).decode("ascii")
-
-
-def _scene(page: str) -> dict:
-    """What a page shows: its parts, and its arrays in their order, for their names depend on the last digit."""
-    found = _DATA.search(page)
-    with zipfile.ZipFile(io.BytesIO(base64.b64decode(found[1] if found else ""))) as archive:
-        index = json.loads(archive.read("index.json"))
-    text = json.dumps(index["scene"])
-    for number, name in enumerate(index["hashes"]):
-        text = text.replace(name, f"array {number}")
-    arrays = [
-        np.frombuffer(base64.b64decode(kept["content"]), np.dtype(kept["type"].removesuffix("Array").lower()))
-        for kept in index["hashes"].values()
-    ]
-    return {"scene": json.loads(text), "arrays": arrays}
-
-
-def _agree(a, b) -> bool:
-    """Whether two pieces of a scene are the same up to rounding."""
-    if isinstance(a, dict) and isinstance(b, dict):
-        # The window's own class is the operating system's.
-        return a.keys() == b.keys() and all(_agree(a[k], b[k]) for k in a if not str(a[k]).endswith("RenderWindow"))
-    if isinstance(a, list) and isinstance(b, list):
-        return len(a) == len(b) and all(map(_agree, a, b))
-    if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
-        return a.shape == b.shape and np.allclose(a, b, rtol=ROUNDING, atol=ROUNDING, equal_nan=True)
-    if isinstance(a, float) and isinstance(b, float):
-        return bool(np.isclose(a, b, rtol=ROUNDING, atol=ROUNDING, equal_nan=True))
-    return a == b

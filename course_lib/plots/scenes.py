@@ -1,16 +1,6 @@
-"""Objects of a scene in three dimensions: map, frustum, axes, particles, ellipsoids, depth images, paths.
+"""Objects of a scene, `pyvista.PolyData` in the world (metres, z up) for `plotter.add_mesh`: map, frustum, axes, paths.
 
-Every function returns a `pyvista.PolyData` in the world frame (metres, z up), to be drawn with `plotter.add_mesh`:
-
-    plotter = new_plotter(viewpoint=(4, -6, 5), focus=(4, 0, 1))
-    plotter.add_mesh(map_mesh(scene_map, below=2.3), color="lightgrey")
-    plotter.add_mesh(frustum(camera, state, far=4.0), color=BLUE, line_width=3)
-    plotter.add_mesh(body_axes(state, 0.5), rgb=True)
-
-`scene_page.write_page` makes one HTML file of a plotter, a lesson's `show_scene` shows it. What the page's viewer
-(vtk.js) does not draw is not used here: labels on the screen, scalar bars and lines with a width that follows the zoom.
-PyVista is imported when a scene is made, because that takes a second. Wrong shapes and values that are not finite raise
-`ValueError`.
+What a page's viewer (vtk.js) does not draw is not used: labels on the screen, scalar bars, lines whose width zooms.
 """
 
 from __future__ import annotations
@@ -29,9 +19,7 @@ if TYPE_CHECKING:
 
 AXIS_COLOURS = np.array([[213, 40, 0], [0, 158, 60], [0, 80, 200]], dtype=np.uint8)
 """Red x, green y, blue z, as robotics draws them; each axis also carries its letter."""
-
-MAP_FACES = 20_000
-"""Triangles of a map that a page shows: it stays below 1.3 MB, of which the viewer is 1.07."""
+MAP_FACES = 20_000  # triangles of a map that a page shows: it stays below 1.3 MB, of which the viewer is 1.07
 
 # The strokes of the letters x, y and z in a unit square, each stroke a pair of points.
 _LETTERS = (
@@ -48,11 +36,10 @@ class SceneError(ValueError):
 def new_plotter(
     viewpoint: np.ndarray | None = None, focus: np.ndarray | None = None, size: tuple[int, int] = (800, 500)
 ) -> pyvista.Plotter:
-    """An empty scene: white, z up, off the screen.
+    """An empty scene: white, z up, off the screen; raises `OpenGLError` where nothing can be drawn.
 
-    viewpoint: from where it is seen, `(3,)` metres; focus: the point in its middle, `(3,)` metres. Without them the
-    whole scene is seen from a corner above. size: pixels (width, height) of its picture.
-    Raises `OpenGLError` where nothing can be drawn.
+    viewpoint: from where it is seen, focus: the point in its middle, `(3,)` metres; without them the whole scene is
+    seen from a corner above. size: pixels (width, height) of its picture.
     """
     pyvista = _pyvista()
     theme = pyvista.themes.DocumentTheme()  # white, whatever the reader's own theme is
@@ -72,7 +59,7 @@ def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = 
     from course_lib.rendering.simplification import simplified
 
     fewer = simplified(scene_map)
-    mesh = _polydata(fewer.vertices, fewer.faces)
+    mesh = polydata(fewer.vertices, fewer.faces)
     if below is not None:
         mesh = mesh.clip(normal="z", origin=(0.0, 0.0, float(below))).triangulate()
         if mesh.n_cells == 0:
@@ -97,7 +84,7 @@ def frustum(camera: DepthCamera, state: np.ndarray, far: float | None = None) ->
     points = np.vstack([np.zeros(3), camera.near * corners, far * corners])
     edges = [(0, 5 + k) for k in range(4)]
     edges += [(first + k, first + (k + 1) % 4) for first in (1, 5) for k in range(4)]
-    return _lines(_placed(points, optical_pose(state)), edges)
+    return _lines(to_world(points, optical_pose(state)), edges)
 
 
 def body_axes(state: np.ndarray, length: float = 0.5) -> pyvista.PolyData:
@@ -116,29 +103,9 @@ def body_axes(state: np.ndarray, length: float = 0.5) -> pyvista.PolyData:
             edges.append((len(points), len(points) + 1))
             points += [length * start, length * end]
             colours += [AXIS_COLOURS[k]] * 2
-    mesh = _tubes(_placed(np.array(points), matrix), edges, 0.02 * length)
+    mesh = _tubes(to_world(np.array(points), matrix), edges, 0.02 * length)
     mesh.point_data["colour"] = np.repeat(np.array(colours), mesh.n_points // len(colours), axis=0)
     mesh.set_active_scalars("colour")
-    return mesh
-
-
-def arrows(states: np.ndarray, length: float = 0.3, weights: np.ndarray | None = None) -> pyvista.PolyData:
-    """Particles as flat arrowheads that point along x, each with a fin on top, so that roll and pitch show too.
-
-    states: `(N, 6)`, metres and radians, the position at the arrow's middle; length: metres. weights: `(N,)`, they
-    become the point data "weight" (with `add_mesh(..., cmap="cividis")` the colour).
-    """
-    states = np.atleast_2d(as_states(states))
-    # Tip, the two ends of the tail, the notch between them, the top of the fin.
-    dart = np.array([[0.6, 0, 0], [-0.4, 0.3, 0], [-0.4, -0.3, 0], [-0.2, 0, 0], [-0.4, 0, 0.2]])
-    triangles = np.array([[0, 1, 3], [0, 3, 2], [0, 3, 4]])
-    matrices = pose_matrix(states)
-    placed = np.einsum("nij,kj->nki", matrices[:, :3, :3], length * dart)
-    placed += matrices[:, None, :3, 3]
-    faces = triangles + len(dart) * np.arange(len(states))[:, None, None]
-    mesh = _polydata(placed.reshape(-1, 3), faces.reshape(-1, 3))
-    if weights is not None:
-        mesh.point_data["weight"] = np.repeat(_finite(weights, "weights", (len(states),)), len(dart))
     return mesh
 
 
@@ -147,11 +114,11 @@ def ellipsoid(mean: np.ndarray, covariance: np.ndarray, sigmas: float = 3.0) -> 
 
     mean: `(..., 3)` metres. covariance: `(..., 3, 3)` square metres; of rank two (nothing said of height) it is a disc.
     """
-    covariance = _finite(covariance, "covariance")
+    covariance = finite(covariance, "covariance")
     if covariance.shape[-2:] != (3, 3):
         raise SceneError(f"covariance must have shape (..., 3, 3); got {covariance.shape}. Of a state's: [:3, :3]")
     covariance = covariance.reshape(-1, 3, 3)
-    mean = _finite(mean, "mean").reshape(-1, 3)
+    mean = finite(mean, "mean").reshape(-1, 3)
     variances, axes = np.linalg.eigh(covariance)
     if (variances < -1e-6 * np.abs(variances).max(axis=-1, keepdims=True)).any():
         raise SceneError(f"a covariance has no negative variance; got {variances.min():.3g} m^2 along one of its axes")
@@ -162,41 +129,12 @@ def ellipsoid(mean: np.ndarray, covariance: np.ndarray, sigmas: float = 3.0) -> 
     half_axes = sigmas * axes * np.sqrt(np.maximum(variances, 0))[:, None, :]
     points = np.einsum("nij,kj->nki", half_axes, np.asarray(ball.points)) + mean[:, None]
     faces = ball.regular_faces + ball.n_points * np.arange(len(mean))[:, None, None]
-    return _polydata(points.reshape(-1, 3), faces.reshape(-1, 3))
-
-
-def depth_surface(
-    depth: np.ndarray, camera: DepthCamera, state: np.ndarray, every: int = 1, jump: float = 0.1
-) -> pyvista.PolyData:
-    """A depth image as a surface in the world: neighbouring pixels joined, with the point data "depth" in metres.
-
-    depth: `(H, W)` metres, NaN or infinite where nothing was hit. state: `(6,)` of the camera. every: takes each
-    so-many-th row and column. jump: pixels whose depths differ by more than this share are not joined.
-    """
-    depth = np.asarray(depth, dtype=np.float64)
-    if depth.shape != camera.shape:
-        raise SceneError(f"the depth image must have the camera's shape {camera.shape}; got {depth.shape}")
-    points = camera.points(np.where(np.isfinite(depth), depth, 0.0))[::every, ::every]
-    z = np.where(np.isfinite(depth) & (depth > 0), depth, np.inf)[::every, ::every]
-    index = np.arange(z.size).reshape(z.shape)
-    corners = [index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]]
-    triangles = [np.stack([corners[a], corners[b], corners[c]], axis=-1).reshape(-1, 3) for a, b, c in _HALVES]
-    triangles = np.concatenate(triangles)
-    least, greatest = z.ravel()[triangles].min(axis=1), z.ravel()[triangles].max(axis=1)
-    triangles = triangles[np.isfinite(greatest) & (greatest <= (1 + jump) * np.minimum(least, 1e9))]
-    used, triangles = np.unique(triangles, return_inverse=True)
-    placed = _placed(points.reshape(-1, 3)[used], optical_pose(state))
-    mesh = _polydata(placed, triangles.reshape(-1, 3))
-    mesh.point_data["depth"] = z.ravel()[used].astype(np.float32)
-    return mesh
-
-
-_HALVES = ((0, 1, 2), (0, 2, 3))  # of a square of four pixels
+    return polydata(points.reshape(-1, 3), faces.reshape(-1, 3))
 
 
 def path(points: np.ndarray, dashed: bool = False) -> pyvista.PolyData:
     """A trajectory as a line through positions `(N, 3)`, metres; dashed: every other piece of it is left out."""
-    points = _finite(points, "points")
+    points = finite(points, "points")
     if points.ndim != 2 or points.shape[1] != 3 or len(points) < 2:
         raise SceneError(f"points must have shape (N, 3), N at least 2; got {points.shape}. Of states: states[:, :3]")
     return _lines(points, [(k, k + 1) for k in range(0, len(points) - 1, 2 if dashed else 1)])
@@ -222,7 +160,7 @@ def text(words: str, at: np.ndarray, height: float = 0.2) -> pyvista.PolyData:
     return letters
 
 
-def _placed(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+def to_world(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
     """Points `(N, 3)` of a frame in the world, by that frame's pose `(4, 4)`."""
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
@@ -245,15 +183,15 @@ def _tubes(points: np.ndarray, edges: list[tuple[int, int]], radius: float) -> p
     corners = np.concatenate([start[:, None] + ring, end[:, None] + ring], axis=1)
     sides = [(k, (k + 1) % 4, 4 + (k + 1) % 4) for k in range(4)] + [(k, 4 + (k + 1) % 4, 4 + k) for k in range(4)]
     faces = np.array(sides) + 8 * np.arange(len(edges))[:, None, None]
-    return _polydata(corners.reshape(-1, 3), faces.reshape(-1, 3))
+    return polydata(corners.reshape(-1, 3), faces.reshape(-1, 3))
 
 
-def _polydata(vertices: np.ndarray, faces: np.ndarray) -> pyvista.PolyData:
+def polydata(vertices: np.ndarray, faces: np.ndarray) -> pyvista.PolyData:
     """A PolyData of vertices `(V, 3)` and triangles `(F, 3)`; single precision is a tenth of a millimetre at 1 km."""
     return _pyvista().PolyData.from_regular_faces(np.asarray(vertices, dtype=np.float32), np.asarray(faces, np.int64))
 
 
-def _finite(values: np.ndarray, name: str, shape: tuple[int, ...] | None = None) -> np.ndarray:
+def finite(values: np.ndarray, name: str, shape: tuple[int, ...] | None = None) -> np.ndarray:
     array = np.asarray(values, dtype=np.float64)
     if shape is not None and array.shape != shape:
         raise SceneError(f"{name} must have shape {shape}; got {array.shape}")

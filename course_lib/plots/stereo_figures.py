@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from course_lib.plots.figures import BLUE, ORANGE, VERMILION, new_figure
-from course_lib.plots.panorama_drawing import add_list, draw_box, draw_numbers, panorama
+from course_lib.plots.panorama_drawing import add_list, draw_objects, panorama
 from course_lib.spherical_stereo.panorama import View
 
 # Share of the disparities that the colours span; a few wild matches would else use up the scale.
@@ -16,10 +16,7 @@ _COLOUR_PERCENTILES = (2, 98)
 
 
 def disparity_figure(upper_image: np.ndarray, features) -> Figure:
-    """The upper panorama with every matched feature, coloured by its vertical disparity; crosses break the constraint.
-
-    features: `FeatureMatches`.
-    """
+    """The upper panorama with every `FeatureMatches`, coloured by vertical disparity; crosses break the constraint."""
     figure, axes = new_figure(size=(11, 6))
     share = f", {100 * features.epipolar_share:.1f} % of equal azimuth" if len(features) else ": nothing to measure"
     panorama(axes, upper_image, f"{len(features)} matches{share}")
@@ -34,10 +31,7 @@ def disparity_figure(upper_image: np.ndarray, features) -> Figure:
 
 
 def distances_figure(views: Sequence[View], objects: Sequence, names: Sequence[str]) -> Figure:
-    """Both panoramas, one above the other, with the boxes of matched objects, numbered; their distances below.
-
-    views: (upper, lower). objects: `MeasuredObject` of each match. names: of the objects.
-    """
+    """Both panoramas, upper and lower, with the boxes of matched objects (`MeasuredObject`); their distances below."""
     boxes = np.array([d.box for view in views for d in view.detections])
     margin = 0.06 * views[0].height
     labels = [measured.label for measured in objects]
@@ -53,10 +47,8 @@ def distances_figure(views: Sequence[View], objects: Sequence, names: Sequence[s
     title = "number, object, horizontal range from disparities (from box centres)"
     add_list(figure, lines, 3, title, labels)
     for axes, view, side in zip(rows, views, ("upper", "lower"), strict=True):
-        shown = [view.detections[getattr(measured, side)].box for measured in objects]
-        for box, label in zip(shown, labels, strict=True):
-            draw_box(axes, box, view.width, label)
-        draw_numbers(axes, shown, labels, view.width)
+        boxes = [view.detections[getattr(measured, side)].box for measured in objects]
+        draw_objects(axes, boxes, labels, view.width)
     return figure
 
 

@@ -40,7 +40,7 @@ def track_scene(
     estimated = to_scene @ result.camera_to_world
     true = to_scene @ sequence.camera_to_world[: len(result.frames)] if sequence.has_poses else None
     paths = estimated[:, :3, 3] if true is None else np.concatenate([estimated[:, :3, 3], true[:, :3, 3]])
-    around = _around(_fewer_triangles(scene_map, up, to_scene), paths)
+    around = _around(scene_map, paths, up, to_scene)
     camera, worst = sequence.camera(near, far), worst_frames(result, sequence)
     measured = [_measured(sequence.depth(index), camera, estimated[index]) for index in worst]
     plotter = new_plotter(*_view(np.concatenate([paths, *measured])))
@@ -51,13 +51,15 @@ def track_scene(
     if true is not None:
         plotter.add_mesh(path(true[:, :3, 3], dashed=True), color="black", line_width=3)
     plotter.add_mesh(path(estimated[:, :3, 3]), color=BLUE, line_width=4)
-    _add_unsure(plotter, estimated[:, :3, 3], result)
+    for status, colour, size in (("doubtful", ORANGE, 7), ("lost", VERMILION, 10)):
+        chosen = estimated[[one == status for one in result.statuses], :3, 3]
+        if len(chosen):
+            plotter.add_points(chosen.astype(np.float32), color=colour, point_size=size)
     for index, points in zip(worst, measured, strict=True):
         if len(points):
             plotter.add_mesh(points, color=PURPLE, point_size=3)
-        plotter.add_mesh(
-            frustum(camera, state_from_optical_pose(estimated[index]), max(_FRUSTUM, 1.1 * camera.near)), color=PURPLE
-        )
+        shape = frustum(camera, state_from_optical_pose(estimated[index]), max(_FRUSTUM, 1.1 * camera.near))
+        plotter.add_mesh(shape, color=PURPLE)
     words = "Estimate: blue line" + (", truth: black, dashed" if true is not None else "")
     words += ", orange where doubtful, red where lost" if set(result.statuses) != {"tracked"} else ""
     frames = ", ".join(str(result.frames[index]) for index in worst)
@@ -88,14 +90,10 @@ def _to_scene(scene_map: SceneMap, up: str | None, camera_to_world: np.ndarray) 
     return matrix
 
 
-def _fewer_triangles(scene_map: SceneMap, up: str | None, to_scene: np.ndarray) -> SceneMap:
-    """The map in the scene, as the filter drew it: turned upright before it is simplified, it is found in the cache."""
-    upright = rotation_to_z_up(up or "z")
-    return simplified(scene_map.transformed(upright)).transformed(to_scene @ np.linalg.inv(upright))
-
-
-def _around(scene_map: SceneMap, paths: np.ndarray) -> SceneMap:
-    """The triangles of a map near the paths, seen from above; all of them where none is near."""
+def _around(scene_map: SceneMap, paths: np.ndarray, up: str | None, to_scene: np.ndarray) -> SceneMap:
+    """The map's triangles near the paths, in the scene, seen from above; all of them where none is near."""
+    upright = rotation_to_z_up(up or "z")  # turned upright before it is simplified, it is found in the filter's cache
+    scene_map = simplified(scene_map.transformed(upright)).transformed(to_scene @ np.linalg.inv(upright))
     low, high = paths[:, :2].min(axis=0) - _AROUND, paths[:, :2].max(axis=0) + _AROUND
     middles = scene_map.vertices[scene_map.faces].mean(axis=1)[:, :2]
     near = ((middles >= low) & (middles <= high)).all(axis=1)
@@ -108,14 +106,6 @@ def _view(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     focus = (low + high) / 2
     size = max(4.0, float((high - low).max()))
     return focus + size * np.array([-0.6, -1.1, 1.1]), focus
-
-
-def _add_unsure(plotter: pyvista.Plotter, positions: np.ndarray, result: Run) -> None:
-    """Points where the filter doubted, or knew that it was lost."""
-    for status, colour, size in (("doubtful", ORANGE, 7), ("lost", VERMILION, 10)):
-        chosen = positions[[one == status for one in result.statuses]]
-        if len(chosen):
-            plotter.add_points(chosen.astype(np.float32), color=colour, point_size=size)
 
 
 def _measured(depth: np.ndarray, camera: DepthCamera, camera_to_world: np.ndarray) -> np.ndarray:

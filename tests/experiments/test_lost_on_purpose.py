@@ -3,8 +3,6 @@
 Recordings and seeds from 10,000 up are development data. Images are thinned and few particles used, for time.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 import pytest
 
@@ -19,34 +17,39 @@ LOST_POSITION, LOST_ROTATION = 0.3, np.deg2rad(15.0)  # m, rad; beyond either a 
 WIDTH = 40  # pixels, of the thinned images
 
 
-class Way(NamedTuple):
-    """One way to run a recording."""
-
-    skipped: tuple[float, float] = (0.0, 0.0)  # shares of its length between which the filter sees nothing: kidnapped
-    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)  # m, of the start
-    turn_deg: float = 0.0  # of the start, about the camera's vertical
-    noise: float = 0.3  # factor on the usual system noise: too little to find back
-    n_particles: int = 30
-    mirrored: bool = False  # the map is its mirror image: no pose is right
-
-
 WAYS = {
-    "kidnapped": Way(skipped=(0.2, 0.6)),
-    "started beside": Way(shift=(0.3, 0.3, 0.2), turn_deg=50.0),
-    "started a metre off": Way(shift=(-1.0, 0.1, 0.0)),
-    "mirrored map": Way(mirrored=True),
+    "kidnapped": {"skipped": (0.2, 0.6)},
+    "started beside": {"shift": (0.3, 0.3, 0.2), "turn_deg": 50.0},
+    "started a metre off": {"shift": (-1.0, 0.1, 0.0)},
+    "mirrored map": {"mirrored": True},
 }
 
 
-def judged_run(folder, tmp_path, way, seed, frames):
-    """Which frames of the shipped recording, run one way, are truly lost, and what each was called."""
+def judged_run(
+    folder,
+    tmp_path,
+    seed,
+    frames,
+    *,
+    noise=0.3,
+    n_particles=30,
+    skipped=(0, 0),
+    shift=(0, 0, 0),
+    turn_deg=0.0,
+    mirrored=False,
+):
+    """Which frames of the shipped recording, run one way, are truly lost, and what each was called.
+
+    noise: factor on the usual system noise, too little to find back. skipped: shares of the recording between which
+    the filter sees nothing. shift, turn_deg: of the start. mirrored: the map, in which no pose is right.
+    """
     scene_map, sequence = SceneMap.load(folder / "map.ply"), read_sequence(folder / "wagon")
-    begin, end = (round(share * frames) for share in way.skipped)
+    begin, end = (round(share * frames) for share in skipped)
     kept = [i for i in range(frames) if not begin <= i < end]
     start = sequence.camera_to_world[0].copy()
-    start[:3, 3] += way.shift
-    start[:3, :3] = start[:3, :3] @ rotation_exp(np.deg2rad([0.0, way.turn_deg, 0.0]))
-    if way.mirrored:
+    start[:3, 3] += shift
+    start[:3, :3] = start[:3, :3] @ rotation_exp(np.deg2rad([0.0, turn_deg, 0.0]))
+    if mirrored:
         vertices = scene_map.vertices.copy()
         vertices[:, 0] = 2 * vertices[:, 0].mean() - vertices[:, 0]
         scene_map = SceneMap(vertices, scene_map.faces)
@@ -58,24 +61,24 @@ def judged_run(folder, tmp_path, way, seed, frames):
         scene_map,
         read_sequence(tmp_path / "thinned"),
         start=start,
-        n_particles=way.n_particles,
+        n_particles=n_particles,
         seed=seed,
         backend="ray",
-        **system_noise("xyyaw", *(way.noise * usual for usual in SIGMA["xyyaw"])),
+        **system_noise("xyyaw", *(noise * usual for usual in SIGMA["xyyaw"])),
     )
     metres, radians = pose_errors(run.camera_to_world, sequence.camera_to_world[kept])
-    return (metres > LOST_POSITION) | (radians > LOST_ROTATION) | way.mirrored, np.array(run.statuses)
+    return (metres > LOST_POSITION) | (radians > LOST_ROTATION) | mirrored, np.array(run.statuses)
 
 
 def test_a_run_that_holds_the_track_is_called_tracked(corridor_folder, tmp_path):
-    lost, statuses = judged_run(corridor_folder, tmp_path, Way(noise=1.0, n_particles=200), seed=10301, frames=20)
+    lost, statuses = judged_run(corridor_folder, tmp_path, 10301, 20, noise=1.0, n_particles=200)
     assert not lost.any()
     assert (statuses == "tracked").sum() >= 18
 
 
 @pytest.mark.parametrize("name", WAYS)
 def test_a_run_that_is_lost_is_never_called_tracked(corridor_folder, tmp_path, name):
-    lost, statuses = judged_run(corridor_folder, tmp_path, WAYS[name], seed=10302, frames=40)
+    lost, statuses = judged_run(corridor_folder, tmp_path, 10302, 40, **WAYS[name])
     assert lost.sum() >= 15
     assert not (statuses[lost] == "tracked").any()
     assert (statuses[lost] == "lost").sum() >= 0.8 * lost.sum()

@@ -56,10 +56,9 @@ def test_results_come_in_the_order_of_the_points(processes, tmp_path):
 
 def test_only_missing_points_are_run_and_counted(tmp_path):
     counted = []
-    for last in (3, 5):
-        points = [{"seed": seed} for seed in range(last)]
+    for seeds, more in ((range(3), {}), (range(5), {}), ([1], {"scale": 2.0})):
+        points = [{"seed": seed, **more} for seed in seeds]
         kept_rows(draw, points, tmp_path / "rows.jsonl", 1, lambda missing: counted.append(len(missing)) or missing)
-    kept_rows(draw, [{"seed": 1, "scale": 2.0}], tmp_path / "rows.jsonl", 1, lambda m: counted.append(len(m)) or m)
     assert counted == [3, 2, 1]
 
 
@@ -72,10 +71,8 @@ def test_a_run_that_is_killed_goes_on_with_no_row_lost_or_doubled(tmp_path):
         f"kept_rows(note_call, {points!r}, Path({str(results)!r}), 1)"
     )
     process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT)
-    begun = time.monotonic()
     while not (tmp_path / "calls_2").exists():  # it waits for "go"; rows 0 and 1 are written
         assert process.poll() is None
-        assert time.monotonic() - begun < 600
         time.sleep(0.02)
     with pytest.raises(RuntimeError, match="is being written by another run"):
         kept_rows(note_call, points[:1], results)
@@ -91,11 +88,12 @@ def test_a_run_that_is_killed_goes_on_with_no_row_lost_or_doubled(tmp_path):
 
 def test_a_point_that_fails_is_named_and_what_was_finished_is_kept(tmp_path):
     points = [{"seed": seed, "folder": str(tmp_path)} for seed in range(1, 4)]
+    rows = tmp_path / "rows.jsonl"
     with pytest.raises(RuntimeError, match="seed 2: two is not to be had"):
-        kept_rows(fail_for_two, points, tmp_path / "rows.jsonl", 1)
-    assert [row["point"]["seed"] for row in lines_of(tmp_path / "rows.jsonl")] == [1]
+        kept_rows(fail_for_two, points, rows, 1)
+    assert [row["point"]["seed"] for row in lines_of(rows)] == [1]
     (tmp_path / "mended").touch()
-    assert [row["seed"] for row in kept_rows(fail_for_two, points, tmp_path / "rows.jsonl", 1)] == [1, 2, 3]
+    assert [row["seed"] for row in kept_rows(fail_for_two, points, rows, 1)] == [1, 2, 3]
 
 
 def test_results_hold_their_versions_and_rows(tmp_path):

@@ -8,9 +8,9 @@ import pytest
 from course_lib.experiments.troubled_frames import (
     LEFT_AT_THE_END,
     Gate,
+    confident_wrong,
     frames_to_judge,
     generator,
-    is_confident_wrong,
     summary,
     troubled_frames,
     troubled_runs,
@@ -50,19 +50,31 @@ def frame(outcome="tracked", metres=0.01, degrees=0.1):
     }
 
 
-def test_the_tenth_good_frame_after_each_trouble_is_judged():
-    assert frames_to_judge([(5, 6)], 30) == [15]
-    assert frames_to_judge([(5, 8)], 30) == [17]
-    assert frames_to_judge([(5, 6), (10, 12)], 30) == [17, 21], "good frames are counted, whatever comes between"
-    assert frames_to_judge([(25, 26)], 30) == [], "the recording ends before"
+@pytest.mark.parametrize(
+    ("runs", "judged"),
+    [
+        ([(5, 6)], [15]),
+        ([(5, 8)], [17]),
+        ([(5, 6), (10, 12)], [17, 21]),  # good frames are counted, whatever comes between
+        ([(25, 26)], []),  # the recording ends before
+    ],
+)
+def test_the_tenth_good_frame_after_each_trouble_is_judged(runs, judged):
+    assert frames_to_judge(runs, 30) == judged
 
 
-def test_wrong_is_what_was_given_out_and_lies_beyond_either_gate():
-    assert not is_confident_wrong(frame(), GATE)
-    assert is_confident_wrong(frame(metres=0.31), GATE)
-    assert is_confident_wrong(frame(degrees=15.1), GATE)
-    assert not is_confident_wrong(frame("lost", metres=3.0), GATE)
-    assert not is_confident_wrong(frame("no image", metres=None), GATE)
+@pytest.mark.parametrize(
+    ("one", "wrong"),
+    [
+        (frame(), 0),
+        (frame(metres=0.31), 1),
+        (frame(degrees=15.1), 1),
+        (frame("lost", metres=3.0), 0),
+        (frame("no image", metres=None), 0),
+    ],
+)
+def test_wrong_is_what_was_given_out_and_lies_beyond_either_gate(one, wrong):
+    assert confident_wrong([one], GATE) == wrong
 
 
 def test_a_row_counts_outcomes_recovery_and_wrong_poses():
@@ -77,23 +89,9 @@ def test_a_row_counts_outcomes_recovery_and_wrong_poses():
     }
     told = summary([result, result], GATE)
     assert told["usual"]["metres"] == pytest.approx(0.09)
-    assert told["undisturbed"] == {
-        "frames": 80,
-        "good_frames": {"tracked": 80},
-        "false_alarms": 0,
-        "confident_wrong": 0,
-    }
-    assert told["rows"] == [
-        {
-            "trouble": "repeated",
-            "share": 0.05,
-            "frames": 80,
-            "troubled": 4,
-            "outcomes": {"repeated": 2, "tracked": 2},
-            "good_frames": {"doubtful": 2, "tracked": 74},
-            "judged": 4,
-            "recovered": 2,
-            "undisturbed": 4,
-            "confident_wrong": 2,
-        }
-    ]
+    assert told["undisturbed"] == dict(frames=80, good_frames={"tracked": 80}, false_alarms=0, confident_wrong=0)
+    (row,) = told["rows"]
+    assert (row["trouble"], row["share"]) == ("repeated", 0.05)
+    assert (row["outcomes"], row["good_frames"]) == ({"repeated": 2, "tracked": 2}, {"doubtful": 2, "tracked": 74})
+    counted = ("frames", "troubled", "judged", "recovered", "undisturbed", "confident_wrong")
+    assert [row[key] for key in counted] == [80, 4, 4, 2, 4, 2]

@@ -1,7 +1,5 @@
 """Lines of plans and side views: where a plane cuts a mesh."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import trimesh

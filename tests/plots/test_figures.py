@@ -1,14 +1,10 @@
-"""Figures: their style, depth images, and compression that keeps what is seen."""
+"""Figures: their style and depth images."""
 
-from __future__ import annotations
-
-import io
 import pkgutil
 import subprocess
 import sys
 
 import numpy as np
-from PIL import Image
 
 import course_lib.plots
 from course_lib.plots import figures
@@ -26,14 +22,6 @@ def test_where_nothing_was_hit_the_hatched_ground_shows_through():
     image = figures.depth_image(axes, depth, "Depth", (0, 2))
     assert image.to_rgba(np.ma.masked_invalid(depth))[0, :, 3].tolist() == [1, 0, 0]
     assert axes.patch.get_hatch()
-
-
-def test_compression_keeps_the_picture():
-    rng = np.random.default_rng(0)
-    rgb = np.kron(rng.integers(0, 255, (4, 5, 3)), np.ones((20, 20, 1))).astype(np.uint8)
-    back = np.asarray(Image.open(io.BytesIO(figures.compress(rgb))).convert("RGB"))
-    assert back.shape == rgb.shape
-    assert np.abs(back.astype(int) - rgb).max() <= 12
 
 
 def test_commands_draw_where_there_is_no_ipython():

@@ -1,7 +1,5 @@
 """A localization as a scene: landmarks, rays, ellipses and pose stand where the answer says."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +9,7 @@ from course_lib.plots.location_scene import location_scene
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.scene_page import page_html
 from course_lib.spherical_stereo import SemanticLocalizer, StereoRig
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from tests.plots.test_track_scene import of_colour
 from tests.spherical_stereo.stereo_scene import mapped_scene
 from tests.spherical_stereo.vertical_pair import BASELINE
@@ -45,11 +44,7 @@ def test_rays_go_from_the_pose_to_the_places_and_ellipses_lie_there(answer):
     discs = [m for mesh in plotter.actors.values() if (m := mesh.mapper.dataset).n_cells == 320]
     assert len(discs) == 6, "five places and the pose"
     first = found.objects[0].observation
-    widths = np.sqrt(np.linalg.eigvalsh(found.observations[first].covariance))
-    spread = np.linalg.norm(np.asarray(discs[0].points)[:, :2] - places[first], axis=1)
-    assert spread.max() == pytest.approx(3 * widths[1], rel=0.03)
-    turn = np.array([[np.cos(found.pose.theta), -np.sin(found.pose.theta)],
-                     [np.sin(found.pose.theta), np.cos(found.pose.theta)]])  # fmt: skip
+    turn = rotation_2d(found.pose.theta)
     world = turn @ found.observations[first].covariance @ turn.T
     offsets = np.asarray(discs[0].points, float)[:, :2] - places[first]
     assert np.einsum("ni,ij,nj->n", offsets, np.linalg.inv(world), offsets).max() == pytest.approx(9, rel=0.02)

@@ -1,17 +1,12 @@
-"""Figures of panoramas and of poses: numbers that stay apart, lines that show a swap, nothing hidden by a legend."""
+"""Figures of panoramas: numbers that stay apart, boxes on both sides of the seam."""
 
 from itertools import combinations
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from course_lib.plots.figures import new_figure
 from course_lib.plots.panorama_drawing import draw_box, draw_numbers, panorama
-from course_lib.plots.room_figures import pose_figure
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.semantic_map.association import Observation
-from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
 WIDTH = 1280
 IMAGE = np.full((WIDTH // 2, WIDTH, 3), 120, np.uint8)
@@ -43,19 +38,3 @@ def test_a_box_across_the_seam_is_drawn_on_both_sides(box, frames):
     draw_box(axes, box, WIDTH, "sofa", "sofa")
     assert len(axes.patches) == frames
     assert list(texts(axes)) == ["sofa"]
-
-
-def test_a_line_joins_each_measured_object_to_its_landmark_and_a_swap_crosses():
-    landmarks = [Landmark("sofa", 1.0, 1.0, 20.0, 50.0), Landmark("sofa", 3.0, 1.0, 20.0, 50.0)]
-    measured = [Observation("sofa", 1.0, 1.5, 20.0, 50.0), Observation("sofa", 3.0, 1.5, 20.0, 50.0)]
-    result = SimpleNamespace(
-        pair=SimpleNamespace(pose=(0.0, 0.0, 0.0)),
-        localization=SimpleNamespace(pose=Pose2D(0.0, 0.0, 0.0), observations=measured, used_pairs=((0, 1), (1, 0))),
-        true_landmarks=(0, 1),
-    )
-    figure = pose_figure(SemanticMap(landmarks), result, "swapped")
-    axes = figure.axes[0]
-    dashed = [line.get_xydata().tolist() for line in axes.lines if line.get_linestyle() == "--"]
-    assert dashed == [[[1.0, 1.5], [3.0, 1.0]], [[3.0, 1.5], [1.0, 1.0]]]
-    figure.draw_without_rendering()
-    assert not axes.get_legend().get_window_extent().overlaps(axes.get_window_extent())

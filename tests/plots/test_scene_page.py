@@ -1,4 +1,4 @@
-"""The page of a scene: its words, the same bytes for the same scene, which pages show the same, no network."""
+"""The page of a scene: its words, the same bytes for the same scene, no network."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 from course_lib.commands.scene_output import write_scene
 from course_lib.plots import scenes
-from course_lib.plots.scene_page import ScenePageError, page_html, same_scene
+from course_lib.plots.scene_page import ScenePageError, page_html
 from course_lib.rendering.renderer import OpenGLError
 
 WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose <seen> from above"}
@@ -35,17 +35,17 @@ def page() -> str:
 
 
 def test_a_page_has_title_language_words_and_help(page):
+    words = "The axes of a pose &lt;seen&gt; from above"
     assert page.startswith('<!doctype html>\n<html lang="en">')
     assert "<title>Axes &amp; &quot;more&quot;</title>" in page
-    assert 'name="description" content="The axes of a pose &lt;seen&gt; from above"' in page
-    assert 'aria-label="The axes of a pose &lt;seen&gt; from above"' in page
+    assert f'name="description" content="{words}"' in page
+    assert f'aria-label="{words}"' in page
     assert "Drag to turn, wheel to zoom" in page
 
 
 def test_a_page_is_small_and_loads_nothing(page):
     assert len(page) < 600_000
-    outside = re.findall(r'(?:src|href)="(?!data:)[^"]*"|https?:', page)
-    assert outside == []
+    assert re.findall(r'(?:src|href)="(?!data:)[^"]*"|https?:', page) == []
     viewer = zlib.decompress(base64.b64decode(re.search(r'atob\("([^"]+)"\)', page)[1])).decode()
     assert "vtk-js/icon" not in viewer, "trame-vtk's viewer fetches its icons from the network"
     assert "default-src 'none'" in page
@@ -56,21 +56,6 @@ def test_the_same_scene_gives_the_same_bytes_also_in_another_process(page, tmp_p
     code = f"import runpy; page = runpy.run_path({__file__!r})['axes_page']; open('page', 'w').write(page())"
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True)
     assert (tmp_path / "page").read_text() == page
-
-
-def test_pages_that_differ_by_rounding_show_the_same(page):
-    moved = axes_page(STATE + 1e-5)
-    assert moved != page
-    assert same_scene(moved, page)
-
-
-@pytest.mark.parametrize(
-    "change",
-    [{"state": STATE + 0.01}, {"colour": "#D55E00"}, {"title": "Other axes"}, {"alt": "The axes of another pose"}],
-    ids=["place", "colour", "title", "words"],
-)
-def test_pages_that_differ_show_something_else(page, change):
-    assert not same_scene(axes_page(**change), page)
 
 
 @pytest.mark.parametrize("kind", [OpenGLError, ScenePageError, ImportError])

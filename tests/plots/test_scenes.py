@@ -1,7 +1,5 @@
 """Objects of a scene: where their points lie, what they refuse."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -53,19 +51,6 @@ def test_each_axis_has_its_colour_and_its_direction(axis):
     assert (mesh.point_data.active_scalars == mesh["colour"]).all()
 
 
-def test_arrows_point_along_x_with_their_fin_up():
-    states = np.array([STATE, np.zeros(6)])
-    mesh = scenes.arrows(states, 0.4, weights=np.array([0.25, 0.75]))
-    darts = np.asarray(mesh.points).reshape(2, 5, 3)
-    tip_from_notch = pose_matrix(STATE)[:3, 0]
-    heading = darts[0, 0] - darts[0, 3]
-    assert np.allclose(heading / np.linalg.norm(heading), tip_from_notch, atol=1e-5)
-    assert np.ptp(darts[1, :, 0]) == pytest.approx(0.4)
-    assert darts[1, 4, 2] > 0
-    assert np.asarray(mesh["weight"]).reshape(2, 5).tolist() == [[0.25] * 5, [0.75] * 5]
-    assert mesh.n_cells == 6
-
-
 def test_an_ellipsoid_lies_where_its_covariance_says():
     root = np.random.default_rng(3).normal(size=(3, 3))
     covariance, mean = root @ root.T, np.array([1.0, 2.0, 3.0])
@@ -74,39 +59,13 @@ def test_an_ellipsoid_lies_where_its_covariance_says():
     assert np.allclose(squares, 4.0, rtol=1e-3)
 
 
-def test_a_depth_image_becomes_the_surface_that_it_shows():
-    depth = np.full(CAMERA.shape, 3.0)
-    mesh = scenes.depth_surface(depth, CAMERA, STATE)
-    matrix = optical_pose(STATE)
-    local = (np.asarray(mesh.points, float) - matrix[:3, 3]) @ matrix[:3, :3]
-    assert np.allclose(local[:, 2], 3.0, atol=1e-5)
-    assert np.allclose(np.sort(CAMERA.project(local)[0])[[0, -1]], [0, 39], atol=1e-3)
-    assert mesh.n_cells == 2 * 39 * 29
-    assert np.allclose(mesh["depth"], 3.0)
-
-
-def test_a_surface_is_cut_at_edges_and_at_pixels_without_depth():
-    depth = np.full(CAMERA.shape, 3.0)
-    depth[:, 20:] = 5.0
-    depth[0, 0], depth[-1, 0] = np.nan, np.inf
-    mesh = scenes.depth_surface(depth, CAMERA, STATE)
-    # Of the corner squares, the one cut by the diagonal loses both triangles, the other one.
-    assert mesh.n_cells == 2 * 38 * 29 - 2 - 1
-    assert set(np.asarray(mesh["depth"]).tolist()) == {3.0, 5.0}
-    assert scenes.depth_surface(depth, CAMERA, STATE, jump=0.7).n_cells == 2 * 39 * 29 - 3
-    assert scenes.depth_surface(depth, CAMERA, STATE, every=3).n_points < mesh.n_points / 8
-
-
 @pytest.mark.parametrize(
     ("call", "words"),
     [
         (lambda room: scenes.map_mesh(room, below=-1), "heights go from 0.00 to 2.50"),
         (lambda room: scenes.frustum(CAMERA, np.zeros(3)), r"shape \(\.\.\., 6\)"),
-        (lambda room: scenes.arrows(np.full((1, 6), np.nan)), "finite"),
-        (lambda room: scenes.arrows(np.zeros((3, 6)), weights=np.ones(2)), r"weights must have shape \(3,\)"),
         (lambda room: scenes.ellipsoid(np.zeros(3), np.eye(6)), r"\[:3, :3\]"),
         (lambda room: scenes.ellipsoid(np.zeros(3), np.diag([1, 1, -1])), "no negative variance"),
-        (lambda room: scenes.depth_surface(np.ones((3, 3)), CAMERA, STATE), r"shape \(30, 40\)"),
         (lambda room: scenes.path(np.zeros((4, 6))), "states"),
         (lambda room: scenes.path(np.zeros((1, 3))), "N at least 2"),
     ],

@@ -1,6 +1,6 @@
 """A localized recording as a scene: what is in it, where it is cut, which frames are the worst."""
 
-from __future__ import annotations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,29 +18,38 @@ OFF = 17  # the frame whose estimate is half a metre off
 
 
 @pytest.fixture(scope="module")
-def recording(corridor_folder):
-    return SceneMap.load(corridor_folder / "map.ply"), read_sequence(corridor_folder / "wagon")
+def scene_map(corridor_folder):
+    return SceneMap.load(corridor_folder / "map.ply")
 
 
-def made_run(sequence, off: float = 0.5, statuses=("tracked",) * FRAMES) -> Run:
+@pytest.fixture(scope="module")
+def wagon(corridor_folder):
+    return read_sequence(corridor_folder / "wagon")
+
+
+@pytest.fixture(scope="module")
+def run(wagon) -> Run:
     """A run that knows the truth, but for one frame."""
-    poses = np.array(sequence.camera_to_world[:FRAMES])
-    poses[OFF, 2, 3] += off
+    poses = np.array(wagon.camera_to_world[:FRAMES])
+    poses[OFF, 2, 3] += 0.5
+    unused = dict.fromkeys(("ess", "normalized_errors", "deviations", "error_sigmas", "renders"), np.empty(0))
     return Run(
-        frames=sequence.frames[:FRAMES],
+        frames=wagon.frames[:FRAMES],
         states=state_from_optical_pose(poses),
         camera_to_world=poses,
         scores=np.where(np.arange(FRAMES) == 30, 0.2, 0.8),
-        ess=np.full(FRAMES, 10.0),
         agreements=[],
-        statuses=list(statuses),
-        normalized_errors=np.empty(0),
-        deviations=np.empty(0),
-        error_sigmas=np.empty(0),
-        renders=np.empty(0),
+        statuses=["tracked"] * FRAMES,
         ms_per_frame=0.0,
         frames_without_measurement=0,
+        **unused,
     )
+
+
+def posed(wagon, camera_to_world=None):
+    """The recording with other poses, or without."""
+    parts = {"frames": wagon.frames, "camera": wagon.camera, "depth": wagon.depth, "camera_to_world": camera_to_world}
+    return SimpleNamespace(has_poses=camera_to_world is not None, **parts)
 
 
 def of_colour(plotter, colour: str) -> list:
@@ -49,15 +58,13 @@ def of_colour(plotter, colour: str) -> list:
     return [actor.mapper.dataset for actor in actors]
 
 
-def test_path_truth_and_the_points_of_the_worst_frame_are_there(recording):
-    scene_map, sequence = recording
-    run = made_run(sequence)
-    plotter, words = track_scene(scene_map, run, sequence, "z", NEAR, FAR)
+def test_path_truth_and_the_points_of_the_worst_frame_are_there(scene_map, wagon, run):
+    plotter, words = track_scene(scene_map, run, wagon, "z", NEAR, FAR)
     assert f"{run.frames[OFF]}" in words
     assert np.allclose(of_colour(plotter, BLUE)[0].points, run.camera_to_world[:, :3, 3], atol=1e-4)
-    assert np.allclose(of_colour(plotter, "#000000")[0].points, sequence.camera_to_world[:FRAMES, :3, 3], atol=1e-4)
+    assert np.allclose(of_colour(plotter, "#000000")[0].points, wagon.camera_to_world[:FRAMES, :3, 3], atol=1e-4)
     points, lines = of_colour(plotter, PURPLE)[4:6]
-    assert worst_frames(run, sequence)[2] == OFF
+    assert worst_frames(run, wagon)[2] == OFF
     assert np.allclose(lines.points[0], run.camera_to_world[OFF, :3, 3], atol=1e-4)
     # The wagon's camera sees the floor; half a metre too high, it sees it half a metre above the map's.
     assert np.percentile(points.points[:, 2], 3) == pytest.approx(0.5, abs=0.1)
@@ -67,58 +74,41 @@ def test_path_truth_and_the_points_of_the_worst_frame_are_there(recording):
     plotter.close()
 
 
-def test_a_world_with_another_up_axis_is_turned(recording):
+def moved_paths(scene_map, wagon, run, matrix, up, true=None):
+    """The estimate's path in the scene of a world, and in that of the same world moved by a matrix."""
+    moved = run._replace(camera_to_world=matrix @ run.camera_to_world)
+    other, _ = track_scene(scene_map.transformed(matrix), moved, posed(wagon, true), up, NEAR, FAR)
+    return run.camera_to_world[:, :3, 3], of_colour(other, BLUE)[0].points
+
+
+def test_a_world_with_another_up_axis_is_turned(scene_map, wagon, run):
     """The same world on its side: the scene is the same."""
-    scene_map, sequence = recording
     side = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
-    run = made_run(sequence)
-    turned = run._replace(camera_to_world=side @ run.camera_to_world)
-    plain, _ = track_scene(scene_map, run, sequence, "z", NEAR, FAR)
-
-    class Turned:
-        has_poses, frames, camera, depth = True, sequence.frames, sequence.camera, sequence.depth
-        camera_to_world = side @ sequence.camera_to_world
-
-    other, _ = track_scene(scene_map.transformed(side), turned, Turned, "-y", NEAR, FAR)
-    paths = [of_colour(plotter, BLUE)[0].points for plotter in (plain, other)]
-    assert np.allclose(paths[0][:, 2], paths[1][:, 2], atol=1e-4)
-    assert np.allclose(np.linalg.norm(np.diff(paths[0], axis=0)), np.linalg.norm(np.diff(paths[1], axis=0)), atol=1e-4)
+    plain, turned = moved_paths(scene_map, wagon, run, side, "-y", side @ wagon.camera_to_world)
+    assert np.allclose(plain[:, 2], turned[:, 2], atol=1e-4)
+    assert np.allclose(np.linalg.norm(np.diff(plain, axis=0)), np.linalg.norm(np.diff(turned, axis=0)), atol=1e-4)
 
 
-def test_far_from_zero_the_scene_is_brought_near(recording):
-    scene_map, sequence = recording
+def test_far_from_zero_the_scene_is_brought_near(scene_map, wagon, run):
     away = np.eye(4)
     away[:3, 3] = [3.6e5, -4.4e6, 12.0]
-    run = made_run(sequence)
-
-    class Away:
-        has_poses, frames, camera, depth = False, sequence.frames, sequence.camera, sequence.depth
-
-    moved = run._replace(camera_to_world=away @ run.camera_to_world)
-    plotter, _ = track_scene(scene_map.transformed(away), moved, Away, "z", NEAR, FAR)
-    line = of_colour(plotter, BLUE)[0].points
-    assert np.abs(line).max() < 1000
-    assert np.allclose(np.diff(line, axis=0), np.diff(run.camera_to_world[:, :3, 3], axis=0), atol=1e-3)
+    plain, near = moved_paths(scene_map, wagon, run, away, "z")
+    assert np.abs(near).max() < 1000
+    assert np.allclose(np.diff(near, axis=0), np.diff(plain, axis=0), atol=1e-3)
 
 
-def test_doubtful_and_lost_frames_are_marked_and_said(recording):
-    scene_map, sequence = recording
+def test_doubtful_and_lost_frames_are_marked_and_said(scene_map, wagon, run):
     statuses = ["tracked"] * 30 + ["doubtful"] * 4 + ["lost"] * 6
-    plotter, words = track_scene(scene_map, made_run(sequence, statuses=statuses), sequence, "z", NEAR, FAR)
+    plotter, words = track_scene(scene_map, run._replace(statuses=statuses), wagon, "z", NEAR, FAR)
     assert [mesh.n_points for mesh in of_colour(plotter, ORANGE)] == [4]
     assert [mesh.n_points for mesh in of_colour(plotter, VERMILION)] == [6]
     assert "orange where doubtful, red where lost" in words
 
 
-def test_the_worst_frames_are_apart_and_without_truth_those_of_the_lowest_score(recording):
-    _, sequence = recording
-    run = made_run(sequence)
-
-    class NoTruth:
-        has_poses = False
-
-    worst = worst_frames(run._replace(scores=np.where(np.arange(FRAMES) == 3, np.nan, run.scores)), NoTruth)
+def test_the_worst_frames_are_apart_and_without_truth_those_of_the_lowest_score(wagon, run):
+    unmeasured = run._replace(scores=np.where(np.arange(FRAMES) == 3, np.nan, run.scores))
+    worst = worst_frames(unmeasured, posed(wagon))
     assert 30 in worst
     assert 3 not in worst, "a frame without a measurement has no points to draw"
     assert np.diff(worst).min() >= FRAMES / 10
-    assert OFF in worst_frames(run, sequence)
+    assert OFF in worst_frames(run, wagon)

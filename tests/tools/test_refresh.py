@@ -30,8 +30,9 @@ CELLS = [
     "x = 2\nprint('x =', x)",
     """
 from course_lib.lessons.kit.panel import Drawing, Panel, Switch
+from course_lib.lessons.kit.compression import png_bytes
 from course_lib.plots import figures
-png = figures.png_bytes(figures.new_figure(size=(1, 1))[0])
+png = png_bytes(figures.new_figure(size=(1, 1))[0])
 Panel("test", [Switch("on", "on")], lambda on: Drawing(png, "A small empty picture", "on: 1.25")).show()
 """,
     """

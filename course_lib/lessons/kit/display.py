@@ -12,7 +12,7 @@ from IPython.display import display
 from matplotlib.figure import Figure
 from PIL import Image
 
-from course_lib.plots.figures import png_bytes, webp_bytes
+from course_lib.lessons.kit.compression import png_bytes, webp_bytes
 
 # Pixels. In a narrower window the reader scrolls the figure, because in a smaller picture the labels are unreadable.
 MIN_WIDTH = 640

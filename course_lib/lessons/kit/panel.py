@@ -23,8 +23,8 @@ import ipywidgets as widgets
 import numpy as np
 from IPython.display import display
 
+from course_lib.lessons.kit.compression import compress, compress_photograph
 from course_lib.lessons.kit.display import Picture
-from course_lib.plots.figures import compress, compress_photograph
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,11 @@ from IPython.display import display
 from PIL import Image
 
 from course_lib.files import atomic_write
+from course_lib.lessons.kit.compression import compress
 from course_lib.lessons.kit.display import Picture
+from course_lib.lessons.kit.same_scene import same_scene
 from course_lib.paths import STORE_SCENES
-from course_lib.plots.figures import compress
-from course_lib.plots.scene_page import ScenePageError, page_html, same_scene
+from course_lib.plots.scene_page import ScenePageError, page_html
 from course_lib.plots.scenes import SceneError
 
 if TYPE_CHECKING:

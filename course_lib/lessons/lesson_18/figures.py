@@ -15,9 +15,8 @@ from course_lib.beyond.look_alikes.hypotheses import MAP_SIGMA, PoseHypothesis, 
 from course_lib.experiments.ambiguity import AmbiguityMap
 from course_lib.lessons.kit.room_observations import MatchingScene
 from course_lib.plots import figures
-from course_lib.plots.look_alike_figures import draw_ambiguity
 from course_lib.plots.panorama_drawing import class_style
-from course_lib.plots.room_figures import draw_pose, map_axes
+from course_lib.plots.room_figures import draw_ambiguity, draw_pose, map_axes
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from course_lib.lessons.kit.compression import png_bytes
 from course_lib.lessons.kit.display import FigureError, Picture, require_labels, show
 from course_lib.plots import figures
 
-PNG = figures.png_bytes(figures.new_figure(size=(1, 1))[0])
+PNG = png_bytes(figures.new_figure(size=(1, 1))[0])
 
 
 def finished_figure():
@@ -25,7 +26,7 @@ def finished_figure():
 def test_a_finished_figure_is_accepted_and_small():
     figure, _ = finished_figure()
     require_labels(figure)
-    assert len(figures.png_bytes(figure)) < 40_000
+    assert len(png_bytes(figure)) < 40_000
 
 
 @pytest.mark.parametrize(
@@ -86,5 +87,5 @@ def test_the_picture_is_an_address_in_html():
 
 @pytest.mark.parametrize(("inches", "least"), [(3, 300), (10, 640)])
 def test_a_wide_figure_is_scrolled_rather_than_shrunk_until_nobody_reads_it(inches, least):
-    picture = Picture(figures.png_bytes(figures.new_figure(size=(inches, 1))[0]), "An empty figure for a test")
+    picture = Picture(png_bytes(figures.new_figure(size=(inches, 1))[0]), "An empty figure for a test")
     assert f"min-width: {least}px" in picture.html()

@@ -10,12 +10,13 @@ import ipywidgets
 import pytest
 from PIL import Image
 
+from course_lib.lessons.kit.compression import png_bytes
 from course_lib.lessons.kit.display import FigureError, Picture
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.plots import figures
 
 FIGURE, _AXES = figures.new_figure(size=(1, 1))
-PNG = figures.png_bytes(FIGURE)
+PNG = png_bytes(FIGURE)
 VIEW = "application/vnd.jupyter.widget-view+json"
 
 

@@ -11,6 +11,7 @@ from PIL import Image
 
 from course_lib.lessons import show_scene
 from course_lib.lessons.kit import scene
+from course_lib.lessons.kit.compression import png_bytes
 from course_lib.lessons.kit.display import FigureError, Picture
 from course_lib.lessons.kit.scene import MAX_PICTURE_BYTES, Scene, small_picture
 from course_lib.paths import STORE_SCENES
@@ -154,5 +155,5 @@ def test_a_scene_without_a_picture_is_its_frame():
     bundle = Scene("scenes/a.html", 'A "quoted" title', 300)._repr_mimebundle_()
     assert bundle["text/html"].startswith('<iframe src="scenes/a.html" title="A &quot;quoted&quot; title"')
     assert bundle["text/html"].endswith("</iframe>")
-    png = figures.png_bytes(figures.new_figure(size=(1, 1))[0])
+    png = png_bytes(figures.new_figure(size=(1, 1))[0])
     assert Scene("a", "A title", picture=Picture(png, "A picture of something seen")).html().endswith("</details>")
