@@ -13,43 +13,34 @@ import subprocess
 import sys
 from pathlib import Path
 
-from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
-from course_lib.files import run_folder
+from course_lib.commands.arguments import (
+    add_flag,
+    add_folder,
+    add_mesh_recording,
+    add_text,
+    check_options,
+    parse_numbers,
+    parse_seeds,
+)
+from course_lib.commands.output import print_and_write, progress_bar
 from course_lib.paths import REPOSITORY
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    add("--map", required=True, type=Path, metavar="MESH", help="mesh in metres (PLY, OBJ, STL, GLB)")
-    add("--sequence", required=True, type=Path, metavar="FOLDER", help="folder of the recording, with its poses.txt")
-    add(
-        "--methods",
-        default="annealed,paper,floor",
-        metavar="NAMES",
-        help="with commas: annealed, paper (its filter, six degrees of freedom), floor (what refinement makes of the "
-        "truth, every frame, once); all: the annealed filter with one idea switched off, too (default: "
-        "annealed,paper,floor)",
-    )
-    add("--every", default="1", metavar="NUMBERS", help="thin the recording: 1,2,4,8 runs each (default: 1)")
-    add("--seeds", default="1", metavar="A-B", help="seeds of the filters (default: 1)")
-    add(
-        "--out",
-        type=Path,
-        default=Path("results/compare"),
-        metavar="FOLDER",
-        help="for compare.jsonl, compare.json, covariance.png",
-    )
-    add(
-        "--icp",
-        action="store_true",
-        help="beside them, point-to-plane ICP of each frame against the map: Open3D, installed as for bench",
-    )
-    add("--json", action="store_true", help="print one JSON object instead of the table")
+    add_mesh_recording(parser, "folder of the recording, with its poses.txt")
+    told = "with commas: annealed, paper (its filter, six degrees of freedom), floor (what refinement makes of the "
+    told += "truth, every frame, once); all: the annealed filter with one idea switched off, too (default: "
+    add_text(parser, "--methods", "NAMES", told + "annealed,paper,floor)", "annealed,paper,floor")
+    add_text(parser, "--every", "NUMBERS", "thin the recording: 1,2,4,8 runs each (default: 1)", "1")
+    add_text(parser, "--seeds", "A-B", "seeds of the filters (default: 1)", "1")
+    add_folder(parser, "--out", "for compare.jsonl, compare.json, covariance.png", Path("results/compare"))
+    told = "beside them, point-to-plane ICP of each frame against the map: Open3D, installed as for bench"
+    add_flag(parser, "--icp", told)
+    add_flag(parser, "--json", "print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, then tells what all runs of a method and a thinning gave together."""
-    from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments import six_degrees
     from course_lib.experiments.results import write_results
@@ -57,17 +48,15 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.plots.experiment_figures import covariance_figure
     from course_lib.rendering.scene_map import SceneMap
 
-    seeds = parse_seeds(arguments.seeds)
-    everies = parse_numbers("--every", arguments.every)
+    seeds, everies = parse_seeds(arguments.seeds), parse_numbers("--every", arguments.every)
     methods = six_degrees.require_methods(arguments.methods)
-    require_output_folder(arguments.out)
+    check_options(arguments)
     SceneMap.load(arguments.map)
     recording = read_sequence(arguments.sequence)
     recording.require_poses()  # told now, not after the first run
     recording.thinned(max(everies), max(everies) - 1)
-    points = six_degrees.thinned_points(
-        arguments.map.absolute(), arguments.sequence.absolute(), methods, everies, seeds
-    )
+    files = arguments.map.absolute(), arguments.sequence.absolute()
+    points = six_degrees.thinned_points(*files, methods, everies, seeds)
     bar = progress_bar("comparing", "run")
     runs = kept_rows(six_degrees.thinned_run, points, arguments.out / "compare.jsonl", progress=bar)
     grouped: dict[str, list[dict]] = {}
@@ -80,10 +69,13 @@ def run(arguments: argparse.Namespace) -> int:
         found = icp_runs(arguments.map, arguments.sequence, everies)
         rows |= {name: six_degrees.pooled([own]) for name, own in found.items()}
     result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
-    print(json.dumps(result) if arguments.json else six_degrees.six_degrees_table(rows), flush=True)
-    with run_folder(arguments.out, "compare") as out:
+
+    def write(out: Path) -> list[str]:
         write_results(out / "compare.json", result)
         covariance_figure(grouped).savefig(out / "covariance.png", dpi=110)
+        return []
+
+    print_and_write(arguments, "compare", result, six_degrees.six_degrees_table(rows), write, told="")
     return 0
 
 

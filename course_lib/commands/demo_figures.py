@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.commands.scene_output import write_scene
+from course_lib.commands.output import write_scene
 from course_lib.depth_mcl.sequence import FAR, NEAR
 from course_lib.depth_mcl.sequence_files import write_tum
 from course_lib.experiments.room_evaluation import CORRECT, INCORRECT
@@ -49,11 +49,6 @@ def corridor(out: Path, record: corridor_experiment.Record) -> list[str]:
     return [*_save(out, figures, 130), "trajectory.txt (TUM)", scene]
 
 
-def covariance(out: Path, runs: dict[str, list[dict]]) -> list[str]:
-    """Whether each filter's covariance covers its errors."""
-    return _save(out, {"covariance.png": covariance_figure(runs)})
-
-
 def room(out: Path, record: room_experiment.Record) -> list[str]:
     """All poses of both experiments from above; of one that is right and one that is wrong a figure and a scene."""
     semantic_map, results = record
@@ -77,20 +72,18 @@ def room(out: Path, record: room_experiment.Record) -> list[str]:
     return _save(out, figures) + scenes
 
 
-def risk_coverage(out: Path, curve: dict) -> list[str]:
-    """What a threshold on the confidence buys."""
-    return _save(out, {"risk_coverage.png": risk_coverage_figure({"consistent, one view": curve})})
-
-
-def trouble(out: Path, results: dict[str, dict]) -> list[str]:
-    """How many frames are within the usual error again."""
-    return _save(out, {"trouble.png": trouble_figure(results)})
-
-
 def _save(out: Path, figures: dict[str, Figure], dots_per_inch: int = 110) -> list[str]:
     for name, figure in figures.items():
         figure.savefig(out / name, dpi=dots_per_inch)
     return list(figures)
 
 
-FIGURES = {one.__name__: one for one in (corridor, covariance, room, risk_coverage, trouble)}
+FIGURES = {
+    "corridor": corridor,
+    "room": room,
+    "covariance": lambda out, runs: _save(out, {"covariance.png": covariance_figure(runs)}),
+    "risk_coverage": lambda out, curve: _save(
+        out, {"risk_coverage.png": risk_coverage_figure({"consistent, one view": curve})}
+    ),
+    "trouble": lambda out, results: _save(out, {"trouble.png": trouble_figure(results)}),
+}

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder, require_positive, require_processes, require_seed
-from course_lib.commands.progress import progress_bar
+from course_lib.commands.output import progress_bar
 from course_lib.files import run_folder
 
 TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"

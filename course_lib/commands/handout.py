@@ -10,7 +10,7 @@ import secrets
 from pathlib import Path
 
 from course_lib.commands.arguments import require_seed
-from course_lib.commands.progress import progress_bar
+from course_lib.commands.output import progress_bar
 
 SEED_BITS = 62
 

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
-    from course_lib.depth_mcl.sequence import DepthSequence
-    from course_lib.experiments.recordings import Run
-    from course_lib.rendering.scene_map import SceneMap
+from course_lib.commands.output import write_scene
 
 
 def believed(frames: list[int], statuses: list[str]) -> str:
@@ -60,11 +56,8 @@ def localize_table(s: dict) -> str:
     return "\n".join(lines)
 
 
-def write_localized(
-    folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap
-) -> list[str]:
+def write_localized(folder: Path, summary: dict, result, sequence, scene_map) -> list[str]:
     """Write numbers (JSON), a row a frame (CSV), trajectory (TUM), figure and scene; return the names."""
-    from course_lib.commands.scene_output import write_scene
     from course_lib.depth_mcl.evaluation import pose_errors
     from course_lib.depth_mcl.sequence_files import write_tum
     from course_lib.experiments.results import write_results

@@ -6,53 +6,40 @@ The objects come from a detector, or from boxes drawn by hand.
 from __future__ import annotations
 
 import argparse
-import json
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.commands.arguments import add_detector_arguments, chosen_detector
+from course_lib.commands.arguments import (
+    add_detector_arguments,
+    add_flag,
+    add_results,
+    add_semantic_map,
+    add_text,
+    check_options,
+    chosen_detector,
+)
+from course_lib.commands.output import print_and_write, write_scene
 from course_lib.commands.stereo import add_pair_arguments
-from course_lib.files import run_folder
-
-if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
-    from course_lib.spherical_stereo.panorama import View
-    from course_lib.spherical_stereo.pose.localization import Localization
-    from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
     add_pair_arguments(parser)
-    add("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
-    add(
-        "--boxes",
-        type=Path,
-        metavar="JSON",
-        help="objects drawn by hand on both images, in the format below (default: a detector finds them)",
-    )
+    add_semantic_map(parser)
+    told = "objects drawn by hand on both images, in the format below (default: a detector finds them)"
+    parser.add_argument("--boxes", type=Path, metavar="JSON", help=told)
     add_detector_arguments(parser)
-    add("--association", default="greedy", metavar="NAME", help="how objects are matched to the map (default: greedy)")
-    add(
-        "--paper",
-        action="store_true",
-        help="the paper's method as it is: it also gives a pose that its own residuals contradict (default: not)",
-    )
-    add(
-        "--out",
-        type=Path,
-        metavar="FOLDER",
-        help="write locate.json, .csv and .png here, and locate.html: map, rays and pose, to be turned in a browser "
-        "(default: nowhere)",
-    )
-    add("--json", action="store_true", help="print one JSON object instead of the tables")
+    add_text(parser, "--association", "NAME", "how objects are matched to the map (default: greedy)", "greedy")
+    told = "the paper's method as it is: it also gives a pose that its own residuals contradict (default: not)"
+    add_flag(parser, "--paper", told)
+    told = "write locate.json, .csv and .png here, and locate.html: map, rays and pose, to be turned in a browser "
+    add_results(parser, told + "(default: nowhere)", text="tables")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Localizes and prints; 0 also where there is no pose, which is an answer."""
     from course_lib.beyond.look_alikes.matchers import matcher
-    from course_lib.commands.arguments import require_output_folder
     from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
     from course_lib.spherical_stereo.detection.detector import find_objects
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -62,10 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
     by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]
     if arguments.boxes and any(one is not None for one in by_detector):
         raise ValueError("--boxes says what is in the images, and so does a detector: give one of the two")
-    association = matcher(arguments.association)
-    if arguments.out:
-        require_output_folder(arguments.out)
-    options = {"association": association, "reject_implausible": not arguments.paper}
+    check_options(arguments)
+    options = {"association": matcher(arguments.association), "reject_implausible": not arguments.paper}
     localizer = SemanticLocalizer(StereoRig(arguments.baseline), SemanticMap.load(arguments.map), **options)
     views = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
     detector = None
@@ -89,16 +74,12 @@ def run(arguments: argparse.Namespace) -> int:
             f"The course's detector looked for objects. It knows {len(detector.labels)} classes, from simulated rooms "
             f"only:\n{', '.join(detector.labels)}. Give yours with --detector, or draw --boxes.\n"
         )
-    print(json.dumps(summary) if arguments.json else _text(summary), flush=True)
-    if arguments.out:
-        with run_folder(arguments.out, "locate") as out:
-            written = _write(out, summary, views, found, localizer.semantic_map)
-        if not arguments.json:
-            print(f"\nWritten to {arguments.out}: " + ", ".join(written))
+    write = partial(_write, summary=summary, views=views, found=found, semantic_map=localizer.semantic_map)
+    print_and_write(arguments, "locate", summary, _text(summary), write)
     return 0
 
 
-def localization_summary(found: Localization, semantic_map: SemanticMap) -> dict:
+def localization_summary(found, semantic_map) -> dict:
     """Return a localization as plain values, for JSON: angles in degrees, and null where there is nothing to say."""
     x, y, heading = [None] * 3 if found.pose is None else found.pose
     sigma = [None] * 3 if found.covariance is None else np.sqrt(np.diag(found.covariance)).tolist()
@@ -135,7 +116,7 @@ def _degrees(radians: float | None) -> float | None:
     return None if radians is None else float(np.degrees(radians))
 
 
-def _objects(found: Localization, semantic_map: SemanticMap) -> list[dict]:
+def _objects(found, semantic_map) -> list[dict]:
     """Return a row for every object seen in both images: where it is, and which landmark it was taken for."""
     landmark_of = dict(found.used_pairs)
     order = [i for i, _ in found.used_pairs]
@@ -200,11 +181,8 @@ def _row(row: dict) -> str:
     return start + f"{at:16} " + (f"{row['residual_m']:10.2f}" if row["residual_m"] is not None else "")
 
 
-def _write(
-    folder: Path, summary: dict, views: tuple[View, View], found: Localization, semantic_map: SemanticMap
-) -> list[str]:
+def _write(folder: Path, summary: dict, views, found, semantic_map) -> list[str]:
     """Write numbers, figure and scene, and return their names."""
-    from course_lib.commands.scene_output import write_scene
     from course_lib.experiments.results import write_results
     from course_lib.plots.location_figure import location_figure
     from course_lib.plots.location_scene import location_scene

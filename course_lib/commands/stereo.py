@@ -6,14 +6,14 @@ Two distances an object: from the centres of its two boxes, and from the vertica
 from __future__ import annotations
 
 import argparse
-import json
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from course_lib.commands.arguments import require_output_folder, require_positive
-from course_lib.files import run_folder
+from course_lib.commands.arguments import add_results, check_options, require_positive
+from course_lib.commands.output import print_and_write
 
 BOXES_FORMAT = """\
 the boxes file, in pixels (left, top, right, bottom) of images of that size; "name" may be left out:
@@ -36,17 +36,12 @@ def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
     add_pair_arguments(parser)
-    add(
-        "--boxes",
-        type=Path,
-        metavar="JSON",
-        help="boxes in both images, as a JSON file in the format below (default: features alone, no distances)",
-    )
-    add("--sigma-pixels", type=float, default=1.0, metavar="PX", help="standard deviation of a box centre (default: 1)")
-    add("--out", type=Path, metavar="FOLDER", help="write figures and results here (default: nowhere)")
-    add("--json", action="store_true", help="print one JSON object instead of the table")
+    told = "boxes in both images, as a JSON file in the format below (default: features alone, no distances)"
+    parser.add_argument("--boxes", type=Path, metavar="JSON", help=told)
+    told = "standard deviation of a box centre (default: 1)"
+    parser.add_argument("--sigma-pixels", type=float, default=1.0, metavar="PX", help=told)
+    add_results(parser, "write figures and results here (default: nowhere)")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -59,9 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     require_positive("--baseline", arguments.baseline, "metres")
     require_positive("--sigma-pixels", arguments.sigma_pixels, "pixels")
+    check_options(arguments)
     rig = StereoRig(arguments.baseline)
-    if arguments.out:
-        require_output_folder(arguments.out)
     boxes = read_stereo_boxes(arguments.boxes) if arguments.boxes else None
     upper, lower = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
     if boxes:
@@ -87,13 +81,9 @@ def run(arguments: argparse.Namespace) -> int:
         "unmatched": [_unmatched_row(item, boxes) for item in matching.unmatched],
     }
     # NaN is no JSON: what has no value is null.
-    print(json.dumps(_nan_to_none(summary)) if arguments.json else _table(summary, boxes is not None), flush=True)
-    if arguments.out:
-        with run_folder(arguments.out, "stereo") as out:
-            _write(out, summary, (upper, lower), features, objects)
-        if not arguments.json:
-            drawn = "disparity.png" + (", distances.png, room.png" if objects else "")
-            print(f"\nWritten to {arguments.out}: stereo.json, {drawn}")
+    valid, text = _nan_to_none(summary), _table(summary, boxes is not None)
+    write = partial(_write, summary=summary, views=(upper, lower), features=features, objects=objects)
+    print_and_write(arguments, "stereo", valid, text, write)
     return 0
 
 
@@ -169,7 +159,8 @@ def _cell(measured: dict) -> str:
     return f"{horizontal:>14} {measured['distance_m']:>10.2f}"
 
 
-def _write(folder: Path, summary: dict, views, features, objects) -> None:
+def _write(folder: Path, summary: dict, views, features, objects) -> list[str]:
+    """Write numbers, a row an object, and figures; return the names."""
     from course_lib.experiments.results import write_results
     from course_lib.plots.stereo_figures import disparity_figure, distances_figure, room_figure
 
@@ -181,8 +172,11 @@ def _write(folder: Path, summary: dict, views, features, objects) -> None:
             for name, value in row[way].items():
                 rows[-1][f"{way}_{name}"] = value if isinstance(value, str) else round(value, 4)
     write_results(folder / "stereo.json", _nan_to_none(summary), rows)
-    disparity_figure(views[0].image, features).savefig(folder / "disparity.png", dpi=130)
+    figures = {"disparity.png": disparity_figure(views[0].image, features)}
     if objects:
         names = [row["name"] or row["label"] for row in summary["objects"]]
-        distances_figure(views, objects, names).savefig(folder / "distances.png", dpi=130)
-        room_figure(objects, names).savefig(folder / "room.png", dpi=130)
+        figures["distances.png"] = distances_figure(views, objects, names)
+        figures["room.png"] = room_figure(objects, names)
+    for name, figure in figures.items():
+        figure.savefig(folder / name, dpi=130)
+    return ["stereo.json", *figures]
