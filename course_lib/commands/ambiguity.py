@@ -8,14 +8,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from course_lib.commands.arguments import (
-    add_number,
-    add_results,
-    add_semantic_map,
-    add_text,
-    check_options,
-    require_positive,
-)
+from course_lib.commands import arguments as options
 from course_lib.commands.output import print_and_write, progress_bar
 
 SURE = 0.8  # the lowest confidence of an answer, as in `SemanticLocalizer`
@@ -23,14 +16,14 @@ MIN_SHARE = 0.001  # of the belief, below which a pair is not listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_semantic_map(parser)
+    options.add_semantic_map(parser)
     told = "the matchers to ask, with commas (default: greedy,consistent)"
-    add_text(parser, "--association", "NAMES", told, "greedy,consistent")
+    options.add_text(parser, "--association", "NAMES", told, "greedy,consistent")
     told = "distance between places (default: 0.5)"
     parser.add_argument("--step", type=float, default=0.5, metavar="METRES", help=told)
-    add_number(parser, "--draws", "views drawn at each place (default: 4)", 4)
-    add_number(parser, "--seed", "seed of the views (default: 1)", 1)
-    add_results(parser, "for the pictures and numbers", Path("results/ambiguity"))
+    options.add_number(parser, "--draws", "views drawn at each place (default: 4)", 4)
+    options.add_number(parser, "--seed", "seed of the views (default: 1)", 1)
+    options.add_results(parser, "for the pictures and numbers", Path("results/ambiguity"))
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -46,8 +39,8 @@ def run(arguments: argparse.Namespace) -> int:
     names, step = arguments.association.split(","), arguments.step
     for name in names:
         matcher(name)  # raises an error for a name that does not exist
-    require_positive("--step", step, "metres")
-    check_options(arguments)
+    options.require_positive("--step", step, "metres")
+    options.check_options(arguments)
     semantic_map = SemanticMap.load(arguments.map)
     results, figures = {}, {}
     for name in names:

@@ -13,30 +13,22 @@ import subprocess
 import sys
 from pathlib import Path
 
-from course_lib.commands.arguments import (
-    add_flag,
-    add_folder,
-    add_mesh_recording,
-    add_text,
-    check_options,
-    parse_numbers,
-    parse_seeds,
-)
+from course_lib.commands import arguments as options
 from course_lib.commands.output import print_and_write, progress_bar
 from course_lib.paths import REPOSITORY
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_mesh_recording(parser, "folder of the recording, with its poses.txt")
+    options.add_mesh_recording(parser, "folder of the recording, with its poses.txt")
     told = "with commas: annealed, paper (its filter, six degrees of freedom), floor (what refinement makes of the "
     told += "truth, every frame, once); all: the annealed filter with one idea switched off, too (default: "
-    add_text(parser, "--methods", "NAMES", told + "annealed,paper,floor)", "annealed,paper,floor")
-    add_text(parser, "--every", "NUMBERS", "thin the recording: 1,2,4,8 runs each (default: 1)", "1")
-    add_text(parser, "--seeds", "A-B", "seeds of the filters (default: 1)", "1")
-    add_folder(parser, "--out", "for compare.jsonl, compare.json, covariance.png", Path("results/compare"))
+    options.add_text(parser, "--methods", "NAMES", told + "annealed,paper,floor)", "annealed,paper,floor")
+    options.add_text(parser, "--every", "NUMBERS", "thin the recording: 1,2,4,8 runs each (default: 1)", "1")
+    options.add_text(parser, "--seeds", "A-B", "seeds of the filters (default: 1)", "1")
+    options.add_folder(parser, "--out", "for compare.jsonl, compare.json, covariance.png", Path("results/compare"))
     told = "beside them, point-to-plane ICP of each frame against the map: Open3D, installed as for bench"
-    add_flag(parser, "--icp", told)
-    add_flag(parser, "--json", "print one JSON object instead of the table")
+    options.add_flag(parser, "--icp", told)
+    options.add_flag(parser, "--json", "print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -48,9 +40,9 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.plots.experiment_figures import covariance_figure
     from course_lib.rendering.scene_map import SceneMap
 
-    seeds, everies = parse_seeds(arguments.seeds), parse_numbers("--every", arguments.every)
+    seeds, everies = options.parse_seeds(arguments.seeds), options.parse_numbers("--every", arguments.every)
     methods = six_degrees.require_methods(arguments.methods)
-    check_options(arguments)
+    options.check_options(arguments)
     SceneMap.load(arguments.map)
     recording = read_sequence(arguments.sequence)
     recording.require_poses()  # told now, not after the first run

@@ -8,20 +8,7 @@ import importlib
 import json
 from pathlib import Path
 
-from course_lib.commands.arguments import (
-    add_backend_argument,
-    add_detector_arguments,
-    add_flag,
-    add_folder,
-    add_number,
-    add_results,
-    add_text,
-    check_options,
-    chosen_detector,
-    parse_numbers,
-    parse_seeds,
-    require_processes,
-)
+from course_lib.commands import arguments as options
 from course_lib.commands.output import progress_bar
 from course_lib.files import run_folder, temporary_folder
 from course_lib.paths import REPOSITORY, data_path
@@ -37,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(experiment=name)
     add_options(parser)
     told = "where results and figures go, and finished seeds are looked for (default: a folder of this run in "
-    add_results(parser, f"{told}results/demo_{name}, which holds the finished seeds of all runs)")
+    options.add_results(parser, f"{told}results/demo_{name}, which holds the finished seeds of all runs)")
 
 
 def _choice(parser: argparse.ArgumentParser, option: str, told: str, choices: tuple, default=None) -> None:
@@ -47,34 +34,36 @@ def _choice(parser: argparse.ArgumentParser, option: str, told: str, choices: tu
 def _seeds(parser: argparse.ArgumentParser, told: str, default: str | None = None) -> None:
     usual = f" (default: {default})" if default else ""
     told += f"{usual}, such as 4, 1-20 or 1-5,8. 1 to 99 are for reporting; tune on 10000 and above"
-    add_text(parser, "--seeds", "A-B", told, default)
+    options.add_text(parser, "--seeds", "A-B", told, default)
 
 
 def _corridor(parser: argparse.ArgumentParser) -> None:
-    add_number(parser, "--seed", "seed of the recording and of the filter (default: 0)", 0)
+    options.add_number(parser, "--seed", "seed of the recording and of the filter (default: 0)", 0)
     _seeds(parser, "several seeds instead: median, least and greatest over their recordings")
     told = "made anew for the seed (default), or data/corridor/wagon, where a seed is the filter's alone"
     _choice(parser, "--recording", told, ("own", "shipped"), "own")
     told = "measure instead what the simulator's idealizations are worth, on small images (seeds 10001-10003)"
-    add_flag(parser, "--idealizations", told)
-    add_flag(parser, "--kindnesses", argparse.SUPPRESS, dest="idealizations")  # its name before
+    options.add_flag(parser, "--idealizations", told)
+    options.add_flag(parser, "--kindnesses", argparse.SUPPRESS, dest="idealizations")  # its name before
     told = "the paper's experiment on a wagon (default); 6: cameras carried by hand, the annealed filter beside "
     _choice(parser, "--dof", f"xyyaw: {told}the paper's and the floor", ("xyyaw", "6"), "xyyaw")
     told = "with --seeds: rows of the table by name, with commas, among them proposed and fallon (default: all)"
-    add_text(parser, "--methods", "NAMES", told)
-    add_number(parser, "--particles", "number of particles (default: 200)", 200)
-    add_number(parser, "--frames", "only the first N frames (default: all)")
-    add_folder(parser, "--data", "corridor data (default: data/corridor)")
-    add_backend_argument(parser)
+    options.add_text(parser, "--methods", "NAMES", told)
+    options.add_number(parser, "--particles", "number of particles (default: 200)", 200)
+    options.add_number(parser, "--frames", "only the first N frames (default: all)")
+    options.add_folder(parser, "--data", "corridor data (default: data/corridor)")
+    options.add_backend_argument(parser)
 
 
 def _room(parser: argparse.ArgumentParser) -> None:
-    add_number(parser, "--seed", "of the photographs; another than 4 takes them anew (default: 4, the shipped ones)")
-    add_number(parser, "--poses", "only the first N poses of each experiment (default: all)")
-    add_folder(parser, "--data", "made by tools.make_room (default: data/room)")
-    add_detector_arguments(parser)
+    options.add_number(
+        parser, "--seed", "of the photographs; another than 4 takes them anew (default: 4, the shipped ones)"
+    )
+    options.add_number(parser, "--poses", "only the first N poses of each experiment (default: all)")
+    options.add_folder(parser, "--data", "made by tools.make_room (default: data/room)")
+    options.add_detector_arguments(parser)
     told = "how objects are matched to the map: greedy (the paper's), hungarian, consistent (default: greedy)"
-    add_text(parser, "--association", "NAME", told, "greedy")
+    options.add_text(parser, "--association", "NAME", told, "greedy")
     told = "2: with --association consistent, also follow the two views of every place as the rig turns there"
     _choice(parser, "--views", f"{told}, with and without odometry (default: 1)", (1, 2), 1)
     told = "also localize from the images rolled by K columns, and print how far the pose moves (default: not)"
@@ -83,56 +72,56 @@ def _room(parser: argparse.ArgumentParser) -> None:
 
 def _rooms(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "of the rooms", "1-20")
-    add_number(parser, "--poses", "poses in each room at each height (default: the paper's 20)", 20)
+    options.add_number(parser, "--poses", "poses in each room at each height (default: the paper's 20)", 20)
     told = "also run the same rooms with the lower camera tilted by DEG degrees, such as 0 0.1 0.3 1 (default: not)"
     parser.add_argument("--tilts", type=float, nargs="+", default=[], metavar="DEG", help=told)
     names = ["greedy", "hungarian", "consistent"]
     told = "matchers whose answers are counted: greedy (the paper's), hungarian, consistent (default: all)"
     parser.add_argument("--association", choices=names, nargs="+", default=names, metavar="NAME", help=told)
     told = "also take N - 1 further views a few steps on, and follow them with and without odometry (default: 1)"
-    add_number(parser, "--views", told, 1)
+    options.add_number(parser, "--views", told, 1)
     told = "from how many poses of a room further views are taken, at the two heights by turns (default: --poses)"
-    add_number(parser, "--view-poses", told)
+    options.add_number(parser, "--view-poses", told)
     told = "also switch off each part of the consistent matcher's evidence, on the right map and on a wrong one"
-    add_flag(parser, "--ablation", told)
-    add_detector_arguments(parser)
-    add_number(parser, "--processes", "rooms made at a time (default: one for each core)")
+    options.add_flag(parser, "--ablation", told)
+    options.add_detector_arguments(parser)
+    options.add_number(parser, "--processes", "rooms made at a time (default: one for each core)")
 
 
 def _walk(parser: argparse.ArgumentParser) -> None:
-    add_number(parser, "--seed", "seed of room and walk (default: 1)", 1)
+    options.add_number(parser, "--seed", "seed of room and walk (default: 1)", 1)
     _seeds(parser, "several rooms instead, told together")
-    add_text(parser, "--every", "NUMBERS", "thin the recordings: 1,2,4 runs each (default: 1,2,4)", "1,2,4")
+    options.add_text(parser, "--every", "NUMBERS", "thin the recordings: 1,2,4 runs each (default: 1,2,4)", "1,2,4")
     told = "with commas: annealed, paper, floor, or the annealed filter with one idea switched off, as in compare"
-    add_text(parser, "--methods", "NAMES", f"{told} (default: annealed,floor)", "annealed,floor")
+    options.add_text(parser, "--methods", "NAMES", f"{told} (default: annealed,floor)", "annealed,floor")
 
 
 def _lost(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "a trial each: recording, kidnapping, start", "1-3")
     told = "instead of the corridor, a recording of this folder with its truth and, in map.ply, its map"
-    add_folder(parser, "--recording", told)
-    add_folder(parser, "--data", "corridor data (default: data/corridor)")
+    options.add_folder(parser, "--recording", told)
+    options.add_folder(parser, "--data", "corridor data (default: data/corridor)")
 
 
 def _trouble(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "a recording, or a room and a walk, each", "1-5")
-    add_text(parser, "--share", "PERCENT", "of the frames that are troubled (default: 1,5,20)", "1,5,20")
+    options.add_text(parser, "--share", "PERCENT", "of the frames that are troubled (default: 1,5,20)", "1,5,20")
     told = "paper 1's filter on depth images, or paper 2's on panoramas (default: both)"
     _choice(parser, "--method", told, ("depth", "stereo"))
     told = "of the depth camera: the paper's filter on a wagon (default), or the annealed one, carried by hand"
     _choice(parser, "--dof", told, ("xyyaw", "6"), "xyyaw")
     told = "of each depth recording and each walk (default: 100 depth images, 24 pairs of panoramas)"
-    add_number(parser, "--frames", told)
-    add_number(parser, "--processes", "seeds run at a time (default: one for each core)")
-    add_folder(parser, "--data", "corridor data (default: data/corridor)")
-    add_folder(parser, "--detector", "the network (default: data/detector)")
+    options.add_number(parser, "--frames", told)
+    options.add_number(parser, "--processes", "seeds run at a time (default: one for each core)")
+    options.add_folder(parser, "--data", "corridor data (default: data/corridor)")
+    options.add_folder(parser, "--detector", "the network (default: data/detector)")
 
 
 def _finale(parser: argparse.ArgumentParser) -> None:
-    add_number(parser, "--seed", "seed of the room (default: 1)", 1)
+    options.add_number(parser, "--seed", "seed of the room (default: 1)", 1)
     _seeds(parser, "several rooms instead")
-    add_number(parser, "--places", "random places in each room (default: 4)", 4)
-    add_folder(parser, "--detector", "the network (default: data/detector)")
+    options.add_number(parser, "--places", "random places in each room (default: 4)", 4)
+    options.add_folder(parser, "--detector", "the network (default: data/detector)")
 
 
 DEMOS = {
@@ -150,17 +139,17 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, prints the table, writes results and figures; returns the exit code."""
     name = arguments.experiment
     parameters = {key: value for key, value in vars(arguments).items() if key not in OTHERS}
-    check_options(arguments)
+    options.check_options(arguments)
     processes = parameters.pop("processes", None)
-    require_processes("--processes", processes)
+    options.require_processes("--processes", processes)
     if parameters.get("seeds") is not None:
-        parameters["seeds"] = parse_seeds(parameters["seeds"])
+        parameters["seeds"] = options.parse_seeds(parameters["seeds"])
     for option in {"every", "share"} & set(parameters):
-        parameters[option] = parse_numbers(f"--{option}", parameters[option])
+        parameters[option] = options.parse_numbers(f"--{option}", parameters[option])
     if "input_size" in parameters:
-        detector = chosen_detector(arguments)  # what is wrong with it is told now, not after the first room
-        options = {key: parameters.pop(key) for key in ("detector", "input_size", "score_threshold")}
-        parameters |= {"detector": detector} if name == "room" else {"network": _network(**options)}
+        detector = options.chosen_detector(arguments)  # what is wrong with it is told now, not after the first room
+        own = {key: parameters.pop(key) for key in ("detector", "input_size", "score_threshold")}
+        parameters |= {"detector": detector} if name == "room" else {"network": _network(**own)}
 
     from course_lib.commands.demo_figures import FIGURES
     from course_lib.experiments.results import write_results

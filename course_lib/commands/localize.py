@@ -13,17 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from course_lib.commands.arguments import (
-    add_backend_argument,
-    add_flag,
-    add_mesh_recording,
-    add_number,
-    add_results,
-    add_text,
-    check_options,
-    require_positive,
-    warn_of_fewer,
-)
+from course_lib.commands import arguments as options
 from course_lib.commands.output import print_and_write, progress_bar
 
 START = (
@@ -58,8 +48,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the examples
     parser.epilog = EPILOG
     add = parser.add_argument
-    add_mesh_recording(parser, "folder of the recording")
-    add_text(parser, "--start", "POSE", START)
+    options.add_mesh_recording(parser, "folder of the recording")
+    options.add_text(parser, "--start", "POSE", START)
     told = "units of the depth images in a metre (default: 1000, millimetres; TUM RGB-D files: 5000)"
     add("--depth-scale", type=float, default=UNITS_PER_METRE, metavar="N", help=told)
     add("--near", type=float, default=NEAR, metavar="M", help=f"nothing nearer is seen, metres (default: {NEAR:g})")
@@ -71,17 +61,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     told += "of freedom only), or the paper's (default with --dof xyyaw), whose particles and noise are set by hand"
     add("--method", choices=["annealed", "paper"], help=told)
     told = "search the whole map when the annealed filter is lost: seconds a frame until it is found again"
-    add_flag(parser, "--recover", told)
-    add_number(parser, "--particles", "number of particles (default: 200)", 200)
-    add_number(parser, "--seed", "seed of the random numbers (default: 0)", 0)
-    add_number(parser, "--frames", "only the first N frames")
+    options.add_flag(parser, "--recover", told)
+    options.add_number(parser, "--particles", "number of particles (default: 200)", 200)
+    options.add_number(parser, "--seed", "seed of the random numbers (default: 0)", 0)
+    options.add_number(parser, "--frames", "only the first N frames")
     told = "system noise a frame of the paper's filter, metres (default: 0.05; xyyaw: 0.15)"
     add("--sigma-position", type=float, metavar="M", help=told)
     add("--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (default: 2; xyyaw: 1.5)")
-    add_flag(parser, "--drop-far", "leave out triangles more than 5 km from the middle of the map")
-    add_backend_argument(parser)
+    options.add_flag(parser, "--drop-far", "leave out triangles more than 5 km from the middle of the map")
+    options.add_backend_argument(parser)
     told = "write results, trajectory, figure and scene here (track.html: map, path and the worst frames' points, to "
-    add_results(parser, told + "be turned in a browser)")
+    options.add_results(parser, told + "be turned in a browser)")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -93,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     method, sigma = _checked(arguments)
     sequence = read_sequence(arguments.sequence, arguments.depth_scale)
-    warn_of_fewer("--frames", arguments.frames, len(sequence.frames), f"{arguments.sequence} has")
+    options.warn_of_fewer("--frames", arguments.frames, len(sequence.frames), f"{arguments.sequence} has")
     up = arguments.up or sequence.up or "unknown"
     if arguments.dof == "xyyaw" and up == "unknown":
         raise ValueError("--dof xyyaw: which way is up in this world is unknown; give --up AXIS, or use --dof 6")
@@ -174,10 +164,10 @@ def _checked(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
         if not 0 <= given <= limit:
             raise ValueError(f"--sigma-{name} must be between 0 and {limit} {unit} a frame; got {given:g}")
         sigma[index] = given
-    check_options(arguments)
-    require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
-    require_positive("--near", arguments.near, "metres")
-    require_positive("--far", arguments.far, "metres")
+    options.check_options(arguments)
+    options.require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
+    options.require_positive("--near", arguments.near, "metres")
+    options.require_positive("--far", arguments.far, "metres")
     if arguments.near >= arguments.far:
         raise ValueError(f"--near must be below --far; got {arguments.near:g} and {arguments.far:g} m")
     return method, tuple(sigma)
@@ -213,8 +203,8 @@ def _found_start(arguments, scene_map, sequence, up: str) -> tuple:
     if up == "unknown":
         raise ValueError("--start unknown needs --up AXIS: only with gravity known can the whole map be searched")
     bar = progress_bar("searching")
-    options = {"seed": arguments.seed, "up": up, "near": arguments.near, "far": arguments.far, "progress": bar}
-    index, candidates, start = find_start(scene_map, sequence, **options)
+    given = {"seed": arguments.seed, "up": up, "near": arguments.near, "far": arguments.far, "progress": bar}
+    index, candidates, start = find_start(scene_map, sequence, **given)
     if candidates.status != "found":
         where = "; ".join(
             f"({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.rad2deg(yaw):.0f} degrees (evidence {place.evidence:.2f})"

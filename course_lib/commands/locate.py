@@ -11,30 +11,22 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.commands.arguments import (
-    add_detector_arguments,
-    add_flag,
-    add_results,
-    add_semantic_map,
-    add_text,
-    check_options,
-    chosen_detector,
-)
+from course_lib.commands import arguments as options
 from course_lib.commands.output import print_and_write, write_scene
 from course_lib.commands.stereo import add_pair_arguments
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_pair_arguments(parser)
-    add_semantic_map(parser)
+    options.add_semantic_map(parser)
     told = "objects drawn by hand on both images, in the format below (default: a detector finds them)"
     parser.add_argument("--boxes", type=Path, metavar="JSON", help=told)
-    add_detector_arguments(parser)
-    add_text(parser, "--association", "NAME", "how objects are matched to the map (default: greedy)", "greedy")
+    options.add_detector_arguments(parser)
+    options.add_text(parser, "--association", "NAME", "how objects are matched to the map (default: greedy)", "greedy")
     told = "the paper's method as it is: it also gives a pose that its own residuals contradict (default: not)"
-    add_flag(parser, "--paper", told)
+    options.add_flag(parser, "--paper", told)
     told = "write locate.json, .csv and .png here, and locate.html: map, rays and pose, to be turned in a browser "
-    add_results(parser, told + "(default: nowhere)", text="tables")
+    options.add_results(parser, told + "(default: nowhere)", text="tables")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -49,15 +41,16 @@ def run(arguments: argparse.Namespace) -> int:
     by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]
     if arguments.boxes and any(one is not None for one in by_detector):
         raise ValueError("--boxes says what is in the images, and so does a detector: give one of the two")
-    check_options(arguments)
-    options = {"association": matcher(arguments.association), "reject_implausible": not arguments.paper}
-    localizer = SemanticLocalizer(StereoRig(arguments.baseline), SemanticMap.load(arguments.map), **options)
+    options.check_options(arguments)
+    association, exactly = matcher(arguments.association), arguments.paper
+    rig, semantic_map = StereoRig(arguments.baseline), SemanticMap.load(arguments.map)
+    localizer = SemanticLocalizer(rig, semantic_map, association=association, reject_implausible=not exactly)
     views = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
     detector = None
     if arguments.boxes:
         upper, lower = read_stereo_boxes(arguments.boxes).on(*views)
     else:
-        detector = chosen_detector(arguments)
+        detector = options.chosen_detector(arguments)
         upper, lower = (find_objects(view, detector) for view in views)
     found = localizer.localize_views(upper, lower)
     summary = {
@@ -67,14 +60,14 @@ def run(arguments: argparse.Namespace) -> int:
         "baseline_m": arguments.baseline,
         "objects_from": str(arguments.boxes or arguments.detector or "data/detector"),
         "classes_of_the_detector": None if detector is None else detector.labels,
-        **localization_summary(found, localizer.semantic_map),
+        **localization_summary(found, semantic_map),
     }
     if detector is not None and arguments.detector is None and not arguments.json:
-        print(
-            f"The course's detector looked for objects. It knows {len(detector.labels)} classes, from simulated rooms "
-            f"only:\n{', '.join(detector.labels)}. Give yours with --detector, or draw --boxes.\n"
+        told = (
+            f"The course's detector looked for objects. It knows {len(detector.labels)} classes, from simulated rooms"
         )
-    write = partial(_write, summary=summary, views=views, found=found, semantic_map=localizer.semantic_map)
+        print(f"{told} only:\n{', '.join(detector.labels)}. Give yours with --detector, or draw --boxes.\n")
+    write = partial(_write, summary=summary, views=views, found=found, semantic_map=semantic_map)
     print_and_write(arguments, "locate", summary, _text(summary), write)
     return 0
 
@@ -119,25 +112,20 @@ def _degrees(radians: float | None) -> float | None:
 def _objects(found, semantic_map) -> list[dict]:
     """Return a row for every object seen in both images: where it is, and which landmark it was taken for."""
     landmark_of = dict(found.used_pairs)
-    order = [i for i, _ in found.used_pairs]
+    residuals = [] if found.residuals is None else [float(np.linalg.norm(residual)) for residual in found.residuals]
+    residual_of = dict(zip(landmark_of, residuals, strict=False))  # none where there is no fit
     rows = []
     for one, match in zip(found.objects, found.matches, strict=True):
-        landmark = landmark_of.get(one.observation)
+        landmark, (x, y) = landmark_of.get(one.observation), one.position[:2]
+        row = {"label": one.label, "outcome": one.outcome, "matched_features": match.n_matches}
         placed, paired = bool(np.isfinite(one.position).all()), landmark is not None
-        residual = found.residuals[order.index(one.observation)] if paired and found.residuals is not None else None
-        rows.append(
-            {
-                "label": one.label,
-                "outcome": one.outcome,
-                "matched_features": match.n_matches,
-                "azimuth_deg": float(np.degrees(np.arctan2(one.position[1], one.position[0]))) if placed else None,
-                "range_m": float(np.hypot(*one.position[:2])) if placed else None,
-                "landmark": landmark,
-                "landmark_x_m": float(semantic_map.positions[landmark][0]) if paired else None,
-                "landmark_y_m": float(semantic_map.positions[landmark][1]) if paired else None,
-                "residual_m": None if residual is None else float(np.linalg.norm(residual)),
-            }
-        )
+        row["azimuth_deg"] = float(np.degrees(np.arctan2(y, x))) if placed else None
+        row["range_m"] = float(np.hypot(x, y)) if placed else None
+        row["landmark"] = landmark
+        at = semantic_map.positions[landmark].tolist() if paired else (None, None)
+        row["landmark_x_m"], row["landmark_y_m"] = at
+        row["residual_m"] = residual_of.get(one.observation)
+        rows.append(row)
     return rows
 
 
@@ -161,10 +149,8 @@ def _text(s: dict) -> str:
         turn = float(np.linalg.norm(s["lower_camera_turned_deg"]))
         lines.append(f"the lower camera is turned against the upper one by {turn:.1f} degrees")
     lines += ["", f"{s['objects_upper']} objects above, {s['objects_lower']} below, {len(s['objects'])} seen in both"]
-    if s["objects"]:
-        lines.append(
-            f" n {'object':14} {'features':>8} {'azimuth':>8} {'range [m]':>10}   {'landmark at':16} {'off by [m]':>10}"
-        )
+    head = f" n {'object':14} {'features':>8} {'azimuth':>8} {'range [m]':>10}   {'landmark at':16} {'off by [m]':>10}"
+    lines += [head] if s["objects"] else []
     lines += [f"{n:2d} {line}" for n, line in enumerate(map(_row, s["objects"]), start=1)]
     lines += [f" - {one['label']:14} {one['side']} image only: {one['reason']}" for one in s["unmatched"]]
     return "\n".join(lines)

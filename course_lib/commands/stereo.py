@@ -30,9 +30,10 @@ def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of every command on two panoramas, and end its help with the format of boxes."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the example
     parser.epilog = BOXES_FORMAT
-    parser.add_argument("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
-    parser.add_argument("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
-    parser.add_argument("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
+    add = parser.add_argument
+    add("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
+    add("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
+    add("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -121,22 +122,16 @@ def _nan_to_none(value):
 def _table(s: dict, has_boxes: bool) -> str:
     lines = ["no features matched between the two images: are they sharp, and of one place?"]
     if s["matches"]:
-        lines = [
-            f"{s['matches']} features matched over the two images; {s['epipolar_percent']:.1f} % of them obey the "
-            f"epipolar constraint within {s['epipolar_tolerance_deg']:.2f} degrees"
-        ]
+        found = f"{s['matches']} features matched over the two images; {s['epipolar_percent']:.1f} % of them obey the "
+        lines = [found + f"epipolar constraint within {s['epipolar_tolerance_deg']:.2f} degrees"]
     if s["matches"] and s["epipolar_percent"] > 0:
         lines.append(
             f"median vertical disparity {s['median_disparity_px']:.1f} px, median azimuth difference "
             f"{s['median_azimuth_difference_px']:.2f} px; features and matching took {s['seconds']:.2f} s"
         )
-    return "\n".join(lines + _object_lines(s, has_boxes))
-
-
-def _object_lines(s: dict, has_boxes: bool) -> list[str]:
     if not has_boxes:
-        return ["", "No distances: give the objects' boxes with --boxes."]
-    lines = [
+        return "\n".join([*lines, "", "No distances: give the objects' boxes with --boxes."])
+    lines += [
         "",
         f"{len(s['objects'])} objects seen in both images; metres, ± one standard deviation",
         f"  from box centres: of the centre, whose u and v have {s['sigma_pixels']:g} px each",
@@ -149,7 +144,7 @@ def _object_lines(s: dict, has_boxes: bool) -> list[str]:
         lines.append(f"{(row['name'] or row['label'])[:28]:<28} {row['matches']:>8} {cells}")
     for row in s["unmatched"]:
         lines.append(f"{(row['name'] or row['label'])[:28]:<28} {'':>8} {row['side']} image only: {row['reason']}")
-    return lines
+    return "\n".join(lines)
 
 
 def _cell(measured: dict) -> str:
