@@ -1,9 +1,8 @@
 """The course's command line: a table of commands, each a module of `course_lib.commands`.
 
-A command module has `add_arguments(parser)` and `run(arguments) -> int` (the exit code). The first line of its
-docstring is the description that `--help` shows. It is imported only when it is called. A module with
-`join_words(words)` may mend what argparse would misread (`--up -y`). One with `PASSES_ARGUMENTS_ON = True` gets what
-its parser does not know as the list `arguments.passed_on`.
+A command module has `add_arguments(parser)` and `run(arguments)`, which returns the exit code; its docstring's first
+line is shown by `--help`. It may have `join_words(words)`, to mend what argparse would misread (`--up -y`), and
+`PASSES_ARGUMENTS_ON = True`, to get the words that its parser does not know as `arguments.passed_on`.
 """
 
 from __future__ import annotations
@@ -52,14 +51,9 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 }
 COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items()}
 
-# Commands of version 0.1 that are maintainers' tools now.
-TOOLS = ("sweep", "bench", "refresh", "train-detector", "score-detector")
-TOOLS += tuple(f"make-data {what}" for what in ("corridor", "room", "finale", "projects", "training-rooms"))
-
 EXIT_BAD_INPUT = 2
 EXIT_FAULT = 1
 EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
-
 
 # argparse's words -> ours. What is not among them (another Python's words) is told as it is.
 _SAID = (
@@ -84,11 +78,8 @@ def usage() -> str:
 
 def find_command(words: list[str]) -> tuple[str, list[str]] | None:
     """Return the command that `words` begin with (the longest name wins) and the words after it, or None."""
-    for length in (2, 1):
-        name = " ".join(words[:length])
-        if len(words) >= length and name in COMMANDS:
-            return name, words[length:]
-    return None
+    names = [(" ".join(words[:length]), words[length:]) for length in (2, 1)]
+    return next((found for found in names if found[0] in COMMANDS), None)
 
 
 def main(words: list[str]) -> int:
@@ -105,11 +96,7 @@ def main(words: list[str]) -> int:
 
 
 def what_instead(words: list[str]) -> str:
-    """Return how to go on where the words name no command: the tool it has become, a similar name, or all names."""
-    for old in TOOLS:
-        if words[: len(old.split())] == old.split():
-            module = old.replace("make-data ", "make_").replace("-", "_")
-            return f" any more; it is a tool now: .venv/bin/python -m tools.{module} --help"
+    """Return how to go on where the words name no command: a similar name, or all names."""
     longer = [name for name in COMMANDS if name.split()[0] == words[0]]
     # A higher bar for two words: the first alone makes demo corridor and demo room alike.
     like = meant(" ".join(words[:2]), COMMANDS, 0.8) if len(words) > 1 else ""
@@ -128,7 +115,6 @@ class CommandParser(argparse.ArgumentParser):
     """Ends with code 2 and one sentence, with the nearest name, where the words do not fit."""
 
     def parse_args(self, args: Sequence[str], namespace: None = None) -> argparse.Namespace:
-        """Parse the words of a command that takes no others than its own."""
         if any(word == "" or re.fullmatch(r"--[\w-]+=", word) for word in args):
             self.error("an empty word stands where a value is expected (a variable that is not set?): give one")
         found, others = self.parse_known_args(args, namespace)
@@ -156,7 +142,8 @@ def tool(module_name: str) -> int:
 def call(load: Callable[[], ModuleType], program: str, words: list[str]) -> int:
     """Run a command's module with `words` and return its exit code; an error is one line instead of a traceback."""
     debug = os.environ.get("COURSE_DEBUG", "") not in ("", "0")
-    warnings.formatwarning = one_line
+    # One line, without the place in the library where it was noticed.
+    warnings.formatwarning = lambda message, *place, **told: f"warning: {message}\n"
     try:
         module = load()
         arguments = parse(program, module, words)
@@ -186,16 +173,14 @@ def raise_on_sigterm() -> None:
     def end(number: int, _: object) -> None:
         raise KeyboardInterrupt(128 + number)
 
-    if threading.current_thread() is not threading.main_thread():
-        return
-    for name in ("SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)
-        if number and signal.getsignal(number) is signal.SIG_DFL:  # nohup stays as it is
+    here = threading.current_thread() is threading.main_thread()
+    for number in {getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if here and hasattr(signal, name)}:
+        if signal.getsignal(number) is signal.SIG_DFL:  # nohup stays as it is
             signal.signal(number, end)
 
 
 def parse(program: str, module: ModuleType, words: list[str]) -> argparse.Namespace:
-    """Parse the arguments of one command. The parser itself exits where they do not fit."""
+    """Parse the arguments of one command; the parser ends the process where they do not fit."""
     description = (module.__doc__ or "").strip().split("\n")[0]
     parser = CommandParser(prog=program, description=description, allow_abbrev=False)
     module.add_arguments(parser)
@@ -207,21 +192,14 @@ def parse(program: str, module: ModuleType, words: list[str]) -> argparse.Namesp
     return arguments
 
 
-def one_line(message: Warning | str, *place: object, **told: object) -> str:
-    """Format a warning as one line, without the place in the library where it was noticed."""
-    return f"warning: {message}\n"
-
-
 def report(error: Exception) -> int:
     """Print one line about `error`, and return the exit code: 2 for what the user can mend, 1 for a fault of ours."""
+    code, told = EXIT_FAULT, f"{type(error).__name__}: {error} (--debug shows where)"
     if isinstance(error, ImportError):
-        print(f"error: {error}. See what is missing: python3 course.py check", file=sys.stderr)
-        return EXIT_FAULT
-    if isinstance(error, MemoryError):
-        print(f"error: there is not enough memory ({error}): ask for less, such as fewer particles", file=sys.stderr)
-        return EXIT_BAD_INPUT
-    if isinstance(error, (ValueError, OSError, RuntimeError)):
-        print(f"error: {error}", file=sys.stderr)
-        return EXIT_BAD_INPUT
-    print(f"error: {type(error).__name__}: {error} (--debug shows where)", file=sys.stderr)
-    return EXIT_FAULT
+        told = f"{error}. See what is missing: python3 course.py check"
+    elif isinstance(error, MemoryError):
+        code, told = EXIT_BAD_INPUT, f"there is not enough memory ({error}): ask for less, such as fewer particles"
+    elif isinstance(error, (ValueError, OSError, RuntimeError)):
+        code, told = EXIT_BAD_INPUT, str(error)
+    print(f"error: {told}", file=sys.stderr)
+    return code

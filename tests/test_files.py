@@ -74,7 +74,7 @@ def test_json_that_cannot_be_meant_is_named(tmp_path, text, said):
 
 def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path, monkeypatch):
     with (tmp_path / "a").open("wb") as file:
-        file.truncate(files.MOST_TEXT + 1)
+        file.truncate(files.MAX_TEXT + 1)
     with pytest.raises(AskedError, match="has 64 MB; at most 64 MB"):
         read_text(tmp_path / "a", "names", AskedError)
     with (tmp_path / "a").open("wb") as file:
@@ -164,7 +164,7 @@ def test_an_image_is_bounded_by_the_bytes_it_takes(tmp_path, monkeypatch, bits, 
     data[24:26] = bits, colour
     assert image_header(bytes(data)).pixel_bytes == taken
     (tmp_path / "a.png").write_bytes(data)
-    monkeypatch.setattr(files, "MOST_IMAGE", 100 * 100 * taken - 1)
+    monkeypatch.setattr(files, "MAX_IMAGE", 100 * 100 * taken - 1)
     with pytest.raises(AskedError, match=rf"a\.png would take .* \({taken} bytes a pixel\)"):
         read_image(tmp_path / "a.png", "image", AskedError)
 

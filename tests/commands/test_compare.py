@@ -35,13 +35,6 @@ def test_the_table_has_a_row_for_each_method_and_thinning(short, tmp_path, capsy
     assert len((tmp_path / "out" / "compare.jsonl").read_text().splitlines()) == 2 * 4 + 1, "each run once"
 
 
-@pytest.mark.parametrize(("options", "said"), [(["--every", "0"], "--every"), (["--every", "7"], "no frame is left")])
-def test_bad_options_are_told(short, tmp_path, capsys, options, said):
-    assert main(["compare", *short, "--out", str(tmp_path / "out"), *options]) == 2
-    assert said in capsys.readouterr().err
-    assert not (tmp_path / "out").exists()
-
-
 def test_icp_stands_beside_them_pooled_as_they_are(short, tmp_path, capsys, monkeypatch):
     """Open3D lives in an environment of its own: here its errors are given."""
     told = {"ICP 0.15, 0.05 m": {"1": {"position_m": [0.01, 0.02, 0.5], "rotation_deg": [1.0, 1.0, 1.0]}}}

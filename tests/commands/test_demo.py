@@ -1,4 +1,4 @@
-"""`demo`: each experiment's table, its JSON and its files; finished seeds are used again; what does not fit is told."""
+"""`demo`: each experiment's table, its JSON and its files; finished seeds are used again."""
 
 import csv
 import json
@@ -10,11 +10,9 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands.arguments import parse_seeds
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.experiments import corridor, walk
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
-from course_lib.simulation.room import data as room_data
 
 THREE_FRAMES = ["--seed", "6", "--frames", "3", "--particles", "15"]
 TWO_SEEDS = ["--seeds", "10040-10041", "--frames", "2", "--particles", "6", "--methods", "proposed,fallon"]
@@ -116,10 +114,6 @@ def test_a_seeds_recording_by_hand_and_the_one_with_calibration_errors(tmp_path,
     assert (tmp_path / "covariance.png").exists()
 
 
-def test_seeds_are_numbers_and_ranges():
-    assert parse_seeds("2-3, 1-2,10000") == [2, 3, 1, 10000]
-
-
 def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypatch, tmp_path, capsys):
     def walked(seed, methods, everies):
         run = {"position_m": [0.01], "rotation_deg": [0.1], "status": ["tracked"], "renders": [5], "score": [0.9]}
@@ -134,35 +128,3 @@ def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypa
     assert {path.name for path in folder.iterdir()} == {"walk.json", "covariance.png", "run.json"}
     assert len((kept / "walk.jsonl").read_text().splitlines()) == 1
     assert f"results: {folder}" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        ("corridor --seeds 5-1", "--seeds must be"),
-        ("corridor --frames 0", "--frames must be at least 1"),
-        ("corridor --methods proposed", "--methods goes with --seeds"),
-        ("corridor --data nowhere", "map.ply"),
-        ("corridor --dof 6 --idealizations", "--idealizations does not go with --dof 6"),
-        ("room --poses 0", "--poses must be at least 1"),
-        ("room --views 2", "--views 2 needs --association consistent"),
-        ("room --data elsewhere --seed 7", "give one of the two"),
-        ("room --seed 7 --detector nowhere", "no detector folder nowhere"),
-        ("room --seed 7 --association psychic", "association must be one of"),
-        ("room --seed 7 --score-threshold 2", "--score-threshold"),
-        ("rooms --views 0", "--views must be at least 1"),
-        ("rooms --tilts 0 11", "--tilts must be between 0 and 10 degrees; got 11"),
-        ("walk --methods magic", "--methods must name annealed, paper, floor"),
-        ("trouble --share 21", "--share must be at most 20 percent; got 21"),
-        ("trouble --method depth --frames 20", "take a longer recording or a smaller share"),
-        ("finale --places 0", "--places must be at least 1"),
-    ],
-)
-def test_options_that_do_not_fit_are_told_before_the_work(words, said, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(room_data, "make_room_data", lambda *_, **__: pytest.fail("40 pairs were photographed first"))
-    monkeypatch.chdir(tmp_path)
-    assert main(["demo", *words.split(), "--out", "out"]) == 2
-    error = capsys.readouterr().err
-    assert said in error
-    assert "Traceback" not in error
-    assert not list(tmp_path.rglob("*.json*"))

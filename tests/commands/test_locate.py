@@ -112,22 +112,3 @@ def test_without_boxes_a_detector_finds_the_objects_and_the_course_s_says_what_i
     assert "5 seen in both" in printed
     assert main(words(pair, "--detector", str(pair), boxes=False)) == 0
     assert "It knows" not in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("more", "other", "message"),
-    [
-        ((), {"upper": "none.png"}, "none.png is missing"),
-        ((), {"baseline": 300}, "Is it in millimetres"),
-        ((), {"baseline": -0.3}, "baseline must be a positive number of metres"),
-        (("--detector", "somewhere"), {}, "give one of the two"),
-        (("--association", "best"), {}, "association must be one of greedy"),
-        ((), {"upper": "lower.png", "lower": "upper.png"}, "Swap the two images"),
-        (("--out", __file__), {}, "is a file: give a folder"),
-    ],
-)
-def test_what_does_not_fit_is_named_in_one_line(pair, more, other, message, capsys):
-    assert main(words(pair, *more, **other)) == 2
-    error = capsys.readouterr().err
-    assert message in error
-    assert error.count("\n") == 1
