@@ -7,12 +7,8 @@ import math
 import re
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course_lib.files import require_writable
-
-if TYPE_CHECKING:  # imported where it is used, so that --help does not wait for OpenCV
-    from course_lib.spherical_stereo.detection.detector import YoloDetector
 
 MAX_PARTICLES = 1_000_000  # 5,000 times the paper's; chosen: a set of these takes 50 MB
 STRIDE = 32  # pixels of the input that one cell of a YOLOv4's coarsest grid covers
@@ -80,8 +76,8 @@ def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--score-threshold", type=float, metavar="T", help=told)
 
 
-def chosen_detector(arguments: argparse.Namespace) -> YoloDetector:
-    """Load the detector that the options name. Raises `ValueError`, and what `YoloDetector.load` raises."""
+def chosen_detector(arguments: argparse.Namespace):
+    """Load the `YoloDetector` that the options name. Raises `ValueError`, and what `YoloDetector.load` raises."""
     from course_lib.paths import data_path
     from course_lib.spherical_stereo.detection.detector import YoloDetector
 
@@ -110,7 +106,6 @@ def check_options(arguments: argparse.Namespace) -> None:
 
 
 def require_seed(seed: int) -> None:
-    """Raise `ValueError` for a negative seed."""
     if seed < 0:
         raise ValueError(f"--seed must be 0 or more; got {seed}")
 
@@ -123,9 +118,10 @@ def require_positive(option: str, value: float, unit: str) -> None:
 
 def require_count(option: str, value: int | None, limit: int | None = None) -> None:
     """Raise `ValueError` for a number of things below 1, or above `limit`; None stands for a default."""
-    if value is not None and value < 1:
+    value = 1 if value is None else value
+    if value < 1:
         raise ValueError(f"{option} must be at least 1; got {value}")
-    if value is not None and limit is not None and value > limit:
+    if limit is not None and value > limit:
         raise ValueError(f"{option} must be at most {limit:,}; got {value:,}")
 
 

@@ -72,16 +72,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, dict[str, list]]:
-    """Errors of every frame by ICP, by variant and thinning, as `run_frames` has them; ICP never says that it is lost.
-
-    Raises `RuntimeError` where Open3D is not installed or ends with an error.
-    """
+    """Errors of every frame by ICP, by variant and thinning, as `run_frames` has them; ICP never says it is lost."""
     script, packages = REPOSITORY / "tools" / "benchmarks" / "icp.py", REPOSITORY / ".bench"
     if not packages.is_dir():
         raise RuntimeError("--icp needs Open3D: .venv/bin/python -m tools.bench --quick installs it")
-    words = ["--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (REPOSITORY, packages)))}
-    command = [sys.executable, "-P", str(script), *map(str, words)]
+    words = [script, "--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
+    environment = os.environ | {"PYTHONPATH": f"{REPOSITORY}{os.pathsep}{packages}"}
+    command = [sys.executable, "-P", *map(str, words)]
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"ICP ended with code {done.returncode}; what it said stands above")

@@ -76,7 +76,7 @@ def results_folder(folder: Path, out: Path | None) -> Path:
 def summary(results, seconds: float) -> str:
     """What the terminal says: how many, what was refused and not read, how long, and with which seed."""
     statuses = [one.status for one in results.graded]
-    counts = ", ".join(f"{statuses.count(status)} {status}" for status in dict.fromkeys(sorted(statuses))) or "none"
+    counts = ", ".join(f"{statuses.count(status)} {status}" for status in sorted(set(statuses))) or "none"
     students = {one.student for one in results.graded}
     lines = [f"{len(students)} students, {len(statuses)} answers: {counts}; {seconds:.0f} s"]
     tried = [(one.student, one.number, what) for one in results.graded for what in one.refused]
@@ -84,7 +84,6 @@ def summary(results, seconds: float) -> str:
     lines += [f"and {len(tried) - 20} more, on the page"] if len(tried) > 20 else []
     lines += [f"not read: {one.name}: {one.why}" for one in results.collection.not_read[:20]]
     held = "all walls about strangers' code held" if not results.missing else "--trusted, without: "
-    lines.append(f"{held}{'; '.join(results.missing)}. Seed: {results.seed}")
     peak = max((one.peak_mb for one in results.graded), default=0.0)
-    lines.append(f"memory of the largest answer's process: {peak:.0f} MB")
-    return "\n".join(lines)
+    lines += [f"{held}{'; '.join(results.missing)}. Seed: {results.seed}"]
+    return "\n".join([*lines, f"memory of the largest answer's process: {peak:.0f} MB"])

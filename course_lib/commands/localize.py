@@ -96,37 +96,16 @@ def run(arguments: argparse.Namespace) -> int:
     localized = recordings.run_recovering if arguments.recover else recordings.run_annealed
     if method == "paper":
         localized = partial(recordings.run_sequence, **recordings.system_noise(arguments.dof, *sigma))
-    result = localized(
-        scene_map,
-        sequence,
-        n_particles=arguments.particles,
-        seed=arguments.seed,
-        up="z" if up == "unknown" else up,
-        start=start,
-        frames=arguments.frames,
-        backend=arguments.backend,
-        exact=arguments.exact,
-        near=arguments.near,
-        far=arguments.far,
-        watched=True,
-        progress=progress_bar("localizing"),
-    )
+    asked = {name: getattr(arguments, name) for name in ("seed", "frames", "backend", "exact", "near", "far")}
+    asked |= {"n_particles": arguments.particles, "up": "z" if up == "unknown" else up, "start": start}
+    result = localized(scene_map, sequence, **asked, watched=True, progress=progress_bar("localizing"))
+    noise = {"sigma_position_m": sigma[0], "sigma_rotation_deg": sigma[1]} if method == "paper" else {}
+    files = {"map": str(arguments.map), "sequence": str(arguments.sequence)}
     summary = {
-        "method": method,
-        **({"sigma_position_m": sigma[0], "sigma_rotation_deg": sigma[1]} if method == "paper" else {}),
-        "recover": arguments.recover,
-        "n_particles": arguments.particles,
-        "map": str(arguments.map),
-        "sequence": str(arguments.sequence),
-        "start": arguments.start or "first row of poses.txt",
-        "dof": arguments.dof,
-        "up": up,
-        "seed": arguments.seed,
-        "depth_units_per_metre": arguments.depth_scale,
-        "near_m": arguments.near,
-        "far_m": arguments.far,
-        "backend": arguments.backend,
-        "exact": arguments.exact,
+        **{"method": method, **noise, "recover": arguments.recover, "n_particles": arguments.particles, **files},
+        **{"start": arguments.start or "first row of poses.txt", "dof": arguments.dof, "up": up},
+        **{"seed": arguments.seed, "depth_units_per_metre": arguments.depth_scale},
+        **{"near_m": arguments.near, "far_m": arguments.far, "backend": arguments.backend, "exact": arguments.exact},
         **searched,
         "frames": len(result.frames),
         "frames_without_measurement": result.frames_without_measurement,
@@ -154,23 +133,21 @@ def _checked(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
         raise ValueError("--recover goes with the annealed filter: --dof 6, and not --method paper")
     if method == "annealed" and arguments.dof != "6":
         raise ValueError("--method annealed estimates six degrees of freedom: leave out --dof xyyaw, or --method")
-    sigma = list(SIGMA[arguments.dof])
-    for index, (name, limit, unit) in enumerate((("position", 10, "m"), ("rotation", 180, "degrees"))):
+    sigma = dict(zip(("position", "rotation"), SIGMA[arguments.dof], strict=True))
+    for name, limit in (("position", "10 m"), ("rotation", "180 degrees")):
         given = getattr(arguments, f"sigma_{name}")
-        if given is None:
-            continue
-        if method == "annealed":
+        if given is not None and method == "annealed":
             raise ValueError(f"--sigma-{name} goes with --method paper: the annealed filter finds its noise itself")
-        if not 0 <= given <= limit:
-            raise ValueError(f"--sigma-{name} must be between 0 and {limit} {unit} a frame; got {given:g}")
-        sigma[index] = given
+        if given is not None and not 0 <= given <= float(limit.split()[0]):
+            raise ValueError(f"--sigma-{name} must be between 0 and {limit} a frame; got {given:g}")
+        sigma[name] = sigma[name] if given is None else given
     options.check_options(arguments)
     options.require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
     options.require_positive("--near", arguments.near, "metres")
     options.require_positive("--far", arguments.far, "metres")
     if arguments.near >= arguments.far:
         raise ValueError(f"--near must be below --far; got {arguments.near:g} and {arguments.far:g} m")
-    return method, tuple(sigma)
+    return method, tuple(sigma.values())
 
 
 def join_words(words: list[str]) -> list[str]:
@@ -202,20 +179,17 @@ def _found_start(arguments, scene_map, sequence, up: str) -> tuple:
 
     if up == "unknown":
         raise ValueError("--start unknown needs --up AXIS: only with gravity known can the whole map be searched")
-    bar = progress_bar("searching")
-    given = {"seed": arguments.seed, "up": up, "near": arguments.near, "far": arguments.far, "progress": bar}
-    index, candidates, start = find_start(scene_map, sequence, **given)
+    seen = {"near": arguments.near, "far": arguments.far, "progress": progress_bar("searching")}
+    index, candidates, start = find_start(scene_map, sequence, seed=arguments.seed, up=up, **seen)
     if candidates.status != "found":
         where = "; ".join(
             f"({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.rad2deg(yaw):.0f} degrees (evidence {place.evidence:.2f})"
             for place in candidates.poses
             for x, y, z, yaw in [(*place.state[:3], place.state[5])]
         )
-        raise ValueError(
-            f"the start was not found in {index + 1} frames: "
-            + (f"it may be at {where}; in a world whose z is up" if where else "no place agrees with the images")
-            + ". Give --start, or a recording that begins where the building looks like no other place"
-        )
+        told = f"it may be at {where}; in a world whose z is up" if where else "no place agrees with the images"
+        told += ". Give --start, or a recording that begins where the building looks like no other place"
+        raise ValueError(f"the start was not found in {index + 1} frames: {told}")
     return sequence.thinned(1, index), start, {"found_in_frame": sequence.frames[index]}
 
 
@@ -226,18 +200,17 @@ def _given_start(given: str | None, sequence, up: str) -> np.ndarray:
 
     if given is None:
         if not sequence.has_poses:
-            raise ValueError(
+            told = (
                 f"where does the camera start? {sequence.folder} holds no poses.txt; give --start X Y Z ROLL PITCH YAW "
-                "(metres, degrees) or --start FILE with a 4 x 4 camera-to-world matrix"
             )
+            raise ValueError(told + "(metres, degrees) or --start FILE with a 4 x 4 camera-to-world matrix")
         return sequence.camera_to_world[0]
     numbers = _numbers(given)
     if not numbers:
         return read_pose(given)
     if len(numbers) != 6 or not all(map(math.isfinite, numbers)):
-        raise ValueError(
-            f"--start needs six finite numbers, X Y Z in metres and ROLL PITCH YAW in degrees, or a file; got {given!r}"
-        )
+        told = "--start needs six finite numbers, X Y Z in metres and ROLL PITCH YAW in degrees, or a file"
+        raise ValueError(f"{told}; got {given!r}")
     state = np.concatenate([np.zeros(3), np.deg2rad(numbers[3:])])
     start = np.linalg.inv(rotation_to_z_up(up)) @ optical_pose(state)
     start[:3, 3] = numbers[:3]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -65,17 +66,12 @@ def write_localized(folder: Path, summary: dict, result, sequence, scene_map) ->
     from course_lib.plots.track_scene import track_scene
 
     count, positions = len(result.frames), result.camera_to_world[:, :3, 3]
-    rows = [
-        {
-            "frame": result.frames[k],
-            "status": result.statuses[k],
-            "fault": result.faults[k] or "",
-            "score": round(float(result.scores[k]), 5),
-            **{f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", positions[k], strict=True)},
-            **{name: round(value, 4) for name, value in result.agreements[k]._asdict().items()},
-        }
-        for k in range(count)
-    ]
+    rows = []
+    for k in range(count):
+        row = {"frame": result.frames[k], "status": result.statuses[k], "fault": result.faults[k] or ""}
+        row["score"] = round(float(result.scores[k]), 5)
+        row |= {f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", positions[k], strict=True)}
+        rows.append(row | {name: round(value, 4) for name, value in result.agreements[k]._asdict().items()})
     true = sequence.camera_to_world[:count] if sequence.has_poses else None
     if true is not None:
         for row, metres, radians in zip(rows, *pose_errors(result.camera_to_world, true), strict=True):
@@ -87,9 +83,7 @@ def write_localized(folder: Path, summary: dict, result, sequence, scene_map) ->
     truth = None if true is None else true[:, :3, 3]
     figure = track_figure(scene_map, result.frames, positions, result.scores, result.statuses, up, truth)
     figure.savefig(folder / "track.png", dpi=130)
-    scene = write_scene(
-        folder / "track.html",
-        f"Path of {sequence.folder.name} in {Path(summary['map']).name}",
-        lambda: track_scene(scene_map, result, sequence, up, summary["near_m"], summary["far_m"]),
-    )
+    title = f"Path of {sequence.folder.name} in {Path(summary['map']).name}"
+    make = partial(track_scene, scene_map, result, sequence, up, summary["near_m"], summary["far_m"])
+    scene = write_scene(folder / "track.html", title, make)
     return ["localize.json", "localize.csv", "trajectory.txt (TUM)", "track.png", scene]

@@ -54,9 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
         upper, lower = (find_objects(view, detector) for view in views)
     found = localizer.localize_views(upper, lower)
     summary = {
-        "upper": str(arguments.upper),
-        "lower": str(arguments.lower),
-        "map": str(arguments.map),
+        **{name: str(getattr(arguments, name)) for name in ("upper", "lower", "map")},
         "baseline_m": arguments.baseline,
         "objects_from": str(arguments.boxes or arguments.detector or "data/detector"),
         "classes_of_the_detector": None if detector is None else detector.labels,
@@ -78,15 +76,9 @@ def localization_summary(found, semantic_map) -> dict:
     sigma = [None] * 3 if found.covariance is None else np.sqrt(np.diag(found.covariance)).tolist()
     statistics, rejected = found.statistics, found.rejected_pose
     return {
-        "status": found.status,
-        "reason": found.reason,
-        "explanation": found.explanation,
-        "x_m": x,
-        "y_m": y,
-        "heading_deg": _degrees(heading),
-        "sigma_x_m": sigma[0],
-        "sigma_y_m": sigma[1],
-        "sigma_heading_deg": _degrees(sigma[2]),
+        **{"status": found.status, "reason": found.reason, "explanation": found.explanation},
+        **{"x_m": x, "y_m": y, "heading_deg": _degrees(heading)},
+        **{"sigma_x_m": sigma[0], "sigma_y_m": sigma[1], "sigma_heading_deg": _degrees(sigma[2])},
         "covariance": None if found.covariance is None else found.covariance.tolist(),
         "rejected_pose": None if rejected is None else [rejected.x, rejected.y, _degrees(rejected.theta)],
         "confidence": found.confidence,

@@ -68,9 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     seconds = time.perf_counter() - started
     objects = measure_objects(matching.matches, upper, lower, rig, arguments.sigma_pixels)
     summary = {
-        "upper": str(arguments.upper),
-        "lower": str(arguments.lower),
-        "baseline_m": rig.baseline,
+        **{"upper": str(arguments.upper), "lower": str(arguments.lower), "baseline_m": rig.baseline},
         "matches": len(features),
         "epipolar_percent": 100 * features.epipolar_share,
         "epipolar_tolerance_deg": float(np.degrees(features.tolerance)),
