@@ -50,21 +50,9 @@ def read_bytes(
         raise error(f"{what} {path} cannot be read: {reason.strerror}") from reason
 
 
-def is_given(path: Path) -> bool:
-    """Whether something stands at `path`: a broken link or a folder is not left out, it is one that cannot be read."""
-    try:
-        path.lstat()
-    except (OSError, ValueError):
-        return False
-    return True
-
-
-def is_file(path: Path) -> bool:
-    """Whether a file is at `path`, which another file names: it may be too long, or hold a zero byte."""
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
+# Whether something stands at a path. A broken link or a folder is not left out: it is one that cannot be read.
+is_given = os.path.lexists
+is_file = os.path.isfile  # not where no system would look a name up
 
 
 def require_file(path: Path, what: str, error: Raised) -> None:

@@ -43,7 +43,7 @@ def test_parts_can_be_left_out(words, parts, marks):
 
 @pytest.fixture
 def course(tmp_path, monkeypatch):
-    """A course of one test file, whose text is given; `run` runs its tests in two processes."""
+    """A course without lessons and tests, whose tests run in two processes."""
     (tmp_path / "tests").mkdir()
     (tmp_path / "tests" / "nbval_sanitize.cfg").touch()
     monkeypatch.setattr(command, "REPOSITORY", tmp_path)
