@@ -5,7 +5,6 @@ A bar is drawn on standard error, so that the output of `--json` stays one objec
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 from collections.abc import Callable, Iterable
@@ -26,18 +25,11 @@ def progress_bar(description: str, unit: str = "frame") -> Callable[[Iterable], 
     return wrap
 
 
-def print_and_write(
-    arguments: argparse.Namespace,
-    command: str,
-    summary: dict,
-    text: str,
-    write: Callable[[Path], list[str]],
-    told: str = "\nWritten to {out}: {files}",
-) -> None:
-    """Print `summary` with --json, else `text`. With --out, `write` fills that folder and returns the files' names.
+WRITTEN = "\nWritten to {out}: {files}"  # the line that says where the files are
 
-    told: the line that then says where the files are.
-    """
+
+def print_and_write(arguments, command: str, summary: dict, text: str, write: Callable, told: str = WRITTEN) -> None:
+    """Print `summary` with --json, else `text`. With --out, `write` fills that folder and returns the files' names."""
     print(json.dumps(summary) if arguments.json else text, flush=True)
     if arguments.out:
         with run_folder(arguments.out, command) as out:

@@ -77,8 +77,11 @@ def run(arguments: argparse.Namespace) -> int:
         "sigma_pixels": arguments.sigma_pixels,
         "seconds": seconds,
         "objects": [_row(measured, boxes) for measured in objects],
-        "unmatched": [_unmatched_row(item, boxes) for item in matching.unmatched],
+        "unmatched": [],
     }
+    for item in matching.unmatched:
+        box, told = getattr(boxes, item.side)[item.index], {"side": item.side, "index": item.index}
+        summary["unmatched"].append({"name": box.name, "label": box.label, **told, "reason": item.reason})
     # NaN is no JSON: what has no value is null.
     valid, text = _nan_to_none(summary), _table(summary, boxes is not None)
     write = partial(_write, summary=summary, views=(upper, lower), features=features, objects=objects)
@@ -102,11 +105,6 @@ def _row(measured, boxes) -> dict:
         "azimuth_deg": measured.azimuth_deg,
         **{way: {name: getattr(getattr(measured, way), name) for name in MEASURED} for way in WAYS},
     }
-
-
-def _unmatched_row(item, boxes) -> dict:
-    box = (boxes.upper if item.side == "upper" else boxes.lower)[item.index]
-    return {"name": box.name, "label": box.label, "side": item.side, "index": item.index, "reason": item.reason}
 
 
 def _nan_to_none(value):

@@ -1,5 +1,7 @@
 """`demo room`, `demo rooms` and `demo trouble`: what they print and write of a few poses, or of rows that are kept."""
 
+import contextlib
+import io
 import json
 import re
 
@@ -16,15 +18,17 @@ from tests.experiments.test_rooms import entry, record
 
 @pytest.fixture(scope="module")
 def demo_room(tmp_path_factory):
-    """`demo room` on the first two poses of each experiment: its folder."""
-    folder = tmp_path_factory.mktemp("demo")
-    assert main(["demo", "room", "--poses", "2", "--roll", "640", "--out", str(folder)]) == 0
-    return folder
+    """`demo room` on the first two poses of each experiment: its folder, and what it printed."""
+    folder, said = tmp_path_factory.mktemp("demo"), io.StringIO()
+    with contextlib.redirect_stdout(said):
+        assert main(["demo", "room", "--poses", "2", "--roll", "640", "--out", str(folder)]) == 0
+    return folder, said.getvalue()
 
 
 @pytest.mark.slow
 def test_the_room_has_rates_and_errors_by_experiment_and_method_a_row_a_pose_and_figures(demo_room):
-    summary = json.loads((demo_room / "room.json").read_text())
+    folder, text = demo_room
+    summary = json.loads((folder / "room.json").read_text())
     for experiment in ("experiment_1", "experiment_2"):
         for method in ("greedy", "greedy_weighted", "greedy_exact_boxes", "greedy_weighted_exact_boxes"):
             row = summary[experiment][method]
@@ -37,19 +41,14 @@ def test_the_room_has_rates_and_errors_by_experiment_and_method_a_row_a_pose_and
     assert summary["rolled_images"]["alike"]["n"] == 4, "two poses of two experiments, one number of columns"
     assert summary["stereo_matching"]["seen_in_both"] > 20
     assert 0 < summary["median_relative_range_error_percent"]["exact_boxes"] < 15
-    assert [row["source"] for row in rows_of(demo_room / "room.csv")] == [
+    assert [row["source"] for row in rows_of(folder / "room.csv")] == [
         "images",
         "images",
         "exact_boxes",
         "exact_boxes",
     ] * 2
     for name in ("experiment_1.png", "experiment_2.png", "detections.png", "matched_pairs.png"):
-        assert (demo_room / name).read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.slow
-def test_the_tables_hold_the_papers_numbers_beside_ours(printed, tmp_path):
-    text = printed("demo", "room", "--poses", "1", "--roll", "640", "--out", tmp_path)
+        assert (folder / name).read_bytes().startswith(b"\x89PNG")
     for part in (
         *(f"Table {number}" for number in range(1, 6)),
         "paper: correct                                     0.23     0.44         11.94",
