@@ -41,12 +41,8 @@ def test_the_room_has_rates_and_errors_by_experiment_and_method_a_row_a_pose_and
     assert summary["rolled_images"]["alike"]["n"] == 4, "two poses of two experiments, one number of columns"
     assert summary["stereo_matching"]["seen_in_both"] > 20
     assert 0 < summary["median_relative_range_error_percent"]["exact_boxes"] < 15
-    assert [row["source"] for row in rows_of(folder / "room.csv")] == [
-        "images",
-        "images",
-        "exact_boxes",
-        "exact_boxes",
-    ] * 2
+    sources = [row["source"] for row in rows_of(folder / "room.csv")]
+    assert sources == ["images", "images", "exact_boxes", "exact_boxes"] * 2
     for name in ("experiment_1.png", "experiment_2.png", "detections.png", "matched_pairs.png"):
         assert (folder / name).read_bytes().startswith(b"\x89PNG")
     for part in (
