@@ -68,7 +68,7 @@ def test_the_table_and_the_files_say_the_same(pair, tmp_path, printed):
     assert len((out / "locate.csv").read_text().splitlines()) == 6
     assert min(cv2.imread(str(out / "locate.png")).shape[:2]) > 1000
     assert "Written to" in text
-    assert "locate.html (to be turned in a browser)" in printed
+    assert "locate.html (to be turned in a browser)" in text
     assert "<title>On the map</title>" in (out / "locate.html").read_text()
 
 
