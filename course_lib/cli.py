@@ -1,9 +1,8 @@
 """The course's command line: a table of commands, each a module of `course_lib.commands`.
 
-A command module has `add_arguments(parser)` and `run(arguments) -> int` (the exit code). The first line of its
-docstring is the description that `--help` shows. It is imported only when it is called. A module with
-`join_words(words)` may mend what argparse would misread (`--up -y`). One with `PASSES_ARGUMENTS_ON = True` gets what
-its parser does not know as the list `arguments.passed_on`.
+A command module has `add_arguments(parser)` and `run(arguments)`, which returns the exit code; its docstring's first
+line is shown by `--help`. It may have `join_words(words)`, to mend what argparse would misread (`--up -y`), and
+`PASSES_ARGUMENTS_ON = True`, to get the words that its parser does not know as `arguments.passed_on`.
 """
 
 from __future__ import annotations
@@ -59,7 +58,6 @@ TOOLS += tuple(f"make-data {what}" for what in ("corridor", "room", "finale", "p
 EXIT_BAD_INPUT = 2
 EXIT_FAULT = 1
 EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
-
 
 # argparse's words -> ours. What is not among them (another Python's words) is told as it is.
 _SAID = (
@@ -128,7 +126,6 @@ class CommandParser(argparse.ArgumentParser):
     """Ends with code 2 and one sentence, with the nearest name, where the words do not fit."""
 
     def parse_args(self, args: Sequence[str], namespace: None = None) -> argparse.Namespace:
-        """Parse the words of a command that takes no others than its own."""
         if any(word == "" or re.fullmatch(r"--[\w-]+=", word) for word in args):
             self.error("an empty word stands where a value is expected (a variable that is not set?): give one")
         found, others = self.parse_known_args(args, namespace)
@@ -156,7 +153,8 @@ def tool(module_name: str) -> int:
 def call(load: Callable[[], ModuleType], program: str, words: list[str]) -> int:
     """Run a command's module with `words` and return its exit code; an error is one line instead of a traceback."""
     debug = os.environ.get("COURSE_DEBUG", "") not in ("", "0")
-    warnings.formatwarning = one_line
+    # One line, without the place in the library where it was noticed.
+    warnings.formatwarning = lambda message, *place, **told: f"warning: {message}\n"
     try:
         module = load()
         arguments = parse(program, module, words)
@@ -195,7 +193,7 @@ def raise_on_sigterm() -> None:
 
 
 def parse(program: str, module: ModuleType, words: list[str]) -> argparse.Namespace:
-    """Parse the arguments of one command. The parser itself exits where they do not fit."""
+    """Parse the arguments of one command; the parser ends the process where they do not fit."""
     description = (module.__doc__ or "").strip().split("\n")[0]
     parser = CommandParser(prog=program, description=description, allow_abbrev=False)
     module.add_arguments(parser)
@@ -207,21 +205,14 @@ def parse(program: str, module: ModuleType, words: list[str]) -> argparse.Namesp
     return arguments
 
 
-def one_line(message: Warning | str, *place: object, **told: object) -> str:
-    """Format a warning as one line, without the place in the library where it was noticed."""
-    return f"warning: {message}\n"
-
-
 def report(error: Exception) -> int:
     """Print one line about `error`, and return the exit code: 2 for what the user can mend, 1 for a fault of ours."""
+    code, told = EXIT_FAULT, f"{type(error).__name__}: {error} (--debug shows where)"
     if isinstance(error, ImportError):
-        print(f"error: {error}. See what is missing: python3 course.py check", file=sys.stderr)
-        return EXIT_FAULT
-    if isinstance(error, MemoryError):
-        print(f"error: there is not enough memory ({error}): ask for less, such as fewer particles", file=sys.stderr)
-        return EXIT_BAD_INPUT
-    if isinstance(error, (ValueError, OSError, RuntimeError)):
-        print(f"error: {error}", file=sys.stderr)
-        return EXIT_BAD_INPUT
-    print(f"error: {type(error).__name__}: {error} (--debug shows where)", file=sys.stderr)
-    return EXIT_FAULT
+        told = f"{error}. See what is missing: python3 course.py check"
+    elif isinstance(error, MemoryError):
+        code, told = EXIT_BAD_INPUT, f"there is not enough memory ({error}): ask for less, such as fewer particles"
+    elif isinstance(error, (ValueError, OSError, RuntimeError)):
+        code, told = EXIT_BAD_INPUT, str(error)
+    print(f"error: {told}", file=sys.stderr)
+    return code

@@ -1,8 +1,7 @@
 """Read what a user hands over, with bounds and named errors; write files so that nothing is ever half-written.
 
-Each reader takes `what` the file is ("depth image"), for the message, and the `error` that its caller raises; a message
-says which file, what was found and what was expected. A missing file is the caller's error too, unless `missing` names
-another one.
+Each reader takes `what` the file is ("depth image"), for the message, and the `error` to raise; a missing file raises
+`missing`, if that is given.
 """
 
 from __future__ import annotations
@@ -15,8 +14,10 @@ import re
 import struct
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from datetime import datetime
+from itertools import accumulate
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
@@ -26,49 +27,36 @@ from course_lib.paths import REPOSITORY
 
 MEGABYTE = 1_000_000
 
-MOST_TEXT = 64 * MEGABYTE  # of a text or JSON file: 500,000 rows of poses are 40 MB
-MOST_BYTES = 2_000 * MEGABYTE  # of any file: a scanned building of 40 million triangles
-MOST_PIXELS = 100_000_000  # of an image: a panorama of 14,000 x 7,000
-MOST_IMAGE = 3 * MOST_PIXELS  # bytes of an image in memory: that panorama in three colours
-MOST_LEVELS = 50  # lists and objects inside each other in JSON; our own formats have four
+MAX_TEXT = 64 * MEGABYTE  # of a text or JSON file: 500,000 rows of poses are 40 MB
+MAX_BYTES = 2_000 * MEGABYTE  # of any file: a scanned building of 40 million triangles
+MAX_PIXELS = 100_000_000  # of an image: a panorama of 14,000 x 7,000
+MAX_IMAGE = 3 * MAX_PIXELS  # bytes of an image in memory: that panorama in three colours
+MAX_LEVELS = 50  # lists and objects inside each other in JSON; our own formats have four
+
+Raised = type[Exception]
 
 
 def read_bytes(
-    path: str | Path, what: str, error: type[Exception], most: int = MOST_BYTES, missing: type[Exception] | None = None
+    path: str | Path, what: str, error: Raised, limit: int = MAX_BYTES, missing: Raised | None = None
 ) -> bytes:
-    """Everything in a file, at most `most` bytes. A pipe or device, which may never end, is refused."""
+    """Return everything in a file, at most `limit` bytes. A pipe or device, which may never end, is refused."""
     path = Path(path)
     require_file(path, what, missing or error)
     try:
-        if (size := path.stat().st_size) > most:
-            raise error(f"{what} {path} has {size / MEGABYTE:,.0f} MB; at most {most / MEGABYTE:,.0f} MB are read")
+        if (size := path.stat().st_size) > limit:
+            raise error(f"{what} {path} has {size / MEGABYTE:,.0f} MB; at most {limit / MEGABYTE:,.0f} MB are read")
         return path.read_bytes()
     except OSError as reason:
         raise error(f"{what} {path} cannot be read: {reason.strerror}") from reason
 
 
-def is_given(path: Path) -> bool:
-    """Whether something stands at `path`: a file that may be left out is missing only where nothing does.
-
-    A broken link, a link to itself, a folder or a pipe in its place is no file left out, but one that cannot be read.
-    """
-    try:
-        path.lstat()
-    except (OSError, ValueError):
-        return False
-    return True
+# Whether something stands at a path. A broken link or a folder is not left out: it is one that cannot be read.
+is_given = os.path.lexists
+is_file = os.path.isfile  # not where no system would look a name up
 
 
-def is_file(path: Path) -> bool:
-    """Whether a file is at `path`, which another file names: not where no system would look a name up."""
-    try:
-        return path.is_file()
-    except (OSError, ValueError):  # a name that is too long, or holds a zero byte
-        return False
-
-
-def require_file(path: Path, what: str, error: type[Exception]) -> None:
-    """Raises `error` unless `path` is a file that can be read."""
+def require_file(path: Path, what: str, error: Raised) -> None:
+    """Raise `error` unless `path` is a file that can be read."""
     try:
         if path.is_file():
             return
@@ -78,30 +66,26 @@ def require_file(path: Path, what: str, error: type[Exception]) -> None:
     raise error(f"{what} {path} {kind}: give the path of an existing file")
 
 
-def read_text(
-    path: str | Path, what: str, error: type[Exception], most: int = MOST_TEXT, missing: type[Exception] | None = None
-) -> str:
-    """The text of a UTF-8 file, with or without a byte order mark, with the line ends of any system."""
-    data = read_bytes(path, what, error, most, missing)
+def read_text(path: str | Path, what: str, error: Raised, missing: Raised | None = None) -> str:
+    """Return the text of a UTF-8 file, with or without a byte order mark, with the line ends of any system."""
+    data = read_bytes(path, what, error, MAX_TEXT, missing)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as reason:
         line = data[: reason.start].count(b"\n") + 1
-        raise error(
+        told = (
             f"{what} {path} is not UTF-8 text: byte {data[reason.start]:#04x} in line {line}. Was another file given "
-            "in its place? If not, save it as UTF-8"
-        ) from None
+        )
+        raise error(told + "in its place? If not, save it as UTF-8") from None
     if "\0" in text:
         line = text[: text.index("\0")].count("\n") + 1
         raise error(f"{what} {path} is not text: a zero byte in line {line}")
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def read_json(
-    path: str | Path, what: str, error: type[Exception], most: int = MOST_TEXT, missing: type[Exception] | None = None
-) -> object:
-    """What a JSON file holds: numbers finite, no name twice in one object, at most `MOST_LEVELS` levels."""
-    text = read_text(path, what, error, most, missing)
+def read_json(path: str | Path, what: str, error: Raised, missing: Raised | None = None) -> object:
+    """Return what a JSON file holds: numbers finite, no name twice in one object, at most `MAX_LEVELS` levels."""
+    text = read_text(path, what, error, missing)
 
     def refuse(reason: str) -> NoReturn:
         raise error(f"{what} {path} {reason}")
@@ -114,59 +98,40 @@ def read_json(
         return value if math.isfinite(value) else refuse(f"holds the number {digits[:20]}, which is too large")
 
     def whole(digits: str) -> int:
-        return (
-            int(digits)
-            if len(digits) < 300
-            else refuse(f"is not JSON that can be read: a number of {len(digits)} digits")
-        )
+        return int(digits) if math.isfinite(number(digits)) else 0
 
     def members(pairs: list[tuple[str, object]]) -> dict[str, object]:
-        found = dict(pairs)
-        if len(found) < len(pairs):
-            names = [name for name, _ in pairs]
-            twice = next(name for name in names if names.count(name) > 1)
-            refuse(f"has {twice!r} twice in one object: which one is meant?")
-        return found
+        names = [name for name, _ in pairs]
+        if twice := [name for name, count in Counter(names).items() if count > 1]:
+            refuse(f"has {twice[0]!r} twice in one object: which one is meant?")
+        return dict(pairs)
 
-    if (levels := _levels(text)) > MOST_LEVELS:
-        refuse(f"has {levels} levels of lists and objects inside each other; at most {MOST_LEVELS} are read")
+    # Brackets inside strings do not count. A string is taken whole, or to the end where it is not closed: else every
+    # quotation mark would begin a search to the end.
+    brackets = re.findall(r'"(?:[^"\\]|\\.)*+"?|[\[\]{}]', text, re.DOTALL)
+    steps = [1 if bracket in "[{" else -1 if bracket in "]}" else 0 for bracket in brackets]
+    if (levels := max(accumulate(steps), default=0)) > MAX_LEVELS:
+        refuse(f"has {levels} levels of lists and objects inside each other; at most {MAX_LEVELS} are read")
     try:
         return json.loads(text, parse_constant=constant, parse_float=number, parse_int=whole, object_pairs_hook=members)
     except json.JSONDecodeError as reason:
         refuse(f"is not JSON: line {reason.lineno}, column {reason.colno}: {reason.msg}")
 
 
-def _levels(text: str) -> int:
-    """How deep lists and objects are nested in a JSON text; brackets inside strings do not count."""
-    deepest = level = 0
-    # Possessive, and to the end where a string is not closed: else every quotation mark begins a search to the end.
-    for bracket in re.findall(r'"(?:[^"\\]|\\.)*+"?|[\[\]{}]', text, re.DOTALL):
-        if bracket in "[{":
-            level += 1
-            deepest = max(deepest, level)
-        elif bracket in "]}":
-            level -= 1
-    return deepest
-
-
 class ImageHeader(NamedTuple):
-    """What an image file says of itself before it is unpacked."""
+    """What an image file says of itself before it is unpacked. kind: "PNG" or "JPEG"; frames: 2 or more if animated."""
 
-    kind: str  # "PNG" or "JPEG"
+    kind: str
     width: int
     height: int
-    frames: int  # More than one for an animated PNG
-    pixel_bytes: int  # Bytes of one pixel in memory
+    frames: int
+    pixel_bytes: int  # of one pixel in memory
 
 
 def read_image(
-    path: str | Path,
-    what: str,
-    error: type[Exception],
-    kinds: tuple[str, ...] = ("PNG", "JPEG"),
-    missing: type[Exception] | None = None,
+    path: str | Path, what: str, error: Raised, kinds: Sequence[str] = ("PNG", "JPEG"), missing: Raised | None = None
 ) -> np.ndarray:
-    """The pixels of a PNG or JPEG, as they are stored (OpenCV's order, BGR); at most `MOST_PIXELS` of them."""
+    """Return the pixels of a PNG or JPEG, as they are stored (OpenCV's order, BGR); at most `MAX_PIXELS` of them."""
     import cv2
 
     data = read_bytes(path, what, error, missing=missing)
@@ -175,30 +140,28 @@ def read_image(
     if header is None or header.kind not in kinds:
         found = f"is a {header.kind}" if header else f"begins with {data[:8]!r}" if data else "is empty, not complete"
         raise error(f"{what} {path} {found}; {expected} is expected")
-    if header.width * header.height > MOST_PIXELS:
+    if (pixels := header.width * header.height) > MAX_PIXELS:
         size = f"{header.width} x {header.height} pixels"
-        raise error(f"{what} {path} has {size}; at most {MOST_PIXELS / 1e6:.0f} million are read")
-    if (size := header.width * header.height * header.pixel_bytes) > MOST_IMAGE:
+        raise error(f"{what} {path} has {size}; at most {MAX_PIXELS / 1e6:.0f} million are read")
+    if (size := pixels * header.pixel_bytes) > MAX_IMAGE:
         taken = f"would take {size / MEGABYTE:,.0f} MB ({header.pixel_bytes} bytes a pixel)"
-        raise error(f"{what} {path} {taken}; at most {MOST_IMAGE / MEGABYTE:,.0f} MB are read")
+        raise error(f"{what} {path} {taken}; at most {MAX_IMAGE / MEGABYTE:,.0f} MB are read")
     if header.frames > 1:
         raise error(f"{what} {path} is animated ({header.frames} frames); one picture is expected")
-    if fault := (_chunk_fault if header.kind == "PNG" else _segment_fault)(data):
-        raise error(f"{what} {path} cannot be read as a {header.kind}: {fault}: is it complete?")
-    try:
-        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-    except cv2.error as reason:
-        raise error(f"{what} {path} cannot be read as a {header.kind}: {reason.err}") from None
+    image, fault = None, (_chunk_fault if header.kind == "PNG" else _segment_fault)(data)
+    if fault is None:
+        try:
+            image, fault = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED), "OpenCV gives up"
+        except cv2.error as reason:
+            fault = reason.err
     if image is None:
-        raise error(f"{what} {path} cannot be read as a {header.kind}: is it complete?")
+        raise error(f"{what} {path} cannot be read as a {header.kind}: {fault}: is it complete?")
     return image
 
 
 def _chunk_fault(data: bytes) -> str | None:
-    """The first chunk of a PNG that says it is longer than the file: OpenCV would take that much memory at once.
-
-    Source: PNG specification, section 5.3 (length, type, content, checksum).
-    """
+    """The first chunk of a PNG that says it is longer than the file: OpenCV would take that much memory at once."""
+    # Source: PNG specification, section 5.3 (length, type, content, checksum).
     at = 8
     while at + 8 <= len(data):
         length, kind = int.from_bytes(data[at : at + 4], "big"), data[at + 4 : at + 8]
@@ -211,10 +174,8 @@ def _chunk_fault(data: bytes) -> str | None:
 
 
 def _segment_fault(data: bytes) -> str | None:
-    """Why a JPEG is not whole: OpenCV fills in whatever its scan lacks, where the end of the image is missing.
-
-    Source: ITU-T T.81, section B.1.1 (segments), B.2.1 (a scan, then the end-of-image marker).
-    """
+    """Why a JPEG is not whole: OpenCV fills in whatever its scan lacks, where the end of the image is missing."""
+    # Source: ITU-T T.81, section B.1.1 (segments), B.2.1 (a scan, then the end-of-image marker).
     at = 2
     while data[at : at + 1] == b"\xff":
         marker = data[at + 1 : at + 2]
@@ -225,10 +186,8 @@ def _segment_fault(data: bytes) -> str | None:
 
 
 def image_header(data: bytes) -> ImageHeader | None:
-    """Kind and size of a PNG or JPEG from its first bytes; None for anything else.
-
-    Sources: PNG specification, section 11.2.2 (IHDR); ITU-T T.81, section B.2.2 (frame header).
-    """
+    """Return kind and size of a PNG or JPEG from its first bytes; None for anything else."""
+    # Sources: PNG specification, section 11.2.2 (IHDR); ITU-T T.81, section B.2.2 (frame header).
     if data[:8] == b"\x89PNG\r\n\x1a\n" and data[12:16] == b"IHDR" and len(data) >= 33:
         width, height = struct.unpack(">II", data[16:24])
         control = data.find(b"acTL", 33, 1 << 16)  # of an animated PNG
@@ -248,10 +207,7 @@ def image_header(data: bytes) -> ImageHeader | None:
 
 
 def atomic_write(path: str | Path, content: bytes | str) -> None:
-    """Write a file, or replace it, in one step. Text is written as UTF-8.
-
-    Raises `OSError` with the path where it cannot be written. The old file is then still there, and whole.
-    """
+    """Write a file, or replace it, in one step. Raises `OSError` with the path; the old file is then still whole."""
     path = Path(os.path.realpath(path))
     data = content.encode("utf-8") if isinstance(content, str) else content
     mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
@@ -275,8 +231,7 @@ def atomic_write(path: str | Path, content: bytes | str) -> None:
 def staging_dir(out: str | Path, products: Sequence[str] = ()) -> Iterator[Path]:
     """Yield an empty folder. When the body ends, its files take their places in `out`, each in one step.
 
-    products: names in `out` that belong to the caller. What the body did not make again under these names is removed.
-    Everything else in `out` stays. If the body raises, `out` stays as it was.
+    products: names in `out` of which the body makes all anew; the rest of `out` stays. If it raises, all stays.
     """
     out = Path(os.path.realpath(out))
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -302,7 +257,7 @@ def staging_dir(out: str | Path, products: Sequence[str] = ()) -> Iterator[Path]
 def run_folder(out: str | Path | None, command: str) -> Iterator[Path]:
     """Yield a folder for the results of one run of `command`, and say where they are when the body has ended.
 
-    out: the folder; None makes `results/COMMAND/TIME`. `run.json` is written last: a folder without it is not whole.
+    out: None makes `results/COMMAND/TIME`. `run.json` is written last: a folder without it is not whole.
     """
     if out is None:
         out = REPOSITORY / "results" / command.replace(" ", "_") / datetime.now().strftime("%Y-%m-%d_%H-%M-%S")

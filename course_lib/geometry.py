@@ -22,7 +22,7 @@ _GIMBAL_LOCK_COSINE = 1e-9
 
 
 def as_states(states: np.ndarray, name: str = "states") -> np.ndarray:
-    """Checked float64 copy-free view of states `(..., 6)`; `ValueError` for another last axis or values not finite."""
+    """Return states `(..., 6)` as float64. Raises `ValueError` for another last axis or values that are not finite."""
     array = np.asarray(states, dtype=np.float64)
     if array.ndim == 0 or array.shape[-1] != 6:
         raise ValueError(f"{name} must have shape (..., 6) [x, y, z, roll, pitch, yaw]; got {array.shape}")
@@ -145,10 +145,7 @@ def rotation_angle(rotation: np.ndarray) -> np.ndarray:
 
 
 def rotation_mean(rotations: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
-    """Chordal mean `(3, 3)` of rotations `(N, 3, 3)`: the rotation nearest to sum w R.
-
-    Unlike a mean of Euler angles it does not depend on the choice of axes and knows no gimbal lock.
-    """
+    """Return the chordal mean `(3, 3)` of rotations `(N, 3, 3)`: the rotation nearest to sum w R."""
     return Rotation.from_matrix(rotations).mean(weights).as_matrix()
 
 
@@ -162,9 +159,8 @@ def optical_pose(states: np.ndarray) -> np.ndarray:
 def state_from_optical_pose(matrices: np.ndarray) -> np.ndarray:
     """States `(..., 6)` of camera-to-world matrices `(..., 4, 4)`, optical convention; inverse of `optical_pose`."""
     matrices = np.array(matrices, dtype=np.float64)
-    if matrices.ndim < 2 or matrices.shape[-2:] != (4, 4):
-        raise ValueError(f"matrices must have shape (..., 4, 4); got {matrices.shape}")
-    matrices[..., :3, :3] = matrices[..., :3, :3] @ BODY_FROM_OPTICAL.T
+    if matrices.shape[-2:] == (4, 4):  # another shape is refused below
+        matrices[..., :3, :3] = matrices[..., :3, :3] @ BODY_FROM_OPTICAL.T
     return state_from_matrix(matrices)
 
 
@@ -178,10 +174,6 @@ def rotation_to_z_up(up: str) -> np.ndarray:
     if up not in UP_AXES:
         raise ValueError(f"up must be one of {', '.join(UP_AXES)}; got {up!r}")
     matrix = np.eye(4)
-    axis = np.asarray(UP_AXES[up], dtype=np.float64)
-    if up == "-z":
-        matrix[:3, :3] = np.diag([1.0, -1.0, -1.0])
-    elif up != "z":
-        turn = np.cross(axis, [0.0, 0.0, 1.0])
-        matrix[:3, :3] = np.rint(Rotation.from_rotvec(turn * np.pi / 2).as_matrix())
+    turn = np.cross(UP_AXES[up], [0.0, 0.0, np.pi / 2])
+    matrix[:3, :3] = np.rint(Rotation.from_rotvec(turn).as_matrix()) if up != "-z" else np.diag([1.0, -1.0, -1.0])
     return matrix

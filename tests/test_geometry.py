@@ -84,12 +84,9 @@ def test_pi_wraps_to_minus_pi():
     assert wrap_angle(-1e-20) > -np.pi
 
 
-def test_circular_mean_crosses_the_wrap():
+def test_circular_mean_crosses_the_wrap_and_opposite_angles_have_none():
     assert np.isclose(abs(circular_mean(np.deg2rad([179.0, -179.0]))), np.pi)
     assert np.isclose(circular_mean(np.deg2rad([170.0, -160.0]), [2, 1]), np.deg2rad(179.96), atol=2e-3)
-
-
-def test_circular_mean_of_opposite_angles_has_no_direction():
     assert np.isnan(circular_mean([0.0, np.pi]))
 
 

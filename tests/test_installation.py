@@ -1,8 +1,9 @@
-"""`pip install .` gives the two methods alone: what they import is what it installs, and nothing of the lessons'."""
+"""`pip install .` gives the two methods alone; environment.txt is a full lock of pyproject.toml's ranges; arrows."""
 
 import ast
 import importlib.metadata
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -13,6 +14,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[1]
+LOCK = ROOT / "environment.txt"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 METHODS = ("geometry.py", "rendering", "depth_mcl", "spherical_stereo", "beyond")
 # What only the lessons, the commands or the tests have.
@@ -77,8 +79,6 @@ def test_what_the_methods_import_is_what_is_installed_with_them():
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     """Names of the files that setuptools would install, from a build of a copy of the package."""
-    import shutil
-
     folder = tmp_path_factory.mktemp("build")
     shutil.copytree(ROOT / "course_lib", folder / "course_lib", ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "README.md", "LICENSE"):
@@ -97,3 +97,47 @@ def test_every_file_of_the_package_is_installed(built):
     }
     assert built == there
     assert {"course_lib/py.typed", "course_lib/lessons/lesson_11/sphere_scene.html"} <= built
+
+
+def locked(text):
+    """Requirements of a lock's lines, comments left out."""
+    return [Requirement(line.split(" #")[0]) for line in text.splitlines() if line.strip() and line.strip()[0] != "#"]
+
+
+@pytest.fixture(scope="module")
+def versions():
+    """Locked version by package name."""
+    return {canonicalize_name(r.name): next(iter(r.specifier)).version for r in locked(LOCK.read_text("utf-8"))}
+
+
+def test_every_line_pins_one_exact_version():
+    requirements = locked(LOCK.read_text("utf-8"))
+    for requirement in requirements:
+        assert re.fullmatch(r"==[^*,]+", str(requirement.specifier)), f"{requirement} is not pinned"
+        assert requirement.url is None
+    names = [canonicalize_name(requirement.name) for requirement in requirements]
+    assert sorted(names) == sorted(set(names))
+
+
+def test_every_range_of_pyproject_is_met_and_the_test_tools_are_there(versions):
+    extras = PROJECT["optional-dependencies"]
+    for requirement in map(Requirement, [*PROJECT["dependencies"], *extras["lessons"], *extras["test"]]):
+        if requirement.name != PROJECT["name"]:  # an extra that names another one
+            assert versions[canonicalize_name(requirement.name)] in requirement.specifier, requirement
+    assert {"pytest", "pytest-xdist", "nbval", "hypothesis", "ruff"} <= set(versions)
+
+
+def test_the_environment_that_runs_is_the_locked_one(versions):
+    if not (Path(sys.prefix) / "course-ready.json").exists():
+        pytest.skip("these tests do not run in a .venv that course.py made")
+    for requirement in locked(LOCK.read_text("utf-8")):
+        if requirement.marker is None or requirement.marker.evaluate():
+            name = canonicalize_name(requirement.name)
+            assert importlib.metadata.version(name) == versions[name], f"{name} is another version than locked"
+
+
+def test_every_room_imports_only_rooms_below_it():
+    """Arrows between the rooms point one way: import-linter's contracts in pyproject.toml."""
+    command = [str(Path(sys.executable).with_name("lint-imports")), "--no-cache"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout

@@ -3,6 +3,7 @@
 A run is stopped with SIGKILL at one of the things that it does to files (Python's audit events), so nothing clears up.
 """
 
+import contextlib
 import inspect
 import json
 import os
@@ -47,12 +48,11 @@ def comes_to_its_end(work, stage, step):
     """Whether `work`, in a process of its own, ends before that step, at which it is killed."""
     child = os.fork()
     if not child:
-        try:
+        with contextlib.suppress(BaseException):
             watch(stage, step)
             work()
             os._exit(0)
-        finally:
-            os._exit(1)
+        os._exit(1)
     code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     assert code in (0, -signal.SIGKILL)
     return code == 0
@@ -83,17 +83,15 @@ def test_a_file_is_the_old_or_the_new_wherever_its_writer_is_killed(tmp_path):
 
 
 def test_a_folder_is_the_old_the_new_or_seen_as_not_whole_wherever_its_run_is_killed(tmp_path):
-    out, states, ended = tmp_path / "out", set(), False
-    for step in count(1):
+    out, states, ended, steps = tmp_path / "out", set(), False, count(1)
+    while not ended:
         shutil.rmtree(out, ignore_errors=True)
         write_run(out, "old")
-        ended = comes_to_its_end(lambda: write_run(out, "new"), tmp_path, step)
+        ended = comes_to_its_end(lambda: write_run(out, "new"), tmp_path, next(steps))
         files = tree(out)
         is_whole = files.pop("run.json", None) is not None
         assert set(files) == set(NAMES)
         states.add((is_whole, *sorted(set(files.values()))))
-        if ended:
-            break
     assert states == {(True, b"old"), (False, b"old"), (False, b"new", b"old"), (False, b"new"), (True, b"new")}
 
 

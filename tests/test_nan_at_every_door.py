@@ -23,16 +23,9 @@ WEIGHTS = np.array([0.5, 0.3, 0.2])
 UP, DOWN = np.array([0.9, 0.1, -0.4]), np.array([0.9, 0.1, -0.3])
 UP, DOWN = UP / np.linalg.norm(UP), DOWN / np.linalg.norm(DOWN)
 PLACES = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 3.0]])
-
-
 MAP = SemanticMap([Landmark("sofa", x, y, 10.0, 50.0) for x, y in PLACES])
 POSE = spherical_stereo.fit_rigid_2d(PLACES, PLACES + 1.0)
 SEEN = [Observation("sofa", x, y, 10.0, 50.0) for x, y in PLACES]
-
-
-def rng():
-    """The same draws for every call."""
-    return np.random.default_rng(3)
 
 
 def rendered(states):
@@ -78,7 +71,7 @@ DOORS = {
     "SceneMap": (lambda v: SceneMap(v, np.array([[0, 1, 2]])), (np.eye(3),)),
     "render": (rendered, (STATES,)),
     "initial_particles": (lambda s: depth_mcl.initial_particles(s, 4), (STATES[0],)),
-    "propagate": (lambda p, s: depth_mcl.propagate(p, s, rng()), (STATES, SIGMA)),
+    "propagate": (lambda p, s: depth_mcl.propagate(p, s, np.random.default_rng(3)), (STATES, SIGMA)),
     "likelihood, what is simulated": (
         lambda z, alpha: depth_mcl.likelihood(np.full((2, 2), 2.0), z, alpha),
         (np.full((3, 2, 2), 2.1), 0.1),
@@ -87,7 +80,7 @@ DOORS = {
     "weights": (depth_mcl.weights, (np.array([0.0, 0.5, 1.0]), 0.01)),
     "weighted_mean_state": (depth_mcl.weighted_mean_state, (STATES, WEIGHTS)),
     "effective_sample_size": (depth_mcl.effective_sample_size, (WEIGHTS,)),
-    "resample": (lambda w: depth_mcl.resample(w, rng()), (WEIGHTS,)),
+    "resample": (lambda w: depth_mcl.resample(w, np.random.default_rng(3)), (WEIGHTS,)),
     "MonteCarloLocalizer.initialize": (started, (STATES[0],)),
     "MonteCarloLocalizer": (filter_with, (SIGMA, 0.1, 0.01)),
     "nearest_path_error": (depth_mcl.nearest_path_error, (STATES[:, :3], STATES[:, :3] + 0.1)),
@@ -115,8 +108,6 @@ DOORS = {
     "odometry": (tracked, (0.3, 0.1, 0.2, 0.01 * np.eye(3))),
 }
 TRIALS = [(door, k) for door, (_, arguments) in DOORS.items() for k in range(len(arguments))]
-
-
 MEANT = {("likelihood, what is simulated", 0, np.inf)}  # where nothing is hit
 
 
@@ -133,11 +124,10 @@ def test_a_number_that_is_none_is_refused_by_name(door, k, bad):
     if (door, k, bad) in MEANT:
         return
     function, arguments = DOORS[door]
-    spoiled = [np.array(argument, dtype=float) if np.ndim(argument) else argument for argument in arguments]
-    if np.ndim(spoiled[k]):
-        spoiled[k].flat[-1] = bad
-    else:
-        spoiled[k] = bad
+    spoiled = list(arguments)
+    spoiled[k] = np.array(arguments[k], dtype=float)
+    spoiled[k].flat[-1] = bad
+    spoiled[k] = spoiled[k] if np.ndim(arguments[k]) else bad
     with pytest.raises(ValueError, match=r"\w+") as told:
         function(*spoiled)
     # Said by the door, not by whatever came upon it further in.

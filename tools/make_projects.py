@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> int:
     require_processes("--processes", arguments.processes)
     require_output_folder(out)
     require_output_folder(arguments.work, "--work")
-    from course_lib.commands.progress import progress_bar
+    from course_lib.commands.output import progress_bar
     from course_lib.lessons.project_2.rooms import make_project_rooms
     from course_lib.simulation.data_folder import checksums
 

@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Make the data; return the exit code."""
     out = output_folder(arguments, NAME, SEED)
-    from course_lib.commands.progress import progress_bar
+    from course_lib.commands.output import progress_bar
     from course_lib.simulation.room.data import make_room_data
 
     summary = make_room_data(out, arguments.seed, progress=progress_bar("photographs", "pair"))

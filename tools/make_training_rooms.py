@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 from course_lib.commands.arguments import require_output_folder
-from course_lib.commands.progress import progress_bar
+from course_lib.commands.output import progress_bar
 
 FIRST_TRAINING_ROOM, N_TRAINING_ROOMS = 1000, 400  # chosen; rooms 100 to 119 choose the threshold
 IMAGES_PER_ROOM = 3

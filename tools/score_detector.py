@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Score the detector; return the exit code."""
     from itertools import chain
 
-    from course_lib.commands.progress import progress_bar
+    from course_lib.commands.output import progress_bar
     from course_lib.files import require_file
     from course_lib.paths import data_path
     from course_lib.simulation.room.training_images import labelled_images, make_room_images, read_image_list

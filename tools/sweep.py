@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, then tells what all seeds gave."""
-    from course_lib.commands.progress import progress_bar
+    from course_lib.commands.output import progress_bar
     from course_lib.experiments.corridor import over_recordings, table_over_recordings
     from course_lib.experiments.intervals import INTERVAL_PERCENT, median_interval
     from course_lib.experiments.results import write_results

@@ -6,35 +6,24 @@ At every place of a grid the command draws what the rig would see there, and a m
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course_lib.commands.arguments import require_count, require_output_folder, require_positive, require_seed
-from course_lib.files import run_folder
-
-if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
-    from course_lib.experiments.ambiguity import AmbiguityMap
-    from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from course_lib.commands import arguments as options
+from course_lib.commands.output import print_and_write, progress_bar
 
 SURE = 0.8  # the lowest confidence of an answer, as in `SemanticLocalizer`
 MIN_SHARE = 0.001  # of the belief, below which a pair is not listed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    add("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
-    add(
-        "--association",
-        default="greedy,consistent",
-        metavar="NAMES",
-        help="the matchers to ask, with commas (default: greedy,consistent)",
-    )
-    add("--step", type=float, default=0.5, metavar="METRES", help="distance between places (default: 0.5)")
-    add("--draws", type=int, default=4, metavar="N", help="views drawn at each place (default: 4)")
-    add("--seed", type=int, default=1, metavar="N", help="seed of the views (default: 1)")
-    add("--out", type=Path, default=Path("results/ambiguity"), metavar="FOLDER", help="for the pictures and numbers")
-    add("--json", action="store_true", help="print one JSON object instead of the table")
+    options.add_semantic_map(parser)
+    told = "the matchers to ask, with commas (default: greedy,consistent)"
+    options.add_text(parser, "--association", "NAMES", told, "greedy,consistent")
+    told = "distance between places (default: 0.5)"
+    parser.add_argument("--step", type=float, default=0.5, metavar="METRES", help=told)
+    options.add_number(parser, "--draws", "views drawn at each place (default: 4)", 4)
+    options.add_number(parser, "--seed", "seed of the views (default: 1)", 1)
+    options.add_results(parser, "for the pictures and numbers", Path("results/ambiguity"))
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -42,49 +31,40 @@ def run(arguments: argparse.Namespace) -> int:
     import numpy as np
 
     from course_lib.beyond.look_alikes.matchers import matcher
-    from course_lib.commands.progress import progress_bar
     from course_lib.experiments.ambiguity import ambiguity_map
     from course_lib.experiments.results import write_results
     from course_lib.plots.room_figures import ambiguity_figure
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-    names = arguments.association.split(",")
+    names, step = arguments.association.split(","), arguments.step
     for name in names:
         matcher(name)  # raises an error for a name that does not exist
-    require_positive("--step", arguments.step, "metres")
-    require_count("--draws", arguments.draws)
-    require_seed(arguments.seed)
-    require_output_folder(arguments.out)
+    options.require_positive("--step", step, "metres")
+    options.check_options(arguments)
     semantic_map = SemanticMap.load(arguments.map)
     results, figures = {}, {}
     for name in names:
-        found = ambiguity_map(
-            semantic_map,
-            np.random.default_rng(arguments.seed),
-            arguments.step,
-            arguments.draws,
-            association=name,
-            progress=progress_bar(name, "place"),
-        )
+        rng, bar = np.random.default_rng(arguments.seed), progress_bar(name, "place")
+        found = ambiguity_map(semantic_map, rng, step, arguments.draws, association=name, progress=bar)
         if not len(found.places):
-            raise ValueError(
-                f"no place of {arguments.map} is free at steps of {arguments.step:g} m: give a smaller --step"
-            )
+            raise ValueError(f"no place of {arguments.map} is free at steps of {step:g} m: give a smaller --step")
         results[name] = ambiguity_numbers(found, semantic_map)
         figures[name] = ambiguity_figure(semantic_map, found, f"{arguments.map.name}, matched by {name}")
-    summary = {"map": str(arguments.map), "step_m": arguments.step, "draws": arguments.draws, "seed": arguments.seed}
-    text = "\n\n".join(ambiguity_text(name, numbers) for name, numbers in results.items())
-    print(json.dumps(summary | {"matchers": results}) if arguments.json else text, flush=True)
-    with run_folder(arguments.out, "ambiguity") as out:
-        write_results(out / "ambiguity.json", summary | {"matchers": results})
+    summary = {"map": str(arguments.map), "step_m": step, "draws": arguments.draws, "seed": arguments.seed}
+    summary["matchers"] = results
+
+    def write(out: Path) -> list[str]:
+        write_results(out / "ambiguity.json", summary)
         for name, figure in figures.items():
             figure.savefig(out / f"ambiguity_{name}.png", dpi=110)
-    if not arguments.json:
-        print(f"\nPictures: {arguments.out}/ambiguity_*.png")
+        return []
+
+    text = "\n\n".join(ambiguity_text(name, numbers) for name, numbers in results.items())
+    print_and_write(arguments, "ambiguity", summary, text, write, "\nPictures: {out}/ambiguity_*.png")
     return 0
 
 
-def ambiguity_numbers(found: AmbiguityMap, semantic_map: SemanticMap) -> dict:
+def ambiguity_numbers(found, semantic_map) -> dict:
     """An ambiguity map in numbers, for JSON. Landmarks are numbered from 0, in the map's order."""
     return {
         "places": len(found.places),

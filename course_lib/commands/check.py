@@ -1,7 +1,6 @@
 """Look at the environment: one line a dependency, OpenGL, and a rendered depth image compared with its closed form.
 
-Every line reads OK, or FAIL with the cure. What can crash (a package's import, an OpenGL driver) runs in a process of
-its own. Exit code 0 only if every line is OK.
+Every line reads OK, or FAIL with the cure. Imports and drivers can crash, so they run in a process of their own.
 """
 
 from __future__ import annotations
@@ -10,10 +9,15 @@ import argparse
 import importlib.metadata
 import json
 import platform
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from itertools import chain
+from typing import NamedTuple
+
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 DISTRIBUTION = "course-lib"
 EXTRAS = ("", "lessons", "test")  # what environment.txt pins
@@ -37,8 +41,7 @@ for name in sys.argv[1:]:
 """
 
 
-@dataclass(frozen=True)
-class Finding:
+class Finding(NamedTuple):
     """One line of the report: what was looked at, whether it is as it should be, and the cure where it is not."""
 
     ok: bool
@@ -54,25 +57,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    findings = []
-    for look in (check_packages, check_depth_images, check_machine):
-        for finding in look():
-            print(finding, flush=True)
-            findings.append(finding)
-    failed = sum(not finding.ok for finding in findings)
-    print(f"\n{failed} of {len(findings)} FAILED." if failed else f"\nAll {len(findings)} OK.", flush=True)
+    right = []
+    for finding in chain(check_packages(), check_depth_images(), check_machine()):
+        print(finding, flush=True)
+        right.append(finding.ok)
+    failed = right.count(False)
+    print(f"\n{failed} of {len(right)} FAILED." if failed else f"\nAll {len(right)} OK.", flush=True)
     return 1 if failed else 0
 
 
 def check_packages() -> Iterator[Finding]:
     """A finding for Python and for each dependency: is it there, in the wanted range, importable?"""
-    from packaging.requirements import Requirement
-
     yield Finding(True, f"Python {platform.python_version()} (wanted >=3.11)")  # course.py has refused an older one
     requirements = [Requirement(text) for text in importlib.metadata.requires(DISTRIBUTION) or []]
     here = [r for r in requirements if r.marker is None or any(r.marker.evaluate({"extra": e}) for e in EXTRAS)]
     modules = import_names()
-    broken = find_broken_imports([name for r in here for name in modules.get(plain(r.name), [])])
+    broken = find_broken_imports([name for r in here for name in modules.get(canonicalize_name(r.name), [])])
     for requirement in here:
         wanted = f"(wanted {requirement.specifier or 'any version'})"
         try:
@@ -81,25 +81,21 @@ def check_packages() -> Iterator[Finding]:
             yield Finding(False, f"{requirement.name} is not installed {wanted}", MAKE_ANEW)
             continue
         text = f"{requirement.name} {version} {wanted}"
-        errors = [f"{name}: {broken[name]}" for name in modules.get(plain(requirement.name), []) if name in broken]
+        names = modules.get(canonicalize_name(requirement.name), [])
+        errors = [f"{name}: {broken[name]}" for name in names if name in broken]
         if errors:
             text += f" cannot be imported ({errors[0]})"
         yield Finding(not errors and requirement.specifier.contains(version, prereleases=True), text, MAKE_ANEW)
-
-
-def plain(name: str) -> str:
-    return name.lower().replace("-", "_").replace(".", "_")
 
 
 def import_names() -> dict[str, list[str]]:
     """Return distribution -> modules that it brings; of several, the one named as the distribution stands for all."""
     found: dict[str, list[str]] = {}
     for module, distributions in importlib.metadata.packages_distributions().items():
-        for distribution in distributions:
-            if module.isidentifier():
-                found.setdefault(plain(distribution), []).append(module)
+        for name in map(canonicalize_name, distributions if module.isidentifier() else ()):
+            found.setdefault(name, []).append(module)
     for name, modules in found.items():
-        own = [module for module in modules if module.lower() == name]
+        own = [module for module in modules if canonicalize_name(module) == name]
         found[name] = own or [module for module in modules if not module.startswith("_")]
     return found
 
@@ -110,10 +106,7 @@ def find_broken_imports(modules: list[str]) -> dict[str, str]:
     rest = list(modules)
     while rest:
         code, output = run_apart("-c", IMPORT_SCRIPT, *rest)
-        for line in output.splitlines():
-            if line.startswith("broken "):
-                _, name, message = line.split(" ", 2)
-                broken[name] = message
+        broken |= dict(re.findall(r"^broken (\S+) (.*)$", output, re.M))
         if code == 0:
             break
         culprit = [line.split()[1] for line in output.splitlines() if line.startswith("importing ")][-1]
@@ -136,12 +129,8 @@ def check_depth_images() -> Iterator[Finding]:
         renderer, error_mm, n_pixels = json.loads(results[0])
         if backend == "vtk":
             yield Finding(True, f"OpenGL renderer: {renderer}")
-        yield Finding(
-            error_mm <= MAX_ERROR_MM,
-            f"depth image by {name}: largest error {error_mm:.4f} mm in {n_pixels:,} pixels of a tilted plane (at most "
-            f"{MAX_ERROR_MM} mm)",
-            cure,
-        )
+        text = f"depth image by {name}: largest error {error_mm:.4f} mm in {n_pixels:,} pixels of a tilted plane "
+        yield Finding(error_mm <= MAX_ERROR_MM, f"{text}(at most {MAX_ERROR_MM} mm)", cure)
 
 
 def render_plane(backend: str) -> tuple[str, float, int]:
@@ -180,17 +169,16 @@ def check_machine() -> Iterator[Finding]:
 
 
 def run_apart(*words: str, timeout_s: float = HANGS_S) -> tuple[int | None, str]:
-    """Exit code and output of a Python of its own; the code is None when it ran out of time."""
+    """Return exit code and output of a Python of its own; the code is None when it ran out of time."""
     pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
     try:
-        done = subprocess.run([sys.executable, "-P", *words], timeout=timeout_s, **pipes)
+        ended = subprocess.run([sys.executable, "-P", *words], timeout=timeout_s, **pipes)
     except subprocess.TimeoutExpired as expired:
-        return None, (expired.stdout or b"").decode("utf-8", "replace")
-    return done.returncode, done.stdout.decode("utf-8", "replace")
+        ended = expired
+    return getattr(ended, "returncode", None), (ended.stdout or b"").decode("utf-8", "replace")
 
 
 def describe_exit(code: int | None) -> str:
-    """How a process ended, in words."""
     if code is None:
         return "no answer in time"
     return f"crashed with signal {-code}" if code < 0 else f"stopped with code {code}"

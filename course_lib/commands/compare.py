@@ -13,43 +13,26 @@ import subprocess
 import sys
 from pathlib import Path
 
-from course_lib.commands.arguments import parse_numbers, parse_seeds, require_output_folder
-from course_lib.files import run_folder
+from course_lib.commands import arguments as options
+from course_lib.commands.output import print_and_write, progress_bar
 from course_lib.paths import REPOSITORY
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    add("--map", required=True, type=Path, metavar="MESH", help="mesh in metres (PLY, OBJ, STL, GLB)")
-    add("--sequence", required=True, type=Path, metavar="FOLDER", help="folder of the recording, with its poses.txt")
-    add(
-        "--methods",
-        default="annealed,paper,floor",
-        metavar="NAMES",
-        help="with commas: annealed, paper (its filter, six degrees of freedom), floor (what refinement makes of the "
-        "truth, every frame, once); all: the annealed filter with one idea switched off, too (default: "
-        "annealed,paper,floor)",
-    )
-    add("--every", default="1", metavar="NUMBERS", help="thin the recording: 1,2,4,8 runs each (default: 1)")
-    add("--seeds", default="1", metavar="A-B", help="seeds of the filters (default: 1)")
-    add(
-        "--out",
-        type=Path,
-        default=Path("results/compare"),
-        metavar="FOLDER",
-        help="for compare.jsonl, compare.json, covariance.png",
-    )
-    add(
-        "--icp",
-        action="store_true",
-        help="beside them, point-to-plane ICP of each frame against the map: Open3D, installed as for bench",
-    )
-    add("--json", action="store_true", help="print one JSON object instead of the table")
+    options.add_mesh_recording(parser, "folder of the recording, with its poses.txt")
+    told = "with commas: annealed, paper (its filter, six degrees of freedom), floor (what refinement makes of the "
+    told += "truth, every frame, once); all: the annealed filter with one idea switched off, too (default: "
+    options.add_text(parser, "--methods", "NAMES", told + "annealed,paper,floor)", "annealed,paper,floor")
+    options.add_text(parser, "--every", "NUMBERS", "thin the recording: 1,2,4,8 runs each (default: 1)", "1")
+    options.add_text(parser, "--seeds", "A-B", "seeds of the filters (default: 1)", "1")
+    options.add_folder(parser, "--out", "for compare.jsonl, compare.json, covariance.png", Path("results/compare"))
+    told = "beside them, point-to-plane ICP of each frame against the map: Open3D, installed as for bench"
+    options.add_flag(parser, "--icp", told)
+    options.add_flag(parser, "--json", "print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, then tells what all runs of a method and a thinning gave together."""
-    from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments import six_degrees
     from course_lib.experiments.results import write_results
@@ -57,10 +40,9 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.plots.experiment_figures import covariance_figure
     from course_lib.rendering.scene_map import SceneMap
 
-    seeds = parse_seeds(arguments.seeds)
-    everies = parse_numbers("--every", arguments.every)
+    seeds, everies = options.parse_seeds(arguments.seeds), options.parse_numbers("--every", arguments.every)
     methods = six_degrees.require_methods(arguments.methods)
-    require_output_folder(arguments.out)
+    options.check_options(arguments)
     SceneMap.load(arguments.map)
     recording = read_sequence(arguments.sequence)
     recording.require_poses()  # told now, not after the first run
@@ -83,24 +65,24 @@ def run(arguments: argparse.Namespace) -> int:
         found = icp_runs(arguments.map, arguments.sequence, everies)
         rows |= {name: six_degrees.pooled([own]) for name, own in found.items()}
     result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
-    print(json.dumps(result) if arguments.json else six_degrees.six_degrees_table(rows), flush=True)
-    with run_folder(arguments.out, "compare") as out:
+
+    def write(out: Path) -> list[str]:
         write_results(out / "compare.json", result)
         covariance_figure(grouped).savefig(out / "covariance.png", dpi=110)
+        return []
+
+    print_and_write(arguments, "compare", result, six_degrees.six_degrees_table(rows), write, told="")
     return 0
 
 
 def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, dict[str, list]]:
-    """Errors of every frame by ICP, by variant and thinning, as `run_frames` has them; ICP never says that it is lost.
-
-    Raises `RuntimeError` where Open3D is not installed or ends with an error.
-    """
+    """Errors of every frame by ICP, by variant and thinning, as `run_frames` has them; ICP never says it is lost."""
     script, packages = REPOSITORY / "tools" / "benchmarks" / "icp.py", REPOSITORY / ".bench"
     if not packages.is_dir():
         raise RuntimeError("--icp needs Open3D: .venv/bin/python -m tools.bench --quick installs it")
-    words = ["--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (REPOSITORY, packages)))}
-    command = [sys.executable, "-P", str(script), *map(str, words)]
+    words = [script, "--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
+    environment = os.environ | {"PYTHONPATH": f"{REPOSITORY}{os.pathsep}{packages}"}
+    command = [sys.executable, "-P", *map(str, words)]
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"ICP ended with code {done.returncode}; what it said stands above")

@@ -8,23 +8,11 @@ import importlib
 import json
 from pathlib import Path
 
-from course_lib.commands.arguments import (
-    MAX_PARTICLES,
-    add_backend_argument,
-    add_detector_arguments,
-    chosen_detector,
-    parse_numbers,
-    parse_seeds,
-    require_count,
-    require_output_folder,
-    require_processes,
-    require_seed,
-)
-from course_lib.commands.progress import progress_bar
+from course_lib.commands import arguments as options
+from course_lib.commands.output import progress_bar
 from course_lib.files import run_folder, temporary_folder
 from course_lib.paths import REPOSITORY, data_path
 
-REPORTING = "1 to 99 are for reporting; tune on 10000 and above"
 NETWORK_FILES = (".cfg", ".weights", ".names", ".json")  # what makes a detector what it is
 OTHERS = {"experiment", "out", "json", "debug"}  # arguments that are no parameters of the experiment
 
@@ -35,121 +23,103 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_options, parser.description = DEMOS[name]
     parser.set_defaults(experiment=name)
     add_options(parser)
-    _folder(
-        parser,
-        "--out",
-        "where results and figures go, and finished seeds are looked for (default: a folder of this run in "
-        f"results/demo_{name}, which holds the finished seeds of all runs)",
-    )
-    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
-
-
-def _number(parser: argparse.ArgumentParser, option: str, told: str, default: int | None = None) -> None:
-    parser.add_argument(option, type=int, default=default, metavar="N", help=told)
-
-
-def _folder(parser: argparse.ArgumentParser, option: str, told: str) -> None:
-    parser.add_argument(option, type=Path, metavar="FOLDER", help=told)
-
-
-def _text(parser: argparse.ArgumentParser, option: str, metavar: str, told: str, default: str | None = None) -> None:
-    parser.add_argument(option, default=default, metavar=metavar, help=told)
+    told = "where results and figures go, and finished seeds are looked for (default: a folder of this run in "
+    options.add_results(parser, f"{told}results/demo_{name}, which holds the finished seeds of all runs)")
 
 
 def _choice(parser: argparse.ArgumentParser, option: str, told: str, choices: tuple, default=None) -> None:
     parser.add_argument(option, choices=choices, default=default, type=type(choices[0]), help=told)
 
 
-def _flag(parser: argparse.ArgumentParser, option: str, told: str, **more: str) -> None:
-    parser.add_argument(option, action="store_true", help=told, **more)
-
-
 def _seeds(parser: argparse.ArgumentParser, told: str, default: str | None = None) -> None:
     usual = f" (default: {default})" if default else ""
-    _text(parser, "--seeds", "A-B", f"{told}{usual}, such as 4, 1-20 or 1-5,8. {REPORTING}", default)
+    told += f"{usual}, such as 4, 1-20 or 1-5,8. 1 to 99 are for reporting; tune on 10000 and above"
+    options.add_text(parser, "--seeds", "A-B", told, default)
 
 
 def _corridor(parser: argparse.ArgumentParser) -> None:
-    _number(parser, "--seed", "seed of the recording and of the filter (default: 0)", 0)
+    options.add_number(parser, "--seed", "seed of the recording and of the filter (default: 0)", 0)
     _seeds(parser, "several seeds instead: median, least and greatest over their recordings")
     told = "made anew for the seed (default), or data/corridor/wagon, where a seed is the filter's alone"
     _choice(parser, "--recording", told, ("own", "shipped"), "own")
     told = "measure instead what the simulator's idealizations are worth, on small images (seeds 10001-10003)"
-    _flag(parser, "--idealizations", told)
-    _flag(parser, "--kindnesses", argparse.SUPPRESS, dest="idealizations")  # its name before
+    options.add_flag(parser, "--idealizations", told)
+    options.add_flag(parser, "--kindnesses", argparse.SUPPRESS, dest="idealizations")  # its name before
     told = "the paper's experiment on a wagon (default); 6: cameras carried by hand, the annealed filter beside "
     _choice(parser, "--dof", f"xyyaw: {told}the paper's and the floor", ("xyyaw", "6"), "xyyaw")
     told = "with --seeds: rows of the table by name, with commas, among them proposed and fallon (default: all)"
-    _text(parser, "--methods", "NAMES", told)
-    _number(parser, "--particles", "number of particles (default: 200)", 200)
-    _number(parser, "--frames", "only the first N frames (default: all)")
-    _folder(parser, "--data", "corridor data (default: data/corridor)")
-    add_backend_argument(parser)
+    options.add_text(parser, "--methods", "NAMES", told)
+    options.add_number(parser, "--particles", "number of particles (default: 200)", 200)
+    options.add_number(parser, "--frames", "only the first N frames (default: all)")
+    options.add_folder(parser, "--data", "corridor data (default: data/corridor)")
+    options.add_backend_argument(parser)
 
 
 def _room(parser: argparse.ArgumentParser) -> None:
-    _number(parser, "--seed", "of the photographs; another than 4 takes them anew (default: 4, the shipped ones)")
-    _number(parser, "--poses", "only the first N poses of each experiment (default: all)")
-    _folder(parser, "--data", "made by tools.make_room (default: data/room)")
-    add_detector_arguments(parser)
+    options.add_number(
+        parser, "--seed", "of the photographs; another than 4 takes them anew (default: 4, the shipped ones)"
+    )
+    options.add_number(parser, "--poses", "only the first N poses of each experiment (default: all)")
+    options.add_folder(parser, "--data", "made by tools.make_room (default: data/room)")
+    options.add_detector_arguments(parser)
     told = "how objects are matched to the map: greedy (the paper's), hungarian, consistent (default: greedy)"
-    _text(parser, "--association", "NAME", told, "greedy")
+    options.add_text(parser, "--association", "NAME", told, "greedy")
     told = "also localize from the images rolled by K columns, and print how far the pose moves (default: not)"
     parser.add_argument("--roll", type=int, nargs="+", metavar="K", default=[], help=told)
 
 
 def _rooms(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "of the rooms", "1-20")
-    _number(parser, "--poses", "poses in each room at each height (default: the paper's 20)", 20)
+    options.add_number(parser, "--poses", "poses in each room at each height (default: the paper's 20)", 20)
     told = "also run the same rooms with the lower camera tilted by DEG degrees, such as 0 0.1 0.3 1 (default: not)"
     parser.add_argument("--tilts", type=float, nargs="+", default=[], metavar="DEG", help=told)
     names = ["greedy", "hungarian", "consistent"]
     told = "matchers whose answers are counted: greedy (the paper's), hungarian, consistent (default: all)"
     parser.add_argument("--association", choices=names, nargs="+", default=names, metavar="NAME", help=told)
     told = "also take N - 1 further views a few steps on, and follow them with and without odometry (default: 1)"
-    _number(parser, "--views", told, 1)
+    options.add_number(parser, "--views", told, 1)
     told = "from how many poses of a room further views are taken, at the two heights by turns (default: --poses)"
-    _number(parser, "--view-poses", told)
+    options.add_number(parser, "--view-poses", told)
     told = "also switch off each part of the consistent matcher's evidence, on the right map and on a wrong one"
-    _flag(parser, "--ablation", told)
-    add_detector_arguments(parser)
-    _number(parser, "--processes", "rooms made at a time (default: one for each core)")
+    options.add_flag(parser, "--ablation", told)
+    options.add_detector_arguments(parser)
+    options.add_number(parser, "--processes", "rooms made at a time (default: one for each core)")
 
 
 def _walk(parser: argparse.ArgumentParser) -> None:
-    _number(parser, "--seed", "seed of room and walk (default: 1)", 1)
+    options.add_number(parser, "--seed", "seed of room and walk (default: 1)", 1)
     _seeds(parser, "several rooms instead, told together")
-    _text(parser, "--every", "NUMBERS", "thin the recordings: 1,2,4 runs each (default: 1,2,4)", "1,2,4")
+    options.add_text(parser, "--every", "NUMBERS", "thin the recordings: 1,2,4 runs each (default: 1,2,4)", "1,2,4")
     told = "with commas: annealed, paper, floor, or the annealed filter with one idea switched off, as in compare"
-    _text(parser, "--methods", "NAMES", f"{told} (default: annealed,floor)", "annealed,floor")
+    options.add_text(parser, "--methods", "NAMES", f"{told} (default: annealed,floor)", "annealed,floor")
 
 
 def _lost(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "a trial each: recording, kidnapping, start", "1-3")
     told = "instead of the corridor, a recording of this folder with its truth and, in map.ply, its map"
-    _folder(parser, "--recording", told)
-    _folder(parser, "--data", "corridor data (default: data/corridor)")
+    options.add_folder(parser, "--recording", told)
+    options.add_folder(parser, "--data", "corridor data (default: data/corridor)")
 
 
 def _trouble(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "a recording, or a room and a walk, each", "1-5")
-    _text(parser, "--share", "PERCENT", "of the frames that are troubled (default: 1,5,20)", "1,5,20")
+    options.add_text(parser, "--share", "PERCENT", "of the frames that are troubled (default: 1,5,20)", "1,5,20")
     told = "paper 1's filter on depth images, or paper 2's on panoramas (default: both)"
     _choice(parser, "--method", told, ("depth", "stereo"))
     told = "of the depth camera: the paper's filter on a wagon (default), or the annealed one, carried by hand"
     _choice(parser, "--dof", told, ("xyyaw", "6"), "xyyaw")
     told = "of each depth recording and each walk (default: 100 depth images, 24 pairs of panoramas)"
-    _number(parser, "--frames", told)
-    _number(parser, "--processes", "seeds run at a time (default: one for each core)")
-    _folder(parser, "--data", "corridor data (default: data/corridor)")
-    _folder(parser, "--detector", "the network (default: data/detector)")
+    options.add_number(parser, "--frames", told)
+    options.add_number(parser, "--processes", "seeds run at a time (default: one for each core)")
+    options.add_folder(parser, "--data", "corridor data (default: data/corridor)")
+    options.add_folder(parser, "--detector", "the network (default: data/detector)")
 
 
 def _finale(parser: argparse.ArgumentParser) -> None:
-    _number(parser, "--seed", "seed of the room (default: 1)", 1)
+    options.add_number(parser, "--seed", "seed of the room (default: 1)", 1)
     _seeds(parser, "several rooms instead")
-    _number(parser, "--places", "random places in each room (default: 4)", 4)
-    _folder(parser, "--detector", "the network (default: data/detector)")
+    options.add_number(parser, "--places", "random places in each room (default: 4)", 4)
+    options.add_folder(parser, "--detector", "the network (default: data/detector)")
 
 
 DEMOS = {
@@ -167,20 +137,20 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, prints the table, writes results and figures; returns the exit code."""
     name = arguments.experiment
     parameters = {key: value for key, value in vars(arguments).items() if key not in OTHERS}
-    if arguments.out:
-        require_output_folder(arguments.out)
+    options.check_options(arguments)
     processes = parameters.pop("processes", None)
-    require_processes("--processes", processes)
-    _check(parameters)
+    options.require_processes("--processes", processes)
+    if parameters.get("seeds") is not None:
+        parameters["seeds"] = options.parse_seeds(parameters["seeds"])
+    for option in {"every", "share"} & set(parameters):
+        parameters[option] = options.parse_numbers(f"--{option}", parameters[option])
     if "input_size" in parameters:
-        detector = chosen_detector(arguments)  # what is wrong with it is told now, not after the first room
-        options = {key: parameters.pop(key) for key in ("detector", "input_size", "score_threshold")}
-        if name == "room":
-            parameters["detector"] = detector
-        else:
-            parameters["network"] = _network(**options)
+        detector = options.chosen_detector(arguments)  # what is wrong with it is told now, not after the first room
+        own = {key: parameters.pop(key) for key in ("detector", "input_size", "score_threshold")}
+        parameters |= {"detector": detector} if name == "room" else {"network": _network(**own)}
 
     from course_lib.commands.demo_figures import FIGURES
+    from course_lib.experiments.results import write_results
     from course_lib.experiments.runner import Runner
 
     experiment = importlib.import_module(f"course_lib.experiments.{name}")
@@ -189,26 +159,15 @@ def run(arguments: argparse.Namespace) -> int:
         outcome = experiment.run(Runner(kept, temporary, processes, progress_bar), **parameters)
         print(json.dumps(outcome.summary) if arguments.json else outcome.text, flush=True)
         with run_folder(arguments.out, f"demo {name}") as out:
-            written = _write(out, outcome.files)
+            written = []
+            for file, (numbers, rows) in outcome.files.items():
+                write_results(out / file, numbers, rows)
+                written += [file, Path(file).with_suffix(".csv").name] if rows else [file]
             if outcome.figures:
                 written += FIGURES[outcome.figures](out, outcome.drawn)
     if not arguments.json:
         print(f"\nWritten: {', '.join(written)}")
     return 0
-
-
-def _check(parameters: dict) -> None:
-    """Check options that several demos have, and read lists of numbers."""
-    if parameters.get("seed") is not None:
-        require_seed(parameters["seed"])
-    if parameters.get("seeds") is not None:
-        parameters["seeds"] = parse_seeds(parameters["seeds"])
-    for option in ("every", "share"):
-        if option in parameters:
-            parameters[option] = parse_numbers(f"--{option}", parameters[option])
-    for option in ("frames", "poses", "places"):
-        require_count(f"--{option}", parameters.get(option))
-    require_count("--particles", parameters.get("particles"), MAX_PARTICLES)
 
 
 def _network(detector: Path | None, input_size: list[int] | None, score_threshold: float | None) -> list:
@@ -219,13 +178,3 @@ def _network(detector: Path | None, input_size: list[int] | None, score_threshol
         if path.suffix in NETWORK_FILES and path.name != "scores.json":
             digest.update(path.name.encode() + path.read_bytes())
     return [str(folder), digest.hexdigest()[:16], input_size, score_threshold]
-
-
-def _write(out: Path, files: dict) -> list[str]:
-    from course_lib.experiments.results import write_results
-
-    names = []
-    for name, (numbers, rows) in files.items():
-        write_results(out / name, numbers, rows)
-        names += [name, Path(name).with_suffix(".csv").name] if rows else [name]
-    return names

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.commands.scene_output import write_scene
+from course_lib.commands.output import write_scene
 from course_lib.depth_mcl.sequence import FAR, NEAR
 from course_lib.depth_mcl.sequence_files import write_tum
 from course_lib.experiments.room_evaluation import CORRECT, INCORRECT
@@ -17,14 +16,8 @@ from course_lib.plots.experiment_figures import covariance_figure, risk_coverage
 from course_lib.plots.location_scene import location_scene
 from course_lib.plots.track_scene import track_scene
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-    from course_lib.experiments import corridor as corridor_experiment
-    from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
-
-
-def corridor(out: Path, record: corridor_experiment.Record) -> list[str]:
+def corridor(out: Path, record) -> list[str]:
     """Figures 5 and 6, the overview, the paper's method as trajectory (TUM) and scene."""
     maps, sequence, rows, backend = record
     ours = rows["proposed"]
@@ -33,15 +26,12 @@ def corridor(out: Path, record: corridor_experiment.Record) -> list[str]:
     positions = {name: row.run.states[:, :2] for name, row in shown.items()}
     lines = {f"{name}, nearest path": row.nearest.errors for name, row in shown.items()}
     lines["ours, timed"] = ours.timed.errors
-    frames = np.asarray(ours.run.frames, float)
-    write_tum(
-        out / "trajectory.txt",
-        frames if sequence.times is None else sequence.times[: len(frames)],
-        ours.run.camera_to_world,
-    )
+    frames = np.asarray(ours.run.frames)
+    times = frames.astype(float) if sequence.times is None else sequence.times[: len(frames)]
+    write_tum(out / "trajectory.txt", times, ours.run.camera_to_world)
     figures = {
         "figure_5.png": corridor_figures.figure_5(sequence.path_on_floor, positions, walls),
-        "figure_6.png": corridor_figures.figure_6(np.asarray(ours.run.frames), lines),
+        "figure_6.png": corridor_figures.figure_6(frames, lines),
         "overview.png": corridor_figures.overview_figure(maps.detailed, sequence, ours.run, backend),
     }
     make = partial(track_scene, maps.detailed, ours.run, sequence, "z", NEAR, FAR)
@@ -54,7 +44,7 @@ def covariance(out: Path, runs: dict[str, list[dict]]) -> list[str]:
     return _save(out, {"covariance.png": covariance_figure(runs)})
 
 
-def room(out: Path, record: tuple[SemanticMap, dict]) -> list[str]:
+def room(out: Path, record) -> list[str]:
     """All poses of both experiments from above; of one that is right and one that is wrong a figure and a scene."""
     semantic_map, results = record
     figures, scenes = {}, []
@@ -77,20 +67,21 @@ def room(out: Path, record: tuple[SemanticMap, dict]) -> list[str]:
     return _save(out, figures) + scenes
 
 
-def risk_coverage(out: Path, curve: dict) -> list[str]:
-    """What a threshold on the confidence buys."""
-    return _save(out, {"risk_coverage.png": risk_coverage_figure({"consistent, one view": curve})})
-
-
-def trouble(out: Path, results: dict[str, dict]) -> list[str]:
-    """How many frames are within the usual error again."""
-    return _save(out, {"trouble.png": trouble_figure(results)})
-
-
-def _save(out: Path, figures: dict[str, Figure], dots_per_inch: int = 110) -> list[str]:
+def _save(out: Path, figures: dict, dots_per_inch: int = 110) -> list[str]:
     for name, figure in figures.items():
         figure.savefig(out / name, dpi=dots_per_inch)
     return list(figures)
 
 
-FIGURES = {one.__name__: one for one in (corridor, covariance, room, risk_coverage, trouble)}
+def risk_coverage(out: Path, curve: dict) -> list[str]:
+    """What a threshold on the confidence buys."""
+    return _save(out, {"risk_coverage.png": risk_coverage_figure({"consistent, one view": curve})})
+
+
+FIGURES = {
+    "corridor": corridor,
+    "room": room,
+    "risk_coverage": risk_coverage,
+    "covariance": lambda out, runs: _save(out, {"covariance.png": covariance_figure(runs)}),
+    "trouble": lambda out, results: _save(out, {"trouble.png": trouble_figure(results)}),
+}

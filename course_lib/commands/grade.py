@@ -8,38 +8,27 @@ import sys
 import time
 from pathlib import Path
 
-from course_lib.commands.arguments import require_output_folder, require_positive, require_processes, require_seed
-from course_lib.commands.progress import progress_bar
+from course_lib.commands import arguments as options
+from course_lib.commands.output import progress_bar
 from course_lib.files import run_folder
-
-TABLE, TOTALS, PAGE = "answers.csv", "totals.csv", "grades.html"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add(
-        "folder",
-        type=Path,
-        metavar="FOLDER",
-        help="what the students handed in: FOLDER/alice/06_....ipynb or FOLDER/alice_06.ipynb, notebooks or .py files",
-    )
+    told = "what the students handed in: FOLDER/alice/06_....ipynb or FOLDER/alice_06.ipynb, notebooks or .py files"
+    add("folder", type=Path, metavar="FOLDER", help=told)
     add("--out", type=Path, metavar="DIR", help="where the results go (default: FOLDER with -grades after its name)")
-    add(
-        "--seed",
-        type=int,
-        help="draws the hidden inputs; keep it to yourself (default: a new one, which the page tells: with it the "
-        "results come again)",
+    told = (
+        "draws the hidden inputs; keep it to yourself (default: a new one, which the page tells: with it the results "
     )
-    add("--jobs", type=int, metavar="N", help="answers at a time (default: one a processor)")
+    add("--seed", type=int, help=told + "come again)")
+    options.add_number(parser, "--jobs", "answers at a time (default: one a processor)")
     add("--seconds", type=float, default=60.0, metavar="S", help="all calls of one answer (default: %(default)g)")
     add("--call-seconds", type=float, default=20.0, metavar="S", help="one call of an answer (default: %(default)g)")
     add("--memory", type=int, default=1000, metavar="MB", help="memory of one answer (default: %(default)d)")
-    add("--scores", action="store_true", help="also run the projects' last functions: minutes for each submission")
-    add(
-        "--trusted",
-        action="store_true",
-        help="grade although this machine cannot keep strangers' code in: only where you trust every file",
-    )
+    options.add_flag(parser, "--scores", "also run the projects' last functions: minutes for each submission")
+    told = "grade although this machine cannot keep strangers' code in: only where you trust every file"
+    options.add_flag(parser, "--trusted", told)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -54,18 +43,20 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.classroom.grading import grade_folder
 
     out = results_folder(arguments.folder, arguments.out)
-    require_processes("--jobs", arguments.jobs)
-    require_positive("--seconds", arguments.seconds, "seconds")
-    require_positive("--memory", arguments.memory, "MB")
+    options.require_processes("--jobs", arguments.jobs)
+    options.require_positive("--seconds", arguments.seconds, "seconds")
+    options.require_positive("--memory", arguments.memory, "MB")
     seed = secrets.randbelow(2**48) if arguments.seed is None else arguments.seed
-    require_seed(seed)
-    require_output_folder(out)
+    options.require_seed(seed)
+    options.require_output_folder(out)
     limits = Limits(arguments.call_seconds, arguments.seconds, arguments.memory)
-    started = time.monotonic()
-    jobs, trusted, scores = arguments.jobs or cpu_count(), arguments.trusted, arguments.scores
-    bar = progress_bar("grading", "answer")
-    results = grade_folder(arguments.folder, seed, jobs, limits, trusted, scores, bar)
-    pages = {TABLE: answers_table(results), TOTALS: totals_table(results), PAGE: grade_page(results)}
+    started, jobs, bar = time.monotonic(), arguments.jobs or cpu_count(), progress_bar("grading", "answer")
+    results = grade_folder(arguments.folder, seed, jobs, limits, arguments.trusted, arguments.scores, bar)
+    pages = {
+        "answers.csv": answers_table(results),
+        "totals.csv": totals_table(results),
+        "grades.html": grade_page(results),
+    }
     print(summary(results, time.monotonic() - started), flush=True)  # before the disk can be full
     with run_folder(out, "grade") as new:  # the table and the page are of one grading
         for name, text in pages.items():
@@ -85,7 +76,7 @@ def results_folder(folder: Path, out: Path | None) -> Path:
 def summary(results, seconds: float) -> str:
     """What the terminal says: how many, what was refused and not read, how long, and with which seed."""
     statuses = [one.status for one in results.graded]
-    counts = ", ".join(f"{statuses.count(status)} {status}" for status in dict.fromkeys(sorted(statuses))) or "none"
+    counts = ", ".join(f"{statuses.count(status)} {status}" for status in sorted(set(statuses))) or "none"
     students = {one.student for one in results.graded}
     lines = [f"{len(students)} students, {len(statuses)} answers: {counts}; {seconds:.0f} s"]
     tried = [(one.student, one.number, what) for one in results.graded for what in one.refused]
@@ -93,7 +84,6 @@ def summary(results, seconds: float) -> str:
     lines += [f"and {len(tried) - 20} more, on the page"] if len(tried) > 20 else []
     lines += [f"not read: {one.name}: {one.why}" for one in results.collection.not_read[:20]]
     held = "all walls about strangers' code held" if not results.missing else "--trusted, without: "
-    lines.append(f"{held}{'; '.join(results.missing)}. Seed: {results.seed}")
     peak = max((one.peak_mb for one in results.graded), default=0.0)
-    lines.append(f"memory of the largest answer's process: {peak:.0f} MB")
-    return "\n".join(lines)
+    lines += [f"{held}{'; '.join(results.missing)}. Seed: {results.seed}"]
+    return "\n".join([*lines, f"memory of the largest answer's process: {peak:.0f} MB"])

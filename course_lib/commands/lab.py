@@ -21,6 +21,7 @@ from course_lib.paths import REPOSITORY
 
 EXTENSION = Path(__file__).with_name("lab_extension")
 FIRST_LESSON = "work/00_start_here.ipynb"
+NO_UPDATES = "jupyterlab.NeverCheckForUpdate"
 
 # Parts of JupyterLab that a student does not need: what other packages bring along, and what would ask or load things.
 DISABLED_SERVER_EXTENSIONS = """
@@ -50,18 +51,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("--port", type=int, help="port to listen on (default: 8888, or the next one that is free)")
     add("--no-browser", action="store_true", help="open no browser, only print the address")
-    add(
-        "--notebook",
-        metavar="PATH",
-        help="the notebook to open: 06, P1 or a path; of a lesson it is your copy in work/ (default: lesson 00)",
-    )
-    add(
-        "--fresh",
-        nargs="+",
-        default=[],
-        metavar="NN",
-        help="begin these lessons or projects anew (06, P1); your earlier copies are renamed and stay beside the new",
-    )
+    told = "the notebook to open: 06, P1 or a path; of a lesson it is your copy in work/ (default: lesson 00)"
+    add("--notebook", metavar="PATH", help=told)
+    told = "begin these lessons or projects anew (06, P1); your earlier copies are renamed and stay beside the new"
+    add("--fresh", nargs="+", default=[], metavar="NN", help=told)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -97,15 +90,14 @@ def lab_command(
 ) -> tuple[list[str], dict[str, str]]:
     """Write the settings of the lessons' JupyterLab, and return its command and environment variables.
 
-    port: None takes 8888 or the next free one. notebook: path below `root`. state_folder: for settings, workspaces and
-    the kernel's history (None: `.venv/course-lab`). root: the folder that JupyterLab shows. JUPYTER_TOKEN in the
-    environment, where it is set, is the token; else a random one is printed.
+    port: None takes 8888 or the next free one. notebook: path below `root`, the folder that JupyterLab shows.
+    state_folder: for settings and workspaces (None: `.venv/course-lab`). Token: JUPYTER_TOKEN, else a random one.
     """
     state = Path(state_folder) if state_folder is not None else Path(sys.prefix) / "course-lab"
     write_settings(state)
     trust_lessons(state, root)
-    command = [sys.executable, "-P", "-m", "jupyterlab"]
-    command += [
+    command = [
+        *(sys.executable, "-P", "-m", "jupyterlab"),
         "--ServerApp.ip=127.0.0.1",
         f"--ServerApp.port={port or 8888}",
         f"--ServerApp.port_retries={0 if port else 50}",
@@ -121,16 +113,11 @@ def lab_command(
     environment = {name: value for name, value in os.environ.items() if name not in others}
     if not environment.get("JUPYTER_TOKEN"):
         environment.pop("JUPYTER_TOKEN", None)  # set but empty, it would switch the token off
-    environment.update(
-        JUPYTER_CONFIG_DIR=str(state / "config"),
-        JUPYTER_DATA_DIR=str(state / "data"),
-        JUPYTER_RUNTIME_DIR=str(state / "runtime"),
-        JUPYTERLAB_SETTINGS_DIR=str(state / "user-settings"),
-        JUPYTERLAB_WORKSPACES_DIR=str(state / "workspaces"),
-        IPYTHONDIR=str(state / "ipython"),
-        COURSE_RECORD=str(root / WORK / "record"),
-    )
-    return command, environment
+    folders = {f"JUPYTER_{name.upper()}_DIR": name for name in ("config", "data", "runtime")}
+    folders |= {"JUPYTERLAB_SETTINGS_DIR": "user-settings", "JUPYTERLAB_WORKSPACES_DIR": "workspaces"}
+    folders["IPYTHONDIR"] = "ipython"
+    environment |= {name: str(state / folder) for name, folder in folders.items()}
+    return command, environment | {"COURSE_RECORD": str(root / WORK / "record")}
 
 
 def write_settings(state: Path) -> None:
@@ -139,15 +126,10 @@ def write_settings(state: Path) -> None:
         "config/jupyter_server_config.json": {
             "ServerApp": {"jpserver_extensions": dict.fromkeys(DISABLED_SERVER_EXTENSIONS, False)},
             "FileContentsManager": {"pre_save_hook": HOOK},
-            "LabApp": {
-                "extension_manager": "readonly",
-                "news_url": None,
-                "check_for_updates_class": "jupyterlab.NeverCheckForUpdate",
-            },
+            "LabApp": {"extension_manager": "readonly", "news_url": None, "check_for_updates_class": NO_UPDATES},
         },
         "config/labconfig/page_config.json": {
-            "buildAvailable": False,
-            "buildCheck": False,
+            **{"buildAvailable": False, "buildCheck": False},
             "disabledExtensions": dict.fromkeys(DISABLED_LAB_EXTENSIONS, True),
         },
         "config/labconfig/default_setting_overrides.json": SETTINGS,

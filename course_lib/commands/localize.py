@@ -7,30 +7,21 @@ errors are printed too; without it the start must be given.
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections import Counter
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.commands.arguments import (
-    MAX_PARTICLES,
-    add_backend_argument,
-    require_count,
-    require_output_folder,
-    require_positive,
-    require_seed,
-    warn_of_fewer,
+from course_lib.commands import arguments as options
+from course_lib.commands.output import print_and_write, progress_bar
+
+START = (
+    "pose of the camera's body (x forward, y left, z up) in the first frame: six numbers, X Y Z in metres in the map's "
+    "own axes, then ROLL PITCH YAW in degrees (all 0: level and towards x in a world whose z is up, into which --up "
+    "turns another one); or a file with a 4 x 4 camera-to-world matrix, or whose first row is one of poses.txt; or "
+    "unknown: it is searched for in the whole map, which needs --up (default: that of the recording)"
 )
-from course_lib.files import run_folder
-
-if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
-    from course_lib.depth_mcl.sequence import DepthSequence
-    from course_lib.rendering.scene_map import SceneMap
-
 EPILOG = """\
 the folder of the recording:
   depth/*.png      16-bit depth along the optical axis, 0 = no measurement; the first number in the name is the frame
@@ -57,72 +48,42 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the examples
     parser.epilog = EPILOG
     add = parser.add_argument
-    add("--map", required=True, type=Path, metavar="MESH", help="mesh in metres (PLY, OBJ, STL, GLB)")
-    add("--sequence", required=True, type=Path, metavar="FOLDER", help="folder of the recording")
-    add(
-        "--start",
-        metavar="POSE",
-        help="pose of the camera's body (x forward, y left, z up) in the first frame: six numbers, X Y Z in metres in "
-        "the map's own axes, then ROLL PITCH YAW in degrees (all 0: level and towards x in a world whose z is up, into "
-        "which --up turns another one); or a file with a 4 x 4 camera-to-world matrix, or whose first row is one of "
-        "poses.txt; or unknown: it is searched for in the whole map, which needs --up (default: that of the recording)",
-    )
-    per_metre = "units of the depth images in a metre (default: 1000, millimetres; TUM RGB-D files: 5000)"
-    add("--depth-scale", type=float, default=UNITS_PER_METRE, metavar="N", help=per_metre)
+    options.add_mesh_recording(parser, "folder of the recording")
+    options.add_text(parser, "--start", "POSE", START)
+    told = "units of the depth images in a metre (default: 1000, millimetres; TUM RGB-D files: 5000)"
+    add("--depth-scale", type=float, default=UNITS_PER_METRE, metavar="N", help=told)
     add("--near", type=float, default=NEAR, metavar="M", help=f"nothing nearer is seen, metres (default: {NEAR:g})")
     add("--far", type=float, default=FAR, metavar="M", help=f"nothing farther is seen, metres (default: {FAR:g})")
     add("--dof", choices=["xyyaw", "6"], default="6", help="what to estimate (default: 6)")
-    add(
-        "--up",
-        choices=["x", "-x", "y", "-y", "z", "-z", "unknown"],
-        help="the axis of map and poses that points up (default: what up.txt in the folder says, else unknown)",
-    )
-    add(
-        "--method",
-        choices=["annealed", "paper"],
-        help="the filter: annealed and refined, which adapts to the camera's motion (default with --dof 6, six degrees "
-        "of freedom only), or the paper's (default with --dof xyyaw), whose particles and noise are set by hand",
-    )
-    add(
-        "--recover",
-        action="store_true",
-        help="search the whole map when the annealed filter is lost: seconds a frame until it is found again",
-    )
-    add("--particles", type=int, default=200, metavar="N", help="number of particles (default: 200)")
-    add("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: 0)")
-    add("--frames", type=int, metavar="N", help="only the first N frames")
-    noise = "system noise a frame of the paper's filter, metres (default: 0.05; xyyaw: 0.15)"
-    add("--sigma-position", type=float, metavar="M", help=noise)
+    told = "the axis of map and poses that points up (default: what up.txt in the folder says, else unknown)"
+    add("--up", choices=["x", "-x", "y", "-y", "z", "-z", "unknown"], help=told)
+    told = "the filter: annealed and refined, which adapts to the camera's motion (default with --dof 6, six degrees "
+    told += "of freedom only), or the paper's (default with --dof xyyaw), whose particles and noise are set by hand"
+    add("--method", choices=["annealed", "paper"], help=told)
+    told = "search the whole map when the annealed filter is lost: seconds a frame until it is found again"
+    options.add_flag(parser, "--recover", told)
+    options.add_number(parser, "--particles", "number of particles (default: 200)", 200)
+    options.add_number(parser, "--seed", "seed of the random numbers (default: 0)", 0)
+    options.add_number(parser, "--frames", "only the first N frames")
+    told = "system noise a frame of the paper's filter, metres (default: 0.05; xyyaw: 0.15)"
+    add("--sigma-position", type=float, metavar="M", help=told)
     add("--sigma-rotation", type=float, metavar="DEG", help="the same, in degrees (default: 2; xyyaw: 1.5)")
-    add("--drop-far", action="store_true", help="leave out triangles more than 5 km from the middle of the map")
-    add_backend_argument(parser)
-    add(
-        "--out",
-        type=Path,
-        metavar="FOLDER",
-        help="write results, trajectory, figure and scene here (track.html: map, path and the worst frames' points, to "
-        "be turned in a browser)",
-    )
-    add("--json", action="store_true", help="print one JSON object instead of the table")
+    options.add_flag(parser, "--drop-far", "leave out triangles more than 5 km from the middle of the map")
+    options.add_backend_argument(parser)
+    told = "write results, trajectory, figure and scene here (track.html: map, path and the worst frames' points, to "
+    options.add_results(parser, told + "be turned in a browser)")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the filter. 0 when it reached the last frame, whatever it believes of the track."""
     from course_lib.commands.localize_report import believed, localize_table, write_localized
-    from course_lib.commands.progress import progress_bar
     from course_lib.depth_mcl.sequence import read_sequence
-    from course_lib.experiments.recordings import (
-        pose_error_summary,
-        run_annealed,
-        run_recovering,
-        run_sequence,
-        system_noise,
-    )
+    from course_lib.experiments import recordings
     from course_lib.rendering.scene_map import SceneMap
 
     method, sigma = _checked(arguments)
     sequence = read_sequence(arguments.sequence, arguments.depth_scale)
-    warn_of_fewer("--frames", arguments.frames, len(sequence.frames), f"{arguments.sequence} has")
+    options.warn_of_fewer("--frames", arguments.frames, len(sequence.frames), f"{arguments.sequence} has")
     up = arguments.up or sequence.up or "unknown"
     if arguments.dof == "xyyaw" and up == "unknown":
         raise ValueError("--dof xyyaw: which way is up in this world is unknown; give --up AXIS, or use --dof 6")
@@ -132,58 +93,32 @@ def run(arguments: argparse.Namespace) -> int:
         sequence, start, searched = _found_start(arguments, scene_map, sequence, up)
     else:
         start = _given_start(arguments.start, sequence, "z" if up == "unknown" else up)
+    localized = recordings.run_recovering if arguments.recover else recordings.run_annealed
     if method == "paper":
-        localized = partial(run_sequence, **system_noise(arguments.dof, *sigma))
-    else:
-        localized = run_recovering if arguments.recover else run_annealed
-    result = localized(
-        scene_map,
-        sequence,
-        n_particles=arguments.particles,
-        seed=arguments.seed,
-        up="z" if up == "unknown" else up,
-        start=start,
-        frames=arguments.frames,
-        backend=arguments.backend,
-        exact=arguments.exact,
-        near=arguments.near,
-        far=arguments.far,
-        watched=True,
-        progress=progress_bar("localizing"),
-    )
+        localized = partial(recordings.run_sequence, **recordings.system_noise(arguments.dof, *sigma))
+    asked = {name: getattr(arguments, name) for name in ("seed", "frames", "backend", "exact", "near", "far")}
+    asked |= {"n_particles": arguments.particles, "up": "z" if up == "unknown" else up, "start": start}
+    result = localized(scene_map, sequence, **asked, watched=True, progress=progress_bar("localizing"))
+    noise = {"sigma_position_m": sigma[0], "sigma_rotation_deg": sigma[1]} if method == "paper" else {}
+    files = {"map": str(arguments.map), "sequence": str(arguments.sequence)}
     summary = {
-        "method": method,
-        **({"sigma_position_m": sigma[0], "sigma_rotation_deg": sigma[1]} if method == "paper" else {}),
-        "recover": arguments.recover,
-        "n_particles": arguments.particles,
-        "map": str(arguments.map),
-        "sequence": str(arguments.sequence),
-        "start": arguments.start or "first row of poses.txt",
-        "dof": arguments.dof,
-        "up": up,
-        "seed": arguments.seed,
-        "depth_units_per_metre": arguments.depth_scale,
-        "near_m": arguments.near,
-        "far_m": arguments.far,
-        "backend": arguments.backend,
-        "exact": arguments.exact,
+        **{"method": method, **noise, "recover": arguments.recover, "n_particles": arguments.particles, **files},
+        **{"start": arguments.start or "first row of poses.txt", "dof": arguments.dof, "up": up},
+        **{"seed": arguments.seed, "depth_units_per_metre": arguments.depth_scale},
+        **{"near_m": arguments.near, "far_m": arguments.far, "backend": arguments.backend, "exact": arguments.exact},
         **searched,
         "frames": len(result.frames),
         "frames_without_measurement": result.frames_without_measurement,
         "frames_at_fault": dict(Counter(fault for fault in result.faults if fault not in (None, "no return"))),
         **{f"frames_{status}": result.statuses.count(status) for status in ("tracked", "doubtful", "lost")},
         "believes": believed(result.frames, result.statuses),
-        **(pose_error_summary(result, sequence) if sequence.has_poses else {}),
+        **(recordings.pose_error_summary(result, sequence) if sequence.has_poses else {}),
         "renders_per_frame": float(np.mean(result.renders)),
         "most_renders": int(result.renders.max()),
         "ms_per_frame": result.ms_per_frame,
     }
-    print(json.dumps(summary) if arguments.json else localize_table(summary), flush=True)
-    if arguments.out:
-        with run_folder(arguments.out, "localize") as out:
-            written = write_localized(out, summary, result, sequence, scene_map)
-        if not arguments.json:
-            print(f"Written to {arguments.out}: " + ", ".join(written))
+    write = partial(write_localized, summary=summary, result=result, sequence=sequence, scene_map=scene_map)
+    print_and_write(arguments, "localize", summary, localize_table(summary), write, "Written to {out}: {files}")
     if not arguments.json:
         print(summary["believes"])
     return 0
@@ -198,27 +133,21 @@ def _checked(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
         raise ValueError("--recover goes with the annealed filter: --dof 6, and not --method paper")
     if method == "annealed" and arguments.dof != "6":
         raise ValueError("--method annealed estimates six degrees of freedom: leave out --dof xyyaw, or --method")
-    sigma = list(SIGMA[arguments.dof])
-    for index, (name, limit, unit) in enumerate((("position", 10, "m"), ("rotation", 180, "degrees"))):
+    sigma = dict(zip(("position", "rotation"), SIGMA[arguments.dof], strict=True))
+    for name, limit in (("position", "10 m"), ("rotation", "180 degrees")):
         given = getattr(arguments, f"sigma_{name}")
-        if given is None:
-            continue
-        if method == "annealed":
+        if given is not None and method == "annealed":
             raise ValueError(f"--sigma-{name} goes with --method paper: the annealed filter finds its noise itself")
-        if not 0 <= given <= limit:
-            raise ValueError(f"--sigma-{name} must be between 0 and {limit} {unit} a frame; got {given:g}")
-        sigma[index] = given
-    require_seed(arguments.seed)
-    require_count("--particles", arguments.particles, MAX_PARTICLES)
-    require_count("--frames", arguments.frames)
-    require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
-    require_positive("--near", arguments.near, "metres")
-    require_positive("--far", arguments.far, "metres")
+        if given is not None and not 0 <= given <= float(limit.split()[0]):
+            raise ValueError(f"--sigma-{name} must be between 0 and {limit} a frame; got {given:g}")
+        sigma[name] = sigma[name] if given is None else given
+    options.check_options(arguments)
+    options.require_positive("--depth-scale", arguments.depth_scale, "units in a metre (1000 for millimetres)")
+    options.require_positive("--near", arguments.near, "metres")
+    options.require_positive("--far", arguments.far, "metres")
     if arguments.near >= arguments.far:
         raise ValueError(f"--near must be below --far; got {arguments.near:g} and {arguments.far:g} m")
-    if arguments.out:
-        require_output_folder(arguments.out)
-    return method, tuple(sigma)
+    return method, tuple(sigma.values())
 
 
 def join_words(words: list[str]) -> list[str]:
@@ -244,51 +173,44 @@ def _numbers(text: str) -> list[float]:
         return []
 
 
-def _found_start(
-    arguments: argparse.Namespace, scene_map: SceneMap, sequence: DepthSequence, up: str
-) -> tuple[DepthSequence, np.ndarray, dict]:
+def _found_start(arguments, scene_map, sequence, up: str) -> tuple:
     """Return the recording from the frame in which its place was found, the pose there, and what the results tell."""
-    from course_lib.commands.progress import progress_bar
     from course_lib.experiments.recordings import find_start
 
     if up == "unknown":
         raise ValueError("--start unknown needs --up AXIS: only with gravity known can the whole map be searched")
-    bar = progress_bar("searching")
-    options = {"seed": arguments.seed, "up": up, "near": arguments.near, "far": arguments.far, "progress": bar}
-    index, candidates, start = find_start(scene_map, sequence, **options)
+    seen = {"near": arguments.near, "far": arguments.far, "progress": progress_bar("searching")}
+    index, candidates, start = find_start(scene_map, sequence, seed=arguments.seed, up=up, **seen)
     if candidates.status != "found":
         where = "; ".join(
             f"({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.rad2deg(yaw):.0f} degrees (evidence {place.evidence:.2f})"
             for place in candidates.poses
             for x, y, z, yaw in [(*place.state[:3], place.state[5])]
         )
-        raise ValueError(
-            f"the start was not found in {index + 1} frames: "
-            + (f"it may be at {where}; in a world whose z is up" if where else "no place agrees with the images")
-            + ". Give --start, or a recording that begins where the building looks like no other place"
-        )
+        told = f"it may be at {where}; in a world whose z is up" if where else "no place agrees with the images"
+        told += ". Give --start, or a recording that begins where the building looks like no other place"
+        raise ValueError(f"the start was not found in {index + 1} frames: {told}")
     return sequence.thinned(1, index), start, {"found_in_frame": sequence.frames[index]}
 
 
-def _given_start(given: str | None, sequence: DepthSequence, up: str) -> np.ndarray:
+def _given_start(given: str | None, sequence, up: str) -> np.ndarray:
     """Camera-to-world matrix `(4, 4)` of the first frame in the map's own world, optical convention."""
     from course_lib.depth_mcl.sequence_files import read_pose
     from course_lib.geometry import optical_pose, rotation_to_z_up
 
     if given is None:
         if not sequence.has_poses:
-            raise ValueError(
+            told = (
                 f"where does the camera start? {sequence.folder} holds no poses.txt; give --start X Y Z ROLL PITCH YAW "
-                "(metres, degrees) or --start FILE with a 4 x 4 camera-to-world matrix"
             )
+            raise ValueError(told + "(metres, degrees) or --start FILE with a 4 x 4 camera-to-world matrix")
         return sequence.camera_to_world[0]
     numbers = _numbers(given)
     if not numbers:
         return read_pose(given)
     if len(numbers) != 6 or not all(map(math.isfinite, numbers)):
-        raise ValueError(
-            f"--start needs six finite numbers, X Y Z in metres and ROLL PITCH YAW in degrees, or a file; got {given!r}"
-        )
+        told = "--start needs six finite numbers, X Y Z in metres and ROLL PITCH YAW in degrees, or a file"
+        raise ValueError(f"{told}; got {given!r}")
     state = np.concatenate([np.zeros(3), np.deg2rad(numbers[3:])])
     start = np.linalg.inv(rotation_to_z_up(up)) @ optical_pose(state)
     start[:3, 3] = numbers[:3]

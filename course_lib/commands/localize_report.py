@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for VTK
-    from course_lib.depth_mcl.sequence import DepthSequence
-    from course_lib.experiments.recordings import Run
-    from course_lib.rendering.scene_map import SceneMap
+from course_lib.commands.output import write_scene
 
 
 def believed(frames: list[int], statuses: list[str]) -> str:
@@ -60,11 +57,8 @@ def localize_table(s: dict) -> str:
     return "\n".join(lines)
 
 
-def write_localized(
-    folder: Path, summary: dict, result: Run, sequence: DepthSequence, scene_map: SceneMap
-) -> list[str]:
+def write_localized(folder: Path, summary: dict, result, sequence, scene_map) -> list[str]:
     """Write numbers (JSON), a row a frame (CSV), trajectory (TUM), figure and scene; return the names."""
-    from course_lib.commands.scene_output import write_scene
     from course_lib.depth_mcl.evaluation import pose_errors
     from course_lib.depth_mcl.sequence_files import write_tum
     from course_lib.experiments.results import write_results
@@ -72,17 +66,12 @@ def write_localized(
     from course_lib.plots.track_scene import track_scene
 
     count, positions = len(result.frames), result.camera_to_world[:, :3, 3]
-    rows = [
-        {
-            "frame": result.frames[k],
-            "status": result.statuses[k],
-            "fault": result.faults[k] or "",
-            "score": round(float(result.scores[k]), 5),
-            **{f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", positions[k], strict=True)},
-            **{name: round(value, 4) for name, value in result.agreements[k]._asdict().items()},
-        }
-        for k in range(count)
-    ]
+    rows = []
+    for k in range(count):
+        row = {"frame": result.frames[k], "status": result.statuses[k], "fault": result.faults[k] or ""}
+        row["score"] = round(float(result.scores[k]), 5)
+        row |= {f"{axis}_m": round(float(value), 5) for axis, value in zip("xyz", positions[k], strict=True)}
+        rows.append(row | {name: round(value, 4) for name, value in result.agreements[k]._asdict().items()})
     true = sequence.camera_to_world[:count] if sequence.has_poses else None
     if true is not None:
         for row, metres, radians in zip(rows, *pose_errors(result.camera_to_world, true), strict=True):
@@ -94,9 +83,7 @@ def write_localized(
     truth = None if true is None else true[:, :3, 3]
     figure = track_figure(scene_map, result.frames, positions, result.scores, result.statuses, up, truth)
     figure.savefig(folder / "track.png", dpi=130)
-    scene = write_scene(
-        folder / "track.html",
-        f"Path of {sequence.folder.name} in {Path(summary['map']).name}",
-        lambda: track_scene(scene_map, result, sequence, up, summary["near_m"], summary["far_m"]),
-    )
+    title = f"Path of {sequence.folder.name} in {Path(summary['map']).name}"
+    make = partial(track_scene, scene_map, result, sequence, up, summary["near_m"], summary["far_m"])
+    scene = write_scene(folder / "track.html", title, make)
     return ["localize.json", "localize.csv", "trajectory.txt (TUM)", "track.png", scene]

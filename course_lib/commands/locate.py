@@ -6,53 +6,32 @@ The objects come from a detector, or from boxes drawn by hand.
 from __future__ import annotations
 
 import argparse
-import json
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.commands.arguments import add_detector_arguments, chosen_detector
+from course_lib.commands import arguments as options
+from course_lib.commands.output import print_and_write, write_scene
 from course_lib.commands.stereo import add_pair_arguments
-from course_lib.files import run_folder
-
-if TYPE_CHECKING:  # imported where they are used, so that --help does not wait for OpenCV
-    from course_lib.spherical_stereo.panorama import View
-    from course_lib.spherical_stereo.pose.localization import Localization
-    from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
     add_pair_arguments(parser)
-    add("--map", required=True, type=Path, metavar="MAP", help="semantic map, .json or .csv")
-    add(
-        "--boxes",
-        type=Path,
-        metavar="JSON",
-        help="objects drawn by hand on both images, in the format below (default: a detector finds them)",
-    )
-    add_detector_arguments(parser)
-    add("--association", default="greedy", metavar="NAME", help="how objects are matched to the map (default: greedy)")
-    add(
-        "--paper",
-        action="store_true",
-        help="the paper's method as it is: it also gives a pose that its own residuals contradict (default: not)",
-    )
-    add(
-        "--out",
-        type=Path,
-        metavar="FOLDER",
-        help="write locate.json, .csv and .png here, and locate.html: map, rays and pose, to be turned in a browser "
-        "(default: nowhere)",
-    )
-    add("--json", action="store_true", help="print one JSON object instead of the tables")
+    options.add_semantic_map(parser)
+    told = "objects drawn by hand on both images, in the format below (default: a detector finds them)"
+    parser.add_argument("--boxes", type=Path, metavar="JSON", help=told)
+    options.add_detector_arguments(parser)
+    options.add_text(parser, "--association", "NAME", "how objects are matched to the map (default: greedy)", "greedy")
+    told = "the paper's method as it is: it also gives a pose that its own residuals contradict (default: not)"
+    options.add_flag(parser, "--paper", told)
+    told = "write locate.json, .csv and .png here, and locate.html: map, rays and pose, to be turned in a browser "
+    options.add_results(parser, told + "(default: nowhere)", text="tables")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Localizes and prints; 0 also where there is no pose, which is an answer."""
     from course_lib.beyond.look_alikes.matchers import matcher
-    from course_lib.commands.arguments import require_output_folder
     from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
     from course_lib.spherical_stereo.detection.detector import find_objects
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -62,57 +41,44 @@ def run(arguments: argparse.Namespace) -> int:
     by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]
     if arguments.boxes and any(one is not None for one in by_detector):
         raise ValueError("--boxes says what is in the images, and so does a detector: give one of the two")
-    association = matcher(arguments.association)
-    if arguments.out:
-        require_output_folder(arguments.out)
-    options = {"association": association, "reject_implausible": not arguments.paper}
-    localizer = SemanticLocalizer(StereoRig(arguments.baseline), SemanticMap.load(arguments.map), **options)
+    options.check_options(arguments)
+    association, exactly = matcher(arguments.association), arguments.paper
+    rig, semantic_map = StereoRig(arguments.baseline), SemanticMap.load(arguments.map)
+    localizer = SemanticLocalizer(rig, semantic_map, association=association, reject_implausible=not exactly)
     views = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
     detector = None
     if arguments.boxes:
         upper, lower = read_stereo_boxes(arguments.boxes).on(*views)
     else:
-        detector = chosen_detector(arguments)
+        detector = options.chosen_detector(arguments)
         upper, lower = (find_objects(view, detector) for view in views)
     found = localizer.localize_views(upper, lower)
     summary = {
-        "upper": str(arguments.upper),
-        "lower": str(arguments.lower),
-        "map": str(arguments.map),
+        **{name: str(getattr(arguments, name)) for name in ("upper", "lower", "map")},
         "baseline_m": arguments.baseline,
         "objects_from": str(arguments.boxes or arguments.detector or "data/detector"),
         "classes_of_the_detector": None if detector is None else detector.labels,
-        **localization_summary(found, localizer.semantic_map),
+        **localization_summary(found, semantic_map),
     }
     if detector is not None and arguments.detector is None and not arguments.json:
-        print(
-            f"The course's detector looked for objects. It knows {len(detector.labels)} classes, from simulated rooms "
-            f"only:\n{', '.join(detector.labels)}. Give yours with --detector, or draw --boxes.\n"
+        told = (
+            f"The course's detector looked for objects. It knows {len(detector.labels)} classes, from simulated rooms"
         )
-    print(json.dumps(summary) if arguments.json else _text(summary), flush=True)
-    if arguments.out:
-        with run_folder(arguments.out, "locate") as out:
-            written = _write(out, summary, views, found, localizer.semantic_map)
-        if not arguments.json:
-            print(f"\nWritten to {arguments.out}: " + ", ".join(written))
+        print(f"{told} only:\n{', '.join(detector.labels)}. Give yours with --detector, or draw --boxes.\n")
+    write = partial(_write, summary=summary, views=views, found=found, semantic_map=semantic_map)
+    print_and_write(arguments, "locate", summary, _text(summary), write)
     return 0
 
 
-def localization_summary(found: Localization, semantic_map: SemanticMap) -> dict:
+def localization_summary(found, semantic_map) -> dict:
     """Return a localization as plain values, for JSON: angles in degrees, and null where there is nothing to say."""
     x, y, heading = [None] * 3 if found.pose is None else found.pose
     sigma = [None] * 3 if found.covariance is None else np.sqrt(np.diag(found.covariance)).tolist()
     statistics, rejected = found.statistics, found.rejected_pose
     return {
-        "status": found.status,
-        "reason": found.reason,
-        "explanation": found.explanation,
-        "x_m": x,
-        "y_m": y,
-        "heading_deg": _degrees(heading),
-        "sigma_x_m": sigma[0],
-        "sigma_y_m": sigma[1],
-        "sigma_heading_deg": _degrees(sigma[2]),
+        **{"status": found.status, "reason": found.reason, "explanation": found.explanation},
+        **{"x_m": x, "y_m": y, "heading_deg": _degrees(heading)},
+        **{"sigma_x_m": sigma[0], "sigma_y_m": sigma[1], "sigma_heading_deg": _degrees(sigma[2])},
         "covariance": None if found.covariance is None else found.covariance.tolist(),
         "rejected_pose": None if rejected is None else [rejected.x, rejected.y, _degrees(rejected.theta)],
         "confidence": found.confidence,
@@ -135,28 +101,23 @@ def _degrees(radians: float | None) -> float | None:
     return None if radians is None else float(np.degrees(radians))
 
 
-def _objects(found: Localization, semantic_map: SemanticMap) -> list[dict]:
+def _objects(found, semantic_map) -> list[dict]:
     """Return a row for every object seen in both images: where it is, and which landmark it was taken for."""
     landmark_of = dict(found.used_pairs)
-    order = [i for i, _ in found.used_pairs]
+    residuals = [] if found.residuals is None else [float(np.linalg.norm(residual)) for residual in found.residuals]
+    residual_of = dict(zip(landmark_of, residuals, strict=False))  # none where there is no fit
     rows = []
     for one, match in zip(found.objects, found.matches, strict=True):
-        landmark = landmark_of.get(one.observation)
+        landmark, (x, y) = landmark_of.get(one.observation), one.position[:2]
+        row = {"label": one.label, "outcome": one.outcome, "matched_features": match.n_matches}
         placed, paired = bool(np.isfinite(one.position).all()), landmark is not None
-        residual = found.residuals[order.index(one.observation)] if paired and found.residuals is not None else None
-        rows.append(
-            {
-                "label": one.label,
-                "outcome": one.outcome,
-                "matched_features": match.n_matches,
-                "azimuth_deg": float(np.degrees(np.arctan2(one.position[1], one.position[0]))) if placed else None,
-                "range_m": float(np.hypot(*one.position[:2])) if placed else None,
-                "landmark": landmark,
-                "landmark_x_m": float(semantic_map.positions[landmark][0]) if paired else None,
-                "landmark_y_m": float(semantic_map.positions[landmark][1]) if paired else None,
-                "residual_m": None if residual is None else float(np.linalg.norm(residual)),
-            }
-        )
+        row["azimuth_deg"] = float(np.degrees(np.arctan2(y, x))) if placed else None
+        row["range_m"] = float(np.hypot(x, y)) if placed else None
+        row["landmark"] = landmark
+        at = semantic_map.positions[landmark].tolist() if paired else (None, None)
+        row["landmark_x_m"], row["landmark_y_m"] = at
+        row["residual_m"] = residual_of.get(one.observation)
+        rows.append(row)
     return rows
 
 
@@ -180,10 +141,8 @@ def _text(s: dict) -> str:
         turn = float(np.linalg.norm(s["lower_camera_turned_deg"]))
         lines.append(f"the lower camera is turned against the upper one by {turn:.1f} degrees")
     lines += ["", f"{s['objects_upper']} objects above, {s['objects_lower']} below, {len(s['objects'])} seen in both"]
-    if s["objects"]:
-        lines.append(
-            f" n {'object':14} {'features':>8} {'azimuth':>8} {'range [m]':>10}   {'landmark at':16} {'off by [m]':>10}"
-        )
+    head = f" n {'object':14} {'features':>8} {'azimuth':>8} {'range [m]':>10}   {'landmark at':16} {'off by [m]':>10}"
+    lines += [head] if s["objects"] else []
     lines += [f"{n:2d} {line}" for n, line in enumerate(map(_row, s["objects"]), start=1)]
     lines += [f" - {one['label']:14} {one['side']} image only: {one['reason']}" for one in s["unmatched"]]
     return "\n".join(lines)
@@ -200,11 +159,8 @@ def _row(row: dict) -> str:
     return start + f"{at:16} " + (f"{row['residual_m']:10.2f}" if row["residual_m"] is not None else "")
 
 
-def _write(
-    folder: Path, summary: dict, views: tuple[View, View], found: Localization, semantic_map: SemanticMap
-) -> list[str]:
+def _write(folder: Path, summary: dict, views, found, semantic_map) -> list[str]:
     """Write numbers, figure and scene, and return their names."""
-    from course_lib.commands.scene_output import write_scene
     from course_lib.experiments.results import write_results
     from course_lib.plots.location_scene import location_scene
     from course_lib.plots.room_figures import location_figure

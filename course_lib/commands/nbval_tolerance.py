@@ -6,9 +6,8 @@ A cell declares it in a comment at the end of a line, for people who read it:
     print(f"median error {error:.4f} m")  # numbers within 0.002
     print(f"median error {error:.4f} m")  # numbers within 5 % or 0.002
 
-It holds for every number that the cell prints or writes under a picture: the stored one and the new one may differ by
-so many percent of the stored one, or by so much. A processor that rounds other last digits comes, after many steps, to
-slightly other numbers; the words between them stay. Loaded with `-p course_lib.commands.nbval_tolerance`.
+It holds for every number that the cell prints or writes under a picture: the new one may differ by so many percent of
+the stored one, or by so much. The words between them stay. Loaded with `-p course_lib.commands.nbval_tolerance`.
 """
 
 from __future__ import annotations
@@ -43,17 +42,14 @@ def declared_tolerance(source: str) -> Tolerance | None:
 
 
 def within_tolerance(new: str, stored: str, tolerance: Tolerance) -> str:
-    """Return `stored` if the new text says the same words and its numbers hold the tolerance, else `new`.
-
-    Spaces between words count as one: a number with a digit more moves what stands beside it.
-    """
+    """Return `stored` if the new text says the same words and its numbers hold the tolerance, else `new`."""
+    # Spaces between words count as one: a number with a digit more moves what stands beside it.
     words = [re.sub(r"\s+", " ", NUMBER.sub("#", text)) for text in (new, stored)]
     if words[0] != words[1]:
         return new
-    for a, b in zip(map(float, NUMBER.findall(new)), map(float, NUMBER.findall(stored)), strict=True):
-        if abs(a - b) > max(tolerance.share * abs(b), tolerance.absolute) * (1 + 1e-9):
-            return new
-    return stored
+    pairs = zip(map(float, NUMBER.findall(new)), map(float, NUMBER.findall(stored)), strict=True)
+    held = all(abs(a - b) <= max(tolerance.share * abs(b), tolerance.absolute) * (1 + 1e-9) for a, b in pairs)
+    return stored if held else new
 
 
 def adopted(new: list[dict], stored: list[dict], tolerance: Tolerance, sanitize) -> list[dict]:

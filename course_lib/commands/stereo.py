@@ -6,14 +6,14 @@ Two distances an object: from the centres of its two boxes, and from the vertica
 from __future__ import annotations
 
 import argparse
-import json
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from course_lib.commands.arguments import require_output_folder, require_positive
-from course_lib.files import run_folder
+from course_lib.commands.arguments import add_results, check_options, require_positive
+from course_lib.commands.output import print_and_write
 
 BOXES_FORMAT = """\
 the boxes file, in pixels (left, top, right, bottom) of images of that size; "name" may be left out:
@@ -30,23 +30,19 @@ def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of every command on two panoramas, and end its help with the format of boxes."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the example
     parser.epilog = BOXES_FORMAT
-    parser.add_argument("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
-    parser.add_argument("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
-    parser.add_argument("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
+    add = parser.add_argument
+    add("--upper", required=True, type=Path, metavar="IMG", help="panorama of the upper camera (2:1)")
+    add("--lower", required=True, type=Path, metavar="IMG", help="panorama of the lower camera")
+    add("--baseline", required=True, type=float, metavar="M", help="height between the cameras, metres")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
     add_pair_arguments(parser)
-    add(
-        "--boxes",
-        type=Path,
-        metavar="JSON",
-        help="boxes in both images, as a JSON file in the format below (default: features alone, no distances)",
-    )
-    add("--sigma-pixels", type=float, default=1.0, metavar="PX", help="standard deviation of a box centre (default: 1)")
-    add("--out", type=Path, metavar="FOLDER", help="write figures and results here (default: nowhere)")
-    add("--json", action="store_true", help="print one JSON object instead of the table")
+    told = "boxes in both images, as a JSON file in the format below (default: features alone, no distances)"
+    parser.add_argument("--boxes", type=Path, metavar="JSON", help=told)
+    told = "standard deviation of a box centre (default: 1)"
+    parser.add_argument("--sigma-pixels", type=float, default=1.0, metavar="PX", help=told)
+    add_results(parser, "write figures and results here (default: nowhere)")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -59,9 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     require_positive("--baseline", arguments.baseline, "metres")
     require_positive("--sigma-pixels", arguments.sigma_pixels, "pixels")
+    check_options(arguments)
     rig = StereoRig(arguments.baseline)
-    if arguments.out:
-        require_output_folder(arguments.out)
     boxes = read_stereo_boxes(arguments.boxes) if arguments.boxes else None
     upper, lower = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
     if boxes:
@@ -73,9 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     seconds = time.perf_counter() - started
     objects = measure_objects(matching.matches, upper, lower, rig, arguments.sigma_pixels)
     summary = {
-        "upper": str(arguments.upper),
-        "lower": str(arguments.lower),
-        "baseline_m": rig.baseline,
+        **{"upper": str(arguments.upper), "lower": str(arguments.lower), "baseline_m": rig.baseline},
         "matches": len(features),
         "epipolar_percent": 100 * features.epipolar_share,
         "epipolar_tolerance_deg": float(np.degrees(features.tolerance)),
@@ -84,16 +77,15 @@ def run(arguments: argparse.Namespace) -> int:
         "sigma_pixels": arguments.sigma_pixels,
         "seconds": seconds,
         "objects": [_row(measured, boxes) for measured in objects],
-        "unmatched": [_unmatched_row(item, boxes) for item in matching.unmatched],
+        "unmatched": [],
     }
+    for item in matching.unmatched:
+        box, told = getattr(boxes, item.side)[item.index], {"side": item.side, "index": item.index}
+        summary["unmatched"].append({"name": box.name, "label": box.label, **told, "reason": item.reason})
     # NaN is no JSON: what has no value is null.
-    print(json.dumps(_nan_to_none(summary)) if arguments.json else _table(summary, boxes is not None), flush=True)
-    if arguments.out:
-        with run_folder(arguments.out, "stereo") as out:
-            _write(out, summary, (upper, lower), features, objects)
-        if not arguments.json:
-            drawn = "disparity.png" + (", distances.png, room.png" if objects else "")
-            print(f"\nWritten to {arguments.out}: stereo.json, {drawn}")
+    valid, text = _nan_to_none(summary), _table(summary, boxes is not None)
+    write = partial(_write, summary=summary, views=(upper, lower), features=features, objects=objects)
+    print_and_write(arguments, "stereo", valid, text, write)
     return 0
 
 
@@ -115,11 +107,6 @@ def _row(measured, boxes) -> dict:
     }
 
 
-def _unmatched_row(item, boxes) -> dict:
-    box = (boxes.upper if item.side == "upper" else boxes.lower)[item.index]
-    return {"name": box.name, "label": box.label, "side": item.side, "index": item.index, "reason": item.reason}
-
-
 def _nan_to_none(value):
     if isinstance(value, dict):
         return {key: _nan_to_none(item) for key, item in value.items()}
@@ -131,22 +118,16 @@ def _nan_to_none(value):
 def _table(s: dict, has_boxes: bool) -> str:
     lines = ["no features matched between the two images: are they sharp, and of one place?"]
     if s["matches"]:
-        lines = [
-            f"{s['matches']} features matched over the two images; {s['epipolar_percent']:.1f} % of them obey the "
-            f"epipolar constraint within {s['epipolar_tolerance_deg']:.2f} degrees"
-        ]
+        found = f"{s['matches']} features matched over the two images; {s['epipolar_percent']:.1f} % of them obey the "
+        lines = [found + f"epipolar constraint within {s['epipolar_tolerance_deg']:.2f} degrees"]
     if s["matches"] and s["epipolar_percent"] > 0:
         lines.append(
             f"median vertical disparity {s['median_disparity_px']:.1f} px, median azimuth difference "
             f"{s['median_azimuth_difference_px']:.2f} px; features and matching took {s['seconds']:.2f} s"
         )
-    return "\n".join(lines + _object_lines(s, has_boxes))
-
-
-def _object_lines(s: dict, has_boxes: bool) -> list[str]:
     if not has_boxes:
-        return ["", "No distances: give the objects' boxes with --boxes."]
-    lines = [
+        return "\n".join([*lines, "", "No distances: give the objects' boxes with --boxes."])
+    lines += [
         "",
         f"{len(s['objects'])} objects seen in both images; metres, ± one standard deviation",
         f"  from box centres: of the centre, whose u and v have {s['sigma_pixels']:g} px each",
@@ -159,7 +140,7 @@ def _object_lines(s: dict, has_boxes: bool) -> list[str]:
         lines.append(f"{(row['name'] or row['label'])[:28]:<28} {row['matches']:>8} {cells}")
     for row in s["unmatched"]:
         lines.append(f"{(row['name'] or row['label'])[:28]:<28} {'':>8} {row['side']} image only: {row['reason']}")
-    return lines
+    return "\n".join(lines)
 
 
 def _cell(measured: dict) -> str:
@@ -169,7 +150,8 @@ def _cell(measured: dict) -> str:
     return f"{horizontal:>14} {measured['distance_m']:>10.2f}"
 
 
-def _write(folder: Path, summary: dict, views, features, objects) -> None:
+def _write(folder: Path, summary: dict, views, features, objects) -> list[str]:
+    """Write numbers, a row an object, and figures; return the names."""
     from course_lib.experiments.results import write_results
     from course_lib.plots.stereo_figures import disparity_figure, distances_figure, room_figure
 
@@ -181,8 +163,11 @@ def _write(folder: Path, summary: dict, views, features, objects) -> None:
             for name, value in row[way].items():
                 rows[-1][f"{way}_{name}"] = value if isinstance(value, str) else round(value, 4)
     write_results(folder / "stereo.json", _nan_to_none(summary), rows)
-    disparity_figure(views[0].image, features).savefig(folder / "disparity.png", dpi=130)
+    figures = {"disparity.png": disparity_figure(views[0].image, features)}
     if objects:
         names = [row["name"] or row["label"] for row in summary["objects"]]
-        distances_figure(views, objects, names).savefig(folder / "distances.png", dpi=130)
-        room_figure(objects, names).savefig(folder / "room.png", dpi=130)
+        figures["distances.png"] = distances_figure(views, objects, names)
+        figures["room.png"] = room_figure(objects, names)
+    for name, figure in figures.items():
+        figure.savefig(folder / name, dpi=130)
+    return ["stereo.json", *figures]

@@ -1,7 +1,7 @@
 """Run the tests: those of tests/ and every lesson, as a strict nbval test of its stored outputs.
 
-Arguments that are not listed here go on to pytest: `course.py test tests/test_geometry.py -k wrap`. Paths among them
-choose what runs, in this one process; without a path everything does, on every processor.
+Other arguments go on to pytest: `course.py test tests/test_geometry.py -k wrap`. Paths among them choose what runs, in
+this one process; without a path everything does, on every processor.
 """
 
 from __future__ import annotations
@@ -42,10 +42,8 @@ del _stay_on_this_computer
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--all", action="store_true", help="also what is marked release, for a new version")
-    only = parser.add_mutually_exclusive_group()
-    only.add_argument("--fast", action="store_true", help="no lessons nor their tests, no browser, nothing marked slow")
-    only.add_argument("--no-notebooks", action="store_true", help="only tests/")
-    only.add_argument("--only-notebooks", action="store_true", help="only the lessons")
+    told = "no lessons nor their tests, no browser, nothing marked slow"
+    parser.add_argument("--fast", action="store_true", help=told)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -65,8 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
 def pytest_arguments(asked: argparse.Namespace, n_workers: int) -> list[str]:
     """Return pytest's arguments: what runs, how lessons are compared, and on how many processors."""
     paths = [word for word in asked.passed_on if names_tests(word)]
-    parts = ["tests"] if asked.fast or asked.no_notebooks else ["notebooks", "tests"]
-    words = [] if paths else ["notebooks"] if asked.only_notebooks else parts
+    words = [] if paths else ["tests"] if asked.fast else ["notebooks", "tests"]
     if any(path.startswith("notebooks") or ".ipynb" in path for path in paths or words):
         words += nbval_options()
     else:
@@ -75,7 +72,8 @@ def pytest_arguments(asked: argparse.Namespace, n_workers: int) -> list[str]:
     if asked.fast:
         left_out += ["browser", "slow"]
         words += [f"--ignore={folder}" for folder in LESSON_TESTS]
-    words += ["-m", " and ".join(f"not {mark}" for mark in left_out)] if left_out else []
+    if left_out:
+        words += ["-m", " and ".join(f"not {mark}" for mark in left_out)]
     if not paths and n_workers > 1:
         # A file stays on one processor, with its kernel, window and fixtures, in the order of tests/conftest.py.
         words += ["-n", str(n_workers), "--dist", "loadfile", "--no-loadscope-reorder"]
@@ -89,10 +87,7 @@ def names_tests(word: str) -> bool:
 
 
 def nbval_options() -> list[str]:
-    """Strict comparison of stored outputs, with this environment's kernel.
-
-    One file says what may differ everywhere. A plugin compares numbers with the tolerance that their cell declares.
-    """
+    """Strict comparison of stored outputs, with this environment's kernel; a plugin knows the cells' tolerances."""
     options = ["--nbval", "--nbval-current-env", "-p", "course_lib.commands.nbval_tolerance"]
     options += [f"--nbval-cell-timeout={HANGS_S}", f"--nbval-kernel-startup-timeout={HANGS_S}"]
     return [*options, "--nbval-sanitize-with", str(REPOSITORY / "tests" / "nbval_sanitize.cfg")]

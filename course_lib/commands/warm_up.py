@@ -1,7 +1,6 @@
-"""What takes seconds once is done before the first lesson: `python -m course_lib.commands.warm_up`.
+"""What takes seconds once is done at the end of a set-up: `python -m course_lib.commands.warm_up`.
 
-`course.py` runs this at the end of a set-up. Compiled loops are kept beside their source (course_lib/rendering/
-compiled.py), the simplified map of the corridor in the user's cache (simplification.py).
+Compiled loops are kept beside their source (compiled.py), the simplified map in the user's cache (simplification.py).
 """
 
 from __future__ import annotations
@@ -19,9 +18,8 @@ def compile_loops() -> None:
     render_plane("raster")
     compiled_likelihood(np.ones((2, 2), dtype=np.float32), np.ones((1, 2, 2), dtype=np.float32))
     small = DepthCamera.from_fov(4, 3, 60.0, 45.0)
-    compiled_normal_equations(
-        np.ones(small.shape, dtype=np.float32), np.ones((1, *small.shape), dtype=np.float32), small, 0.1
-    )
+    image = np.ones(small.shape, dtype=np.float32)
+    compiled_normal_equations(image, image[np.newaxis], small, 0.1)
 
 
 def simplify_corridor() -> None:

@@ -1,7 +1,6 @@
 """A student's own copies of the lessons, in `work/`, which git ignores: `git pull` meets nothing that a student wrote.
 
-Every lesson, and what the lessons lean on, is copied when it is missing. A copy that nobody has changed follows the
-course; nothing here writes to a changed one. `work/.copies.json` remembers which version each copy was made of.
+A copy that nobody has changed follows the course; nothing here writes to a changed one.
 """
 
 from __future__ import annotations
@@ -12,6 +11,7 @@ import json
 import os
 import subprocess
 from collections.abc import Sequence
+from itertools import chain, count
 from pathlib import Path
 
 from course_lib.files import atomic_write
@@ -39,10 +39,7 @@ def as_number(word: str) -> str:
 
 
 def copy_of(notebook: str, root: Path) -> str:
-    """Return the path below `root` that opens for a number ("06") or path: for a lesson its copy, else the file itself.
-
-    Raises `ValueError` for a path that is not there or lies outside.
-    """
+    """Return the path below `root` that opens for a number ("06") or path: for a lesson its copy, else the file."""
     numbers = lessons(root)
     named = numbers.get(as_number(notebook))
     path = Path(os.path.normpath(root / NOTEBOOKS / named if named else root / notebook))
@@ -59,8 +56,7 @@ def copy_of(notebook: str, root: Path) -> str:
 def make_copies(root: Path, fresh: Sequence[str] = (), today: datetime.date | None = None) -> list[str]:
     """Bring `work/` up to date, and return what the student should know, a sentence each.
 
-    fresh: numbers of lessons to begin anew; an old copy is renamed, `06_title.before-2026-11-23.ipynb`. today: None is
-    the calendar's. Raises `ValueError` for a number without a lesson, `OSError` where nothing can be written.
+    fresh: numbers of lessons to begin anew; an old copy is renamed, `06_title.before-2026-11-23.ipynb`.
     """
     work, numbers, again = root / WORK, lessons(root), {as_number(word) for word in fresh}
     if unknown := sorted(again - set(numbers)):
@@ -70,23 +66,27 @@ def make_copies(root: Path, fresh: Sequence[str] = (), today: datetime.date | No
     told = [f"Your copies of the lessons are in {WORK}/, which git leaves alone."] if first else []
     for name in [*numbers.values(), *_below_notebooks(root, COMPANIONS)]:
         content, mine = (root / NOTEBOOKS / name).read_bytes(), work / name
-        begun = memory.get(name, {})
-        if Path(name).name[:2] in again and name in numbers.values() and mine.exists():
+        begun, is_lesson, number = memory.get(name, {}), name in numbers.values(), mine.name[:2]
+        if is_lesson and number in again and mine.exists():
             old = _free_name(mine, today or datetime.date.today())
             os.replace(mine, old)
-            told.append(f"Lesson {mine.name[:2]} begins anew; your earlier copy is now {old.relative_to(root)}.")
-        elif name in numbers.values() and not (first or mine.exists()):
-            told.append(f"Lesson {mine.name[:2]} is new in your folder: {WORK}/{name}.")
-        there = _checksum(mine.read_bytes()) if mine.exists() else None
-        if there is None or there == _checksum(content) or (there == begun.get("whole") and name not in edited):
-            if there != _checksum(content):
+            told.append(f"Lesson {number} begins anew; your earlier copy is now {old.relative_to(root)}.")
+        elif is_lesson and not (first or mine.exists()):
+            told.append(f"Lesson {number} is new in your folder: {WORK}/{name}.")
+        there, new = _checksum(mine.read_bytes()) if mine.exists() else None, _checksum(content)
+        if there in (None, new) or (there == begun.get("whole") and name not in edited):
+            if there != new:
                 mine.parent.mkdir(parents=True, exist_ok=True)
                 atomic_write(mine, content)
             # What somebody typed into the course's own file is theirs: its copy must never count as untouched.
-            whole = "" if name in edited else _checksum(content)
-            memory[name] = {"whole": whole, "text": _text_version(content)}
+            memory[name] = {"whole": "" if name in edited else new, "text": _text_version(content)}
         elif begun.get("text") != _text_version(content) and name not in edited:
-            told.append(_told_of_a_change(name))
+            told.append(
+                f"Lesson {number} has changed since you began your copy: `python3 course.py lab --fresh {number}` "
+                "starts the new one beside yours."
+                if is_lesson
+                else f"{WORK}/{name} is changed by you and stays; the course's new one: {NOTEBOOKS}/{name}."
+            )
     if edited:
         paths = " ".join(f"{NOTEBOOKS}/{name}" for name in edited)
         told.append(
@@ -98,18 +98,8 @@ def make_copies(root: Path, fresh: Sequence[str] = (), today: datetime.date | No
     return told
 
 
-def _told_of_a_change(name: str) -> str:
-    number = Path(name).name[:2]
-    if not name.endswith(".ipynb"):
-        return f"{WORK}/{name} is changed by you and stays; the course's new one: {NOTEBOOKS}/{name}."
-    return (
-        f"Lesson {number} has changed since you began your copy: `python3 course.py lab --fresh {number}` starts the "
-        "new one beside yours."
-    )
-
-
 def _remembered(path: Path) -> dict[str, dict]:
-    """What `.copies.json` says. Without it, every copy that differs from the course's counts as changed."""
+    """Return which version each copy was made of. Without that, a copy that differs from the course's is changed."""
     try:
         memory = json.loads(path.read_text(encoding="utf-8"))
         return {name: dict(entry) for name, entry in memory.items()}
@@ -131,8 +121,8 @@ def _text_version(content: bytes) -> str:
 
 
 def _free_name(path: Path, today: datetime.date) -> Path:
-    """Where an earlier copy goes: beside the new one, under a name that nothing has yet."""
-    endings = ["", *(f"-{n}" for n in range(2, 10_000))]
+    """Return a name beside `path` that nothing has yet, for an earlier copy."""
+    endings = chain([""], (f"-{n}" for n in count(2)))
     names = (path.with_name(f"{path.stem}.before-{today.isoformat()}{ending}{path.suffix}") for ending in endings)
     return next(name for name in names if not name.exists())
 

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import types
+from unittest.mock import Mock
 
 import pytest
 
@@ -20,13 +21,6 @@ def command(monkeypatch):
         monkeypatch.delenv("COURSE_DEBUG", raising=False)
 
     return put
-
-
-def raising(error):
-    def run(arguments):
-        raise error
-
-    return run
 
 
 def test_help_lists_every_command(capsys):
@@ -73,7 +67,7 @@ def test_unknown_arguments_are_refused_unless_the_command_passes_them_on(command
     ],
 )
 def test_an_error_is_one_line_and_a_code(command, capsys, error, code):
-    command(raising(error))
+    command(Mock(side_effect=error))
     assert cli.main(["try", "it"]) == code
     errors = capsys.readouterr().err
     assert len(errors.strip().splitlines()) == 1
@@ -82,21 +76,17 @@ def test_an_error_is_one_line_and_a_code(command, capsys, error, code):
 
 
 def test_debug_shows_the_traceback(command, capsys):
-    command(raising(ValueError("bad")))
+    command(Mock(side_effect=ValueError("bad")))
     assert cli.main(["try", "it", "--debug"]) == 2
     assert "Traceback" in capsys.readouterr().err
 
 
 def test_a_reader_that_leaves_early_causes_no_complaint():
     script = "from course_lib import cli; import sys; sys.exit(cli.main(['check']))"
-    process = subprocess.Popen(
-        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     process.stdout.close()
-    errors = process.stderr.read()
-    process.stderr.close()
-    process.wait(timeout=1800)
-    assert errors == ""
+    with process:
+        assert process.stderr.read() == b""
 
 
 def with_options(parser):

@@ -1,6 +1,5 @@
-"""`demo`: each experiment's table, its JSON and its files; finished seeds are used again; what does not fit is told."""
+"""`demo`: each experiment's table, its JSON and its files; finished seeds are used again."""
 
-import csv
 import json
 import os
 import subprocess
@@ -10,25 +9,18 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.commands.arguments import parse_seeds
 from course_lib.depth_mcl.sequence import read_sequence
+from course_lib.depth_mcl.sequence_files import read_tum
 from course_lib.experiments import corridor, walk
 from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
-from course_lib.simulation.room import data as room_data
+from tests.commands.conftest import rows_of
 
 THREE_FRAMES = ["--seed", "6", "--frames", "3", "--particles", "15"]
 TWO_SEEDS = ["--seeds", "10040-10041", "--frames", "2", "--particles", "6", "--methods", "proposed,fallon"]
 
 
-def printed(capsys, *words):
-    """What a demo with --json printed."""
-    capsys.readouterr()
-    assert main(["demo", *map(str, words), "--json"]) == 0
-    return json.loads(capsys.readouterr().out)
-
-
-def test_the_corridor_has_table_1_a_row_a_frame_figures_and_a_scene(tmp_path, capsys):
-    summary = printed(capsys, "corridor", *THREE_FRAMES, "--out", tmp_path)
+def test_the_corridor_has_table_1_a_row_a_frame_figures_and_a_scene(tmp_path, told):
+    summary = told("demo", "corridor", *THREE_FRAMES, "--out", tmp_path)
     assert (summary["frames"], summary["n_particles"], summary["seed"]) == (3, 15, 6)
     assert list(summary["methods"]) == list(corridor.METHODS)
     assert list(summary["methods_by_hand"]) == ["proposed", "fallon"]
@@ -36,17 +28,13 @@ def test_the_corridor_has_table_1_a_row_a_frame_figures_and_a_scene(tmp_path, ca
     assert corridor.BY_HAND_TITLE in corridor.table_1(summary)
     stored = json.loads((tmp_path / "corridor.json").read_text())
     assert {key: stored[key] for key in summary} == summary
-    errors = [float(row["proposed_nearest_m"]) for row in csv.DictReader((tmp_path / "corridor.csv").open())]
+    errors = [float(row["proposed_nearest_m"]) for row in rows_of(tmp_path / "corridor.csv")]
     assert np.median(errors) == pytest.approx(summary["median_m"], abs=1e-5)
     for name in ("figure_5.png", "figure_6.png", "overview.png"):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     assert len((tmp_path / "corridor.html").read_text()) < 1_300_000
-    assert len(read_tum(tmp_path)) == 3
+    assert len(read_tum(tmp_path / "trajectory.txt")[1]) == 3
     assert set(json.loads((tmp_path / "run.json").read_text())["files"]) >= {"corridor.json", "figure_5.png"}
-
-
-def read_tum(folder):
-    return (folder / "trajectory.txt").read_text().strip().splitlines()[-3:]
 
 
 @pytest.mark.slow
@@ -63,39 +51,38 @@ def test_another_process_without_opengl_writes_the_same_bytes_to_the_last_figure
     assert "no corridor.html (OpenGL cannot start" in done[1].stdout
 
 
-def test_the_shipped_recordings_table_holds_the_papers_rows_beside_ours(tmp_path, corridor_folder, capsys):
-    words = ["demo", "corridor", "--recording", "shipped", "--frames", "3", "--particles", "20", "--out", str(tmp_path)]
-    assert main(words) == 0
-    table = capsys.readouterr().out
+def test_the_shipped_recordings_table_holds_the_papers_rows_beside_ours(tmp_path, corridor_folder, printed):
+    words = ["demo", "corridor", "--recording", "shipped", "--frames", "3", "--particles", "20", "--out", tmp_path]
+    table = printed(*words)
     for row in ("paper: proposed method", "paper: Fallon", "proposed method, ours", "Fallon-style, depth, 20 x 15"):
         assert row in table
     assert corridor.BY_HAND_TITLE not in table
     assert "Written: corridor.json, corridor.csv, figure_5.png" in table
-    x, y = (float(next(csv.DictReader((tmp_path / "corridor.csv").open()))[f"proposed_{axis}_m"]) for axis in "xy")
+    x, y = (float(rows_of(tmp_path / "corridor.csv")[0][f"proposed_{axis}_m"]) for axis in "xy")
     start = read_sequence(corridor_folder / "wagon").camera_to_world[0, :2, 3]
     assert np.hypot(x - start[0], y - start[1]) < 0.2
 
 
 @pytest.mark.slow
-def test_several_seeds_give_a_table_over_recordings_and_are_not_run_again(tmp_path, capsys):
-    result = printed(capsys, "corridor", *TWO_SEEDS, "--out", tmp_path)
+def test_several_seeds_give_a_table_over_recordings_and_are_not_run_again(tmp_path, told):
+    result = told("demo", "corridor", *TWO_SEEDS, "--out", tmp_path)
     assert [one["seed"] for one in result["recordings"]] == result["seeds"] == [10040, 10041]
     medians = [one["median_timed_m"] for one in result["recordings"]]
-    told = result["over_recordings"]["methods"]["proposed"]["median_timed_m"]
-    assert told == {"median": pytest.approx(sum(medians) / 2), "least": min(medians), "greatest": max(medians)}
+    shown = result["over_recordings"]["methods"]["proposed"]["median_timed_m"]
+    assert shown == {"median": pytest.approx(sum(medians) / 2), "least": min(medians), "greatest": max(medians)}
     table = corridor.table_over_recordings(result)
     assert "Table 1 over 2 recordings, seeds 10040 to 10041" in table
     assert f"({min(medians):.3f} to {max(medians):.3f})" in table
     assert {"recordings.json", "seed_10040.json", "seed_10041.csv"} <= {path.name for path in tmp_path.iterdir()}
     kept = (tmp_path / "corridor.jsonl").read_text()
-    assert printed(capsys, "corridor", *TWO_SEEDS, "--out", tmp_path) == result
+    assert told("demo", "corridor", *TWO_SEEDS, "--out", tmp_path) == result
     assert (tmp_path / "corridor.jsonl").read_text() == kept
 
 
 @pytest.mark.slow
-def test_the_idealizations_are_measured_one_by_one(tmp_path, capsys):
+def test_the_idealizations_are_measured_one_by_one(tmp_path, told):
     words = ["--seeds", "10042", "--frames", "3", "--particles", "30", "--backend", "ray", "--out", tmp_path]
-    result = printed(capsys, "corridor", "--idealizations", *words)
+    result = told("demo", "corridor", "--idealizations", *words)
     assert list(result["hardships"]) == ["none", *HARDSHIPS, "all"]
     assert len({row["median_timed_m"]["median"] for row in result["hardships"].values()}) > 4
     table = corridor.table_of_idealizations(result)
@@ -103,9 +90,9 @@ def test_the_idealizations_are_measured_one_by_one(tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_a_seeds_recording_by_hand_and_the_one_with_calibration_errors(tmp_path, capsys):
-    words = ["corridor", "--dof", "6", "--seed", "10001", "--frames", "3", "--out", tmp_path]
-    rows = printed(capsys, *words)["rows"]
+def test_a_seeds_recording_by_hand_and_the_one_with_calibration_errors(tmp_path, told):
+    words = ["demo", "corridor", "--dof", "6", "--seed", "10001", "--frames", "3", "--out", tmp_path]
+    rows = told(*words)["rows"]
     assert len(rows) == 6
     assert all(row["frames"] == 3 for row in rows.values())
     assert max(row["median_position_m"] for name, row in rows.items() if not name.startswith("the paper's")) < 0.05
@@ -114,10 +101,6 @@ def test_a_seeds_recording_by_hand_and_the_one_with_calibration_errors(tmp_path,
     stored = json.loads((tmp_path / "hand.json").read_text())
     assert stored["recordings"] == {name: [row] for name, row in stored["rows"].items()}, "one seed, one recording"
     assert (tmp_path / "covariance.png").exists()
-
-
-def test_seeds_are_numbers_and_ranges():
-    assert parse_seeds("2-3, 1-2,10000") == [2, 3, 1, 10000]
 
 
 def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypatch, tmp_path, capsys):
@@ -134,34 +117,3 @@ def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypa
     assert {path.name for path in folder.iterdir()} == {"walk.json", "covariance.png", "run.json"}
     assert len((kept / "walk.jsonl").read_text().splitlines()) == 1
     assert f"results: {folder}" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        ("corridor --seeds 5-1", "--seeds must be"),
-        ("corridor --frames 0", "--frames must be at least 1"),
-        ("corridor --methods proposed", "--methods goes with --seeds"),
-        ("corridor --data nowhere", "map.ply"),
-        ("corridor --dof 6 --idealizations", "--idealizations does not go with --dof 6"),
-        ("room --poses 0", "--poses must be at least 1"),
-        ("room --data elsewhere --seed 7", "give one of the two"),
-        ("room --seed 7 --detector nowhere", "no detector folder nowhere"),
-        ("room --seed 7 --association psychic", "association must be one of"),
-        ("room --seed 7 --score-threshold 2", "--score-threshold"),
-        ("rooms --views 0", "--views must be at least 1"),
-        ("rooms --tilts 0 11", "--tilts must be between 0 and 10 degrees; got 11"),
-        ("walk --methods magic", "--methods must name annealed, paper, floor"),
-        ("trouble --share 21", "--share must be at most 20 percent; got 21"),
-        ("trouble --method depth --frames 20", "take a longer recording or a smaller share"),
-        ("finale --places 0", "--places must be at least 1"),
-    ],
-)
-def test_options_that_do_not_fit_are_told_before_the_work(words, said, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(room_data, "make_room_data", lambda *_, **__: pytest.fail("40 pairs were photographed first"))
-    monkeypatch.chdir(tmp_path)
-    assert main(["demo", *words.split(), "--out", "out"]) == 2
-    error = capsys.readouterr().err
-    assert said in error
-    assert "Traceback" not in error
-    assert not list(tmp_path.rglob("*.json*"))

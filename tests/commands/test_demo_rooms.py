@@ -1,31 +1,34 @@
 """`demo room`, `demo rooms` and `demo trouble`: what they print and write of a few poses, or of rows that are kept."""
 
-import csv
+import contextlib
+import io
 import json
 import re
 
 import pytest
 
 from course_lib.cli import main
-from course_lib.experiments import rooms
+from course_lib.experiments import rooms, trouble
 from course_lib.experiments.depth_trouble import LENGTHS
 from course_lib.experiments.rooms import METHODS
-from course_lib.experiments.trouble import FRAMES, PAIRS, told
 from course_lib.paths import data_path
+from tests.commands.conftest import rows_of
 from tests.experiments.test_rooms import entry, record
 
 
 @pytest.fixture(scope="module")
 def demo_room(tmp_path_factory):
-    """`demo room` on the first two poses of each experiment: its folder."""
-    folder = tmp_path_factory.mktemp("demo")
-    assert main(["demo", "room", "--poses", "2", "--roll", "640", "--out", str(folder)]) == 0
-    return folder
+    """`demo room` on the first two poses of each experiment: its folder, and what it printed."""
+    folder, said = tmp_path_factory.mktemp("demo"), io.StringIO()
+    with contextlib.redirect_stdout(said):
+        assert main(["demo", "room", "--poses", "2", "--roll", "640", "--out", str(folder)]) == 0
+    return folder, said.getvalue()
 
 
 @pytest.mark.slow
 def test_the_room_has_rates_and_errors_by_experiment_and_method_a_row_a_pose_and_figures(demo_room):
-    summary = json.loads((demo_room / "room.json").read_text())
+    folder, text = demo_room
+    summary = json.loads((folder / "room.json").read_text())
     for experiment in ("experiment_1", "experiment_2"):
         for method in ("greedy", "greedy_weighted", "greedy_exact_boxes", "greedy_weighted_exact_boxes"):
             row = summary[experiment][method]
@@ -38,16 +41,10 @@ def test_the_room_has_rates_and_errors_by_experiment_and_method_a_row_a_pose_and
     assert summary["rolled_images"]["alike"]["n"] == 4, "two poses of two experiments, one number of columns"
     assert summary["stereo_matching"]["seen_in_both"] > 20
     assert 0 < summary["median_relative_range_error_percent"]["exact_boxes"] < 15
-    rows = list(csv.DictReader((demo_room / "room.csv").open()))
-    assert [row["source"] for row in rows] == ["images", "images", "exact_boxes", "exact_boxes"] * 2
+    sources = [row["source"] for row in rows_of(folder / "room.csv")]
+    assert sources == ["images", "images", "exact_boxes", "exact_boxes"] * 2
     for name in ("experiment_1.png", "experiment_2.png", "detections.png", "matched_pairs.png"):
-        assert (demo_room / name).read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.slow
-def test_the_tables_hold_the_papers_numbers_beside_ours(demo_room, capsys, tmp_path):
-    assert main(["demo", "room", "--poses", "1", "--roll", "640", "--out", str(tmp_path)]) == 0
-    text = capsys.readouterr().out
+        assert (folder / name).read_bytes().startswith(b"\x89PNG")
     for part in (
         *(f"Table {number}" for number in range(1, 6)),
         "paper: correct                                     0.23     0.44         11.94",
@@ -79,10 +76,9 @@ def made(monkeypatch):
     return asked
 
 
-def test_the_rooms_table_has_the_papers_row_ours_and_their_intervals(made, tmp_path, capsys):
-    words = ["demo", "rooms", "--seeds", "10001-10002", "--processes", "1", "--out", str(tmp_path)]
-    assert main([*words, "--tilts", "0.3"]) == 0
-    text = capsys.readouterr().out
+def test_the_rooms_table_has_the_papers_row_ours_and_their_intervals(made, tmp_path, printed):
+    words = ["demo", "rooms", "--seeds", "10001-10002", "--processes", "1", "--out", tmp_path]
+    text = printed(*words, "--tilts", "0.3")
     for part in (
         "2 rooms (seeds 10001-10002), 2 poses at each height",
         "Cameras at 1.32 and 1.02 m",
@@ -95,22 +91,17 @@ def test_the_rooms_table_has_the_papers_row_ours_and_their_intervals(made, tmp_p
         assert part in text
     assert text.count("\n0.3 degrees\n") == 3, "shares, errors of correct poses, errors of all"
     assert made == [(seed, 20, tilt) for tilt in (None, 0.3) for seed in (10001, 10002)]
-    rows = list(csv.DictReader((tmp_path / "rooms.csv").open()))
-    assert len(rows) == 2 * 4 * 2 * len(METHODS), "rooms, poses, sources, methods"
+    assert len(rows_of(tmp_path / "rooms.csv")) == 2 * 4 * 2 * len(METHODS), "rooms, poses, sources, methods"
 
 
-def test_finished_rooms_are_not_made_again_whatever_is_asked_of_them(made, tmp_path, capsys):
-    words = ["demo", "rooms", "--seeds", "10001", "--poses", "2", "--processes", "1", "--out", str(tmp_path), "--json"]
-    found = []
-    for more in ([], ["--association", "greedy"], ["--views", "2", "--view-poses", "1", "--ablation"]):
-        assert main([*words, *more]) == 0
-        found.append(json.loads(capsys.readouterr().out))
-        assert found[-1]["both"]["images"]["paper"]["correct_percent"] == 75.0
+def test_finished_rooms_are_not_made_again_whatever_is_asked_of_them(made, tmp_path, told):
+    words = ["demo", "rooms", "--seeds", "10001", "--poses", "2", "--processes", "1", "--out", tmp_path]
+    asked = ([], ["--association", "greedy"], ["--views", "2", "--view-poses", "1", "--ablation"])
+    found = [told(*words, *more) for more in asked]
+    assert [one["both"]["images"]["paper"]["correct_percent"] for one in found] == [75.0] * 3
     assert made == [(10001, 2, None), (10001, 1, "2 views")]
-    assert [list(one["answers"]["one_view"]) for one in found[:2]] == [
-        ["greedy", "hungarian", "consistent"],
-        ["greedy"],
-    ]
+    answered = [list(one["answers"]["one_view"]) for one in found[:2]]
+    assert answered == [["greedy", "hungarian", "consistent"], ["greedy"]]
     assert found[2]["answers"]["n_views"] == 2
     assert set(found[2]["answers"]["ablation"]) == {"right_map", "wrong_map"}
     assert (tmp_path / "risk_coverage.png").stat().st_size > 1000
@@ -135,8 +126,8 @@ def trouble_rows(troubles, good, bad, n):
 @pytest.fixture
 def finished(tmp_path):
     """The folder of a run of which all rows are kept, so that nothing is run."""
-    depth = {"data": str(data_path("corridor").absolute()), "frames": FRAMES, "dof": "xyyaw"}
-    stereo = {"detector": str(data_path("detector").absolute()), "frames": PAIRS}
+    depth = {"data": str(data_path("corridor").absolute()), "frames": trouble.FRAMES, "dof": "xyyaw"}
+    stereo = {"detector": str(data_path("detector").absolute()), "frames": trouble.PAIRS}
     for name, point, result in (
         ("depth_xyyaw", depth, trouble_rows(LENGTHS, "tracked", "repeated", 30)),
         ("stereo", stereo, trouble_rows(["dropped"], "ok", "no image", 24)),
@@ -147,13 +138,12 @@ def finished(tmp_path):
     return tmp_path
 
 
-def test_trouble_has_a_row_for_each_trouble_and_share_of_both_methods(finished, capsys):
-    assert main([*TROUBLE, "--out", str(finished)]) == 0
-    text = capsys.readouterr().out
-    for trouble in LENGTHS:
-        assert len(re.findall(rf"^{trouble} +(1|20) +60 +2 +0 +100 +0   repeated 2$", text, re.M)) == 2, trouble
+def test_trouble_has_a_row_for_each_trouble_and_share_of_both_methods(finished, printed):
+    text = printed(*TROUBLE, "--out", finished)
+    for one in LENGTHS:
+        assert len(re.findall(rf"^{one} +(1|20) +60 +2 +0 +100 +0   repeated 2$", text, re.M)) == 2, one
     assert "seeds 10001, 10002, 100 frames each" in text
     assert "undisturbed: tracked 60; 0 confident and wrong; 0 of 60 called troubled" in text
     assert len(re.findall(r"^dropped +(1|20) +48 +2 +0 +100 +0   no image 2$", text, re.M)) == 2
     assert {"depth_xyyaw.json", "stereo.json", "trouble.png"} <= {path.name for path in finished.iterdir()}
-    assert told({"a": 1, "b": 3, "c": 1}) == "b 3, a 1, c 1"
+    assert trouble.told({"a": 1, "b": 3, "c": 1}) == "b 3, a 1, c 1"

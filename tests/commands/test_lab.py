@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 import shutil
 import signal
 import subprocess
@@ -38,6 +39,13 @@ def get(address):
         return answer.read().decode()
 
 
+def refused(address):
+    """The code with which the server refuses."""
+    with pytest.raises(urllib.error.HTTPError) as error:
+        get(address)
+    return error.value.code
+
+
 def page_config(address, token):
     page = get(f"{address}/lab?token={token}")
     return json.loads(page.split('id="jupyter-config-data"', 1)[1].split(">", 1)[1].split("</script>", 1)[0])
@@ -45,23 +53,16 @@ def page_config(address, token):
 
 def test_the_token_is_needed(server):
     address, token, _ = server
-    for path in ("/api/status", "/api/contents", "/api/kernels"):
-        with pytest.raises(urllib.error.HTTPError) as refused:
-            get(address + path)
-        assert refused.value.code == 403
+    assert [refused(f"{address}/api/{path}") for path in ("status", "contents", "kernels")] == [403] * 3
     assert json.loads(get(f"{address}/api/status?token={token}"))["kernels"] == 0
 
 
 @pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="reads Linux's list of sockets")
 def test_it_listens_on_this_computer_only(server):
     port = int(server[0].rsplit(":", 1)[1])
-    listening = set()
-    for name in ("tcp", "tcp6"):
-        for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]:
-            local, state = line.split()[1], line.split()[3]
-            if int(local.split(":")[1], 16) == port and state == "0A":  # LISTEN
-                listening.add(local.split(":")[0])
-    assert listening == {"0100007F"}  # 127.0.0.1, its bytes reversed
+    sockets = "".join(Path(f"/proc/net/{name}").read_text() for name in ("tcp", "tcp6"))
+    listening = re.findall(rf": (\w+):{port:04X} \w+:\w+ 0A ", sockets)  # 0A: LISTEN
+    assert listening == ["0100007F"]  # 127.0.0.1, its bytes reversed
 
 
 def test_news_updates_builds_and_needless_extensions_are_off_and_nothing_is_written_to_the_home(server):
@@ -72,9 +73,7 @@ def test_news_updates_builds_and_needless_extensions_are_off_and_nothing_is_writ
     for name in ("jupyter-server-proxy", "announcements", "lsp-extension", "nbgrader", "terminal-extension"):
         assert any(name in disabled for disabled in config["disabledExtensions"]), name
     for needless in ("lsp/status", "server-proxy/servers-info", "api/terminals", "formgrader", "tree"):
-        with pytest.raises(urllib.error.HTTPError) as missing:
-            get(f"{address}/{needless}?token={token}")
-        assert missing.value.code == 404
+        assert refused(f"{address}/{needless}?token={token}") == 404, needless
     assert list(home.iterdir()) == []
 
 
@@ -144,18 +143,12 @@ def test_the_copies_are_made_and_lesson_00_opens(started, capsys):
     assert "Your progress" in (course / "work" / "progress.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(
-    ("words", "opened"),
-    [
-        (["--notebook", "notebooks/06_likelihood_and_weights.ipynb"], "work/06_likelihood_and_weights.ipynb"),
-        (["--fresh", "06"], "work/06_likelihood_and_weights.ipynb"),
-    ],
-)
-def test_a_lesson_that_is_named_or_begun_anew_is_what_opens(started, monkeypatch, words, opened):
+@pytest.mark.parametrize("words", [["--notebook", "notebooks/06_likelihood_and_weights.ipynb"], ["--fresh", "06"]])
+def test_a_lesson_that_is_named_or_begun_anew_is_what_opens(started, monkeypatch, words):
     monkeypatch.setattr(lab, "make_progress_page", lambda root, environment: None)
     started()
     course, command, _ = started(*words)
-    assert f"--LabApp.default_url=/lab/tree/{opened}" in command
+    assert "--LabApp.default_url=/lab/tree/work/06_likelihood_and_weights.ipynb" in command
     assert len(list((course / "work").glob("06*.before-*.ipynb"))) == ("--fresh" in words)
 
 

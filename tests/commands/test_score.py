@@ -18,25 +18,15 @@ def scored(monkeypatch):
     return calls
 
 
-def handed_in(tmp_path, text: str) -> str:
-    path = tmp_path / "P1.py"
-    path.write_text(text, encoding="utf-8")
-    return str(path)
-
-
 def test_the_files_function_is_scored(scored, tmp_path):
-    path = handed_in(tmp_path, "def localize(*given):\n    return 42\n")
-    assert scoring.main(["P1", path, "--seeds", "10001", "10002"]) == 0
+    (tmp_path / "P1.py").write_text("def localize(*given):\n    return 42\n")
+    assert scoring.main(["P1", str(tmp_path / "P1.py"), "--seeds", "10001", "10002"]) == 0
     ((name, function, seeds),) = scored
     assert (name, function(), seeds) == ("P1", 42, [10_001, 10_002])
 
 
 def test_of_a_notebook_only_what_defines_is_run(scored, tmp_path):
-    sources = [
-        "%matplotlib inline\nimport math\nSIZE = 6",
-        "check('P1.1', 1 / 0)",
-        "def localize(*given):\n    return SIZE",
-    ]
+    sources = ["%matplotlib inline\nSIZE = 6", "check('P1.1', 1 / 0)", "def localize(*given):\n    return SIZE"]
     notebook = new_notebook(cells=[new_markdown_cell("# P1"), *map(new_code_cell, sources)])
     path = tmp_path / "P1.ipynb"
     nbformat.write(notebook, path)
@@ -49,7 +39,8 @@ def test_of_a_notebook_only_what_defines_is_run(scored, tmp_path):
     ("text", "words"), [("def locate(): ...\n", "no function localize()"), ("def localize(:\n", "SyntaxError")]
 )
 def test_a_file_that_does_not_fit_is_named(scored, tmp_path, capsys, text, words):
-    assert scoring.main(["P1", handed_in(tmp_path, text)]) == 2
+    (tmp_path / "P1.py").write_text(text)
+    assert scoring.main(["P1", str(tmp_path / "P1.py")]) == 2
     assert words in capsys.readouterr().err
     assert not scored
 

@@ -17,10 +17,8 @@ LOOPS = ((raster, "draw_views"), (LIKELIHOOD, "_sums"), (refinement, "_sums"))
 
 def compiled_forms():
     """How many forms, one for each set of types, of each compiled loop there are."""
-    loops = {
-        (m.__name__, name): loop for m, _ in LOOPS for name, loop in vars(m).items() if hasattr(loop, "signatures")
-    }
-    return {name: len(loop.signatures) for name, loop in loops.items()}
+    loops = {(module.__name__, name): loop for module, _ in LOOPS for name, loop in vars(module).items()}
+    return {name: len(loop.signatures) for name, loop in loops.items() if hasattr(loop, "signatures")}
 
 
 def test_the_filter_compiles_nothing_that_the_set_up_did_not():

@@ -11,7 +11,7 @@ import zlib
 import numpy as np
 import pytest
 
-from course_lib.commands.scene_output import write_scene
+from course_lib.commands.output import write_scene
 from course_lib.plots import scenes
 from course_lib.plots.scene_page import ScenePageError, page_html
 from course_lib.rendering.renderer import OpenGLError
