@@ -85,7 +85,7 @@ class SemanticLocalizer:
         self.association = associate_greedy if association == "greedy" else association
         self.distance, self.weights, self.distance_term = distance, PenaltyWeights(*weights), distance_term
         self.weighted_fit, self.reject_implausible = weighted_fit, bool(reject_implausible)
-        self.image_size = View.of_detections([], image_size).size
+        self.image_size = View(*image_size).size
 
     def localize(self, upper_image: np.ndarray, lower_image: np.ndarray) -> Localization:
         """Return the pose from two panoramas: uint8 BGR `(H, W, 3)`, W = 2 H, one size.
@@ -117,7 +117,7 @@ class SemanticLocalizer:
         `PanoramaError` for a size that no panorama has. Source: paper 2, sections 2.4 to 2.6.
         """
         size = self.image_size if size is None else size
-        upper, lower = (View.of_detections(side, size) for side in (upper_detections, lower_detections))
+        upper, lower = (View(*size, detections=side) for side in (upper_detections, lower_detections))
         for name, view in (("upper", upper), ("lower", lower)):
             boxes_on(view, name)
         found = Localization(upper=upper, lower=lower, matches=tuple(matches))

@@ -43,21 +43,16 @@ class StereoPair:
 
     def images(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the upper and the lower panorama, `(H, W, 3)` uint8 BGR."""
-        return self._image(self.upper_file), self._image(self.lower_file)
-
-    def _image(self, file: Path) -> np.ndarray:
-        image = read_panorama(file)
-        height, width = image.shape[:2]
-        if (width, height) != self.size:
-            raise PanoramaError(
-                f"{file} has {width} x {height} pixels; {file.parent / POSES_FILE} says {self.size[0]} x {self.size[1]}"
-            )
-        return image
+        images = read_panorama(self.upper_file), read_panorama(self.lower_file)
+        for file, image in zip((self.upper_file, self.lower_file), images, strict=True):
+            if image.shape[1::-1] != self.size:
+                raise PanoramaError(f"{file} has (width, height) {image.shape[1::-1]}; {POSES_FILE} says {self.size}")
+        return images
 
 
 @dataclass(frozen=True)
 class StereoRecording:
-    """Pairs of panoramas taken with one rig; sizes in pixels, and the seed of the data."""
+    """Pairs of panoramas taken with one rig. Sizes are in pixels."""
 
     folder: Path
     rig: StereoRig
@@ -72,21 +67,18 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
     folder = Path(folder)
     path = folder / POSES_FILE
     content = read_json(path, "list of pairs", PanoramaError)
-    version = content.get("version") if isinstance(content, dict) else None
-    if version != VERSION:
-        raise PanoramaError(f"{path} has version {version!r}; this program reads version {VERSION}")
     try:
-        size = _of_kind(content["width"], int), _of_kind(content["height"], int)
-        View.of_detections([], size)
+        if content["version"] != VERSION:
+            raise PanoramaError(f"the version must be {VERSION}; got {content['version']!r}")
+        size = _number(content["width"], int), _number(content["height"], int)
+        View(*size)
         pairs = tuple(_pair(folder, entry, size) for entry in content["pairs"])
-        heights = {_of_kind(entry["rig"]["upper_height"], float) for entry in content["pairs"]}
-        rig = StereoRig(_of_kind(content["baseline"], float), min(heights, default=np.nan))
-    except PanoramaError as error:
-        raise PanoramaError(f"{path}: {error}") from None
+        heights = {_number(entry["rig"]["upper_height"]) for entry in content["pairs"]}
+        if len(heights) != 1:
+            raise PanoramaError(f"one height of the upper camera is expected; got {sorted(heights)} m")
+        rig = StereoRig(_number(content["baseline"]), heights.pop())
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise PanoramaError(f"{path}: a field is missing or of the wrong kind ({error!r})") from None
-    if len(heights) != 1:
-        raise PanoramaError(f"{path}: pairs with upper cameras at {sorted(heights)} m; expected one height")
+        raise PanoramaError(f"{path}: a field is missing, of the wrong kind or out of range ({error!r})") from None
     missing = [file.name for pair in pairs for file in (pair.upper_file, pair.lower_file) if not is_file(file)]
     if missing:
         raise PanoramaError(f"{folder} lacks {len(missing)} images that {POSES_FILE} names, {missing[0][:40]!r} first")
@@ -96,10 +88,10 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
 def _pair(folder: Path, entry: dict, size: tuple[int, int]) -> StereoPair:
     upper, lower = entry["upper"], entry["lower"]
     return StereoPair(
-        _of_kind(entry["name"], str),
-        np.array([_of_kind(entry["rig"][name], float) for name in ("x", "y", "heading")]),
-        folder / _of_kind(upper["file"], str),
-        folder / _of_kind(lower["file"], str),
+        str(entry["name"]),
+        np.array([_number(entry["rig"][name]) for name in ("x", "y", "heading")]),
+        folder / upper["file"],
+        folder / lower["file"],
         tuple(map(true_object, upper["objects"])),
         tuple(map(true_object, lower["objects"])),
         size,
@@ -108,23 +100,14 @@ def _pair(folder: Path, entry: dict, size: tuple[int, int]) -> StereoPair:
 
 def true_object(entry: dict) -> TrueObject:
     """Return one object from its entry in poses.json or boxes.json."""
-    return TrueObject(
-        _of_kind(entry["object"], int),
-        _of_kind(entry["label"], str),
-        _box(entry["visible_box"]),
-        _box(entry["unoccluded_box"]),
-        _of_kind(entry["visible_fraction"], float),
-    )
+    boxes = [tuple(map(_number, entry[name])) for name in ("visible_box", "unoccluded_box")]
+    if {len(box) for box in boxes} != {4} or not isinstance(entry["label"], str):
+        raise TypeError(f"two boxes of four numbers and a label are expected; got {str(entry)[:80]}")
+    return TrueObject(_number(entry["object"], int), entry["label"], *boxes, _number(entry["visible_fraction"]))
 
 
-def _box(value: object) -> tuple[float, float, float, float]:
-    if not isinstance(value, list) or len(value) != 4:
-        raise TypeError(f"a box of four numbers is expected, found {str(value)[:40]}")
-    return tuple(_of_kind(number, float) for number in value)
-
-
-def _of_kind(value: object, kind: type):
-    """Return a value of JSON as text, whole number or number. True and "3" are no numbers here."""
-    if isinstance(value, bool) or not isinstance(value, (int, float) if kind is float else kind):
-        raise TypeError(f"a value of kind {kind.__name__} is expected, found {str(value)[:40]}")
+def _number(value: object, kind: type = float):
+    """Return a number of JSON as float or int. Raises TypeError for True, "3", and 3.5 where an int is expected."""
+    if isinstance(value, bool) or not isinstance(value, (int, kind)):
+        raise TypeError(f"a number of kind {kind.__name__} is expected, found {str(value)[:40]}")
     return kind(value)

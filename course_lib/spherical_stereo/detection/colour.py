@@ -33,9 +33,6 @@ def mean_hue_saturation(
     over the pixels i of the central half of `box`, of `mask` (bool, (H, W)), of both together, or of the whole image.
     The paper takes plain means of H. Source: paper 2, section 2.2.
     """
-    image_bgr = np.asarray(image_bgr)
-    if image_bgr.ndim != 3 or image_bgr.shape[2] != 3 or image_bgr.dtype != np.uint8:
-        raise DetectionError(f"image must be (H, W, 3) uint8 BGR; got shape {image_bgr.shape}, {image_bgr.dtype}")
     if mask is not None and np.shape(mask) != image_bgr.shape[:2]:
         raise DetectionError(f"mask must have the image's shape {image_bgr.shape[:2]}; got {np.shape(mask)}")
     selected = None if mask is None else np.asarray(mask, dtype=bool)
@@ -50,7 +47,7 @@ def mean_hue_saturation(
 
 
 def _mean_hue(hsv: np.ndarray) -> float:
-    """Mean hue in degrees of pixels (n, 3) of H in degrees, S and V from 0 to 1; NaN when there is none."""
+    """Return the mean hue in degrees of pixels (n, 3) of H in degrees, S and V from 0 to 1; NaN if there is none."""
     weight = np.where(hsv[:, 2] >= DARKEST_VALUE, hsv[:, 1], 0.0)
     if weight.sum() == 0 or 100 * hsv[:, 1].mean() < GREY_SATURATION_PERCENT:
         return float("nan")
@@ -62,7 +59,7 @@ def _mean_hue(hsv: np.ndarray) -> float:
 
 
 def _crop(image: np.ndarray, mask: np.ndarray | None, box: Box) -> tuple[np.ndarray, np.ndarray | None]:
-    """The pixels whose centres lie in the box, at least one a direction, columns taken around the seam."""
+    """Return the pixels whose centres lie in the box, at least one a direction, columns taken around the seam."""
     height, width = image.shape[:2]
     if not np.isfinite(box).all() or box[2] <= box[0] or box[3] <= box[1]:
         raise DetectionError(f"box must be finite with u_min < u_max and v_min < v_max; got {box} (its central half)")
@@ -73,6 +70,6 @@ def _crop(image: np.ndarray, mask: np.ndarray | None, box: Box) -> tuple[np.ndar
 
 
 def _centres_between(start: float, stop: float) -> np.ndarray:
-    """Indices i with start <= i + 1/2 < stop, or the pixel in the middle when there is none."""
+    """Return the indices i with start <= i + 1/2 < stop, or the pixel in the middle if there is none."""
     indices = np.arange(np.ceil(start - 0.5), np.ceil(stop - 0.5)).astype(int)
     return indices if len(indices) else np.array([int(np.floor((start + stop) / 2))])

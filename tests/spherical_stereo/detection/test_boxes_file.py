@@ -48,12 +48,12 @@ def test_boxes_become_detections_with_the_colours_of_their_images(tmp_path):
     assert upper[1].is_grey
     assert lower[0].hue == pytest.approx(120, abs=1e-3)
     assert {d.score for d in upper + lower} == {1.0}
-    assert boxes.named_pairs() == [("left chair", 0, 1), ("screen", 1, 0)]
+    assert [one.name for one in boxes.upper] == ["left chair", "screen", None]
 
 
 def test_images_of_another_size_are_refused(tmp_path):
     small = images()[0][:64, :128]
-    with pytest.raises(DetectionError, match="drawn on images of 256 x 128, these are 128 x 64"):
+    with pytest.raises(DetectionError, match="scale the images"):
         read(tmp_path, GOOD).on(small, small)
 
 
@@ -64,19 +64,18 @@ def side(**change):
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"version": 2}, "version 1; got version 2"),
-        ({"width": 250}, "width = 2 height"),
-        ({"lower": None}, 'list "lower"'),
-        ({"upper": [3]}, r"boxes\.json, upper\[0\] must be an object with label and box"),
-        (side(label=""), "label is a text"),
-        (side(box=[1, 2, 3]), "shape"),
+        ({"version": 2}, "version"),
+        ({"width": 250}, "twice as wide"),
+        ({"lower": None}, "lower does not"),
+        ({"upper": [3]}, r"upper\[0\]"),
+        (side(label=""), r"upper\[0\].*label"),
+        (side(box=[1, 2, 3]), r"upper\[0\]"),
         (side(box=[1, 2, None, 4]), "finite"),
         (side(box=[10, 20, 50, 129]), "leaves the image"),
+        (side(box=[10, -1, 50, 120]), "leaves the image"),
         (side(name=""), "name must be a text"),
-        (side(name="screen"), "'screen' is a chair above and a television below"),
-        ({"upper": 2 * side(name="one")["upper"]}, "upper has a name twice"),
     ],
 )
 def test_a_file_that_does_not_fit_is_refused(tmp_path, change, says):
-    with pytest.raises(DetectionError, match=says):
+    with pytest.raises(DetectionError, match=rf"boxes\.json: .*{says}"):
         read(tmp_path, GOOD | change)

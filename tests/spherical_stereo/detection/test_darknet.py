@@ -121,10 +121,10 @@ def test_weights_must_have_exactly_the_length_that_the_cfg_implies(tmp_path, hea
     check_weights(sections, path)
     for length in (len(whole) - 4, len(whole) - 2, 19, 5, 0):
         path.write_bytes(whole[:length])
-        with pytest.raises(DetectorError, match=f"too short.* floats, the cfg needs {SMALL_FLOATS}"):
+        with pytest.raises(DetectorError, match=f"floats, the cfg needs {SMALL_FLOATS}"):
             check_weights(sections, path)
     path.write_bytes(whole + bytes(4))
-    with pytest.raises(DetectorError, match=f"too long.*{SMALL_FLOATS + 1} floats"):
+    with pytest.raises(DetectorError, match=f"{SMALL_FLOATS + 1} floats"):
         check_weights(sections, path)
 
 
@@ -132,7 +132,7 @@ def test_weights_must_have_exactly_the_length_that_the_cfg_implies(tmp_path, hea
 def test_weights_that_are_no_numbers_are_named(tmp_path, value):
     path = tmp_path / "some.weights"
     path.write_bytes(struct.pack("<3iq", 0, 2, 5, 0) + np.full(SMALL_FLOATS, value, "<f4").tobytes())
-    with pytest.raises(DetectorError, match=rf"some\.weights: {SMALL_FLOATS} of its \d+ numbers are NaN or infinite"):
+    with pytest.raises(DetectorError, match=r"some\.weights holds numbers that are NaN or infinite"):
         check_weights(parse_cfg(SMALL), path)
 
 
@@ -146,9 +146,9 @@ def test_names_are_one_a_line_without_gaps_and_as_many_as_the_classes(tmp_path):
     path.write_text("sofa\npotted plant\n\n\n")
     assert read_names(path) == ["sofa", "potted plant"]
     check_names(2, read_names(path), path)
-    with pytest.raises(DetectorError, match=r"3 classes, names file .*names 2"):
+    with pytest.raises(DetectorError, match=r"3 classes, names file .*names has 2"):
         check_names(3, read_names(path), path)
-    for text, says in (("sofa\n\nchair\n", "line 2, is empty"), ("\n", "is empty")):
+    for text in ("sofa\n\nchair\n", "\n"):
         path.write_text(text)
-        with pytest.raises(DetectorError, match=says):
+        with pytest.raises(DetectorError, match="empty line"):
             read_names(path)

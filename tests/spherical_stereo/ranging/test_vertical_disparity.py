@@ -90,7 +90,7 @@ def test_both_distances_of_rendered_boards_are_right():
 def boxed(elevation):
     """A view of one box whose centre is straight ahead at an elevation (radians)."""
     u, v = direction_to_pixel(direction_from_angles(0.0, elevation), *SIZE)
-    return View.of_detections([Seen("chair", (u - 9, v - 5, u + 9, v + 5))], SIZE)
+    return View(*SIZE, detections=[Seen("chair", (u - 9, v - 5, u + 9, v + 5))])
 
 
 def test_box_centres_without_a_distance_keep_the_name_of_their_outcome(rng):
