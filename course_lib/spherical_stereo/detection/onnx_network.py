@@ -47,9 +47,9 @@ def decode_onnx(
         return boxes[0].reshape(-1, 4) * np.tile(input_size, 2), scores[0].reshape(-1, n_classes)
     has_objectness = layout == "yolov5"
     columns = n_classes + (5 if has_objectness else 4)
-    if len(outputs) != 1 or outputs[0].ndim != 3 or outputs[0].shape[0] != 1:
-        raise DetectorError(f"layout {layout} needs one output (1, n, {columns}), or turned; the file gives {shapes}")
-    rows = outputs[0][0] if has_objectness else outputs[0][0].T
+    is_table = len(outputs) == 1 and outputs[0].ndim == 3 and len(outputs[0]) == 1
+    rows = outputs[0][0] if is_table else np.empty((0, 0))
+    rows = rows if has_objectness else rows.T
     if rows.shape[1] != columns:
         raise DetectorError(
             f"layout {layout} with {n_classes} names needs {columns} numbers a box; the file gives {shapes}. Is it "

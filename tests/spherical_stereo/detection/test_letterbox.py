@@ -15,5 +15,4 @@ def test_the_whole_image_lies_inside_the_input_and_its_box_comes_back_exactly(im
     rows, columns = np.nonzero((padded != PADDING_GREY).any(axis=-1))
     inside = [columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]
     assert boxes_to_image(inside, letterbox) == pytest.approx([0, 0, *image_size], abs=1e-10)
-    assert (np.array(letterbox.inner_size) <= input_size).all()
-    assert (np.array(letterbox.inner_size) == input_size).any()
+    assert (inside[2] - inside[0] == input_size[0]) or (inside[3] - inside[1] == input_size[1])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.suppression import suppress_in_image, vote_on_boxes
+from course_lib.spherical_stereo.detection.seam import suppress_in_image, vote_on_boxes
 
 BOX = np.array([100.0, 50, 200, 150])
 
