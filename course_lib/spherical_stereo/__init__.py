@@ -33,13 +33,13 @@ from course_lib.spherical_stereo.panorama import (
 )
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
+from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
 from course_lib.spherical_stereo.ranging.triangulation import (
     TriangulationError,
     triangulate,
     triangulation_covariance,
     triangulation_outcome,
 )
-from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     AssociationError,

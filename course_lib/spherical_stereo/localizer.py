@@ -13,7 +13,7 @@ import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import boxes_on, canonical_label
 from course_lib.spherical_stereo.detection.detector import find_objects
-from course_lib.spherical_stereo.matching.alignment import MAX_TURN
+from course_lib.spherical_stereo.matching.features import MAX_TURN
 from course_lib.spherical_stereo.matching.object_matching import MIN_FEATURES, match_views, matched_indices
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 from course_lib.spherical_stereo.pose import localization as outcomes

@@ -22,7 +22,6 @@ import numpy as np
 from course_lib.files import read_image
 from course_lib.geometry import wrap_angle
 
-
 MAX_BASELINE = 10.0  # Metres. A longer baseline was probably given in millimetres.
 BLANK_LEVEL = 12  # Brightest value, of 255, of a frame that shows nothing. The noise of a covered lens stays below it.
 HOT_SHARE = 1e-4  # Share of the pixels of such a frame that may be brighter, because a sensor has hot pixels (chosen).

@@ -206,8 +206,8 @@ class Network:
                 outputs = [np.array(out) for out in self._net.forward(self._net.getUnconnectedOutLayersNames())]
         except cv2.error as error:
             raise DetectorError(
-                f"OpenCV cannot run {self._told} at an input of {blob.shape[3]} x {blob.shape[2]} ({error.err}). YOLOv4 "
-                "takes multiples of 32"
+                f"OpenCV cannot run {self._told} at an input of {blob.shape[3]} x {blob.shape[2]} ({error.err}). "
+                "YOLOv4 takes multiples of 32"
             ) from error
         boxes, scores = self._decode(outputs)
         # A box may be infinitely wide, as an untrained network's are: it is cut at the image's edges.

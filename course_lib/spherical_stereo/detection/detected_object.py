@@ -111,8 +111,8 @@ def checked_boxes(boxes: np.ndarray, width: float, name: str = "boxes") -> np.nd
     good = np.isfinite(array).all(axis=-1) & (across > 0) & (across <= width) & (down > 0)
     if not good.all():
         raise DetectionError(
-            f"{name} must be finite, with v_min < v_max and u_min < u_max <= u_min + {width:g}, the width; a box across "
-            f"the seam has u_max above the width; got {array[~good][0].tolist()}"
+            f"{name} must be finite, with v_min < v_max and u_min < u_max <= u_min + {width:g}, the width; a box "
+            f"across the seam has u_max above the width; got {array[~good][0].tolist()}"
         )
     return array
 

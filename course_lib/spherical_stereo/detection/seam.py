@@ -122,7 +122,7 @@ def _suppress(overlap: np.ndarray, rank: np.ndarray, threshold: float) -> np.nda
 
 
 def _limit_by_class(overlap: np.ndarray, iou: np.ndarray, classes: np.ndarray) -> np.ndarray:
-    """Return the overlap (n, n) that counts: within a class as it is; across classes 1 above SAME_OBJECT_IOU, else 0."""
+    """Return the overlap (n, n) that counts: in a class as it is; across classes 1 above SAME_OBJECT_IOU, else 0."""
     return np.where(classes[:, None] == classes[None, :], overlap, np.where(iou > SAME_OBJECT_IOU, 1.0, 0.0))
 
 

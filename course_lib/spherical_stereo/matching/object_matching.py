@@ -13,14 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, boxes_on, canonical_label
-from course_lib.spherical_stereo.matching.alignment import Alignment, camera_alignment
-from course_lib.spherical_stereo.matching.epipolar import (
-    EpipolarPairs,
-    allowed_by_rig,
-    best_pairs,
-    epipolar_pairs,
+from course_lib.spherical_stereo.matching.epipolar import EpipolarPairs, allowed_by_rig, best_pairs, epipolar_pairs
+from course_lib.spherical_stereo.matching.features import (
+    Alignment,
+    camera_alignment,
+    check_not_swapped,
+    find_features,
+    inside_box,
 )
-from course_lib.spherical_stereo.matching.features import check_not_swapped, find_features, inside_box
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 
 MIN_FEATURES = 3  # matched features that make one object; one alone may be an accident (the paper has no number)

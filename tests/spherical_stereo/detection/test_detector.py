@@ -179,7 +179,7 @@ def test_the_threshold_that_training_chose_is_taken_unless_another_is_given(copi
 
 
 def test_a_folder_that_lacks_or_doubles_a_file_is_refused(copied):
-    with pytest.raises(DetectorError, match="exactly one .cfg file; found none"):
+    with pytest.raises(DetectorError, match=r"exactly one \.cfg file; found none"):
         YoloDetector.load(copied / "nowhere")
     (copied / "second.cfg").write_text("")
     with pytest.raises(DetectorError, match=r"exactly one \.cfg file; found blobs\.cfg, second\.cfg"):

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from course_lib.spherical_stereo.matching.alignment import camera_alignment
-from course_lib.spherical_stereo.matching.features import PanoramaFeatures
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures, camera_alignment
 from course_lib.spherical_stereo.panorama import direction_to_pixel
 from tests.spherical_stereo.vertical_pair import BASELINE
 

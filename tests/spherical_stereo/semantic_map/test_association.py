@@ -15,7 +15,6 @@ from course_lib.spherical_stereo.semantic_map.association import (
     PenaltyWeights,
     associate_greedy,
     hue_difference,
-    min_object_weight,
     penalty,
     penalty_table,
 )
@@ -150,57 +149,33 @@ def test_a_pair_of_unlike_classes_is_made_at_the_end_but_never_usable():
     assert found.usable_pairs == (found.pairs[0],)
 
 
-def random_scene(seed):
-    rng = np.random.default_rng(seed)
-    labels = ["sofa", "chair", "table"]
-
-    def draw(kind, n):
-        return [
-            kind(labels[rng.integers(3)], *rng.uniform(-3, 3, 2), rng.uniform(0, 360), rng.uniform(0, 100))
-            for _ in range(n)
-        ]  # fmt: skip
-
-    return draw(Observation, 7), SemanticMap(draw(Landmark, 9))
-
-
-@pytest.mark.parametrize("distance_term", ["absolute", "as_printed"])
-@pytest.mark.parametrize("seed", range(5))
-def test_above_the_least_object_weight_every_like_pair_is_cheaper_than_every_unlike_one(seed, distance_term):
-    observations, semantic_map = random_scene(seed)
-    bound = min_object_weight(observations, semantic_map, distance_term=distance_term)
-    for p_obj, holds in ((bound * 1.001, True), (bound * 0.999, False)):
-        table = penalty_table(observations, semantic_map, PenaltyWeights(p_obj=p_obj), distance_term)
-        like = table.object == 0
-        assert (table.total[like].max() < table.total[~like].min()) == holds
-
-
 @pytest.mark.parametrize(
-    ("change", "says"),
+    "change",
     [
-        ({"label": " "}, "label"),
-        ({"x": math.inf}, "observation: x and y must be finite"),
-        ({"hue": 360.0}, r"observation: hue must lie in \[0, 360\)"),
-        ({"hue": -1.0}, "observation: hue"),
-        ({"saturation": 101.0}, r"observation: saturation must lie in \[0, 100\]"),
-        ({"hue": np.array([10.0, 400.0])}, "observation: hue"),
+        {"x": math.inf},
+        {"y": math.nan},
+        {"hue": 360.0},
+        {"hue": -1.0},
+        {"saturation": 101.0},
+        {"saturation": -1.0},
+        {"hue": np.array([10.0, 400.0])},
     ],
 )
-def test_the_penalty_refuses_what_the_matcher_refuses(change, says):
-    with pytest.raises(AssociationError, match=says):
-        cost(seen()._replace(**change), mapped())
+def test_values_that_cannot_be_are_refused_on_either_side(change):
+    bad = seen()._replace(**change)
+    with pytest.raises(AssociationError, match="observation: x and y"):
+        cost(bad, mapped())
+    with pytest.raises(AssociationError, match="landmark: x and y"):
+        cost(seen(), bad)
 
 
 def test_options_that_do_not_exist_are_named():
     with pytest.raises(AssociationError, match=r"distance_term must be one of.*'squared'"):
-        associate_greedy([], ROOM, distance_term="squared")
+        associate_greedy([seen()], ROOM, distance_term="squared")
     with pytest.raises(AssociationError, match="p_h must be finite and not negative"):
         associate_greedy([seen()], ROOM, PenaltyWeights(p_h=-1))
     with pytest.raises(AssociationError, match="map centroid"):
         penalty(seen(), mapped(), [0, 0], [0, 0, 0])
-    with pytest.raises(AssociationError, match="observation 1: x and y must be finite"):
-        associate_greedy([seen(), seen(x=math.nan)], ROOM)
-    with pytest.raises(AssociationError, match="landmark: hue"):
-        cost(seen(), seen(hue=400.0))
 
 
 def test_no_observations_give_no_pairs():
