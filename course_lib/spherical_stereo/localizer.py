@@ -28,7 +28,6 @@ from course_lib.spherical_stereo.pose.rigid_fit import (
 from course_lib.spherical_stereo.ranging.object_positions import DISTANCES, Distance, max_range, position_objects
 from course_lib.spherical_stereo.ranging.triangulation import DIVERGING
 from course_lib.spherical_stereo.semantic_map.association import (
-    DISTANCE_TERMS,
     Association,
     Observation,
     PenaltyWeights,
@@ -69,18 +68,10 @@ class SemanticLocalizer:
         image_size: tuple[int, int] = IMAGE_SIZE,
         reject_implausible: bool = True,
     ):
-        if not isinstance(rig, StereoRig) or not isinstance(semantic_map, SemanticMap):
-            raise LocalizerError(
-                f"a StereoRig and a SemanticMap are needed; got {type(rig).__name__} and {type(semantic_map).__name__}"
-            )
         if association != "greedy" and not callable(association):
-            raise LocalizerError(
-                f'association must be "greedy" or a function called as associate_greedy is; got {association!r}'
-            )
-        options = ("distance", distance, DISTANCES), ("distance_term", distance_term, DISTANCE_TERMS)
-        for name, value, allowed in options:
-            if value not in allowed:
-                raise LocalizerError(f"{name} must be one of {allowed}; got {value!r}")
+            raise LocalizerError(f'association must be "greedy" or called as associate_greedy is; got {association!r}')
+        if distance not in DISTANCES:
+            raise LocalizerError(f"distance must be one of {DISTANCES}; got {distance!r}")
         self.rig, self.semantic_map, self.detector = rig, semantic_map, detector
         self.association = associate_greedy if association == "greedy" else association
         self.distance, self.weights, self.distance_term = distance, PenaltyWeights(*weights), distance_term
@@ -124,9 +115,7 @@ class SemanticLocalizer:
         return _walk(found, (self._range, self._associate, self._fit))
 
     def localize_observations(self, observations: Sequence[Observation]) -> Localization:
-        """Return the pose from objects whose positions in the body frame are known: sections 2.5 and 2.6. Source: paper
-        2, sections 2.5, 2.6.
-        """
+        """Return the pose from objects whose positions in the body frame are known: sections 2.5 and 2.6."""
         observations = tuple(observations)
         for i, one in enumerate(observations):
             if canonical_label(one.label) not in self.semantic_map.labels:
@@ -134,12 +123,12 @@ class SemanticLocalizer:
         return _walk(Localization(observations=observations), (self._associate, self._fit))
 
     def _detect(self, found: Localization) -> Localization:
-        """2.2: the objects of each panorama."""
+        """2.2: detect the objects of each panorama."""
         upper, lower = (find_objects(view, self.detector) for view in (found.upper, found.lower))
         return replace(found, upper=upper, lower=lower)
 
     def _match(self, found: Localization) -> Localization:
-        """2.3: which object of the upper image is which of the lower one."""
+        """2.3: find out which object of the upper image is which of the lower one."""
         blank = [name for name, view in (("upper", found.upper), ("lower", found.lower)) if view.is_blank]
         if blank:
             return found.unable(outcomes.BLANK, f"the {' and the '.join(blank)} image is black: is a lens covered?")
@@ -163,7 +152,7 @@ class SemanticLocalizer:
         return replace(found, matches=tuple(matching.matches), unmatched=tuple(matching.unmatched), turn=turn)
 
     def _range(self, found: Localization) -> Localization:
-        """2.4: where the matched objects are. Observations are those with a position and a class of the map."""
+        """2.4: place the matched objects. Those with a position and a class of the map are the observations."""
         pairs = matched_indices(found.matches, found.upper, found.lower)
         furthest = max_range(self.rig.baseline) if self.reject_implausible else np.inf
         positions = position_objects(
@@ -185,7 +174,7 @@ class SemanticLocalizer:
         return found if cause is None else found.unable(*cause)
 
     def _associate(self, found: Localization) -> Localization:
-        """2.5: which observation is which landmark."""
+        """2.5: pair the observations with landmarks."""
         if not found.observations:
             return found.unable(TOO_FEW_PAIRS, "there is no observation to match to the map")
         association = self.association(
@@ -194,7 +183,7 @@ class SemanticLocalizer:
         return replace(found, association=association)
 
     def _fit(self, found: Localization) -> Localization:
-        """2.6: the pose from the pairs of like classes. A matcher that weighed whole poses has one already."""
+        """2.6: fit the pose to the pairs of like classes. A matcher that weighed whole poses has one already."""
         if found.reason is not None:
             return found
         used = [found.observations[i] for i, _ in found.used_pairs]
@@ -233,7 +222,7 @@ def _walk(found: Localization, steps: Sequence[Callable[[Localization], Localiza
         found = step(found)
     if found.upper is None:
         return found
-    upper, lower = (view.replace(image=None, features=None) for view in (found.upper, found.lower))
+    upper, lower = (replace(view, image=None, features=None) for view in (found.upper, found.lower))
     return replace(found, upper=upper, lower=lower)
 
 

@@ -218,10 +218,9 @@ UPPER, LOWER, PAIRS = views(POSE)
 @pytest.mark.parametrize(
     ("error", "says", "call"),
     [
-        (LocalizerError, "StereoRig and a SemanticMap", lambda: SemanticLocalizer(0.3, ROOM)),
         (
             LocalizerError,
-            'association must be "greedy" or a function',
+            'association must be "greedy"',
             lambda: localize(*views(POSE), association="best"),
         ),
         (LocalizerError, "distance must be one of", lambda: localize(*views(POSE), distance="lidar")),

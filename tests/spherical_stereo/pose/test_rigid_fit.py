@@ -148,9 +148,9 @@ def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
     ("changes", "says"),
     [
         ({"target": TRIANGLE[:2]}, "shape"),
-        ({"weights": [1, 1]}, "one a pair"),
+        ({"weights": [1, 1]}, "weights must have"),
         ({"weights": [1, -1, 1]}, "not be negative"),
-        ({"source": np.full((3, 2), np.inf)}, "source must be finite"),
+        ({"source": np.full((3, 2), np.inf)}, "source must have finite values"),
         ({"covariances": np.full((3, 2, 2), np.nan)}, r"one finite \(2, 2\) matrix a pair"),
         ({"covariances": np.eye(2)}, r"one finite \(2, 2\) matrix a pair"),
         ({"covariances": [np.zeros((2, 2))] * 3}, "positive eigenvalues"),
