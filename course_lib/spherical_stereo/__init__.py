@@ -14,40 +14,22 @@ them. Boxes and points on them are in edge coordinates (`panorama`).
 """
 
 # ruff: noqa: F401 - the public names
-from course_lib.spherical_stereo.detection.darknet import DetectorError
-from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
+from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.seam import extend_seam
-from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.features import SwappedImagesError
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_objects
-from course_lib.spherical_stereo.panorama import (
-    PanoramaError,
-    StereoRig,
-    View,
-    direction_to_pixel,
-    open_pair,
-    open_view,
-    pixel_to_direction,
-    read_panorama,
-)
+from course_lib.spherical_stereo.panorama import StereoRig, direction_to_pixel, open_view, pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
 from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
-from course_lib.spherical_stereo.ranging.triangulation import (
-    TriangulationError,
-    triangulate,
-    triangulation_covariance,
-    triangulation_outcome,
-)
+from course_lib.spherical_stereo.ranging.triangulation import TriangulationError, triangulate, triangulation_covariance
 from course_lib.spherical_stereo.semantic_map.association import (
-    Association,
-    AssociationError,
     Observation,
-    Penalty,
     PenaltyWeights,
     associate_greedy,
     penalty,
     penalty_table,
 )
-from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap

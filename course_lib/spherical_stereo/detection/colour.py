@@ -30,15 +30,12 @@ def mean_hue_saturation(
 
     hue = direction of sum_i s_i (cos h_i, sin h_i), saturation = mean of s_i
 
-    over the pixels i of the central half of `box`, of `mask` (bool, (H, W)), of both together, or of the whole image.
+    over the pixels i of the central half of `box`, or of `mask` (bool, (H, W)), or of the whole image.
     The paper takes plain means of H. Source: paper 2, section 2.2.
     """
-    if mask is not None and np.shape(mask) != image_bgr.shape[:2]:
-        raise DetectionError(f"mask must have the image's shape {image_bgr.shape[:2]}; got {np.shape(mask)}")
-    selected = None if mask is None else np.asarray(mask, dtype=bool)
     if box is not None:
-        image_bgr, selected = _crop(image_bgr, selected, central_half(box))
-    pixels = (image_bgr.reshape(-1, 3) if selected is None else image_bgr[selected]).reshape(-1, 1, 3)
+        image_bgr = _crop(image_bgr, central_half(box))
+    pixels = (image_bgr if mask is None else image_bgr[mask]).reshape(-1, 1, 3)
     if len(pixels) == 0:
         raise DetectionError(f"no pixel is left of the image for box {box} and the mask: give a box or mask inside it")
     # 8-bit HSV would round hue to 2 degrees; float input gives H in degrees and S from 0 to 1.
@@ -58,7 +55,7 @@ def _mean_hue(hsv: np.ndarray) -> float:
     return 0.0 if hue >= 360 else hue  # the remainder of a tiny negative number rounds up to 360
 
 
-def _crop(image: np.ndarray, mask: np.ndarray | None, box: Box) -> tuple[np.ndarray, np.ndarray | None]:
+def _crop(image: np.ndarray, box: Box) -> np.ndarray:
     """Return the pixels whose centres lie in the box, at least one a direction, columns taken around the seam."""
     height, width = image.shape[:2]
     if not np.isfinite(box).all() or box[2] <= box[0] or box[3] <= box[1]:
@@ -66,7 +63,7 @@ def _crop(image: np.ndarray, mask: np.ndarray | None, box: Box) -> tuple[np.ndar
     columns = _centres_between(box[0], min(box[2], box[0] + width)) % width
     rows = _centres_between(max(box[1], 0), min(box[3], height))
     rows = rows[(rows >= 0) & (rows < height)]
-    return image[np.ix_(rows, columns)], None if mask is None else mask[np.ix_(rows, columns)]
+    return image[np.ix_(rows, columns)]
 
 
 def _centres_between(start: float, stop: float) -> np.ndarray:

@@ -60,28 +60,20 @@ def triangulate(direction_upper: np.ndarray, direction_lower: np.ndarray, baseli
     baseline = StereoRig(baseline).baseline
     outcome = triangulation_outcome(direction_upper, direction_lower)
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
-    hint = {
-        AZIMUTH_GAP: "the directions do not show one object; match the objects first",
-        DIVERGING: "are the images swapped, or the boxes two objects'?",
-        PARALLEL: "they tell no distance; a nearer object or a longer baseline is needed",
-    }
-    for name in hint:
+    for name in (AZIMUTH_GAP, DIVERGING, PARALLEL):
         if (outcome == name).any():
             first = tuple(np.argwhere(outcome == name)[0])
-            where = f" (element {', '.join(map(str, first))})" if first else ""
             e_u, e_l, gap = np.degrees([upper[first], lower[first], residual[first]])
             raise TriangulationError(
-                f"{name}: the elevations{where} are {e_u:.3f} (upper) and {e_l:.3f} degrees, and the directions "
-                f"{gap:.2f} degrees apart across the epipolar half-circle: {hint[name]}",
+                f"{name}: the elevations are {e_u:.3f} (upper) and {e_l:.3f} degrees, and the directions {gap:.2f} "
+                "degrees apart across the epipolar half-circle",
                 name,
             )
     return baseline * np.cos(lower) / np.sin(lower - upper)
 
 
 def object_position(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
-    """Return positions X = d x_hat `(..., 3)` in metres, in the frame of the upper camera (x forward, y left, z up).
-    Source: paper 2, section 2.4.
-    """
+    """Return positions X = d x_hat `(..., 3)` in metres, in the upper camera's frame (x forward, y left, z up)."""
     distance = triangulate(direction_upper, direction_lower, baseline)
     azimuth, elevation = azimuth_elevation(direction_upper)
     return distance[..., None] * direction_from_angles(azimuth, elevation)
@@ -123,9 +115,6 @@ def triangulation_covariance(
 
 
 def _angles(direction_upper, direction_lower):
-    """Azimuth and elevation of both directions, broadcast together, and their epipolar residual; radians, `(...)`."""
-    azimuth_u, elevation_u = azimuth_elevation(direction_upper)
-    azimuth_l, elevation_l = azimuth_elevation(direction_lower)
-    azimuth_u, elevation_u, azimuth_l, elevation_l = np.broadcast_arrays(azimuth_u, elevation_u, azimuth_l, elevation_l)
-    residual = epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l)
-    return azimuth_u, elevation_u, azimuth_l, elevation_l, residual
+    """Return azimuth and elevation of both directions, broadcast together, and their epipolar residual, radians."""
+    angles = np.broadcast_arrays(*azimuth_elevation(direction_upper), *azimuth_elevation(direction_lower))
+    return *angles, epipolar_residual(*angles)
