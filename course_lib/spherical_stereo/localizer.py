@@ -17,14 +17,9 @@ from course_lib.spherical_stereo.matching.features import MAX_TURN
 from course_lib.spherical_stereo.matching.object_matching import MIN_FEATURES, match_views, matched_indices
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 from course_lib.spherical_stereo.pose import localization as outcomes
+from course_lib.spherical_stereo.pose import rigid_fit
 from course_lib.spherical_stereo.pose.localization import OK, Localization, PlacedObject
-from course_lib.spherical_stereo.pose.rigid_fit import (
-    TOO_FEW_PAIRS,
-    RigidFitError,
-    fit_covariance,
-    fit_rigid_2d,
-    residual_statistics,
-)
+from course_lib.spherical_stereo.pose.rigid_fit import fit_rigid_2d
 from course_lib.spherical_stereo.ranging.object_positions import DISTANCES, Distance, max_range, position_objects
 from course_lib.spherical_stereo.ranging.triangulation import DIVERGING
 from course_lib.spherical_stereo.semantic_map.association import (
@@ -107,7 +102,7 @@ class SemanticLocalizer:
         height) of the panoramas; None: `image_size`. Raises `DetectionError` for matches and boxes that cannot be,
         `PanoramaError` for a size that no panorama has. Source: paper 2, sections 2.4 to 2.6.
         """
-        size = self.image_size if size is None else size
+        size = size or self.image_size
         upper, lower = (View(*size, detections=side) for side in (upper_detections, lower_detections))
         for name, view in (("upper", upper), ("lower", lower)):
             boxes_on(view, name)
@@ -176,7 +171,7 @@ class SemanticLocalizer:
     def _associate(self, found: Localization) -> Localization:
         """2.5: pair the observations with landmarks."""
         if not found.observations:
-            return found.unable(TOO_FEW_PAIRS, "there is no observation to match to the map")
+            return found.unable(rigid_fit.TOO_FEW_PAIRS, "there is no observation to match to the map")
         association = self.association(
             found.observations, self.semantic_map, weights=self.weights, distance_term=self.distance_term
         )
@@ -196,11 +191,11 @@ class SemanticLocalizer:
             return found.unable(found.association.reason, found.association.explanation)
         try:
             pose = found.alternatives[0].pose if weighed else fit_rigid_2d(source, target, covariances=covariances)
-        except RigidFitError as error:
+        except rigid_fit.RigidFitError as error:
             return found.unable(error.reason, str(error))
         found = replace(found, residuals=pose.apply(source) - target)
         if noise is not None:
-            found = replace(found, statistics=residual_statistics(pose, source, target, noise, covariances))
+            found = replace(found, statistics=rigid_fit.residual_statistics(pose, source, target, noise, covariances))
         if weighed:
             return replace(found, pose=pose, status=OK, covariance=found.alternatives[0].covariance)
         if noise is None:
@@ -212,7 +207,7 @@ class SemanticLocalizer:
                 f"{found.statistics.expected_rms:.2f} m may be expected: wrong pairs, a wrong baseline, or another map",
                 rejected_pose=pose,
             )
-        covariance = fit_covariance(pose, source, target, covariances=covariances, noise=noise)
+        covariance = rigid_fit.fit_covariance(pose, source, target, covariances=covariances, noise=noise)
         return replace(found, pose=pose, status=OK, covariance=covariance)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,10 +33,7 @@ class DetectionError(ValueError):
 
 
 def canonical_label(label: str) -> str:
-    """Return the label that the semantic map uses for a detector's class name: a "couch" is a "sofa".
-
-    Case, underscores and hyphens do not matter. Source: paper 2, section 2.2 (the class c of an object).
-    """
+    """Return the map's label for a detector's class name: "couch" is "sofa". Case, "_" and "-" do not matter."""
     plain = " ".join(re.split(r"[\s_-]+", label.lower())).strip() if isinstance(label, str) else ""
     if not plain:
         raise DetectionError(f"a label is a text that is not empty; got {label!r}")
@@ -80,18 +77,9 @@ class Detection:
         return ((self.box[0] + self.box[2]) / 2, (self.box[1] + self.box[3]) / 2)
 
     @property
-    def size(self) -> tuple[float, float]:
-        """Return (width, height) of the box in pixels."""
-        return (self.box[2] - self.box[0], self.box[3] - self.box[1])
-
-    @property
     def is_grey(self) -> bool:
         """Return True if the object has no hue."""
         return math.isnan(self.hue)
-
-    def wrapped(self, width: int) -> Detection:
-        """Return the same detection with its box moved by whole turns to 0 <= u_min < width (the image's, pixels)."""
-        return replace(self, box=tuple(wrapped_box(self.box, width)))
 
     def describe(self) -> str:
         """Return one line for people: label, score, colour and place."""

@@ -56,16 +56,6 @@ class Penalty(NamedTuple):
     total: float
 
 
-class AssociationStep(NamedTuple):
-    """One round of the greedy search: the pair, its penalty, and what had no partner before this round."""
-
-    observation: int
-    landmark: int
-    penalty: Penalty
-    open_observations: tuple[int, ...]
-    open_landmarks: tuple[int, ...]
-
-
 class Association(NamedTuple):
     """Result of a matcher: pairs of indices (observation, landmark), and how they came about."""
 
@@ -74,7 +64,6 @@ class Association(NamedTuple):
     same_class: tuple[bool, ...]  # False for a pair of unlike classes, which is never used for the fit
     unassigned: tuple[int, ...]  # Observations without a partner.
     table: Penalty  # Every observation with every landmark, `(n_observations, n_landmarks)` arrays.
-    steps: tuple[AssociationStep, ...] = ()  # The rounds of the greedy search.
     hypotheses: tuple = ()  # the poses that a matcher beyond the paper weighed, best first
     confidence: float | None = None  # How sure the best of them is, 0 to 1; None from a matcher that weighs no poses.
     reason: str | None = None  # Why the best of them should not be given out; None if it should.
@@ -165,19 +154,13 @@ def associate_greedy(
     """
     table = penalty_table(observations, semantic_map, weights, distance_term)
     open_cost = table.total.copy()
-    steps = []
+    pairs = []
     for _ in range(min(open_cost.shape)):
         chosen = np.argmax(open_cost <= open_cost.min() + TIE)  # the first True, row by row
         i, j = (int(index) for index in np.unravel_index(chosen, open_cost.shape))
-        still_open = np.isfinite(open_cost)
-        one = Penalty(*(float(term[i, j]) for term in table))
-        open_observations, open_landmarks = (
-            tuple(int(index) for index in np.flatnonzero(still_open.any(axis=axis))) for axis in (1, 0)
-        )
-        steps.append(AssociationStep(i, j, one, open_observations, open_landmarks))
+        pairs.append((i, j))
         open_cost[i, :] = open_cost[:, j] = np.inf
-    pairs = [(step.observation, step.landmark) for step in steps]
-    return association_of(pairs, observations, semantic_map, table)._replace(steps=tuple(steps))
+    return association_of(pairs, observations, semantic_map, table)
 
 
 def association_of(

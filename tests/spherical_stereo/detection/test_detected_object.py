@@ -11,6 +11,7 @@ from course_lib.spherical_stereo.detection.detected_object import (
     box_centre,
     box_iou,
     canonical_label,
+    wrapped_box,
 )
 
 WIDTH = 1280.0
@@ -75,10 +76,10 @@ def test_boxes_that_cannot_be_are_named(bad, says):
         box_iou(bad, [[0, 0, 1, 1]], WIDTH)
 
 
-def test_a_detection_knows_its_centre_its_size_and_its_place_on_the_circle():
+def test_a_detection_knows_its_centre_and_its_place_on_the_circle():
     detection = Detection("Couch", 0.5, (250, 10, 270, 40), 20.0, 55.0)
-    assert (detection.label, detection.centre, detection.size) == ("sofa", (260, 25), (20, 30))
-    assert Detection("sofa", 0.5, (506, 10, 526, 40), 20.0, 55.0).wrapped(256) == detection
+    assert (detection.label, detection.centre) == ("sofa", (260, 25))
+    assert wrapped_box((506, 10, 526, 40), 256).tolist() == list(detection.box)
 
 
 @pytest.mark.parametrize(
