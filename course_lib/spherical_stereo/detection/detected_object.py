@@ -77,6 +77,11 @@ class Detection:
         return ((self.box[0] + self.box[2]) / 2, (self.box[1] + self.box[3]) / 2)
 
     @property
+    def size(self) -> tuple[float, float]:
+        """Return (width, height) of the box in pixels."""
+        return (self.box[2] - self.box[0], self.box[3] - self.box[1])
+
+    @property
     def is_grey(self) -> bool:
         """Return True if the object has no hue."""
         return math.isnan(self.hue)
