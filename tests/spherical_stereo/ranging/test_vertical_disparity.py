@@ -61,9 +61,9 @@ def test_two_matches_are_too_few(rng):
 
 def test_both_distances_of_rendered_boards_are_right():
     """A board is flat and faces the rig, so here surface and centre are nearly one."""
-    boards, upper, lower, upper_detections, lower_detections = scene()
+    boards, *images, upper_detections, lower_detections = scene()
     rig = StereoRig(BASELINE)
-    upper, lower = open_pair(upper, lower)
+    upper, lower = open_pair(*images)
     upper, lower = upper.replace(detections=upper_detections), lower.replace(detections=lower_detections)
     measured = measure_objects(match_views(find_features(upper), find_features(lower), rig).matches, upper, lower, rig)
     assert [m.upper for m in measured] == list(range(8))
