@@ -11,7 +11,6 @@ from course_lib.spherical_stereo.matching.epipolar import (
     epipolar_residual,
 )
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, inside_box
-from course_lib.spherical_stereo.panorama import PanoramaError
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
 
@@ -45,11 +44,6 @@ def test_keypoints_are_in_edge_coordinates():
     keypoints = detect_features(image).keypoints
     assert len(keypoints) >= 4
     np.testing.assert_allclose(keypoints.mean(axis=0), [110, 70], atol=0.3)
-
-
-def test_what_is_no_panorama_is_refused(image):
-    with pytest.raises(PanoramaError):
-        detect_features(image[..., 0])
 
 
 def test_a_box_across_the_seam_holds_points_on_both_sides_of_it():
