@@ -1,7 +1,6 @@
 """All of paper 2 in the order of its figure 2: an image pair walks from the panorama to a pose on the map.
 
-Each step takes what the steps before it found and adds its own part. If the images give no pose, the answer has status
-"unable" and a reason. A mistake of the caller's raises a named error.
+Each step adds its part to the record. If the images give no pose, the record has status "unable" and a reason.
 """
 
 from __future__ import annotations

@@ -1,12 +1,7 @@
 """The sphere behind an equirectangular image, the rig, and the record of one image (paper 2, section 2.4).
 
-A panorama is twice as wide as high. Its centre looks along body +x, columns run to the right as azimuth decreases, row
-0 is straight up, and the seam is behind. Coordinates are edge coordinates: pixel i spans [i, i + 1), so 0.5 is added to
-OpenCV's keypoints, and
-
-    azimuth = (1/2 - u / W) 2 pi        elevation = (1/2 - v / H) pi
-
-A direction is the unit vector (cos e cos a, cos e sin a, sin e) in the body frame: x forward, y left, z up.
+A panorama's centre looks along body +x (x forward, y left, z up), row 0 is straight up, and the seam is behind.
+Coordinates are edge coordinates: pixel i spans [i, i + 1), so 0.5 is added to OpenCV's keypoints.
 """
 
 from __future__ import annotations

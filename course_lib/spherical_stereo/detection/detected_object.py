@@ -1,7 +1,5 @@
-"""What a detector says about one object of a panorama (paper 2, section 2.2): its class, its box and its colour.
-
-A box is (u_min, v_min, u_max, v_max) in edge coordinates, pixels, 0 <= u_min < width. If it crosses the seam, u_max
-passes the width.
+"""One object of a panorama (paper 2, section 2.2): its class, its colour, and its box (u_min, v_min, u_max, v_max) in
+edge coordinates, pixels, 0 <= u_min < width. If the box crosses the seam, u_max passes the width.
 """
 
 from __future__ import annotations

@@ -96,18 +96,14 @@ def select_on_circle(
     overlap = np.where(cut[None, :], shared_area(boxes, boxes, width) / box_area(boxes)[None, :], iou)
     overlap = _limit_by_class(overlap, iou, classes)
     kept = _suppress(overlap, scores + inside - 2.0 * cut, iou_threshold)
-    best = _best_copies(overlap, kept, scores, iou_threshold)
+    # For each kept box the greatest score among itself and those that it suppressed. `kept` is in the order of
+    # suppression: what several overlap went with the first of them.
+    replaces = overlap[kept] > iou_threshold
+    replaces[np.arange(len(kept)), kept] = True
+    replaces &= np.cumsum(replaces, axis=0) == 1
+    best = np.where(replaces, scores, -np.inf).argmax(axis=1) if len(kept) else kept
     order = np.argsort(-scores[best], kind="stable")
     return boxes[kept[order]], scores[best[order]], classes[best[order]]
-
-
-def _best_copies(overlap: np.ndarray, kept: np.ndarray, scores: np.ndarray, threshold: float) -> np.ndarray:
-    """Return (k,), for each kept box the index of the greatest score among itself and those that it suppressed."""
-    replaces = overlap[kept] > threshold
-    replaces[np.arange(len(kept)), kept] = True
-    # `kept` is in the order of suppression: what several overlap went with the first of them.
-    replaces &= np.cumsum(replaces, axis=0) == 1
-    return np.where(replaces, scores, -np.inf).argmax(axis=1) if len(kept) else kept
 
 
 def _suppress(overlap: np.ndarray, rank: np.ndarray, threshold: float) -> np.ndarray:

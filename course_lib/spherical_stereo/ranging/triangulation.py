@@ -1,13 +1,8 @@
 """From two directions to a position: X = d x_hat, how sure it is, and when there is none (paper 2, section 2.4).
 
 Upper camera, lower camera and point make a triangle. Its angle at the point is the parallax e_l - e_u, its angle at the
-lower camera pi/2 - e_l, so the law of sines gives
-
-    d = baseline cos e_l / sin(e_l - e_u)          (along the upper camera's direction)
-    rho = d cos e_u = baseline / (tan e_l - tan e_u)          (horizontal range)
-
-The rays of two box centres do not quite meet. The distance comes from the elevations, the azimuth from the upper
-camera.
+lower camera pi/2 - e_l, so the law of sines gives d. The rays of two box centres do not quite meet: the distance comes
+from the elevations, the azimuth from the upper camera.
 """
 
 from __future__ import annotations
@@ -51,7 +46,7 @@ def triangulation_outcome(direction_upper: np.ndarray, direction_lower: np.ndarr
 def triangulate(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
     """Return distances d `(...)` in metres along the upper camera's directions: the object is at X = d x_hat_upper.
 
-    d = baseline cos e_l / sin(e_l - e_u)
+    d = baseline cos e_l / sin(e_l - e_u),    horizontally rho = d cos e_u = baseline / (tan e_l - tan e_u)
 
     Directions `(..., 3)` in the body frame, broadcast together; baseline in metres. Raises `TriangulationError` if any
     pair has another outcome than "ok", `PanoramaError` for directions that are none, or a baseline that is not

@@ -99,7 +99,10 @@ def penalty(
     zero for an object that looks too near the centroid. Fields may be arrays that broadcast, and then so do the terms.
     Raises `AssociationError` for values that cannot be. Source: paper 2, eq. (1).
     """
-    _check_options(weights, distance_term)
+    if distance_term not in DISTANCE_TERMS:
+        raise AssociationError(f"distance_term must be one of {DISTANCE_TERMS}; got {distance_term!r}")
+    if not (np.isfinite(weights).all() and min(weights) >= 0):
+        raise AssociationError(f"weights must be finite and not negative; got {weights}")
     _check_values("observation", observed)
     _check_values("landmark", landmark)
     for name, centroid in (("observed", observed_centroid), ("map", map_centroid)):
@@ -175,14 +178,6 @@ def association_of(
         tuple(sorted(set(range(len(observations))) - {i for i, _ in pairs})),
         table,
     )
-
-
-def _check_options(weights: PenaltyWeights, distance_term: str) -> None:
-    if distance_term not in DISTANCE_TERMS:
-        raise AssociationError(f"distance_term must be one of {DISTANCE_TERMS}; got {distance_term!r}")
-    for name, value in zip(PenaltyWeights._fields, weights, strict=True):
-        if not (np.isfinite(value) and value >= 0):
-            raise AssociationError(f"{name} must be finite and not negative; got {value!r}")
 
 
 def _check_values(name: str, side: Observation | Landmark) -> None:

@@ -167,7 +167,7 @@ def test_values_that_cannot_be_are_refused_on_either_side(change):
 def test_options_that_do_not_exist_are_named():
     with pytest.raises(AssociationError, match=r"distance_term must be one of.*'squared'"):
         associate_greedy([seen()], ROOM, distance_term="squared")
-    with pytest.raises(AssociationError, match="p_h must be finite and not negative"):
+    with pytest.raises(AssociationError, match="weights must be finite and not negative"):
         associate_greedy([seen()], ROOM, PenaltyWeights(p_h=-1))
     with pytest.raises(AssociationError, match="map centroid"):
         penalty(seen(), mapped(), [0, 0], [0, 0, 0])
