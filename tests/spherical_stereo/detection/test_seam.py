@@ -120,29 +120,23 @@ BOX = np.array([100.0, 50, 200, 150])
 
 
 def shifted(*offsets):
-    return np.array([BOX + np.array([offset, 0, offset, 0]) for offset in offsets])
+    return BOX + np.array(offsets).reshape(-1, 1) * [1, 0, 1, 0]
 
 
-def test_the_best_of_overlapping_boxes_stays():
-    kept = suppress_in_image(shifted(0, 5, -5), np.array([0.6, 0.9, 0.7]), np.zeros(3, int), 0.45)
-    assert kept.tolist() == [1]
-
-
-def test_boxes_that_overlap_less_than_the_limit_all_stay_the_best_first():
-    kept = suppress_in_image(shifted(0, 60, 120), np.array([0.6, 0.9, 0.7]), np.zeros(3, int), 0.45)
-    assert kept.tolist() == [1, 2, 0]
-
-
-def test_a_suppressed_box_suppresses_nothing():
-    """A chain: the second goes because of the first; the third overlaps only the second and stays."""
-    kept = suppress_in_image(shifted(0, 30, 60), np.array([0.9, 0.8, 0.7]), np.zeros(3, int), 0.45)
-    assert kept.tolist() == [0, 2]
-
-
-def test_across_classes_only_boxes_that_nearly_coincide_are_one_object():
-    scores, classes = np.array([0.9, 0.8]), np.array([0, 1])
-    assert suppress_in_image(shifted(0, 25), scores, classes, 0.45).tolist() == [0, 1]
-    assert suppress_in_image(shifted(0, 4), scores, classes, 0.45).tolist() == [0]
+@pytest.mark.parametrize(
+    ("offsets", "scores", "classes", "kept"),
+    [
+        ((0, 5, -5), (0.6, 0.9, 0.7), (0, 0, 0), [1]),  # the best stays
+        ((0, 60, 120), (0.6, 0.9, 0.7), (0, 0, 0), [1, 2, 0]),  # they overlap less than the limit
+        ((0, 30, 60), (0.9, 0.8, 0.7), (0, 0, 0), [0, 2]),  # a suppressed box suppresses nothing
+        ((0, 25), (0.9, 0.8), (0, 1), [0, 1]),  # two classes
+        ((0, 4), (0.9, 0.8), (0, 1), [0]),  # two classes that nearly coincide
+        ((), (), (), []),
+    ],
+)
+def test_of_overlapping_boxes_the_best_stays(offsets, scores, classes, kept):
+    found = suppress_in_image(shifted(*offsets), np.array(scores), np.array(classes), 0.45)
+    assert found.tolist() == kept
 
 
 def test_boxes_that_nearly_coincide_vote_weighted_by_their_scores():
