@@ -2,14 +2,14 @@
 spherical stereo camera". An image pair walks through figure 2 in this order; a folder imports only those above it:
 
     panorama       2.1, 2.4: the sphere behind an image, the rig, and `View`, the record of one image
-    detection/     2.2: a network and its files, the seam (figure 3), suppression, colour; boxes drawn by hand
+    detection/     2.2: a network and its files, the seam (figure 3), suppression, colour
     matching/      2.3: features, the epipolar constraint, objects in both views; is a camera turned?
     ranging/       2.4: a distance from two directions, and one from the matched features
     semantic_map/  2.5: the map and its files, eq. (1) and the greedy search
     pose/          2.6: the least-squares fit, whether its residuals contradict it, and the answer
     localizer      the steps themselves
 
-recording reads a folder of stereo panoramas with the truth beside them. Images are BGR uint8 arrays, as OpenCV reads
+recording reads files beside panoramas: the truth, and boxes drawn by hand. Images are BGR uint8 arrays, as OpenCV reads
 them. Boxes and points on them are in edge coordinates (`panorama`).
 """
 

@@ -1,18 +1,33 @@
-"""A folder of stereo panoramas with the truth beside them: what the room experiment runs on.
+"""Files beside stereo panoramas: the truth of a folder of pairs, and boxes drawn by hand on one pair.
 
 poses.json (version 1): seed, width, height, baseline, and for every pair its rig (where it really stood) and, for the
-upper and the lower image, the file and the exact boxes of the objects that can be seen.
+upper and the lower image, the file and the exact boxes of the objects that can be seen. Boxes drawn by hand:
+
+    {"version": 1, "width": 1024, "height": 512,
+     "upper": [{"label": "chair", "box": [u_min, v_min, u_max, v_max], "name": "chair by the window"}, ...],
+     "lower": [...]}
+
+Boxes are in edge coordinates of images of that size. u_max passes the width if a box crosses the seam. `name` is what
+tables call the object, and may be left out.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from course_lib.files import is_file, read_json
-from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, read_panorama
+from course_lib.spherical_stereo.detection.colour import Box, mean_hue_saturation
+from course_lib.spherical_stereo.detection.detected_object import (
+    Detection,
+    DetectionError,
+    canonical_label,
+    wrapped_box,
+)
+from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, open_pair, read_panorama
 
 VERSION = 1
 POSES_FILE = "poses.json"
@@ -24,8 +39,8 @@ class TrueObject:
 
     number: int
     label: str
-    visible_box: tuple[float, float, float, float]
-    unoccluded_box: tuple[float, float, float, float]
+    visible_box: Box
+    unoccluded_box: Box
     visible_fraction: float
 
 
@@ -100,10 +115,15 @@ def _pair(folder: Path, entry: dict, size: tuple[int, int]) -> StereoPair:
 
 def true_object(entry: dict) -> TrueObject:
     """Return one object from its entry in poses.json or boxes.json."""
-    boxes = [tuple(map(_number, entry[name])) for name in ("visible_box", "unoccluded_box")]
-    if {len(box) for box in boxes} != {4} or not isinstance(entry["label"], str):
-        raise TypeError(f"two boxes of four numbers and a label are expected; got {str(entry)[:80]}")
+    if not isinstance(entry["label"], str):
+        raise TypeError(f"a label is expected, found {str(entry['label'])[:40]}")
+    boxes = _box(entry["visible_box"]), _box(entry["unoccluded_box"])
     return TrueObject(_number(entry["object"], int), entry["label"], *boxes, _number(entry["visible_fraction"]))
+
+
+def _box(value: object) -> Box:
+    u_min, v_min, u_max, v_max = map(_number, value)
+    return u_min, v_min, u_max, v_max
 
 
 def _number(value: object, kind: type = float):
@@ -111,3 +131,57 @@ def _number(value: object, kind: type = float):
     if isinstance(value, bool) or not isinstance(value, (int, kind)):
         raise TypeError(f"a number of kind {kind.__name__} is expected, found {str(value)[:40]}")
     return kind(value)
+
+
+class LabelledBox(NamedTuple):
+    """One box of the file. Its label is canonical, and 0 <= u_min < width."""
+
+    label: str
+    box: Box
+    name: str | None
+
+
+@dataclass(frozen=True)
+class StereoBoxes:
+    """The boxes of both images, and the size (width, height) in pixels of the images that they were drawn on."""
+
+    size: tuple[int, int]
+    upper: list[LabelledBox]
+    lower: list[LabelledBox]
+
+    def on(self, upper_image: np.ndarray | View, lower_image: np.ndarray | View) -> tuple[View, View]:
+        """Return both panoramas with the boxes as detections of score 1. Hue and saturation come from the images."""
+        views = open_pair(upper_image, lower_image)
+        if views[0].size != self.size:
+            raise DetectionError(
+                f"the boxes were drawn on images of {self.size} pixels, these have {views[0].size}: scale the images, "
+                "or draw the boxes again"
+            )
+        filled = []
+        for view, side in zip(views, (self.upper, self.lower), strict=True):
+            found = [Detection(one.label, 1.0, one.box, *mean_hue_saturation(view.image, one.box)) for one in side]
+            filled.append(view.replace(detections=found))
+        return tuple(filled)
+
+
+def read_stereo_boxes(path: str | Path) -> StereoBoxes:
+    """Read a file of boxes drawn by hand (format: see the module)."""
+    content = read_json(Path(path), "boxes file", DetectionError)
+    where, sides = "the file", {}
+    try:
+        if content["version"] != VERSION:
+            raise DetectionError(f"the version must be {VERSION}; got {content['version']!r}")
+        size = View(content["width"], content["height"]).size
+        for side in ("upper", "lower"):
+            where, sides[side] = side, []
+            for number, item in enumerate(content[side]):
+                where = f"{side}[{number}]"
+                box, name = wrapped_box(_box(item["box"]), size[0]), item.get("name")
+                if box[1] < 0 or box[3] > size[1]:
+                    raise DetectionError(f"the box leaves the image at the top or bottom; got {item['box']}")
+                if name is not None and not (isinstance(name, str) and name.strip()):
+                    raise DetectionError(f"the name must be a text that is not empty; got {name!r}")
+                sides[side].append(LabelledBox(canonical_label(item["label"]), tuple(box.tolist()), name))
+    except (TypeError, ValueError, KeyError, AttributeError) as error:
+        raise DetectionError(f"{path}: {where} does not have the format of a boxes file: {error!r}") from None
+    return StereoBoxes(size, **sides)

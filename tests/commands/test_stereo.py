@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.cli import main
-from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
+from course_lib.spherical_stereo.recording import read_stereo_boxes
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
 

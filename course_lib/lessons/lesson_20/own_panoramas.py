@@ -14,7 +14,6 @@ from course_lib.files import is_given
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import draw_box, panorama
-from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
 from course_lib.spherical_stereo.matching.features import FeatureMatches
 from course_lib.spherical_stereo.panorama import (
     StereoRig,
@@ -25,6 +24,7 @@ from course_lib.spherical_stereo.panorama import (
 )
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_positions import MeasuredObject, measure_objects
+from course_lib.spherical_stereo.recording import read_stereo_boxes
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 STAND_IN_PAIR = 3  # of the room's experiment 1: most objects in view (chosen)
