@@ -17,7 +17,7 @@ from course_lib.spherical_stereo.detection.seam import (
 WIDTH, HEIGHT, IOU = 640, 320, 0.45
 
 
-def ideal_detections(u_min, object_width, rng=None, jitter=0.0):
+def ideal_detections(u_min, object_width):
     """What a perfect network sees of one object on the extended image: every copy, cut by the image's ends."""
     end = WIDTH + appended_columns(WIDTH)
     copies = []
@@ -25,12 +25,7 @@ def ideal_detections(u_min, object_width, rng=None, jitter=0.0):
         left, right = max(u_min + turn, 0), min(u_min + object_width + turn, end)
         if right - left >= 8:  # a sliver is no detection
             copies.append([left, 100, right, 180])
-    boxes = np.array(copies, dtype=np.float64)
-    if jitter:
-        boxes += rng.uniform(-jitter, jitter, boxes.shape)
-        boxes[:, [0, 2]] = np.clip(boxes[:, [0, 2]], 0, end)
-    scores = np.linspace(0.7, 0.9, len(boxes)) if rng is None else rng.uniform(0.5, 1, len(boxes))
-    return boxes, scores, np.zeros(len(boxes), dtype=int)
+    return np.array(copies, dtype=np.float64), np.linspace(0.7, 0.9, len(copies)), np.zeros(len(copies), dtype=int)
 
 
 def test_the_left_quarter_is_appended_at_the_right(rng):
@@ -39,10 +34,7 @@ def test_the_left_quarter_is_appended_at_the_right(rng):
     assert extended.shape == (64, 160, 3)
     assert (extended[:, :128] == image).all()
     assert (extended[:, 128:] == image[:, :32]).all()
-
-
-def test_the_valid_range_is_one_turn_and_leaves_an_eighth_at_both_ends():
-    assert valid_range(WIDTH) == (WIDTH / 8, WIDTH / 8 + WIDTH)
+    assert valid_range(128) == (16, 144)
 
 
 @pytest.mark.parametrize("object_width", [20, 100, 160, 175, 200, 320, 480, 630])
