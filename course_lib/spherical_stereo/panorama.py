@@ -138,7 +138,7 @@ class View:
 
     @property
     def size(self) -> tuple[int, int]:
-        """(width, height), pixels."""
+        """Return (width, height), pixels."""
         return self.width, self.height
 
     def replace(self, **found: Any) -> View:

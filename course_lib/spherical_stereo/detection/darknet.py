@@ -117,6 +117,7 @@ def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
 
 
 def _share(section: Section, channels: int) -> int:
+    """Return the channels of one group."""
     groups = section.integer("groups", 1)
     if groups < 1 or channels % groups:
         raise section.error(f"groups={groups} does not divide {channels} channels")

@@ -46,7 +46,7 @@ class ObjectMatch:
 
     @property
     def n_matches(self) -> int:
-        """Number of matched features."""
+        """Return the number of matched features."""
         return len(self.keypoints_upper)
 
 

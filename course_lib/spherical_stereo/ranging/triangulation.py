@@ -91,9 +91,9 @@ def triangulation_covariance(
     sigma_azimuth: of the upper camera's azimuth, sigma_elevation: of either camera's elevation, radians, independent.
     Source: paper 2, section 2.4.
     """
-    for name, sigma in (("sigma_azimuth", sigma_azimuth), ("sigma_elevation", sigma_elevation)):
-        if not (np.isfinite(sigma).all() and (np.asarray(sigma) >= 0).all()):
-            raise PanoramaError(f"{name} must be radians, not negative; got {sigma!r}")
+    for sigma in (np.asarray(sigma_azimuth), np.asarray(sigma_elevation)):
+        if not (np.isfinite(sigma).all() and (sigma >= 0).all()):
+            raise PanoramaError(f"a sigma must be finite radians, not negative; got {sigma}")
     rho = triangulate(direction_upper, direction_lower, baseline)
     azimuth, upper, _, lower, _ = _angles(direction_upper, direction_lower)
     rho = rho * np.cos(upper)

@@ -71,7 +71,7 @@ class Association(NamedTuple):
 
     @property
     def usable_pairs(self) -> tuple[tuple[int, int], ...]:
-        """The pairs of like classes: those a pose may be fitted to."""
+        """Return the pairs of like classes: those a pose may be fitted to."""
         return tuple(pair for pair, same in zip(self.pairs, self.same_class, strict=True) if same)
 
 

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.darknet import DetectorError, expected_weight_floats, read_cfg
+from course_lib.spherical_stereo.detection.darknet import DetectorError
 from course_lib.spherical_stereo.detection.detector import (
     PADDING_GREY,
     YoloDetector,
@@ -31,7 +31,6 @@ from tests.spherical_stereo.detection.blob_networks import (
     panorama,
     write_darknet,
 )
-from tests.spherical_stereo.detection.published_cfgs import yolov4_tiny
 
 
 @pytest.fixture(scope="module")
@@ -134,22 +133,6 @@ def test_truncated_weights_that_opencv_would_take_are_refused_and_names_of_anoth
     cv2.dnn.readNetFromDarknet(str(copied / "blobs.cfg"), str(cut))  # without an error
     with pytest.raises(DetectorError, match="Was the copy cut off"):
         YoloDetector.load(copied)
-
-
-def test_a_yolov4_with_the_80_classes_of_coco_runs_at_the_shape_of_a_panorama(tmp_path, rng):
-    cfg = tmp_path / "yolov4-tiny.cfg"
-    cfg.write_text(yolov4_tiny())
-    weights = rng.normal(0, 0.02, expected_weight_floats(read_cfg(cfg))).astype("<f4")
-    (tmp_path / "some.weights").write_bytes(struct.pack("<3iq", 0, 2, 5, 0) + abs(weights).tobytes())
-    (tmp_path / "coco.names").write_text("\n".join(["diningtable", *(f"thing {i}" for i in range(79))]))
-    detector = YoloDetector.load(tmp_path, input_size=(320, 128), score_threshold=0.0)
-    boxes, scores, classes = detector.detect_in_plane(panorama(rng))
-    assert len(boxes) == len(scores) == len(classes) > 0
-    assert (boxes >= 0).all()
-    assert (boxes <= [256, 128, 256, 128]).all()
-    assert "table" in detector.labels
-    with pytest.raises(DetectorError, match=r"at an input of 330 x 128.*multiples of 32"):
-        YoloDetector.load(tmp_path, input_size=(330, 128))
 
 
 def test_the_threshold_that_training_chose_is_taken_unless_another_is_given(copied):

@@ -85,7 +85,7 @@ def test_noise_that_is_none_and_directions_that_are_none_are_refused():
     upper, lower = seen(np.array([2.0, 0, 0]))
     with pytest.raises(PanoramaError, match="baseline"):
         triangulate(upper, lower, 0.0)
-    with pytest.raises(PanoramaError, match="sigma_elevation"):
+    with pytest.raises(PanoramaError, match="a sigma must be"):
         triangulation_covariance(upper, lower, BASELINE, 0.001, -0.001)
     with pytest.raises(PanoramaError, match="direction"):
         triangulate(np.full(3, np.nan), lower, BASELINE)
