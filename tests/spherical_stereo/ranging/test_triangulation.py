@@ -71,7 +71,7 @@ def test_directions_without_a_distance_have_a_named_outcome(upper, lower, name):
 
 
 def test_the_covariance_is_that_of_noise_drawn_by_hand(rng):
-    sigma_azimuth, sigma_elevation = 2 * np.pi / 1280, 0.3 * np.pi / 640
+    sigma_azimuth, sigma_elevation = 8 * np.pi / 1280, 0.3 * np.pi / 640
     for point in ([2.5, 1.0, -0.8], [-1.5, 0.3, -1.2], [0.2, -3.5, 0.4]):
         (azimuth, e_u), (_, e_l) = (azimuth_elevation(d) for d in seen(np.array(point)))
         noise = rng.normal(size=(3, 60_000)) * np.array([[sigma_azimuth], [sigma_elevation], [sigma_elevation]])
