@@ -135,8 +135,11 @@ def test_exact_features_give_the_turn_and_strangers_do_not_matter(rng):
     strangers = rng.permutation(len(points))[: len(points) // 4]
     keypoints = lower.keypoints.copy()
     keypoints[strangers] = rng.uniform(0, [WIDTH, HEIGHT], (len(strangers), 2))
+    keypoints[strangers[::2]] = (lower.keypoints[strangers[::2]] + [6.0, 0.0]) % [WIDTH, HEIGHT]  # near misses
     lower = PanoramaFeatures(keypoints, upper.descriptors, WIDTH, HEIGHT)
-    assert camera_alignment(upper, lower).turn == pytest.approx(turn, abs=5e-4)
+    found = camera_alignment(upper, lower)
+    assert found.turn == pytest.approx(turn, abs=5e-4)
+    assert found.agreeing == pytest.approx(0.75, abs=0.02)
 
 
 def test_images_with_nothing_in_common_tell_no_turn(rng):
