@@ -32,10 +32,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Localizes and prints; 0 also where there is no pose, which is an answer."""
     from course_lib.beyond.look_alikes.matchers import matcher
-    from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
     from course_lib.spherical_stereo.detection.detector import find_objects
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
     from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
+    from course_lib.spherical_stereo.recording import read_stereo_boxes
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
     by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]

@@ -47,11 +47,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Match, measure, and print."""
-    from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
+    from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE
     from course_lib.spherical_stereo.matching.features import find_features, match_features
     from course_lib.spherical_stereo.matching.object_matching import match_views
     from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
     from course_lib.spherical_stereo.ranging.object_positions import measure_objects
+    from course_lib.spherical_stereo.recording import read_stereo_boxes
 
     require_positive("--baseline", arguments.baseline, "metres")
     require_positive("--sigma-pixels", arguments.sigma_pixels, "pixels")
@@ -71,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
         **{"upper": str(arguments.upper), "lower": str(arguments.lower), "baseline_m": rig.baseline},
         "matches": len(features),
         "epipolar_percent": 100 * features.epipolar_share,
-        "epipolar_tolerance_deg": float(np.degrees(features.tolerance)),
+        "epipolar_tolerance_deg": float(np.degrees(EPIPOLAR_TOLERANCE)),
         "median_disparity_px": _median(features.vertical_disparity[features.epipolar]) * upper.height / np.pi,
         "median_azimuth_difference_px": _median(np.abs(features.azimuth_difference)) * upper.width / (2 * np.pi),
         "sigma_pixels": arguments.sigma_pixels,

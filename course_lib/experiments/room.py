@@ -37,8 +37,8 @@ from course_lib.spherical_stereo.detection.detected_object import Detection, box
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization
+from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
 from course_lib.spherical_stereo.ranging.triangulation import OK, object_position, triangulation_outcome
-from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 

@@ -1,7 +1,6 @@
 """All of paper 2 in the order of its figure 2: an image pair walks from the panorama to a pose on the map.
 
-Each step takes what the steps before it found and adds its own part. If the images give no pose, the answer has status
-"unable" and a reason. A mistake of the caller's raises a named error.
+Each step adds its part to the record. If the images give no pose, the record has status "unable" and a reason.
 """
 
 from __future__ import annotations
@@ -13,22 +12,16 @@ import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import boxes_on, canonical_label
 from course_lib.spherical_stereo.detection.detector import find_objects
-from course_lib.spherical_stereo.matching.alignment import MAX_TURN
+from course_lib.spherical_stereo.matching.features import MAX_TURN
 from course_lib.spherical_stereo.matching.object_matching import MIN_FEATURES, match_views, matched_indices
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 from course_lib.spherical_stereo.pose import localization as outcomes
+from course_lib.spherical_stereo.pose import rigid_fit
 from course_lib.spherical_stereo.pose.localization import OK, Localization, PlacedObject
-from course_lib.spherical_stereo.pose.rigid_fit import (
-    TOO_FEW_PAIRS,
-    RigidFitError,
-    fit_covariance,
-    fit_rigid_2d,
-    residual_statistics,
-)
+from course_lib.spherical_stereo.pose.rigid_fit import fit_rigid_2d
 from course_lib.spherical_stereo.ranging.object_positions import DISTANCES, Distance, max_range, position_objects
 from course_lib.spherical_stereo.ranging.triangulation import DIVERGING
 from course_lib.spherical_stereo.semantic_map.association import (
-    DISTANCE_TERMS,
     Association,
     Observation,
     PenaltyWeights,
@@ -69,23 +62,15 @@ class SemanticLocalizer:
         image_size: tuple[int, int] = IMAGE_SIZE,
         reject_implausible: bool = True,
     ):
-        if not isinstance(rig, StereoRig) or not isinstance(semantic_map, SemanticMap):
-            raise LocalizerError(
-                f"a StereoRig and a SemanticMap are needed; got {type(rig).__name__} and {type(semantic_map).__name__}"
-            )
         if association != "greedy" and not callable(association):
-            raise LocalizerError(
-                f'association must be "greedy" or a function called as associate_greedy is; got {association!r}'
-            )
-        options = ("distance", distance, DISTANCES), ("distance_term", distance_term, DISTANCE_TERMS)
-        for name, value, allowed in options:
-            if value not in allowed:
-                raise LocalizerError(f"{name} must be one of {allowed}; got {value!r}")
+            raise LocalizerError(f'association must be "greedy" or called as associate_greedy is; got {association!r}')
+        if distance not in DISTANCES:
+            raise LocalizerError(f"distance must be one of {DISTANCES}; got {distance!r}")
         self.rig, self.semantic_map, self.detector = rig, semantic_map, detector
         self.association = associate_greedy if association == "greedy" else association
         self.distance, self.weights, self.distance_term = distance, PenaltyWeights(*weights), distance_term
         self.weighted_fit, self.reject_implausible = weighted_fit, bool(reject_implausible)
-        self.image_size = View.of_detections([], image_size).size
+        self.image_size = View(*image_size).size
 
     def localize(self, upper_image: np.ndarray, lower_image: np.ndarray) -> Localization:
         """Return the pose from two panoramas: uint8 BGR `(H, W, 3)`, W = 2 H, one size.
@@ -116,17 +101,15 @@ class SemanticLocalizer:
         height) of the panoramas; None: `image_size`. Raises `DetectionError` for matches and boxes that cannot be,
         `PanoramaError` for a size that no panorama has. Source: paper 2, sections 2.4 to 2.6.
         """
-        size = self.image_size if size is None else size
-        upper, lower = (View.of_detections(side, size) for side in (upper_detections, lower_detections))
+        size = size or self.image_size
+        upper, lower = (View(*size, detections=side) for side in (upper_detections, lower_detections))
         for name, view in (("upper", upper), ("lower", lower)):
             boxes_on(view, name)
         found = Localization(upper=upper, lower=lower, matches=tuple(matches))
         return _walk(found, (self._range, self._associate, self._fit))
 
     def localize_observations(self, observations: Sequence[Observation]) -> Localization:
-        """Return the pose from objects whose positions in the body frame are known: sections 2.5 and 2.6. Source: paper
-        2, sections 2.5, 2.6.
-        """
+        """Return the pose from objects whose positions in the body frame are known: sections 2.5 and 2.6."""
         observations = tuple(observations)
         for i, one in enumerate(observations):
             if canonical_label(one.label) not in self.semantic_map.labels:
@@ -134,12 +117,12 @@ class SemanticLocalizer:
         return _walk(Localization(observations=observations), (self._associate, self._fit))
 
     def _detect(self, found: Localization) -> Localization:
-        """2.2: the objects of each panorama."""
+        """2.2: detect the objects of each panorama."""
         upper, lower = (find_objects(view, self.detector) for view in (found.upper, found.lower))
         return replace(found, upper=upper, lower=lower)
 
     def _match(self, found: Localization) -> Localization:
-        """2.3: which object of the upper image is which of the lower one."""
+        """2.3: find out which object of the upper image is which of the lower one."""
         blank = [name for name, view in (("upper", found.upper), ("lower", found.lower)) if view.is_blank]
         if blank:
             return found.unable(outcomes.BLANK, f"the {' and the '.join(blank)} image is black: is a lens covered?")
@@ -163,7 +146,7 @@ class SemanticLocalizer:
         return replace(found, matches=tuple(matching.matches), unmatched=tuple(matching.unmatched), turn=turn)
 
     def _range(self, found: Localization) -> Localization:
-        """2.4: where the matched objects are. Observations are those with a position and a class of the map."""
+        """2.4: place the matched objects. Those with a position and a class of the map are the observations."""
         pairs = matched_indices(found.matches, found.upper, found.lower)
         furthest = max_range(self.rig.baseline) if self.reject_implausible else np.inf
         positions = position_objects(
@@ -185,16 +168,16 @@ class SemanticLocalizer:
         return found if cause is None else found.unable(*cause)
 
     def _associate(self, found: Localization) -> Localization:
-        """2.5: which observation is which landmark."""
+        """2.5: pair the observations with landmarks."""
         if not found.observations:
-            return found.unable(TOO_FEW_PAIRS, "there is no observation to match to the map")
+            return found.unable(rigid_fit.TOO_FEW_PAIRS, "there is no observation to match to the map")
         association = self.association(
             found.observations, self.semantic_map, weights=self.weights, distance_term=self.distance_term
         )
         return replace(found, association=association)
 
     def _fit(self, found: Localization) -> Localization:
-        """2.6: the pose from the pairs of like classes. A matcher that weighed whole poses has one already."""
+        """2.6: fit the pose to the pairs of like classes. A matcher that weighed whole poses has one already."""
         if found.reason is not None:
             return found
         used = [found.observations[i] for i, _ in found.used_pairs]
@@ -207,11 +190,11 @@ class SemanticLocalizer:
             return found.unable(found.association.reason, found.association.explanation)
         try:
             pose = found.alternatives[0].pose if weighed else fit_rigid_2d(source, target, covariances=covariances)
-        except RigidFitError as error:
+        except rigid_fit.RigidFitError as error:
             return found.unable(error.reason, str(error))
         found = replace(found, residuals=pose.apply(source) - target)
         if noise is not None:
-            found = replace(found, statistics=residual_statistics(pose, source, target, noise, covariances))
+            found = replace(found, statistics=rigid_fit.residual_statistics(pose, source, target, noise, covariances))
         if weighed:
             return replace(found, pose=pose, status=OK, covariance=found.alternatives[0].covariance)
         if noise is None:
@@ -223,7 +206,7 @@ class SemanticLocalizer:
                 f"{found.statistics.expected_rms:.2f} m may be expected: wrong pairs, a wrong baseline, or another map",
                 rejected_pose=pose,
             )
-        covariance = fit_covariance(pose, source, target, covariances=covariances, noise=noise)
+        covariance = rigid_fit.fit_covariance(pose, source, target, covariances=covariances, noise=noise)
         return replace(found, pose=pose, status=OK, covariance=covariance)
 
 
@@ -233,7 +216,7 @@ def _walk(found: Localization, steps: Sequence[Callable[[Localization], Localiza
         found = step(found)
     if found.upper is None:
         return found
-    upper, lower = (view.replace(image=None, features=None) for view in (found.upper, found.lower))
+    upper, lower = (replace(view, image=None, features=None) for view in (found.upper, found.lower))
     return replace(found, upper=upper, lower=lower)
 
 

@@ -1,12 +1,7 @@
 """The sphere behind an equirectangular image, the rig, and the record of one image (paper 2, section 2.4).
 
-A panorama is twice as wide as high. Its centre looks along body +x, columns run to the right as azimuth decreases, row
-0 is straight up, and the seam is behind. Coordinates are edge coordinates: pixel i spans [i, i + 1), so 0.5 is added to
-OpenCV's keypoints, and
-
-    azimuth = (1/2 - u / W) 2 pi        elevation = (1/2 - v / H) pi
-
-A direction is the unit vector (cos e cos a, cos e sin a, sin e) in the body frame: x forward, y left, z up.
+A panorama's centre looks along body +x (x forward, y left, z up), row 0 is straight up, and the seam is behind.
+Coordinates are edge coordinates: pixel i spans [i, i + 1), so 0.5 is added to OpenCV's keypoints.
 """
 
 from __future__ import annotations
@@ -22,14 +17,13 @@ import numpy as np
 from course_lib.files import read_image
 from course_lib.geometry import wrap_angle
 
-
-class PanoramaError(ValueError):
-    """A panorama, a pair of them, or a coordinate on one that cannot be used."""
-
-
 MAX_BASELINE = 10.0  # Metres. A longer baseline was probably given in millimetres.
 BLANK_LEVEL = 12  # Brightest value, of 255, of a frame that shows nothing. The noise of a covered lens stays below it.
 HOT_SHARE = 1e-4  # Share of the pixels of such a frame that may be brighter, because a sensor has hot pixels (chosen).
+
+
+class PanoramaError(ValueError):
+    """A panorama, a pair of them, or a coordinate on one that cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -46,28 +40,15 @@ class StereoRig:
     upper_height: float = float("nan")
 
     def __post_init__(self) -> None:
-        try:
-            baseline, upper_height = float(self.baseline), float(self.upper_height)
-        except (TypeError, ValueError):
+        if not 0 < self.baseline <= MAX_BASELINE:
             raise PanoramaError(
-                f"baseline and upper_height must be metres; got {self.baseline!r} and {self.upper_height!r}"
-            ) from None
-        if not 0 < baseline <= MAX_BASELINE:
-            raise PanoramaError(
-                f"baseline must be a positive number of metres, at most {MAX_BASELINE:g}; got {baseline:g}. Is it in "
-                "millimetres? A negative one means that upper and lower are swapped"
+                f"baseline must be a positive number of metres, at most {MAX_BASELINE:g}; got {self.baseline:g}. Is it "
+                "in millimetres? A negative one means that upper and lower are swapped"
             )
-        if np.isinf(upper_height) or upper_height < baseline:
+        if np.isinf(self.upper_height) or self.upper_height < self.baseline:
             raise PanoramaError(
-                f"upper_height must be metres above the floor, at least the baseline {baseline:g}; got {upper_height:g}"
+                f"upper_height must be metres above the floor, at least the baseline; got {self.upper_height:g}"
             )
-        object.__setattr__(self, "baseline", baseline)
-        object.__setattr__(self, "upper_height", upper_height)
-
-    @property
-    def lower_height(self) -> float:
-        """Height of the lower camera above the floor, metres."""
-        return self.upper_height - self.baseline
 
 
 def azimuth_elevation_of_pixel(uv: np.ndarray, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
@@ -135,7 +116,7 @@ def _finite(values: np.ndarray, name: str, axes: str) -> np.ndarray:
 
 
 def azimuth_difference(first: np.ndarray | float, second: np.ndarray | float) -> np.ndarray | float:
-    """first - second on the circle, radians in [-pi, pi)."""
+    """Return first - second on the circle, radians in [-pi, pi)."""
     return wrap_angle(np.asarray(first, dtype=np.float64) - np.asarray(second, dtype=np.float64))
 
 
@@ -155,18 +136,9 @@ class View:
             raise PanoramaError(f"a panorama is twice as wide as high; got size {self.width} x {self.height}")
         object.__setattr__(self, "detections", tuple(self.detections))
 
-    @classmethod
-    def of_detections(cls, detections: Sequence, size: tuple[int, int]) -> View:
-        """Return a panorama of which only the detections are known. size: (width, height), pixels."""
-        try:
-            width, height = map(int, size)
-        except (TypeError, ValueError):
-            raise PanoramaError(f"size must be (width, height) in whole pixels; got {size!r}") from None
-        return cls(width, height, detections=detections)
-
     @property
     def size(self) -> tuple[int, int]:
-        """(width, height), pixels."""
+        """Return (width, height), pixels."""
         return self.width, self.height
 
     def replace(self, **found: Any) -> View:
@@ -181,21 +153,14 @@ def open_view(image: np.ndarray | View, name: str = "image") -> View:
     """
     if isinstance(image, View):
         return image
-    if image is None or np.size(image) == 0:
-        raise PanoramaError(f"{name} is empty; an equirectangular colour image was expected")
     image = np.asarray(image)
-    if image.ndim == 2 or image.shape[2:] == (1,):
-        raise PanoramaError(f"{name} is a grey image of shape {image.shape}; colour (height, width, 3) is needed")
     if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
         raise PanoramaError(
-            f"{name} must be an array (height, width, 3) of BGR values of 8 bits; got {image.shape} of {image.dtype}"
+            f"{name} must be a colour image (height, width, 3) of 8 bits; got {image.shape} of {image.dtype}"
         )
     height, width = image.shape[:2]
-    if width != 2 * height:
-        raise PanoramaError(
-            f"{name} is {width} x {height} pixels; an equirectangular panorama is twice as wide as high"
-            f" ({2 * height} x {height})"
-        )
+    if height < 1 or width != 2 * height:
+        raise PanoramaError(f"{name} is {width} x {height} pixels; a panorama is twice as wide as high")
     is_blank = bool((image > BLANK_LEVEL).any(axis=-1).mean() <= HOT_SHARE)
     # Nearly every colour image shows its colour in a few pixels, so the whole is seldom looked at.
     is_grey = all((part == part[..., :1]).all() for part in (image[::16, ::16], image))
@@ -208,10 +173,7 @@ def open_pair(upper_image: np.ndarray | View, lower_image: np.ndarray | View) ->
     """Check the two panoramas of a rig."""
     upper, lower = open_view(upper_image, "upper image"), open_view(lower_image, "lower image")
     if upper.size != lower.size:
-        raise PanoramaError(
-            f"the two images must have one size; got {upper.width} x {upper.height} (upper) and "
-            f"{lower.width} x {lower.height} (lower)"
-        )
+        raise PanoramaError(f"the two images must have one size; got {upper.size} (upper) and {lower.size} (lower)")
     return upper, lower
 
 

@@ -1,18 +1,33 @@
-"""A folder of stereo panoramas with the truth beside them: what the room experiment runs on.
+"""Files beside stereo panoramas: the truth of a folder of pairs, and boxes drawn by hand on one pair.
 
 poses.json (version 1): seed, width, height, baseline, and for every pair its rig (where it really stood) and, for the
-upper and the lower image, the file and the exact boxes of the objects that can be seen.
+upper and the lower image, the file and the exact boxes of the objects that can be seen. Boxes drawn by hand:
+
+    {"version": 1, "width": 1024, "height": 512,
+     "upper": [{"label": "chair", "box": [u_min, v_min, u_max, v_max], "name": "chair by the window"}, ...],
+     "lower": [...]}
+
+Boxes are in edge coordinates of images of that size. u_max passes the width if a box crosses the seam. `name` is what
+tables call the object, and may be left out.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from course_lib.files import is_file, read_json
-from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, read_panorama
+from course_lib.spherical_stereo.detection.colour import Box, mean_hue_saturation
+from course_lib.spherical_stereo.detection.detected_object import (
+    Detection,
+    DetectionError,
+    canonical_label,
+    wrapped_box,
+)
+from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, open_pair, read_panorama
 
 VERSION = 1
 POSES_FILE = "poses.json"
@@ -24,8 +39,8 @@ class TrueObject:
 
     number: int
     label: str
-    visible_box: tuple[float, float, float, float]
-    unoccluded_box: tuple[float, float, float, float]
+    visible_box: Box
+    unoccluded_box: Box
     visible_fraction: float
 
 
@@ -43,21 +58,16 @@ class StereoPair:
 
     def images(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the upper and the lower panorama, `(H, W, 3)` uint8 BGR."""
-        return self._image(self.upper_file), self._image(self.lower_file)
-
-    def _image(self, file: Path) -> np.ndarray:
-        image = read_panorama(file)
-        height, width = image.shape[:2]
-        if (width, height) != self.size:
-            raise PanoramaError(
-                f"{file} has {width} x {height} pixels; {file.parent / POSES_FILE} says {self.size[0]} x {self.size[1]}"
-            )
-        return image
+        images = read_panorama(self.upper_file), read_panorama(self.lower_file)
+        for file, image in zip((self.upper_file, self.lower_file), images, strict=True):
+            if image.shape[1::-1] != self.size:
+                raise PanoramaError(f"{file} has (width, height) {image.shape[1::-1]}; {POSES_FILE} says {self.size}")
+        return images
 
 
 @dataclass(frozen=True)
 class StereoRecording:
-    """Pairs of panoramas taken with one rig; sizes in pixels, and the seed of the data."""
+    """Pairs of panoramas taken with one rig. Sizes are in pixels."""
 
     folder: Path
     rig: StereoRig
@@ -72,21 +82,18 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
     folder = Path(folder)
     path = folder / POSES_FILE
     content = read_json(path, "list of pairs", PanoramaError)
-    version = content.get("version") if isinstance(content, dict) else None
-    if version != VERSION:
-        raise PanoramaError(f"{path} has version {version!r}; this program reads version {VERSION}")
     try:
-        size = _of_kind(content["width"], int), _of_kind(content["height"], int)
-        View.of_detections([], size)
+        if content["version"] != VERSION:
+            raise PanoramaError(f"the version must be {VERSION}; got {content['version']!r}")
+        size = _number(content["width"], int), _number(content["height"], int)
+        View(*size)
         pairs = tuple(_pair(folder, entry, size) for entry in content["pairs"])
-        heights = {_of_kind(entry["rig"]["upper_height"], float) for entry in content["pairs"]}
-        rig = StereoRig(_of_kind(content["baseline"], float), min(heights, default=np.nan))
-    except PanoramaError as error:
-        raise PanoramaError(f"{path}: {error}") from None
+        heights = {_number(entry["rig"]["upper_height"]) for entry in content["pairs"]}
+        if len(heights) != 1:
+            raise PanoramaError(f"one height of the upper camera is expected; got {sorted(heights)} m")
+        rig = StereoRig(_number(content["baseline"]), heights.pop())
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise PanoramaError(f"{path}: a field is missing or of the wrong kind ({error!r})") from None
-    if len(heights) != 1:
-        raise PanoramaError(f"{path}: pairs with upper cameras at {sorted(heights)} m; expected one height")
+        raise PanoramaError(f"{path}: a field is missing, of the wrong kind or out of range ({error!r})") from None
     missing = [file.name for pair in pairs for file in (pair.upper_file, pair.lower_file) if not is_file(file)]
     if missing:
         raise PanoramaError(f"{folder} lacks {len(missing)} images that {POSES_FILE} names, {missing[0][:40]!r} first")
@@ -96,10 +103,10 @@ def read_stereo_recording(folder: str | Path) -> StereoRecording:
 def _pair(folder: Path, entry: dict, size: tuple[int, int]) -> StereoPair:
     upper, lower = entry["upper"], entry["lower"]
     return StereoPair(
-        _of_kind(entry["name"], str),
-        np.array([_of_kind(entry["rig"][name], float) for name in ("x", "y", "heading")]),
-        folder / _of_kind(upper["file"], str),
-        folder / _of_kind(lower["file"], str),
+        str(entry["name"]),
+        np.array([_number(entry["rig"][name]) for name in ("x", "y", "heading")]),
+        folder / upper["file"],
+        folder / lower["file"],
         tuple(map(true_object, upper["objects"])),
         tuple(map(true_object, lower["objects"])),
         size,
@@ -108,23 +115,73 @@ def _pair(folder: Path, entry: dict, size: tuple[int, int]) -> StereoPair:
 
 def true_object(entry: dict) -> TrueObject:
     """Return one object from its entry in poses.json or boxes.json."""
-    return TrueObject(
-        _of_kind(entry["object"], int),
-        _of_kind(entry["label"], str),
-        _box(entry["visible_box"]),
-        _box(entry["unoccluded_box"]),
-        _of_kind(entry["visible_fraction"], float),
-    )
+    if not isinstance(entry["label"], str):
+        raise TypeError(f"a label is expected, found {str(entry['label'])[:40]}")
+    boxes = _box(entry["visible_box"]), _box(entry["unoccluded_box"])
+    return TrueObject(_number(entry["object"], int), entry["label"], *boxes, _number(entry["visible_fraction"]))
 
 
-def _box(value: object) -> tuple[float, float, float, float]:
-    if not isinstance(value, list) or len(value) != 4:
-        raise TypeError(f"a box of four numbers is expected, found {str(value)[:40]}")
-    return tuple(_of_kind(number, float) for number in value)
+def _box(value: object) -> Box:
+    u_min, v_min, u_max, v_max = map(_number, value)
+    return u_min, v_min, u_max, v_max
 
 
-def _of_kind(value: object, kind: type):
-    """Return a value of JSON as text, whole number or number. True and "3" are no numbers here."""
-    if isinstance(value, bool) or not isinstance(value, (int, float) if kind is float else kind):
-        raise TypeError(f"a value of kind {kind.__name__} is expected, found {str(value)[:40]}")
+def _number(value: object, kind: type = float):
+    """Return a number of JSON as float or int. Raises TypeError for True, "3", and 3.5 where an int is expected."""
+    if isinstance(value, bool) or not isinstance(value, (int, kind)):
+        raise TypeError(f"a number of kind {kind.__name__} is expected, found {str(value)[:40]}")
     return kind(value)
+
+
+class LabelledBox(NamedTuple):
+    """One box of the file. Its label is canonical, and 0 <= u_min < width."""
+
+    label: str
+    box: Box
+    name: str | None
+
+
+@dataclass(frozen=True)
+class StereoBoxes:
+    """The boxes of both images, and the size (width, height) in pixels of the images that they were drawn on."""
+
+    size: tuple[int, int]
+    upper: list[LabelledBox]
+    lower: list[LabelledBox]
+
+    def on(self, upper_image: np.ndarray | View, lower_image: np.ndarray | View) -> tuple[View, View]:
+        """Return both panoramas with the boxes as detections of score 1. Hue and saturation come from the images."""
+        views = open_pair(upper_image, lower_image)
+        if views[0].size != self.size:
+            raise DetectionError(
+                f"the boxes were drawn on images of {self.size} pixels, these have {views[0].size}: scale the images, "
+                "or draw the boxes again"
+            )
+        filled = []
+        for view, side in zip(views, (self.upper, self.lower), strict=True):
+            found = [Detection(one.label, 1.0, one.box, *mean_hue_saturation(view.image, one.box)) for one in side]
+            filled.append(view.replace(detections=found))
+        return tuple(filled)
+
+
+def read_stereo_boxes(path: str | Path) -> StereoBoxes:
+    """Read a file of boxes drawn by hand (format: see the module)."""
+    content = read_json(Path(path), "boxes file", DetectionError)
+    where, sides = "the file", {}
+    try:
+        if content["version"] != VERSION:
+            raise DetectionError(f"the version must be {VERSION}; got {content['version']!r}")
+        size = View(content["width"], content["height"]).size
+        for side in ("upper", "lower"):
+            where, sides[side] = side, []
+            for number, item in enumerate(content[side]):
+                where = f"{side}[{number}]"
+                box, name = wrapped_box(_box(item["box"]), size[0]), item.get("name")
+                if box[1] < 0 or box[3] > size[1]:
+                    raise DetectionError(f"the box leaves the image at the top or bottom; got {item['box']}")
+                if name is not None and not (isinstance(name, str) and name.strip()):
+                    raise DetectionError(f"the name must be a text that is not empty; got {name!r}")
+                sides[side].append(LabelledBox(canonical_label(item["label"]), tuple(box.tolist()), name))
+    except (TypeError, ValueError, KeyError, AttributeError) as error:
+        raise DetectionError(f"{path}: {where} does not have the format of a boxes file: {error!r}") from None
+    return StereoBoxes(size, **sides)

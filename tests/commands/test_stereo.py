@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
+from course_lib.spherical_stereo.recording import read_stereo_boxes
 from tests.spherical_stereo.stereo_scene import scene
 from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
 
@@ -92,7 +92,9 @@ def test_the_real_pair_is_matched_and_its_objects_find_themselves(told):
     assert summary["median_disparity_px"] == pytest.approx(12, abs=1.5)
     assert summary["median_azimuth_difference_px"] < 0.6
     pairs = {(row["upper"], row["lower"]) for row in summary["objects"]}
-    assert pairs == {(upper, lower) for _, upper, lower in read_stereo_boxes(REAL_BOXES).named_pairs()}
+    boxes = read_stereo_boxes(REAL_BOXES)
+    lower = [one.name for one in boxes.lower]
+    assert pairs == {(i, lower.index(one.name)) for i, one in enumerate(boxes.upper) if one.name in lower}
     assert (len(pairs), summary["unmatched"]) == (16, [])
     # No ground truth, but two ways of measuring: they agree where the boxes show the whole object.
     ratios = [r["box_centre"]["horizontal_range_m"] / r["disparity"]["horizontal_range_m"] for r in summary["objects"]]

@@ -112,8 +112,8 @@ def with_objects():
     return Localization(
         None,
         "unable",
-        upper=View.of_detections(("a", "b", "c"), (4, 2)),
-        lower=View.of_detections(("d", "e", "f"), (4, 2)),
+        upper=View(4, 2, detections=("a", "b", "c")),
+        lower=View(4, 2, detections=("d", "e", "f")),
         objects=objects,
         observations=(Observation("sofa", 0, 0, 0, 0),) * 2,
     )

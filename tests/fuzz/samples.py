@@ -15,9 +15,8 @@ from course_lib.depth_mcl import SceneMap, read_sequence
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose
 from course_lib.spherical_stereo import SemanticMap, YoloDetector
-from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
 from course_lib.spherical_stereo.panorama import read_panorama
-from course_lib.spherical_stereo.recording import read_stereo_recording
+from course_lib.spherical_stereo.recording import read_stereo_boxes, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark
 from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, panorama, write_darknet
 from tests.spherical_stereo.detection.onnx_files import blob_onnx

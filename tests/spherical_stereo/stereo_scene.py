@@ -1,6 +1,7 @@
 """Two small scenes, seen by both cameras: eight boards for the tests of matching, five and their map for poses."""
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -56,19 +57,42 @@ HUES = [210.0, 30.0, 60.0, math.nan, 110.0]
 TRUE_POSE = Pose2D(3.0, 2.5, 0.7)
 
 
+def displaced(board, x, y):
+    """A board as a rig sees it that was moved by (x, y) metres; it turns to face the rig."""
+    place = board.range * np.exp(1j * board.azimuth) - (x + 1j * y)
+    return replace(board, azimuth=float(np.angle(place)), range=float(abs(place)))
+
+
+@cache
+def pair_from(x, y):
+    """(upper image, lower image, upper detections, lower detections) of the rig moved by (x, y) metres."""
+    rng = np.random.default_rng(3)
+    boards = [Board(*one, blotches(rng)) for one in MAPPED]
+    walls = room_walls(blotches(rng, size=48))
+    boards, walls = ([displaced(one, x, y) for one in side] if x or y else side for side in (boards, walls))
+    images, seen = [], []
+    for camera in (0.0, -BASELINE):
+        images.append(panorama([*walls, *boards], camera))
+        boxes = [(board.label, box_of(board, camera)) for board in boards]
+        seen.append([Detection(label, 0.9, box, hue, 50.0) for (label, box), hue in zip(boxes, HUES, strict=True)])
+    return *images, *seen
+
+
 @cache
 def mapped_scene() -> tuple[View, View, SemanticMap]:
     """Two small panoramas of five textured boards with their exact boxes, and the map of the boards."""
-    rng = np.random.default_rng(3)
-    boards = [Board(*one, blotches(rng)) for one in MAPPED]
-    everything = [*room_walls(blotches(rng, size=48)), *boards]
-    views = []
-    for camera in (0.0, -BASELINE):
-        found = [
-            Detection(board.label, 0.9, box_of(board, camera), hue, 50.0)
-            for board, hue in zip(boards, HUES, strict=True)
-        ]
-        views.append(open_view(panorama(everything, camera)).replace(detections=found))
-    places = TRUE_POSE.apply([[b.range * math.cos(b.azimuth), b.range * math.sin(b.azimuth)] for b in boards])
-    landmarks = [Landmark(b.label, *place, hue, 50.0) for b, place, hue in zip(boards, places, HUES, strict=True)]
+    upper, lower, *seen = pair_from(0.0, 0.0)
+    views = [open_view(image).replace(detections=found) for image, found in zip((upper, lower), seen, strict=True)]
+    places = TRUE_POSE.apply([[one[2] * math.cos(one[1]), one[2] * math.sin(one[1])] for one in MAPPED])
+    landmarks = [Landmark(one[0], *place, hue, 50.0) for one, place, hue in zip(MAPPED, places, HUES, strict=True)]
     return *views, SemanticMap(landmarks)
+
+
+class KnowingDetector:
+    """Gives the detections of images that it was told; nothing in any other."""
+
+    def __init__(self, *pairs):
+        self._known = [(image, seen) for upper, lower, a, b in pairs for image, seen in ((upper, a), (lower, b))]
+
+    def detect(self, image):
+        return next((seen for known, seen in self._known if np.array_equal(known, image)), [])

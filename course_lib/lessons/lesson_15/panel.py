@@ -49,12 +49,12 @@ def match(
 
 def next_best(matching: Matching) -> np.ndarray:
     """For every round: the least penalty that its observation had with another open landmark; NaN where none."""
-    total = matching.association.table.total
-    least = np.full(len(matching.association.steps), np.nan)
-    for k, step in enumerate(matching.association.steps):
-        others = [j for j in step.open_landmarks if j != step.landmark]
+    total, pairs = matching.association.table.total, matching.association.pairs
+    least = np.full(len(pairs), np.nan)
+    for k, (observation, _) in enumerate(pairs):
+        others = sorted(set(range(total.shape[1])) - {landmark for _, landmark in pairs[: k + 1]})
         if others:
-            least[k] = total[step.observation, others].min()
+            least[k] = total[observation, others].min()
     return least
 
 

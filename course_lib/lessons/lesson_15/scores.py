@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -10,11 +11,38 @@ from scipy.optimize import linear_sum_assignment
 from course_lib.experiments.intervals import bootstrap_percent
 from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
+from course_lib.spherical_stereo.detection.detected_object import canonical_label
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_rigid_2d
-from course_lib.spherical_stereo.semantic_map.association import Observation, PenaltyWeights, associate_greedy
+from course_lib.spherical_stereo.semantic_map.association import (
+    Observation,
+    PenaltyWeights,
+    associate_greedy,
+    penalty_table,
+)
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 PAIR = "03_b"  # thirteen of fourteen objects in view, nothing special (chosen)
 SOFAS = (0, 1, 2)  # their lines in the map
+
+
+def min_object_weight(
+    observations: Sequence[Observation],
+    semantic_map: SemanticMap,
+    weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
+    distance_term: str = "absolute",
+) -> float:
+    """Return the p_obj above which no pair of unlike classes is cheaper than one of like classes, here.
+
+    p_obj > max over like pairs - min over unlike pairs, of the sum of the other three terms. No p_obj is large enough
+    for all worlds, because the distance term has no upper limit.
+    """
+    table = penalty_table(observations, semantic_map, weights, distance_term)
+    others = table.hue + table.saturation + table.distance
+    seen = np.array([canonical_label(one.label) for one in observations])
+    like = seen.reshape(-1, 1) == np.array(semantic_map.labels)[None]
+    if not like.any() or like.all():
+        return 0.0
+    return max(0.0, float(others[like].max() - others[~like].min()))
 
 
 class Score(NamedTuple):

@@ -14,11 +14,17 @@ from course_lib.files import is_given
 from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import draw_box, panorama
-from course_lib.spherical_stereo.detection.boxes_file import read_stereo_boxes
 from course_lib.spherical_stereo.matching.features import FeatureMatches
-from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair, read_panorama
+from course_lib.spherical_stereo.panorama import (
+    StereoRig,
+    View,
+    azimuth_elevation_of_pixel,
+    open_pair,
+    read_panorama,
+)
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_positions import MeasuredObject, measure_objects
+from course_lib.spherical_stereo.recording import read_stereo_boxes
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 STAND_IN_PAIR = 3  # of the room's experiment 1: most objects in view (chosen)
@@ -147,6 +153,20 @@ def disparity_picture(pair: PanoramaPair, features: FeatureMatches) -> Figure:
     axes.set_ylim(_DRAWN_SHARE[1] * pair.size[1], _DRAWN_SHARE[0] * pair.size[1])
     figure.colorbar(points, ax=axes, label="vertical disparity [pixels]", shrink=0.8)
     return figure
+
+
+def horizontal_ranges(
+    keypoints_upper: np.ndarray, keypoints_lower: np.ndarray, width: int, height: int, baseline: float
+) -> np.ndarray:
+    """Return horizontal ranges `(k,)` in metres of matched features `(k, 2)`: rho = baseline / (tan e_l - tan e_u).
+
+    A match whose disparity is not positive gives infinity. Source: paper 2, section 2.4.
+    """
+    (_, upper), (_, lower) = (
+        azimuth_elevation_of_pixel(keypoints, width, height) for keypoints in (keypoints_upper, keypoints_lower)
+    )
+    slope = np.tan(lower) - np.tan(upper)
+    return np.where(slope > 0, baseline / np.where(slope > 0, slope, 1.0), np.inf)
 
 
 def measured_objects(pair: PanoramaPair, matches: Sequence, baseline: float | None = None) -> list[MeasuredObject]:

@@ -1,1 +1,1 @@
-"""Section 2.2: objects in each panorama, by a network or from boxes drawn by hand."""
+"""Section 2.2: objects in each panorama, by a network."""

@@ -30,18 +30,12 @@ def mean_hue_saturation(
 
     hue = direction of sum_i s_i (cos h_i, sin h_i), saturation = mean of s_i
 
-    over the pixels i of the central half of `box`, of `mask` (bool, (H, W)), of both together, or of the whole image.
+    over the pixels i of the central half of `box`, or of `mask` (bool, (H, W)), or of the whole image.
     The paper takes plain means of H. Source: paper 2, section 2.2.
     """
-    image_bgr = np.asarray(image_bgr)
-    if image_bgr.ndim != 3 or image_bgr.shape[2] != 3 or image_bgr.dtype != np.uint8:
-        raise DetectionError(f"image must be (H, W, 3) uint8 BGR; got shape {image_bgr.shape}, {image_bgr.dtype}")
-    if mask is not None and np.shape(mask) != image_bgr.shape[:2]:
-        raise DetectionError(f"mask must have the image's shape {image_bgr.shape[:2]}; got {np.shape(mask)}")
-    selected = None if mask is None else np.asarray(mask, dtype=bool)
     if box is not None:
-        image_bgr, selected = _crop(image_bgr, selected, central_half(box))
-    pixels = (image_bgr.reshape(-1, 3) if selected is None else image_bgr[selected]).reshape(-1, 1, 3)
+        image_bgr = _crop(image_bgr, central_half(box))
+    pixels = (image_bgr if mask is None else image_bgr[mask]).reshape(-1, 1, 3)
     if len(pixels) == 0:
         raise DetectionError(f"no pixel is left of the image for box {box} and the mask: give a box or mask inside it")
     # 8-bit HSV would round hue to 2 degrees; float input gives H in degrees and S from 0 to 1.
@@ -50,7 +44,7 @@ def mean_hue_saturation(
 
 
 def _mean_hue(hsv: np.ndarray) -> float:
-    """Mean hue in degrees of pixels (n, 3) of H in degrees, S and V from 0 to 1; NaN when there is none."""
+    """Return the mean hue in degrees of pixels (n, 3) of H in degrees, S and V from 0 to 1; NaN if there is none."""
     weight = np.where(hsv[:, 2] >= DARKEST_VALUE, hsv[:, 1], 0.0)
     if weight.sum() == 0 or 100 * hsv[:, 1].mean() < GREY_SATURATION_PERCENT:
         return float("nan")
@@ -61,18 +55,18 @@ def _mean_hue(hsv: np.ndarray) -> float:
     return 0.0 if hue >= 360 else hue  # the remainder of a tiny negative number rounds up to 360
 
 
-def _crop(image: np.ndarray, mask: np.ndarray | None, box: Box) -> tuple[np.ndarray, np.ndarray | None]:
-    """The pixels whose centres lie in the box, at least one a direction, columns taken around the seam."""
+def _crop(image: np.ndarray, box: Box) -> np.ndarray:
+    """Return the pixels whose centres lie in the box, at least one a direction, columns taken around the seam."""
     height, width = image.shape[:2]
     if not np.isfinite(box).all() or box[2] <= box[0] or box[3] <= box[1]:
         raise DetectionError(f"box must be finite with u_min < u_max and v_min < v_max; got {box} (its central half)")
     columns = _centres_between(box[0], min(box[2], box[0] + width)) % width
     rows = _centres_between(max(box[1], 0), min(box[3], height))
     rows = rows[(rows >= 0) & (rows < height)]
-    return image[np.ix_(rows, columns)], None if mask is None else mask[np.ix_(rows, columns)]
+    return image[np.ix_(rows, columns)]
 
 
 def _centres_between(start: float, stop: float) -> np.ndarray:
-    """Indices i with start <= i + 1/2 < stop, or the pixel in the middle when there is none."""
+    """Return the indices i with start <= i + 1/2 < stop, or the pixel in the middle if there is none."""
     indices = np.arange(np.ceil(start - 0.5), np.ceil(stop - 0.5)).astype(int)
     return indices if len(indices) else np.array([int(np.floor((start + stop) / 2))])

@@ -39,18 +39,17 @@ class Section:
     options: dict[str, str]
     line: int
 
-    def integer(self, key: str, default: int | None = None) -> int:
+    def integer(self, key: str, default: int | str = "none") -> int:
         """Return the option as a whole number."""
-        if key not in self.options and default is not None:
-            return default
-        return self.integers(key)[0]
+        return self.integers(key, default)[0]
 
-    def integers(self, key: str) -> list[int]:
+    def integers(self, key: str, default: int | str = "none") -> list[int]:
         """Return the option as whole numbers, separated by commas."""
+        text = self.options.get(key, str(default))
         try:
-            return [int(part) for part in self.options[key].split(",")]
-        except (KeyError, ValueError):
-            raise self.error(f"{key} must be whole numbers; got {self.options.get(key, 'none')}") from None
+            return [int(part) for part in text.split(",")]
+        except ValueError:
+            raise self.error(f"{key} must be whole numbers; got {text}") from None
 
     def error(self, problem: str) -> DetectorError:
         """Return an error that names this section and its line."""
@@ -94,11 +93,10 @@ def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
     channels: list[tuple[int, int]] = []
 
     def source(section: Section, number: int) -> int:
-        """Channels out of a layer that is counted from the start, or backwards from this one if negative."""
-        index = number if number >= 0 else len(channels) + number
-        if not 0 <= index < len(channels):
+        # A layer is counted from the start, or backwards from this one if the number is negative.
+        if not -len(channels) <= number < len(channels):
             raise section.error(f"layer {len(channels)} points to layer {number}, expected one before it")
-        return channels[index][1]
+        return channels[number][1]
 
     previous = sections[0].integer("channels", 3)
     for section in sections[1:]:
@@ -119,6 +117,7 @@ def layer_channels(sections: list[Section]) -> list[tuple[int, int]]:
 
 
 def _share(section: Section, channels: int) -> int:
+    """Return the channels of one group."""
     groups = section.integer("groups", 1)
     if groups < 1 or channels % groups:
         raise section.error(f"groups={groups} does not divide {channels} channels")
@@ -135,21 +134,19 @@ def expected_weight_floats(sections: list[Section]) -> int:
     return floats
 
 
-def check_weights(cfg: str | Path | list[Section], weights: str | Path) -> None:
+def check_weights(sections: list[Section], weights: str | Path) -> None:
     """Check that a `.weights` file holds exactly the floats that its cfg implies, and only finite numbers."""
-    expected = expected_weight_floats(cfg if isinstance(cfg, list) else read_cfg(cfg))
+    expected = expected_weight_floats(sections)
     require_file(Path(weights), "weights file", DetectorError)
     data = Path(weights).read_bytes()
     header = header_bytes(data[:12]) if len(data) >= 12 else 20
     if len(data) != header + 4 * expected:
-        problem = "too short: was the download or copy cut off?" if len(data) < header + 4 * expected else "too long."
         raise DetectorError(
-            f"weights file {weights} is {problem} It holds {max(len(data) - header, 0) / 4:.10g} floats, the cfg needs "
-            f"{expected}; give the cfg and the weights of the same network"
+            f"weights file {weights} holds {max(len(data) - header, 0) / 4:.10g} floats, the cfg needs {expected}. Was "
+            "the copy cut off, or are these the weights of another network?"
         )
-    bad = int((~np.isfinite(np.frombuffer(data, "<f4", offset=header))).sum())
-    if bad:
-        raise DetectorError(f"weights file {weights}: {bad} of its {expected} numbers are NaN or infinite")
+    if not np.isfinite(np.frombuffer(data, "<f4", offset=header)).all():
+        raise DetectorError(f"weights file {weights} holds numbers that are NaN or infinite")
 
 
 def header_bytes(start: bytes) -> int:
@@ -170,17 +167,20 @@ def read_names(path: str | Path) -> list[str]:
     """Return the class names of a `.names` file, one a line. Empty lines at the end do not count."""
     names = [line.strip() for line in read_text(path, "names file", DetectorError).rstrip().splitlines()]
     if not names or not all(names):
-        where = f", line {names.index('') + 1}," if names else ""
-        raise DetectorError(f"names file {path}{where} is empty: every line names one class")
+        raise DetectorError(f"names file {path} has an empty line: every line names one class")
     return names
 
 
 def check_names(n_classes: int, names: list[str], path: str | Path) -> None:
     """Raise `DetectorError` if the class names are not as many as the network's classes. path: of the names."""
     if len(names) != n_classes:
-        raise DetectorError(
-            f"the network has {n_classes} classes, names file {path} {len(names)}: give that network's names"
-        )
+        raise DetectorError(f"the network has {n_classes} classes, names file {path} has {len(names)}")
+
+
+def corners(rows: np.ndarray) -> np.ndarray:
+    """Return boxes `(n, 4)` [u_min, v_min, u_max, v_max] of rows that begin with cx, cy, w, h."""
+    centre, half = rows[:, 0:2], rows[:, 2:4] / 2
+    return np.concatenate([centre - half, centre + half], axis=1)
 
 
 class Network:
@@ -207,8 +207,8 @@ class Network:
                 outputs = [np.array(out) for out in self._net.forward(self._net.getUnconnectedOutLayersNames())]
         except cv2.error as error:
             raise DetectorError(
-                f"OpenCV cannot run {self._told} at an input of {blob.shape[3]} x {blob.shape[2]}: {error.err}. Give "
-                "the input size that the network was made for; YOLOv4 takes multiples of 32"
+                f"OpenCV cannot run {self._told} at an input of {blob.shape[3]} x {blob.shape[2]} ({error.err}). "
+                "YOLOv4 takes multiples of 32"
             ) from error
         boxes, scores = self._decode(outputs)
         # A box may be infinitely wide, as an untrained network's are: it is cut at the image's edges.
@@ -248,9 +248,7 @@ class DarknetNetwork(Network):
         for output in outputs:
             if output.shape[1:] != (5 + self.n_classes,):  # OpenCV makes an output of what no later layer takes
                 raise DetectorError(
-                    f"the network {self._told} has an output of shape {output.shape} that no [yolo] layer gives; "
-                    f"expected (n, {5 + self.n_classes}). Does a [route] pass over a layer?"
+                    f"the network {self._told} has an output of shape {output.shape} that no [yolo] layer gives"
                 )
         rows = np.concatenate(outputs)
-        centre, half = rows[:, 0:2], rows[:, 2:4] / 2
-        return np.concatenate([centre - half, centre + half], axis=1) * np.tile(self.input_size, 2), rows[:, 5:]
+        return corners(rows) * np.tile(self.input_size, 2), rows[:, 5:]

@@ -1,14 +1,12 @@
-"""What a detector says about one object of a panorama (paper 2, section 2.2): its class, its box and its colour.
-
-A box is (u_min, v_min, u_max, v_max) in edge coordinates, pixels, 0 <= u_min < width. If it crosses the seam, u_max
-passes the width.
+"""One object of a panorama (paper 2, section 2.2): its class, its colour, and its box (u_min, v_min, u_max, v_max) in
+edge coordinates, pixels, 0 <= u_min < width. If the box crosses the seam, u_max passes the width.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,10 +31,7 @@ class DetectionError(ValueError):
 
 
 def canonical_label(label: str) -> str:
-    """Return the label that the semantic map uses for a detector's class name: a "couch" is a "sofa".
-
-    Case, underscores and hyphens do not matter. Source: paper 2, section 2.2 (the class c of an object).
-    """
+    """Return the map's label for a detector's class name: "couch" is "sofa". Case, "_" and "-" do not matter."""
     plain = " ".join(re.split(r"[\s_-]+", label.lower())).strip() if isinstance(label, str) else ""
     if not plain:
         raise DetectionError(f"a label is a text that is not empty; got {label!r}")
@@ -58,17 +53,16 @@ class Detection:
     saturation: float
 
     def __post_init__(self) -> None:
-        try:
-            values = {name: float(getattr(self, name)) for name in ("score", "hue", "saturation")}
-            values["box"] = tuple(float(edge) for edge in self.box)
-        except (TypeError, ValueError):
-            raise DetectionError(f"box, score, hue and saturation must be numbers; got {self!r}") from None
-        for name, value in {"label": canonical_label(self.label), **values}.items():
-            object.__setattr__(self, name, value)
-        if len(self.box) != 4 or not all(map(math.isfinite, self.box)):
-            raise DetectionError(f"box must be four finite numbers (u_min, v_min, u_max, v_max); got {self.box}")
-        if not (0 <= self.box[0] < self.box[2] and 0 <= self.box[1] < self.box[3]):
-            raise DetectionError(f"box must have 0 <= u_min < u_max and 0 <= v_min < v_max; got {self.box}")
+        object.__setattr__(self, "label", canonical_label(self.label))
+        object.__setattr__(self, "box", tuple(float(edge) for edge in self.box))
+        for name in ("score", "hue", "saturation"):
+            object.__setattr__(self, name, float(getattr(self, name)))
+        u_min, v_min, u_max, v_max = self.box if len(self.box) == 4 else 4 * (math.nan,)
+        if not (0 <= u_min < u_max < math.inf and 0 <= v_min < v_max < math.inf):
+            raise DetectionError(
+                "box must be four finite numbers (u_min, v_min, u_max, v_max), 0 <= u_min < u_max and 0 <= v_min < "
+                f"v_max; got {self.box}"
+            )
         if not (0 <= self.score <= 1 and 0 <= self.saturation <= 100 and (self.is_grey or 0 <= self.hue < 360)):
             raise DetectionError(
                 "score must be 0 to 1, hue in degrees, [0, 360), or NaN for grey, saturation in percent, 0 to 100; got "
@@ -77,22 +71,18 @@ class Detection:
 
     @property
     def centre(self) -> tuple[float, float]:
-        """(u, v) of the box's centre, pixels, edge coordinates. u may pass the image's width."""
+        """Return (u, v) of the box's centre, pixels, edge coordinates. u may pass the image's width."""
         return ((self.box[0] + self.box[2]) / 2, (self.box[1] + self.box[3]) / 2)
 
     @property
     def size(self) -> tuple[float, float]:
-        """(width, height) of the box in pixels."""
+        """Return (width, height) of the box in pixels."""
         return (self.box[2] - self.box[0], self.box[3] - self.box[1])
 
     @property
     def is_grey(self) -> bool:
-        """True if the object has no hue."""
+        """Return True if the object has no hue."""
         return math.isnan(self.hue)
-
-    def wrapped(self, width: int) -> Detection:
-        """Return the same detection with its box moved by whole turns to 0 <= u_min < width (the image's, pixels)."""
-        return replace(self, box=tuple(wrapped_box(self.box, width)))
 
     def describe(self) -> str:
         """Return one line for people: label, score, colour and place."""
@@ -102,22 +92,19 @@ class Detection:
 
 
 def checked_boxes(boxes: np.ndarray, width: float, name: str = "boxes") -> np.ndarray:
-    """Return boxes `(..., 4)` as float64."""
+    """Return boxes `(..., 4)` as float64. Raise `DetectionError` for boxes that no panorama has."""
     array = np.asarray(boxes, dtype=np.float64)
     if array.size == 0:
         return array.reshape(0, 4)
     if array.ndim == 0 or array.shape[-1] != 4:
         raise DetectionError(f"{name} must have shape (..., 4) [u_min, v_min, u_max, v_max]; got {array.shape}")
-    faults = {
-        "must be finite": ~np.isfinite(array).all(axis=-1),
-        "need u_min < u_max and v_min < v_max; a box across the seam has u_max above the width": (
-            (array[..., 2] <= array[..., 0]) | (array[..., 3] <= array[..., 1])
-        ),
-        f"cannot be wider than the panorama ({width:g} px)": array[..., 2] - array[..., 0] > width,
-    }
-    for rule, broken in faults.items():
-        if broken.any():
-            raise DetectionError(f"{name} {rule}; got {array[broken][0].tolist()}")
+    across, down = array[..., 2] - array[..., 0], array[..., 3] - array[..., 1]
+    good = np.isfinite(array).all(axis=-1) & (across > 0) & (across <= width) & (down > 0)
+    if not good.all():
+        raise DetectionError(
+            f"{name} must be finite, with v_min < v_max and u_min < u_max <= u_min + {width:g}, the width; a box "
+            f"across the seam has u_max above the width; got {array[~good][0].tolist()}"
+        )
     return array
 
 
@@ -145,9 +132,7 @@ def wrapped_box(box: np.ndarray, width: float) -> np.ndarray:
 
 
 def box_centre(box: np.ndarray) -> np.ndarray:
-    """Return centres `(..., 2)` (u, v) of boxes `(..., 4)`, in pixels. u may pass the width. Source: paper 2, section
-    2.4.
-    """
+    """Return centres `(..., 2)` (u, v) of boxes `(..., 4)`, in pixels. u may pass the width."""
     box = np.asarray(box, dtype=np.float64)
     return 0.5 * (box[..., :2] + box[..., 2:])
 

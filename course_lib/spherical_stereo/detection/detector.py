@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -19,8 +19,13 @@ from course_lib.spherical_stereo.detection.darknet import (
 )
 from course_lib.spherical_stereo.detection.detected_object import Detection, canonical_label
 from course_lib.spherical_stereo.detection.onnx_network import OnnxNetwork
-from course_lib.spherical_stereo.detection.seam import extend_seam, select_on_circle
-from course_lib.spherical_stereo.detection.suppression import VOTE_SCORE, suppress_in_image, vote_on_boxes
+from course_lib.spherical_stereo.detection.seam import (
+    VOTE_SCORE,
+    extend_seam,
+    select_on_circle,
+    suppress_in_image,
+    vote_on_boxes,
+)
 from course_lib.spherical_stereo.panorama import View, open_view
 
 MAX_CANDIDATES = 1000  # Boxes kept before suppression, the best by score: a bound on time if the threshold is very low.
@@ -28,9 +33,7 @@ PADDING_GREY = 127  # Grey level of the letterbox's padding. Darknet fills with 
 
 
 def find_objects(view: View, detector) -> View:
-    """Return the panorama with the objects that a detector finds in it (section 2.2). detector: anything with
-    `detect(image_bgr)` that gives detections. Source: paper 2, section 2.2.
-    """
+    """Return the panorama with what a detector finds in it. detector: anything with `detect(image_bgr)`."""
     # Our own detector takes the view, which was checked already; any other takes the image.
     return view.replace(detections=detector.detect(view if isinstance(detector, YoloDetector) else view.image))
 
@@ -78,15 +81,12 @@ class YoloDetector:
 
         options: as in the constructor. The score threshold is that of a `training.json` beside them, if there is one.
         """
-        folder = Path(folder)
-        if not folder.is_dir():
-            raise DetectorError(f"there is no detector folder {folder}")
-        paths = []
+        folder, paths = Path(folder), []
         for ending in (".cfg", ".weights", ".names"):
-            found = sorted(path for path in folder.iterdir() if path.suffix == ending)
+            found = sorted(folder.glob(f"*{ending}"))
             if len(found) != 1:
                 listed = ", ".join(path.name for path in found) or "none"
-                raise DetectorError(f"{folder} must hold exactly one {ending} file; found {listed}")
+                raise DetectorError(f"folder {folder} must hold exactly one {ending} file; found {listed}")
             paths += found
         report = folder / "training.json"
         if "score_threshold" not in options and is_given(report):
@@ -116,7 +116,7 @@ class YoloDetector:
 
     @property
     def input_size(self) -> tuple[int, int]:
-        """(width, height) of the network's input, pixels."""
+        """Return (width, height) of the network's input, pixels."""
         return self._network.input_size
 
     def detect(self, image_bgr: np.ndarray | View) -> list[Detection]:
@@ -159,19 +159,11 @@ class YoloDetector:
         return vote_on_boxes(boxes, scores, classes, kept), scores[kept], classes[kept]
 
 
-@dataclass(frozen=True)
-class Letterbox:
-    """Where an image lies inside a network's input. All in pixels; sizes are (width, height)."""
+class Letterbox(NamedTuple):
+    """Where an image lies inside a network's input."""
 
-    image_size: tuple[int, int]
-    input_size: tuple[int, int]
-    inner_size: tuple[int, int]
-    offset: tuple[int, int]
-
-    @property
-    def scale(self) -> np.ndarray:
-        """(2,) input pixels per image pixel, across and down."""
-        return np.array(self.inner_size) / np.array(self.image_size)
+    scale: np.ndarray  # (2,) input pixels per image pixel, across and down
+    offset: tuple[int, int]  # of the image's corner, input pixels
 
 
 def letterbox_image(image: np.ndarray, input_size: tuple[int, int]) -> tuple[np.ndarray, Letterbox]:
@@ -183,13 +175,12 @@ def letterbox_image(image: np.ndarray, input_size: tuple[int, int]) -> tuple[np.
     scale = min(input_size[0] / size[0], input_size[1] / size[1])
     inner = tuple(max(1, min(round(pixels * scale), limit)) for pixels, limit in zip(size, input_size, strict=True))
     left, top = ((limit - pixels) // 2 for limit, pixels in zip(input_size, inner, strict=True))
-    box = Letterbox(size, tuple(input_size), inner, (left, top))
+    scales = np.array(inner) / np.array(size)
     if inner != size:
-        shrinks = box.scale.max() < 1
-        image = cv2.resize(image, inner, interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR)
+        image = cv2.resize(image, inner, interpolation=cv2.INTER_AREA if scales.max() < 1 else cv2.INTER_LINEAR)
     padded = np.full((input_size[1], input_size[0], 3), PADDING_GREY, dtype=np.uint8)
     padded[top : top + inner[1], left : left + inner[0]] = image
-    return padded, box
+    return padded, Letterbox(scales, (left, top))
 
 
 def boxes_to_image(boxes: np.ndarray, letterbox: Letterbox) -> np.ndarray:

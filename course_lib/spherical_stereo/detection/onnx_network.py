@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 
 from course_lib.files import require_file
-from course_lib.spherical_stereo.detection.darknet import DetectorError, Network
+from course_lib.spherical_stereo.detection.darknet import DetectorError, Network, corners
 
 LAYOUTS = ("yolov5", "yolov8", "yolov4")
 _PROBE = """
@@ -45,18 +45,17 @@ def decode_onnx(
                 f"layout yolov4 needs outputs (1, n, 1, 4) and (1, n, {n_classes}); the file gives {shapes}"
             )
         return boxes[0].reshape(-1, 4) * np.tile(input_size, 2), scores[0].reshape(-1, n_classes)
-    columns = n_classes + (5 if layout == "yolov5" else 4)
-    axis = 2 if layout == "yolov5" else 1
-    if len(outputs) != 1 or outputs[0].ndim != 3 or outputs[0].shape[0] != 1 or outputs[0].shape[axis] != columns:
-        expected = f"(1, n, {columns})" if layout == "yolov5" else f"(1, {columns}, n)"
+    has_objectness = layout == "yolov5"
+    columns = n_classes + (5 if has_objectness else 4)
+    is_table = len(outputs) == 1 and outputs[0].ndim == 3 and len(outputs[0]) == 1
+    rows = outputs[0][0] if is_table else np.empty((0, 0))
+    rows = rows if has_objectness else rows.T
+    if rows.shape[1] != columns:
         raise DetectorError(
-            f"layout {layout} with {n_classes} names needs one output {expected}; the file gives {shapes}. "
-            "Is it another layout, or are these the names of another network?"
+            f"layout {layout} with {n_classes} names needs {columns} numbers a box; the file gives {shapes}. Is it "
+            "another layout, or are these the names of another network?"
         )
-    rows = outputs[0][0] if layout == "yolov5" else outputs[0][0].T
-    centre, half = rows[:, 0:2], rows[:, 2:4] / 2
-    scores = rows[:, 4:5] * rows[:, 5:] if layout == "yolov5" else rows[:, 4:]
-    return np.concatenate([centre - half, centre + half], axis=1), scores
+    return corners(rows), rows[:, 4:5] * rows[:, 5:] if has_objectness else rows[:, 4:]
 
 
 class OnnxNetwork(Network):

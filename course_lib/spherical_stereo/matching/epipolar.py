@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.spherical_stereo.panorama import PanoramaError, azimuth_difference
+from course_lib.spherical_stereo.panorama import azimuth_difference
 
 if TYPE_CHECKING:
     from course_lib.spherical_stereo.matching.features import PanoramaFeatures
@@ -24,7 +24,7 @@ MIN_RANGE = 0.3  # metres: no surface is nearer to the rig's axis (chosen; the p
 MAX_HAMMING = 120  # Bits of 486 in which the descriptors of one point may differ (chosen from a real pair).
 RATIO = 0.8  # Hamming distance of the best candidate over that of the second best, at most (Lowe's value)
 
-_BIT_COUNT = np.array([bin(byte).count("1") for byte in range(256)], dtype=np.uint8)
+_BIT_COUNT = np.array([byte.bit_count() for byte in range(256)], dtype=np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +48,7 @@ class EpipolarPairs:
 def epipolar_residual(azimuth_upper, elevation_upper, azimuth_lower, elevation_lower) -> np.ndarray:
     """Return how far two directions are from obeying the epipolar constraint, radians on the sphere, in [0, pi/2].
 
-    asin(max cos e |sin da|), the larger distance to the other's meridian; to the pole beyond a right angle. Source:
-    paper 2, section 2.3.
+    asin(max cos e |sin da|), the larger distance to the other's meridian; to the pole beyond a right angle.
     """
     gap = np.abs(azimuth_difference(azimuth_lower, azimuth_upper))
     cosine = np.maximum(np.cos(elevation_upper), np.cos(elevation_lower))
@@ -62,16 +61,13 @@ def epipolar_pairs(
     tolerance: float = EPIPOLAR_TOLERANCE,
     max_hamming: int = MAX_HAMMING,
 ) -> EpipolarPairs:
-    """Return the pairs within `tolerance` (radians) of the epipolar constraint and `max_hamming` bits of each other.
-    Source: paper 2, section 2.3.
-    """
-    if not 0 < tolerance < np.pi / 2:
-        raise PanoramaError(f"tolerance must be an angle between 0 and pi/2 radians; got {tolerance!r}")
+    """Return the pairs within `tolerance` (radians, below pi/2) of the epipolar constraint and `max_hamming` bits."""
     (azimuth_u, elevation_u), (azimuth_l, elevation_l) = upper.angles(), lower.angles()
     rows, columns = _near_in_azimuth(azimuth_u, elevation_u, azimuth_l, tolerance)
     residual = epipolar_residual(azimuth_u[rows], elevation_u[rows], azimuth_l[columns], elevation_l[columns])
     rows, columns = rows[residual <= tolerance], columns[residual <= tolerance]
-    distance = hamming(upper.descriptors, lower.descriptors, rows, columns)
+    different = np.bitwise_xor(upper.descriptors[rows], lower.descriptors[columns])
+    distance = _BIT_COUNT[different].sum(axis=-1, dtype=np.int64)
     near = distance <= max_hamming
     rows, columns, distance = rows[near], columns[near], distance[near]
     e_u, e_l = elevation_u[rows], elevation_l[columns]
@@ -79,7 +75,7 @@ def epipolar_pairs(
 
 
 def _near_in_azimuth(azimuth_u, elevation_u, azimuth_l, tolerance) -> tuple[np.ndarray, np.ndarray]:
-    """Index pairs whose azimuths differ by at most what `tolerance` is at the upper feature's elevation."""
+    """Return index pairs whose azimuths differ by at most what `tolerance` is at the upper feature's elevation."""
     if len(azimuth_u) == 0 or len(azimuth_l) == 0:
         return np.zeros(0, int), np.zeros(0, int)
     sine = np.sin(tolerance) / np.cos(elevation_u)
@@ -95,28 +91,13 @@ def _near_in_azimuth(azimuth_u, elevation_u, azimuth_l, tolerance) -> tuple[np.n
     return rows, order[(np.repeat(first, count) + within) % len(order)]
 
 
-def hamming(first: np.ndarray, second: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Return Hamming distances `(n,)` in bits of descriptors first[rows] and second[columns], `(k, bytes)` uint8."""
-    # Eight bytes at a time; zeros fill up the last eight, equal in both, so they add nothing.
-    first, second = (np.pad(d, ((0, 0), (0, -d.shape[1] % 8))).view(np.uint64) for d in (first, second))
-    different = np.bitwise_xor(first[rows], second[columns])
-    if hasattr(np, "bitwise_count"):
-        return np.bitwise_count(different).sum(axis=-1, dtype=np.int64)
-    return _BIT_COUNT[different.view(np.uint8)].sum(axis=-1, dtype=np.int64)  # NumPy 1.26
-
-
-def allowed_by_rig(pairs: EpipolarPairs, baseline: float, min_range: float = MIN_RANGE) -> np.ndarray:
-    """Return bool `(n,)`: can a pair be one point around the rig, 0 < tan e_l - tan e_u <= baseline / min_range?
-
-    Source: paper 2, section 2.3.
-    """
-    return (pairs.disparity > 0) & (pairs.slope > 0) & (pairs.slope <= baseline / min_range)
+def allowed_by_rig(pairs: EpipolarPairs, baseline: float) -> np.ndarray:
+    """Return bool `(n,)`: can a pair be one point around the rig, 0 < tan e_l - tan e_u <= baseline / MIN_RANGE?"""
+    return (pairs.disparity > 0) & (pairs.slope > 0) & (pairs.slope <= baseline / MIN_RANGE)
 
 
 def best_pairs(pairs: EpipolarPairs, ratio: float = RATIO) -> EpipolarPairs:
-    """Return the pairs in which each feature is clearly the other's nearest (the upper one by `ratio`). They are
-    one-to-one.
-    """
+    """Return the one-to-one pairs in which each feature is clearly the other's nearest, the upper one by `ratio`."""
     if len(pairs) == 0:
         return pairs
     best_upper, second_upper = _two_smallest(pairs.upper, pairs.distance)
@@ -127,7 +108,7 @@ def best_pairs(pairs: EpipolarPairs, ratio: float = RATIO) -> EpipolarPairs:
 
 
 def _two_smallest(group: np.ndarray, value: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For each element the smallest and the second smallest value in its group (infinity when there is no second)."""
+    """Return for each element the smallest and second smallest value in its group (infinity if there is no second)."""
     order = np.lexsort((value, group))
     starts = np.flatnonzero(np.r_[True, group[order][1:] != group[order][:-1]])
     sizes = np.diff(np.r_[starts, len(group)])

@@ -9,18 +9,19 @@ from __future__ import annotations
 import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, boxes_on, canonical_label
-from course_lib.spherical_stereo.matching.alignment import Alignment, camera_alignment
-from course_lib.spherical_stereo.matching.epipolar import (
-    EpipolarPairs,
-    allowed_by_rig,
-    best_pairs,
-    epipolar_pairs,
+from course_lib.spherical_stereo.matching.epipolar import EpipolarPairs, allowed_by_rig, best_pairs, epipolar_pairs
+from course_lib.spherical_stereo.matching.features import (
+    Alignment,
+    camera_alignment,
+    check_not_swapped,
+    find_features,
+    inside_box,
 )
-from course_lib.spherical_stereo.matching.features import check_not_swapped, find_features, inside_box
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 
 MIN_FEATURES = 3  # matched features that make one object; one alone may be an accident (the paper has no number)
@@ -45,12 +46,11 @@ class ObjectMatch:
 
     @property
     def n_matches(self) -> int:
-        """Number of matched features."""
+        """Return the number of matched features."""
         return len(self.keypoints_upper)
 
 
-@dataclass(frozen=True)
-class Unmatched:
+class Unmatched(NamedTuple):
     """A detection without partner: side ("upper" or "lower"), its index there, and one of the reasons above."""
 
     side: str
@@ -58,8 +58,7 @@ class Unmatched:
     reason: str
 
 
-@dataclass(frozen=True)
-class StereoMatching:
+class StereoMatching(NamedTuple):
     """Objects seen in both images, most matched features first; the detections left over; how the cameras stand."""
 
     matches: list[ObjectMatch]
@@ -139,22 +138,15 @@ def match_views(
 
 def matched_indices(matches: Sequence, upper: View, lower: View) -> list[tuple[int, int]]:
     """Return the indices (upper, lower) of the detections that matches join: `ObjectMatch`es, or such pairs."""
-    pairs = []
-    for match in matches:
-        try:
-            pair = (match.upper, match.lower) if hasattr(match, "upper") else tuple(match)
-            (i, j), n = map(operator.index, pair), (len(upper.detections), len(lower.detections))
-        except (TypeError, ValueError):
-            raise DetectionError(f"a match is an ObjectMatch or a pair of whole numbers; got {match!r}") from None
-        if not (0 <= i < n[0] and 0 <= j < n[1]):
-            raise DetectionError(f"a match names detections {i} and {j}; there are {n[0]} (upper) and {n[1]} (lower)")
+    pairs = [(m.upper, m.lower) if hasattr(m, "upper") else tuple(map(operator.index, m)) for m in matches]
+    for i, j in pairs:
+        if not (0 <= i < len(upper.detections) and 0 <= j < len(lower.detections)):
+            raise DetectionError(f"a match names upper detection {i} and lower detection {j}; there are fewer")
         of_upper, of_lower = upper.detections[i].label, lower.detections[j].label
         if canonical_label(of_upper) != canonical_label(of_lower):
             raise DetectionError(f"a match joins a {of_upper} to a {of_lower}; match one class at a time")
-        pairs.append((i, j))
-    for side, indices in zip(("upper", "lower"), zip(*pairs, strict=True), strict=False):
-        if len(set(indices)) < len(indices):
-            raise DetectionError(f"the matches name one {side} detection twice; they must be one-to-one")
+    if any(len(set(indices)) < len(indices) for indices in zip(*pairs, strict=True)):
+        raise DetectionError("the matches name one detection twice; they must be one-to-one")
     return pairs
 
 
@@ -165,9 +157,7 @@ def pair_by_most_matches(counts: np.ndarray) -> tuple[list[tuple[int, int]], set
     be a guess. Source: paper 2, section 2.3.
     """
     counts = np.array(counts, dtype=int)
-    pairs: list[tuple[int, int]] = []
-    tied_rows: set[int] = set()
-    tied_columns: set[int] = set()
+    pairs, tied_rows, tied_columns = [], set(), set()
     while counts.size and counts.max() > 0:
         largest = counts == counts.max()
         crowded = largest & ((largest.sum(axis=1) > 1)[:, None] | (largest.sum(axis=0) > 1)[None, :])

@@ -1,4 +1,4 @@
-"""What the localizer found: a pose, or why there is none, and everything on the way that a figure or a table needs."""
+"""The localizer's answer: a pose, or why there is none, and everything on the way that a figure or a table needs."""
 
 from __future__ import annotations
 
@@ -72,35 +72,35 @@ class Localization:
 
     @property
     def upper_detections(self) -> tuple:
-        """What was seen in the upper image; () if observations were given directly."""
+        """Return what was seen in the upper image; () if observations were given directly."""
         return () if self.upper is None else self.upper.detections
 
     @property
     def lower_detections(self) -> tuple:
-        """What was seen in the lower image."""
+        """Return what was seen in the lower image."""
         return () if self.lower is None else self.lower.detections
 
     @property
     def confidence(self) -> float | None:
-        """0 to 1; None from a matcher that weighs no poses, or without observations."""
+        """Return the confidence, 0 to 1; None from a matcher that weighs no poses, or without observations."""
         return None if self.association is None else self.association.confidence
 
     @property
     def alternatives(self) -> tuple:
-        """The poses that were weighed, best first; () from a matcher that weighs none."""
+        """Return the poses that were weighed, best first; () from a matcher that weighs none."""
         return () if self.association is None else self.association.hypotheses
 
     @property
     def rms_residual(self) -> float | None:
-        """Root mean square of the residuals, metres; None without a fit. `statistics.expected_rms` is its measure."""
+        """Return the residuals' root mean square, metres; None without a fit. Compare `statistics.expected_rms`."""
         return None if self.residuals is None else float(np.sqrt((self.residuals**2).sum(axis=1).mean()))
 
     @property
     def pairs(self) -> tuple[tuple[int, int], ...]:
-        """All pairs (observation, landmark) of the association, in order of choice."""
+        """Return all pairs (observation, landmark) of the association, in order of choice."""
         return () if self.association is None else self.association.pairs
 
     @property
     def used_pairs(self) -> tuple[tuple[int, int], ...]:
-        """The pairs that the pose is fitted to: those of like classes."""
+        """Return the pairs that the pose is fitted to: those of like classes."""
         return () if self.association is None else self.association.usable_pairs

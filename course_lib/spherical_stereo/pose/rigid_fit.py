@@ -32,7 +32,7 @@ class Pose2D(NamedTuple):
     theta: float  # Radians, [-pi, pi), from world x to body x, counterclockwise.
 
     def apply(self, points: np.ndarray) -> np.ndarray:
-        """World coordinates `(..., 2)` of points `(..., 2)` in the body frame: R(theta) p + [x, y]."""
+        """Return world coordinates `(..., 2)` of points `(..., 2)` in the body frame: R(theta) p + [x, y]."""
         return np.asarray(points, dtype=np.float64) @ rotation_2d(self.theta).T + np.array([self.x, self.y])
 
 
@@ -60,22 +60,22 @@ class Residuals(NamedTuple):
 
     @property
     def max_chi_square(self) -> float:
-        """Limit of chi^2: `NOISE_FACTOR`^2 times its quantile at `DOUBT`."""
+        """Return the limit of chi^2: `NOISE_FACTOR`^2 times its quantile at `DOUBT`."""
         return NOISE_FACTOR**2 * float(chi2.isf(DOUBT, self.degrees_of_freedom))
 
     @property
     def contradict_the_pose(self) -> bool:
-        """True if no pose near this one explains the pairs."""
+        """Return True if no pose near this one explains the pairs."""
         return self.chi_square > self.max_chi_square
 
     @property
     def normalized(self) -> float:
-        """sqrt(chi^2 / degrees of freedom): about 1 when pairs and covariances are right."""
+        """Return sqrt(chi^2 / degrees of freedom): about 1 if pairs and covariances are right."""
         return (self.chi_square / self.degrees_of_freedom) ** 0.5
 
 
 def rotation_2d(theta: float) -> np.ndarray:
-    """R(theta) = [[cos, -sin], [sin, cos]], `(2, 2)`, theta in radians."""
+    """Return R(theta) = [[cos, -sin], [sin, cos]], `(2, 2)`, theta in radians."""
     cosine, sine = np.cos(theta), np.sin(theta)
     return np.array([[cosine, -sine], [sine, cosine]])
 
@@ -212,16 +212,13 @@ def residual_statistics(
 def _checked_pairs(
     source: np.ndarray, target: np.ndarray, weights: np.ndarray | None, covariances: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
-    """Return the arguments of `fit_rigid_2d` as arrays, without pairs of weight 0. Raises as that does."""
+    """Return the arguments of `fit_rigid_2d` as arrays, without pairs of weight 0."""
     source, target = (np.asarray(points, dtype=np.float64) for points in (source, target))
     n = len(source) if source.ndim else 0
     w = np.ones(n) if weights is None else np.asarray(weights, dtype=np.float64)
     for name, array, shape in (("source", source, (n, 2)), ("target", target, (n, 2)), ("weights", w, (n,))):
-        if array.shape != shape and n > 0:
-            raise RigidFitError(f"{name} must have shape {shape}, one a pair; got {array.shape}")
-        if not np.isfinite(array).all():
-            entry = np.argwhere(~np.isfinite(array))[0][0]
-            raise RigidFitError(f"{name} must be finite; got NaN or infinity in entry {entry}")
+        if (array.shape != shape and n > 0) or not np.isfinite(array).all():
+            raise RigidFitError(f"{name} must have finite values and shape {shape}; got {array.tolist()}")
     if (w < 0).any():
         raise RigidFitError(f"weights must not be negative; got {w.min():g}")
     kept = w > 0

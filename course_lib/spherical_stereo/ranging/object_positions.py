@@ -1,5 +1,9 @@
-"""Where matched objects are (paper 2, section 2.4): X = d x_hat, d from the box centres (the paper's way) or the
-features.
+"""Where matched objects are (paper 2, section 2.4): X = d x_hat, with d from the box centres, as in the paper, or from
+the vertical disparity of the matched features.
+
+The parallax of two box centres is rough. The features that paired the boxes are true points of the visible surface,
+matched to about a pixel. Some belong to something in front or behind, so the median of their inverse ranges is taken.
+The map's centroid lies behind that surface by about half the object's depth, which is not added here.
 """
 
 from __future__ import annotations
@@ -14,16 +18,18 @@ from course_lib.spherical_stereo.panorama import (
     StereoRig,
     View,
     azimuth_elevation,
+    azimuth_elevation_of_pixel,
     direction_from_angles,
     pixel_to_direction,
 )
 from course_lib.spherical_stereo.ranging.triangulation import (
     OK,
+    PARALLEL,
+    PARALLEL_TOLERANCE,
     triangulate,
     triangulation_covariance,
     triangulation_outcome,
 )
-from course_lib.spherical_stereo.ranging.vertical_disparity import disparity_distance
 
 Distance = Literal["box_centre", "disparity"]
 DISTANCES: tuple[Distance, ...] = ("box_centre", "disparity")
@@ -31,7 +37,12 @@ DISTANCES: tuple[Distance, ...] = ("box_centre", "disparity")
 BOX_CENTRE_SIGMA = 0.0075  # radians, of a box centre's azimuth and elevation: 1.5 pixels at a width of 1280
 CENTROID_SIGMA = 0.1  # metres, of the object's centroid about the point that its box's centre shows
 SURFACE_SIGMA = 0.15  # metres, from the centroid to the surface that the features lie on: a quarter of a sofa's depth
-TOO_FAR = "too far"  # Outcome of an object beyond `max_range`.
+TOO_FAR, TOO_FEW_MATCHES = "too far", "too few matches"  # Outcomes beside those of the triangulation.
+MIN_MATCHES = 3  # With fewer matches a median says nothing about its own spread.
+# Standard deviation of a normal distribution over its median absolute deviation.
+_NORMAL_OVER_MAD = 1.4826
+# Standard deviation of the median over that of the mean, of normally distributed numbers: sqrt(pi / 2).
+_MEDIAN_OVER_MEAN = 1.2533
 
 
 class Noise(NamedTuple):
@@ -43,27 +54,35 @@ class Noise(NamedTuple):
 
 
 class ObjectPosition(NamedTuple):
-    """Position of one object, body frame with the origin at the upper camera."""
+    """Position of one object, body frame with the origin at the upper camera. NaN unless the outcome is "ok"."""
 
     outcome: str  # "ok", "parallel", "diverging", "azimuth gap", "too few matches" or "too far".
-    position: np.ndarray  # X `(3,)`, metres; NaN unless the outcome is "ok".
-    covariance: np.ndarray  # `(2, 2)` of its horizontal part, square metres; NaN unless the outcome is "ok".
+    position: np.ndarray = np.full(3, np.nan)  # X `(3,)`, metres
+    covariance: np.ndarray = np.full((2, 2), np.nan)  # of its horizontal part, square metres
 
     @property
     def distance_m(self) -> float:
-        """d, along the upper camera's direction of the box centre."""
+        """Return d, along the upper camera's direction of the box centre."""
         return float(np.linalg.norm(self.position))
 
     @property
     def horizontal_range_m(self) -> float:
-        """d cos e, from the rig's axis."""
+        """Return d cos e, from the rig's axis."""
         return float(np.hypot(*self.position[:2]))
 
     @property
     def horizontal_sigma_m(self) -> float:
-        """One standard deviation of the horizontal range: sqrt(h' C h), h the unit vector towards the object."""
+        """Return one standard deviation of the horizontal range: sqrt(h' C h), h the unit vector to the object."""
         towards = self.position[:2] / self.horizontal_range_m
         return float(np.sqrt(towards @ self.covariance @ towards))
+
+
+class DisparityDistance(NamedTuple):
+    """Horizontal range of one object from its matched features. NaN unless the outcome is "ok"."""
+
+    outcome: str  # "ok", "too few matches", or "parallel"
+    horizontal_range: float = float("nan")  # metres from the rig's axis, the median over the matches
+    sigma: float = float("nan")  # metres, standard deviation of the median
 
 
 class MeasuredObject(NamedTuple):
@@ -86,6 +105,25 @@ def max_range(baseline: float) -> float:
     return baseline / (2**0.5 * BOX_CENTRE_SIGMA)
 
 
+def disparity_distance(match, width: int, height: int, baseline: float) -> DisparityDistance:
+    """Return the horizontal range of a matched object from the vertical disparities of its features, robustly.
+
+    rho = baseline / median(tan e_l - tan e_u): noise of pixels moves the slopes evenly to both sides, the ranges not.
+    """
+    _, upper = azimuth_elevation_of_pixel(match.keypoints_upper, width, height)
+    _, lower = azimuth_elevation_of_pixel(match.keypoints_lower, width, height)
+    slope = np.tan(lower) - np.tan(upper)
+    if len(slope) < MIN_MATCHES:
+        return DisparityDistance(TOO_FEW_MATCHES)
+    middle = float(np.median(slope))
+    if middle <= PARALLEL_TOLERANCE:
+        return DisparityDistance(PARALLEL)
+    deviation = _NORMAL_OVER_MAD * float(np.median(np.abs(slope - middle)))
+    # d rho = rho^2 / baseline d slope, as in the covariance of the triangulation.
+    spread = baseline / middle**2 * deviation
+    return DisparityDistance(OK, baseline / middle, _MEDIAN_OVER_MEAN * spread / len(slope) ** 0.5)
+
+
 def position_objects(
     matches: Sequence,
     pairs: Sequence[tuple[int, int]],
@@ -99,7 +137,7 @@ def position_objects(
     """Return the position of every match: X = d x_hat, x_hat the direction of the box centre in the upper image.
 
     pairs: indices (upper, lower) of the matches' detections. furthest: metres, horizontal; beyond it an object is "too
-    far". Source: paper 2, section 2.4.
+    far".
     """
     if not pairs:
         return []
@@ -112,7 +150,7 @@ def position_objects(
     else:
         from_lower = pixel_to_direction(box_centre([lower.detections[j].box for _, j in pairs]), *lower.size)
         found = _from_box_centres(from_upper, from_lower, rig.baseline, noise)
-    return [_nowhere(TOO_FAR) if one.horizontal_range_m > furthest else one for one in found]
+    return [ObjectPosition(TOO_FAR) if one.horizontal_range_m > furthest else one for one in found]
 
 
 def measure_objects(
@@ -120,7 +158,7 @@ def measure_objects(
 ) -> list[MeasuredObject]:
     """Return every matched object with both its distances, in the order of the upper detections.
 
-    sigma_pixels: standard deviation of a box centre's u and v, pixels. Source: paper 2, section 2.4.
+    sigma_pixels: standard deviation of a box centre's u and v, pixels.
     """
     matches = sorted(matches, key=lambda m: m.upper)
     pairs = [(match.upper, match.lower) for match in matches]
@@ -140,7 +178,7 @@ def _from_box_centres(
 ) -> list[ObjectPosition]:
     """Return the positions of directions `(n, 3)`, all that have one at once."""
     outcomes = triangulation_outcome(from_upper, from_lower)
-    found = [_nowhere(str(outcome)) for outcome in outcomes]
+    found = [ObjectPosition(str(outcome)) for outcome in outcomes]
     ok = np.flatnonzero(outcomes == OK)
     directions = from_upper[ok], from_lower[ok]
     positions = triangulate(*directions, baseline)[:, None] * directions[0]
@@ -153,19 +191,17 @@ def _from_box_centres(
 def _from_features(
     match, from_upper: np.ndarray, baseline: float, size: tuple[int, int], noise: Noise
 ) -> ObjectPosition:
+    """Return X = rho (cos a, sin a, tan e) in the direction of the box centre, upper camera."""
     if not hasattr(match, "keypoints_upper"):
         raise DetectionError('distance="disparity" needs ObjectMatch with its features, not a pair of indices')
     measured = disparity_distance(match, *size, baseline)
     if measured.outcome != OK:
-        return _nowhere(measured.outcome)
-    azimuth, _ = azimuth_elevation(from_upper)
+        return ObjectPosition(measured.outcome)
+    azimuth, elevation = azimuth_elevation(from_upper)
     along = direction_from_angles(azimuth, 0.0)[:2]
     across = np.array([-along[1], along[0]])
     variance_along = measured.sigma**2 + noise.surface**2
     variance_across = (measured.horizontal_range * noise.box_centre) ** 2 + noise.centroid**2
     covariance = variance_along * np.outer(along, along) + variance_across * np.outer(across, across)
-    return ObjectPosition(OK, measured.position(from_upper), covariance)
-
-
-def _nowhere(outcome: str) -> ObjectPosition:
-    return ObjectPosition(outcome, np.full(3, np.nan), np.full((2, 2), np.nan))
+    position = measured.horizontal_range / np.cos(elevation)[..., None] * direction_from_angles(azimuth, elevation)
+    return ObjectPosition(OK, position, covariance)

@@ -1,13 +1,8 @@
 """From two directions to a position: X = d x_hat, how sure it is, and when there is none (paper 2, section 2.4).
 
 Upper camera, lower camera and point make a triangle. Its angle at the point is the parallax e_l - e_u, its angle at the
-lower camera pi/2 - e_l, so the law of sines gives
-
-    d = baseline cos e_l / sin(e_l - e_u)          (along the upper camera's direction)
-    rho = d cos e_u = baseline / (tan e_l - tan e_u)          (horizontal range)
-
-The rays of two box centres do not quite meet. The distance comes from the elevations, the azimuth from the upper
-camera.
+lower camera pi/2 - e_l, so the law of sines gives d. The rays of two box centres do not quite meet: the distance comes
+from the elevations, the azimuth from the upper camera.
 """
 
 from __future__ import annotations
@@ -51,7 +46,7 @@ def triangulation_outcome(direction_upper: np.ndarray, direction_lower: np.ndarr
 def triangulate(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
     """Return distances d `(...)` in metres along the upper camera's directions: the object is at X = d x_hat_upper.
 
-    d = baseline cos e_l / sin(e_l - e_u)
+    d = baseline cos e_l / sin(e_l - e_u),    horizontally rho = d cos e_u = baseline / (tan e_l - tan e_u)
 
     Directions `(..., 3)` in the body frame, broadcast together; baseline in metres. Raises `TriangulationError` if any
     pair has another outcome than "ok", `PanoramaError` for directions that are none, or a baseline that is not
@@ -60,28 +55,20 @@ def triangulate(direction_upper: np.ndarray, direction_lower: np.ndarray, baseli
     baseline = StereoRig(baseline).baseline
     outcome = triangulation_outcome(direction_upper, direction_lower)
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
-    hint = {
-        AZIMUTH_GAP: "the directions do not show one object; match the objects first",
-        DIVERGING: "are the images swapped, or the boxes two objects'?",
-        PARALLEL: "they tell no distance; a nearer object or a longer baseline is needed",
-    }
-    for name in hint:
+    for name in (AZIMUTH_GAP, DIVERGING, PARALLEL):
         if (outcome == name).any():
             first = tuple(np.argwhere(outcome == name)[0])
-            where = f" (element {', '.join(map(str, first))})" if first else ""
             e_u, e_l, gap = np.degrees([upper[first], lower[first], residual[first]])
             raise TriangulationError(
-                f"{name}: the elevations{where} are {e_u:.3f} (upper) and {e_l:.3f} degrees, and the directions "
-                f"{gap:.2f} degrees apart across the epipolar half-circle: {hint[name]}",
+                f"{name}: the elevations are {e_u:.3f} (upper) and {e_l:.3f} degrees, and the directions {gap:.2f} "
+                "degrees apart across the epipolar half-circle",
                 name,
             )
     return baseline * np.cos(lower) / np.sin(lower - upper)
 
 
 def object_position(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
-    """Return positions X = d x_hat `(..., 3)` in metres, in the frame of the upper camera (x forward, y left, z up).
-    Source: paper 2, section 2.4.
-    """
+    """Return positions X = d x_hat `(..., 3)` in metres, in the upper camera's frame (x forward, y left, z up)."""
     distance = triangulate(direction_upper, direction_lower, baseline)
     azimuth, elevation = azimuth_elevation(direction_upper)
     return distance[..., None] * direction_from_angles(azimuth, elevation)
@@ -104,9 +91,9 @@ def triangulation_covariance(
     sigma_azimuth: of the upper camera's azimuth, sigma_elevation: of either camera's elevation, radians, independent.
     Source: paper 2, section 2.4.
     """
-    for name, sigma in (("sigma_azimuth", sigma_azimuth), ("sigma_elevation", sigma_elevation)):
-        if not (np.isfinite(sigma).all() and (np.asarray(sigma) >= 0).all()):
-            raise PanoramaError(f"{name} must be radians, not negative; got {sigma!r}")
+    for sigma in (np.asarray(sigma_azimuth), np.asarray(sigma_elevation)):
+        if not (np.isfinite(sigma).all() and (sigma >= 0).all()):
+            raise PanoramaError(f"a sigma must be finite radians, not negative; got {sigma}")
     rho = triangulate(direction_upper, direction_lower, baseline)
     azimuth, upper, _, lower, _ = _angles(direction_upper, direction_lower)
     rho = rho * np.cos(upper)
@@ -123,9 +110,6 @@ def triangulation_covariance(
 
 
 def _angles(direction_upper, direction_lower):
-    """Azimuth and elevation of both directions, broadcast together, and their epipolar residual; radians, `(...)`."""
-    azimuth_u, elevation_u = azimuth_elevation(direction_upper)
-    azimuth_l, elevation_l = azimuth_elevation(direction_lower)
-    azimuth_u, elevation_u, azimuth_l, elevation_l = np.broadcast_arrays(azimuth_u, elevation_u, azimuth_l, elevation_l)
-    residual = epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l)
-    return azimuth_u, elevation_u, azimuth_l, elevation_l, residual
+    """Return azimuth and elevation of both directions, broadcast together, and their epipolar residual, radians."""
+    angles = np.broadcast_arrays(*azimuth_elevation(direction_upper), *azimuth_elevation(direction_lower))
+    return *angles, epipolar_residual(*angles)

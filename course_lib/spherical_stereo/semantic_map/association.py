@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.spherical_stereo.detection.detected_object import DetectionError, canonical_label
+from course_lib.spherical_stereo.detection.detected_object import canonical_label
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
 DISTANCE_TERMS = ("absolute", "as_printed")
@@ -56,16 +56,6 @@ class Penalty(NamedTuple):
     total: float
 
 
-class AssociationStep(NamedTuple):
-    """One round of the greedy search: the pair, its penalty, and what had no partner before this round."""
-
-    observation: int
-    landmark: int
-    penalty: Penalty
-    open_observations: tuple[int, ...]
-    open_landmarks: tuple[int, ...]
-
-
 class Association(NamedTuple):
     """Result of a matcher: pairs of indices (observation, landmark), and how they came about."""
 
@@ -74,7 +64,6 @@ class Association(NamedTuple):
     same_class: tuple[bool, ...]  # False for a pair of unlike classes, which is never used for the fit
     unassigned: tuple[int, ...]  # Observations without a partner.
     table: Penalty  # Every observation with every landmark, `(n_observations, n_landmarks)` arrays.
-    steps: tuple[AssociationStep, ...] = ()  # The rounds of the greedy search.
     hypotheses: tuple = ()  # the poses that a matcher beyond the paper weighed, best first
     confidence: float | None = None  # How sure the best of them is, 0 to 1; None from a matcher that weighs no poses.
     reason: str | None = None  # Why the best of them should not be given out; None if it should.
@@ -82,7 +71,7 @@ class Association(NamedTuple):
 
     @property
     def usable_pairs(self) -> tuple[tuple[int, int], ...]:
-        """The pairs of like classes: those a pose may be fitted to."""
+        """Return the pairs of like classes: those a pose may be fitted to."""
         return tuple(pair for pair, same in zip(self.pairs, self.same_class, strict=True) if same)
 
 
@@ -110,11 +99,17 @@ def penalty(
     zero for an object that looks too near the centroid. Fields may be arrays that broadcast, and then so do the terms.
     Raises `AssociationError` for values that cannot be. Source: paper 2, eq. (1).
     """
-    _check_options(weights, distance_term)
-    observed_centroid, map_centroid = _centroid(observed_centroid, "observed"), _centroid(map_centroid, "map")
+    if distance_term not in DISTANCE_TERMS:
+        raise AssociationError(f"distance_term must be one of {DISTANCE_TERMS}; got {distance_term!r}")
+    if not (np.isfinite(weights).all() and min(weights) >= 0):
+        raise AssociationError(f"weights must be finite and not negative; got {weights}")
     _check_values("observation", observed)
     _check_values("landmark", landmark)
-    unlike = _labels(observed) != _labels(landmark)
+    for name, centroid in (("observed", observed_centroid), ("map", map_centroid)):
+        if np.shape(centroid) != (2,) or not np.isfinite(centroid).all():
+            raise AssociationError(f"the {name} centroid must be two finite numbers in metres; got {centroid!r}")
+    canonical = np.vectorize(canonical_label, otypes=[object])
+    unlike = canonical(observed.label) != canonical(landmark.label)
     d_hue = hue_difference(observed.hue, landmark.hue)
     d_saturation = np.abs(np.asarray(observed.saturation) - np.asarray(landmark.saturation))
     from_centroid_c = np.hypot(observed.x - observed_centroid[0], observed.y - observed_centroid[1])
@@ -135,15 +130,9 @@ def penalty_table(
     weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
     distance_term: str = "absolute",
 ) -> Penalty:
-    """Return every term for every observation with every landmark: arrays `(n_observations, n_landmarks)`.
-
-    Source: paper 2, section 2.5 ("all combinations").
-    """
+    """Return every term for every observation with every landmark: arrays `(n_observations, n_landmarks)`."""
     if len(observations) == 0:
-        _check_options(weights, distance_term)
         return Penalty(*(np.empty((0, len(semantic_map))) for _ in Penalty._fields))
-    for number, one in enumerate(observations):
-        _check_values(f"observation {number}", one)
     labels, *numbers = zip(*(tuple(one)[:5] for one in observations), strict=True)
     x, y, hue, saturation = np.array(numbers, dtype=np.float64)[..., None]
     rows = Observation(np.array(labels, dtype=object)[:, None], x, y, hue, saturation)
@@ -153,26 +142,6 @@ def penalty_table(
     )
     centroid = np.array([x.mean(), y.mean()])
     return penalty(rows, columns, centroid, semantic_map.centroid, weights, distance_term)
-
-
-def min_object_weight(
-    observations: Sequence[Observation],
-    semantic_map: SemanticMap,
-    weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008
-    distance_term: str = "absolute",
-) -> float:
-    """Return the p_obj above which no pair of unlike classes is cheaper than one of like classes, here.
-
-    p_obj > max over like pairs - min over unlike pairs, of the sum of the other three terms. No p_obj is large enough
-    for all worlds, because the distance term has no upper limit.
-    """
-    table = penalty_table(observations, semantic_map, weights, distance_term)
-    others = table.hue + table.saturation + table.distance
-    seen = np.array([canonical_label(one.label) for one in observations])
-    like = seen.reshape(-1, 1) == np.array(semantic_map.labels)[None]
-    if not like.any() or like.all():
-        return 0.0
-    return max(0.0, float(others[like].max() - others[~like].min()))
 
 
 def associate_greedy(
@@ -188,19 +157,13 @@ def associate_greedy(
     """
     table = penalty_table(observations, semantic_map, weights, distance_term)
     open_cost = table.total.copy()
-    steps = []
+    pairs = []
     for _ in range(min(open_cost.shape)):
         chosen = np.argmax(open_cost <= open_cost.min() + TIE)  # the first True, row by row
         i, j = (int(index) for index in np.unravel_index(chosen, open_cost.shape))
-        still_open = np.isfinite(open_cost)
-        one = Penalty(*(float(term[i, j]) for term in table))
-        open_observations, open_landmarks = (
-            tuple(int(index) for index in np.flatnonzero(still_open.any(axis=axis))) for axis in (1, 0)
-        )
-        steps.append(AssociationStep(i, j, one, open_observations, open_landmarks))
+        pairs.append((i, j))
         open_cost[i, :] = open_cost[:, j] = np.inf
-    pairs = [(step.observation, step.landmark) for step in steps]
-    return association_of(pairs, observations, semantic_map, table)._replace(steps=tuple(steps))
+    return association_of(pairs, observations, semantic_map, table)
 
 
 def association_of(
@@ -217,38 +180,12 @@ def association_of(
     )
 
 
-def _check_options(weights: PenaltyWeights, distance_term: str) -> None:
-    if distance_term not in DISTANCE_TERMS:
-        raise AssociationError(f"distance_term must be one of {DISTANCE_TERMS}; got {distance_term!r}")
-    for name, value in zip(PenaltyWeights._fields, weights, strict=True):
-        if not (np.isfinite(value) and value >= 0):
-            raise AssociationError(f"{name} must be finite and not negative; got {value!r}")
-
-
-def _centroid(centroid: np.ndarray, name: str) -> np.ndarray:
-    array = np.asarray(centroid, dtype=np.float64)
-    if array.shape != (2,) or not np.isfinite(array).all():
-        raise AssociationError(f"the {name} centroid must be two finite numbers [x, y] in metres; got {centroid!r}")
-    return array
-
-
-def _labels(side: Observation | Landmark) -> np.ndarray:
-    """Return canonical labels, an array of the shape of `side.label`."""
-    try:
-        return np.vectorize(canonical_label, otypes=[object])(side.label)
-    except DetectionError as error:
-        raise AssociationError(str(error)) from None
-
-
 def _check_values(name: str, side: Observation | Landmark) -> None:
     """Raise `AssociationError` for values that no observation or landmark may have; numbers or arrays."""
     hue, saturation = np.asarray(side.hue, dtype=np.float64), np.asarray(side.saturation, dtype=np.float64)
-    right = {
-        "x and y must be finite metres": np.isfinite(side.x).all() and np.isfinite(side.y).all(),
-        "hue must lie in [0, 360) degrees, or be NaN for grey": (np.isnan(hue) | ((hue >= 0) & (hue < 360))).all(),
-        "saturation must lie in [0, 100] percent": ((saturation >= 0) & (saturation <= 100)).all(),
-    }
-    for rule, holds in right.items():
-        if not holds:
-            given = tuple(getattr(side, field) for field in Observation._fields[:5])
-            raise AssociationError(f"{name}: {rule}; got {given}")
+    are_colours = (np.isnan(hue) | ((hue >= 0) & (hue < 360))).all() and ((saturation >= 0) & (saturation <= 100)).all()
+    if not (are_colours and np.isfinite(side.x).all() and np.isfinite(side.y).all()):
+        raise AssociationError(
+            f"{name}: x and y must be finite metres, hue in [0, 360) degrees or NaN for grey, saturation in [0, 100] "
+            f"percent; got {side}"
+        )

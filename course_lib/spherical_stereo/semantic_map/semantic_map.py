@@ -55,23 +55,20 @@ class Landmark:
     def __post_init__(self):
         try:
             object.__setattr__(self, "label", canonical_label(self.label))
-        except DetectionError:
-            raise SemanticMapError(f"label must be the name of a class, such as 'sofa'; got {self.label!r}") from None
+        except DetectionError as error:
+            raise SemanticMapError(str(error)) from None
         for name in _FIELDS[1:]:
             value = getattr(self, name)
             # A bool is an int to Python, and a text such as "1.5" would pass float(): both are slips in a file.
             if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
                 raise SemanticMapError(f"{name} of this {self.label} must be a number; got {value!r}")
             object.__setattr__(self, name, float(value))
-        hue_exists = math.isnan(self.hue) or 0 <= self.hue < 360
-        rules = {
-            "x and y must be finite metres": math.isfinite(self.x) and math.isfinite(self.y),
-            "hue must lie in [0, 360) degrees (grey: null in JSON, empty in CSV)": hue_exists,
-            "saturation must lie in [0, 100] percent": 0 <= self.saturation <= 100,
-        }
-        for rule, holds in rules.items():
-            if not holds:
-                raise SemanticMapError(f"{rule}; got {self}")
+        is_colour = (math.isnan(self.hue) or 0 <= self.hue < 360) and 0 <= self.saturation <= 100
+        if not (math.isfinite(self.x) and math.isfinite(self.y) and is_colour):
+            raise SemanticMapError(
+                "x and y must be finite metres, hue in [0, 360) degrees (grey: null in JSON, empty in CSV), saturation "
+                f"in [0, 100] percent; got {self}"
+            )
 
 
 class SemanticMap:
@@ -85,7 +82,11 @@ class SemanticMap:
         self.landmarks = tuple(landmarks)
         if not self.landmarks or not all(isinstance(one, Landmark) for one in self.landmarks):
             raise SemanticMapError("the map is empty or holds others than Landmarks; it needs one, a pose needs two")
-        self.walls = None if walls is None else _checked_walls(walls)
+        self.walls = None if walls is None else _read_only(walls)
+        if walls is not None and not (
+            self.walls.shape[1:] == (2,) and len(self.walls) >= 3 and np.isfinite(walls).all()
+        ):
+            raise SemanticMapError("walls must be at least three finite corners [x, y] in metres, or left out")
         self.name = str(name)
         self.labels = tuple(landmark.label for landmark in self.landmarks)
         self.positions = _read_only([[landmark.x, landmark.y] for landmark in self.landmarks])  # `(n, 2)`, metres
@@ -102,7 +103,7 @@ class SemanticMap:
 
     @property
     def centroid(self) -> np.ndarray:
-        """x_G.map `(2,)`: mean of the centroids of all objects on the map, metres. Source: paper 2, section 2.5."""
+        """Return x_G.map `(2,)`: mean of the centroids of all objects on the map, metres."""
         return self.positions.mean(axis=0)
 
     def __len__(self) -> int:
@@ -116,14 +117,14 @@ class SemanticMap:
         """Read the map in a `.json` or `.csv` file (format: see the module). Raises `SemanticMapError` with the file's
         name.
         """
-        path = Path(path)
-        if path.suffix.lower() not in (".json", ".csv"):
+        readers = {".json": (read_json, _from_json), ".csv": (read_text, _from_csv)}
+        if Path(path).suffix.lower() not in readers:
             raise SemanticMapError(f"{path}: a semantic map is a .json or a .csv file")
-        is_json = path.suffix.lower() == ".json"
-        content = (read_json if is_json else read_text)(path, "semantic map", SemanticMapError)
+        read, parse = readers[Path(path).suffix.lower()]
+        content = read(path, "semantic map", SemanticMapError)
         try:
-            return (_from_json if is_json else _from_csv)(content)
-        except SemanticMapError as error:
+            return parse(content)
+        except (TypeError, ValueError) as error:
             raise SemanticMapError(f"{path}: {error}") from None
 
     def save(self, path: str | Path) -> None:
@@ -158,50 +159,50 @@ def _read_only(values: list) -> np.ndarray:
     return array
 
 
-def _checked_walls(walls: np.ndarray) -> np.ndarray:
-    try:
-        corners = _read_only(walls)
-    except (TypeError, ValueError):
-        corners = np.empty(0)
-    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
-        raise SemanticMapError("walls must be at least three finite corners [x, y] in metres, or left out")
-    return corners
-
-
 def _from_json(content: object) -> SemanticMap:
     if not isinstance(content, dict) or not isinstance(content.get("landmarks"), list):
         raise SemanticMapError("the file must hold a JSON object with version and a list of landmarks")
-    _check_version(content.get("version"))
-    name = content.get("name", "")
-    if not isinstance(name, str):
-        raise SemanticMapError(f"name must be a text; got {name!r}")
-    return SemanticMap([_landmark(row, i) for i, row in enumerate(content["landmarks"])], content.get("walls"), name)
+    if content.get("version") != VERSION:
+        raise SemanticMapError(f"the version must be {VERSION}; got {content.get('version')!r}")
+    landmarks = []
+    for number, row in enumerate(content["landmarks"]):
+        missing = [name for name in _FIELDS if not isinstance(row, dict) or row.get(name, "") == ""]
+        try:
+            if missing or row["hue"] != row["hue"]:
+                raise SemanticMapError(
+                    f"lacks {', '.join(missing) or 'a hue'} (grey has the hue null, or empty in CSV)"
+                )
+            hue = math.nan if row["hue"] is None else row["hue"]
+            landmarks.append(Landmark(row["label"], row["x"], row["y"], hue, row["saturation"]))
+        except SemanticMapError as error:
+            raise SemanticMapError(f"landmark {number}: {error}") from None
+    return SemanticMap(landmarks, content.get("walls"), str(content.get("name", "")))
 
 
 def _from_csv(text: str) -> SemanticMap:
+    """Return the map in a CSV, by way of the same content as in JSON."""
     first, _, rest = text.partition("\n")
     # A spreadsheet fills the comment's row up with commas and may put it in quotes.
     found = re.fullmatch(r'"?#\s*semantic map,\s*version\s+([^\s,"]+)(?:,\s*(\d+) landmarks)?"?,*\s*', first)
     if found is None:
         raise SemanticMapError(f"the first line must be '{_CSV_FIRST_LINE}'; got {first[:60]!r}")
-    _check_version(int(found[1]) if found[1].isdecimal() else found[1])
     reader = csv.DictReader(io.StringIO(rest))
     if not set(_FIELDS) <= set(reader.fieldnames or []):
         raise SemanticMapError(f"the second line must name the columns {','.join(_FIELDS)}; got {reader.fieldnames}")
-    landmarks = []
-    for number, row in enumerate(reader):
+    rows = []
+    for row in reader:
         if None in row or None in row.values():  # the reader's mark for too many values, and for too few
             raise SemanticMapError(
-                f"line {reader.line_num + 1} must have {len(reader.fieldnames)} values, one a column; write numbers "
-                "with a decimal point, and a label with a comma in quotes"
+                f"line {reader.line_num + 1} must have {len(reader.fieldnames)} values, one a column"
             )
-        landmarks.append(_landmark({name: _csv_value(name, row[name]) for name in _FIELDS}, number))
-    if found[2] is not None and (len(landmarks) != int(found[2]) or not text.endswith("\n")):
+        rows.append({name: _csv_value(name, row[name]) for name in _FIELDS})
+    if found[2] is not None and (len(rows) != int(found[2]) or not text.endswith("\n")):
         raise SemanticMapError(
-            f"the first line announces {found[2]} landmarks, the file holds {len(landmarks)} and may be cut off. If "
-            "you took some out or added some, change that number, or leave it out, and end the last line"
+            f"the first line announces {found[2]} landmarks, the file holds {len(rows)} and may be cut off. Change "
+            "that number, or leave it out, and end the last line"
         )
-    return SemanticMap(landmarks)
+    version = int(found[1]) if found[1].isdecimal() else found[1]
+    return _from_json({"version": version, "landmarks": rows})
 
 
 def _csv_value(name: str, text: str) -> object:
@@ -212,20 +213,3 @@ def _csv_value(name: str, text: str) -> object:
         return text if name == "label" else float(text)
     except ValueError:
         return text.strip()
-
-
-def _landmark(row: object, number: int) -> Landmark:
-    """Return a landmark from its row. Here the hue of grey is None, and NaN is no hue."""
-    try:
-        missing = [name for name in _FIELDS if not isinstance(row, dict) or row.get(name, "") == ""]
-        if missing or row["hue"] != row["hue"]:
-            raise SemanticMapError(f"lacks {', '.join(missing) or 'a hue'} (grey has the hue null, or empty in CSV)")
-        hue = math.nan if row["hue"] is None else row["hue"]
-        return Landmark(row["label"], row["x"], row["y"], hue, row["saturation"])
-    except SemanticMapError as error:
-        raise SemanticMapError(f"landmark {number}: {error}") from None
-
-
-def _check_version(version: object) -> None:
-    if isinstance(version, bool) or version != VERSION:
-        raise SemanticMapError(f"the version must be {VERSION}, the only one this program knows; got {version!r}")

@@ -13,15 +13,23 @@ from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.lessons.lesson_15.exercises import centroid_shift
 from course_lib.lessons.lesson_15.panel import match, next_best, weights_panel
-from course_lib.lessons.lesson_15.scores import SOFAS, fitted_pose, hidden_score, score, two_searches
+from course_lib.lessons.lesson_15.scores import (
+    SOFAS,
+    fitted_pose,
+    hidden_score,
+    min_object_weight,
+    score,
+    two_searches,
+)
 from course_lib.lessons.lesson_16.fits import pose_error
 from course_lib.spherical_stereo.semantic_map.association import (
+    Observation,
     PenaltyWeights,
     associate_greedy,
     hue_difference,
-    min_object_weight,
     penalty_table,
 )
+from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
 
 def test_no_observation_is_told_by_its_place_in_the_list():
@@ -153,3 +161,27 @@ def test_the_challenge_s_centroid_walks_as_far_as_every_choice_of_hidden_landmar
     walked = np.sqrt(np.mean(np.sum((seen - places.mean(axis=0)) ** 2, axis=1)))
     assert centroid_shift(places, 2) == pytest.approx(walked)
     assert centroid_shift(places, 2) == pytest.approx(0.315, abs=5e-4)
+
+
+def random_scene(seed):
+    rng = np.random.default_rng(seed)
+    labels = ["sofa", "chair", "table"]
+
+    def draw(kind, n):
+        return [
+            kind(labels[rng.integers(3)], *rng.uniform(-3, 3, 2), rng.uniform(0, 360), rng.uniform(0, 100))
+            for _ in range(n)
+        ]  # fmt: skip
+
+    return draw(Observation, 7), SemanticMap(draw(Landmark, 9))
+
+
+@pytest.mark.parametrize("distance_term", ["absolute", "as_printed"])
+@pytest.mark.parametrize("seed", range(5))
+def test_above_the_least_object_weight_every_like_pair_is_cheaper_than_every_unlike_one(seed, distance_term):
+    observations, semantic_map = random_scene(seed)
+    bound = min_object_weight(observations, semantic_map, distance_term=distance_term)
+    for p_obj, holds in ((bound * 1.001, True), (bound * 0.999, False)):
+        table = penalty_table(observations, semantic_map, PenaltyWeights(p_obj=p_obj), distance_term)
+        like = table.object == 0
+        assert (table.total[like].max() < table.total[~like].min()) == holds

@@ -26,25 +26,23 @@ def test_an_onnx_network_finds_the_objects_of_a_panorama_once(names, tmp_path, r
     assert len(boxes) == 2
 
 
-def test_objectness_multiplies_the_class_score_in_the_yolov5_layout():
-    boxes, scores = decode_onnx([np.array([[[50, 40, 20, 10, 0.5, 0.9, 0.1]]])], "yolov5", 2, (100, 80))
-    assert boxes.tolist() == [[40, 35, 60, 45]]
-    assert scores == pytest.approx(np.array([[0.45, 0.05]]))
+ROW = [50, 40, 20, 10]  # a box by its centre and its size
+SHARES, CONFIDENCES = np.array([[[[0.1, 0.25, 0.5, 0.75]]]]), np.array([[[0.3, 0.6]]])
 
 
-def test_rows_lie_in_columns_in_the_yolov8_layout():
-    columns = np.array([[[50, 10], [40, 10], [20, 4], [10, 2], [0.9, 0.2], [0.1, 0.7]]])
-    boxes, scores = decode_onnx([columns], "yolov8", 2, (100, 80))
-    assert boxes.tolist() == [[40, 35, 60, 45], [8, 9, 12, 11]]
-    assert scores.tolist() == [[0.9, 0.1], [0.2, 0.7]]
-
-
-def test_boxes_are_shares_of_the_input_in_the_yolov4_layout_whatever_the_order_of_outputs():
-    boxes, confidences = np.array([[[[0.1, 0.25, 0.5, 0.75]]]]), np.array([[[0.3, 0.6]]])
-    for outputs in ([boxes, confidences], [confidences, boxes]):
-        found, scores = decode_onnx(outputs, "yolov4", 2, (100, 80))
-        assert found == pytest.approx(np.array([[10, 20, 50, 60]]))
-        assert scores.tolist() == [[0.3, 0.6]]
+@pytest.mark.parametrize(
+    ("layout", "outputs", "box", "score"),
+    [
+        ("yolov5", [np.array([[[*ROW, 0.5, 0.9, 0.1]]])], [40, 35, 60, 45], [0.45, 0.05]),
+        ("yolov8", [np.array([[*ROW, 0.9, 0.1]]).T[None]], [40, 35, 60, 45], [0.9, 0.1]),
+        ("yolov4", [SHARES, CONFIDENCES], [10, 20, 50, 60], [0.3, 0.6]),
+        ("yolov4", [CONFIDENCES, SHARES], [10, 20, 50, 60], [0.3, 0.6]),
+    ],
+)
+def test_each_layout_gives_boxes_in_input_pixels_and_scores_with_the_objectness_in_them(layout, outputs, box, score):
+    boxes, scores = decode_onnx(outputs, layout, 2, (100, 80))
+    assert boxes == pytest.approx(np.array([box]))
+    assert scores == pytest.approx(np.array([score]))
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)

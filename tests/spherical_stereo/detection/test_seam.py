@@ -9,13 +9,15 @@ from course_lib.spherical_stereo.detection.seam import (
     extend_seam,
     join_cut_pairs,
     select_on_circle,
+    suppress_in_image,
     valid_range,
+    vote_on_boxes,
 )
 
 WIDTH, HEIGHT, IOU = 640, 320, 0.45
 
 
-def ideal_detections(u_min, object_width, rng=None, jitter=0.0):
+def ideal_detections(u_min, object_width):
     """What a perfect network sees of one object on the extended image: every copy, cut by the image's ends."""
     end = WIDTH + appended_columns(WIDTH)
     copies = []
@@ -23,12 +25,7 @@ def ideal_detections(u_min, object_width, rng=None, jitter=0.0):
         left, right = max(u_min + turn, 0), min(u_min + object_width + turn, end)
         if right - left >= 8:  # a sliver is no detection
             copies.append([left, 100, right, 180])
-    boxes = np.array(copies, dtype=np.float64)
-    if jitter:
-        boxes += rng.uniform(-jitter, jitter, boxes.shape)
-        boxes[:, [0, 2]] = np.clip(boxes[:, [0, 2]], 0, end)
-    scores = np.linspace(0.7, 0.9, len(boxes)) if rng is None else rng.uniform(0.5, 1, len(boxes))
-    return boxes, scores, np.zeros(len(boxes), dtype=int)
+    return np.array(copies, dtype=np.float64), np.linspace(0.7, 0.9, len(copies)), np.zeros(len(copies), dtype=int)
 
 
 def test_the_left_quarter_is_appended_at_the_right(rng):
@@ -37,10 +34,7 @@ def test_the_left_quarter_is_appended_at_the_right(rng):
     assert extended.shape == (64, 160, 3)
     assert (extended[:, :128] == image).all()
     assert (extended[:, 128:] == image[:, :32]).all()
-
-
-def test_the_valid_range_is_one_turn_and_leaves_an_eighth_at_both_ends():
-    assert valid_range(WIDTH) == (WIDTH / 8, WIDTH / 8 + WIDTH)
+    assert valid_range(128) == (16, 144)
 
 
 @pytest.mark.parametrize("object_width", [20, 100, 160, 175, 200, 320, 480, 630])
@@ -112,3 +106,43 @@ def test_halves_of_two_objects_are_not_joined():
     for boxes, classes in (([high, low], [0, 0]), ([high, [*low[:1], 20, low[2], 60]], [0, 1])):
         joined, _, _ = join_cut_pairs(np.array(boxes), np.array([0.9, 0.8]), np.array(classes), WIDTH)
         assert len(joined) == 2
+
+
+BOX = np.array([100.0, 50, 200, 150])
+
+
+def shifted(*offsets):
+    return BOX + np.array(offsets).reshape(-1, 1) * [1, 0, 1, 0]
+
+
+@pytest.mark.parametrize(
+    ("offsets", "scores", "classes", "kept"),
+    [
+        ((0, 5, -5), (0.6, 0.9, 0.7), (0, 0, 0), [1]),  # the best stays
+        ((0, 60, 120), (0.6, 0.9, 0.7), (0, 0, 0), [1, 2, 0]),  # they overlap less than the limit
+        ((0, 30, 60), (0.9, 0.8, 0.7), (0, 0, 0), [0, 2]),  # a suppressed box suppresses nothing
+        ((0, 25), (0.9, 0.8), (0, 1), [0, 1]),  # two classes
+        ((0, 4), (0.9, 0.8), (0, 1), [0]),  # two classes that nearly coincide
+        ((), (), (), []),
+    ],
+)
+def test_of_overlapping_boxes_the_best_stays(offsets, scores, classes, kept):
+    found = suppress_in_image(shifted(*offsets), np.array(scores), np.array(classes), 0.45)
+    assert found.tolist() == kept
+
+
+def test_boxes_that_nearly_coincide_vote_weighted_by_their_scores():
+    boxes = np.array([[0, 0, 100, 100], [4, 0, 104, 100], [300, 0, 400, 100]], float)
+    voted = vote_on_boxes(boxes, np.array([0.6, 0.2, 0.9]), np.array([1, 1, 1]), np.array([0, 2]))
+    np.testing.assert_allclose(voted, [[1, 0, 101, 100], [300, 0, 400, 100]])
+
+
+@pytest.mark.parametrize(
+    ("box", "score", "kind"),
+    [((60, 0, 160, 100), 0.5, 1), ((4, 0, 104, 100), 0.5, 2), ((4, 0, 104, 100), 0.09, 1)],
+    ids=["far away", "another class", "hardly sure"],
+)
+def test_others_have_no_vote(box, score, kind):
+    boxes = np.array([(0, 0, 100, 100), box], float)
+    voted = vote_on_boxes(boxes, np.array([0.6, score]), np.array([1, kind]), np.array([0]))
+    np.testing.assert_allclose(voted, boxes[:1])

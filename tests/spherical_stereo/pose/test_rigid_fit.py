@@ -1,4 +1,4 @@
-"""The rigid fit: agrees with scikit-image, turns with its points, and names what has no answer."""
+"""The rigid fit: agrees with scikit-image, turns with its points, names what has no answer, and measures residuals."""
 
 from contextlib import contextmanager
 
@@ -7,6 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from scipy.stats import chi2
 from skimage.transform import EuclideanTransform
 
 from course_lib.geometry import wrap_angle
@@ -15,9 +16,11 @@ from course_lib.spherical_stereo.pose.rigid_fit import (
     MIRRORED,
     TOO_FEW_PAIRS,
     Pose2D,
+    Residuals,
     RigidFitError,
     fit_covariance,
     fit_rigid_2d,
+    residual_statistics,
     rotation_2d,
 )
 
@@ -71,9 +74,12 @@ def test_turning_body_and_covariances_together_keeps_the_weighted_position(turn,
 
 def test_a_pair_of_weight_zero_counts_as_if_it_were_not_there():
     target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
-    far_off = np.vstack([target, [50.0, 50.0]])
-    with_zero = fit_rigid_2d(np.vstack([TRIANGLE, [1.0, 1.0]]), far_off, weights=[1, 1, 1, 0])
-    assert with_zero == pytest.approx(fit_rigid_2d(TRIANGLE, target), abs=1e-12)
+    noise = np.array([0.01 * np.eye(2), np.diag([0.04, 0.01]), 0.02 * np.eye(2)])
+    pose = fit_rigid_2d(TRIANGLE, target)
+    more = [np.vstack([points, [50.0, 9.0]]) for points in (TRIANGLE, target)]
+    assert fit_rigid_2d(*more, weights=[1, 1, 1, 0]) == pytest.approx(pose, abs=1e-12)
+    covariance = fit_covariance(pose, *more, weights=[1, 1, 1, 0], noise=np.vstack([noise, [np.eye(2)]]))
+    assert covariance == pytest.approx(fit_covariance(pose, TRIANGLE, target, noise=noise), abs=1e-12)
 
 
 def ranges_with_noise(rng):
@@ -148,9 +154,9 @@ def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
     ("changes", "says"),
     [
         ({"target": TRIANGLE[:2]}, "shape"),
-        ({"weights": [1, 1]}, "one a pair"),
+        ({"weights": [1, 1]}, "weights must have"),
         ({"weights": [1, -1, 1]}, "not be negative"),
-        ({"source": np.full((3, 2), np.inf)}, "source must be finite"),
+        ({"source": np.full((3, 2), np.inf)}, "source must have finite values"),
         ({"covariances": np.full((3, 2, 2), np.nan)}, r"one finite \(2, 2\) matrix a pair"),
         ({"covariances": np.eye(2)}, r"one finite \(2, 2\) matrix a pair"),
         ({"covariances": [np.zeros((2, 2))] * 3}, "positive eigenvalues"),
@@ -162,11 +168,57 @@ def test_arguments_that_do_not_fit_are_named(changes, says):
         fit_rigid_2d(**{"source": TRIANGLE, "target": TRIANGLE, **changes})
 
 
-def test_a_pair_of_weight_zero_does_not_count_in_the_covariance_either():
-    target = noisy(TRIANGLE, Pose2D(2.0, 1.0, 0.7), 0.2)
-    noise = np.array([0.01 * np.eye(2), np.diag([0.04, 0.01]), 0.02 * np.eye(2)])
-    pose = fit_rigid_2d(TRIANGLE, target)
-    alone = fit_covariance(pose, TRIANGLE, target, noise=noise)
-    more = [np.vstack([points, [9.0, 9.0]]) for points in (TRIANGLE, target)]
-    with_zero = fit_covariance(pose, *more, weights=[1, 1, 1, 0], noise=np.vstack([noise, [np.eye(2)]]))
-    assert with_zero == pytest.approx(alone, abs=1e-12)
+POSE = Pose2D(1.0, -2.0, 0.6)
+SOURCE = np.array([[1.0, 0.5], [3.0, -1.0], [-2.0, 1.5], [0.5, 4.0], [-1.0, -3.0]])
+LONG = np.array([np.diag([0.01 + 0.02 * r, 0.004]) for r in np.hypot(*SOURCE.T)])  # far points are less certain
+TURN = np.array([[0.8, -0.6], [0.6, 0.8]])
+NOISE = TURN @ LONG @ TURN.T
+
+
+def measured(rng):
+    return SOURCE + np.array([rng.multivariate_normal([0, 0], one) for one in NOISE])
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+def test_over_repeated_noise_chi_square_and_rms_are_what_is_expected(rng, weighted):
+    target, covariances = POSE.apply(SOURCE), NOISE if weighted else None
+    squares, expected, chi = [], [], []
+    for _ in range(400):
+        source = measured(rng)
+        pose = fit_rigid_2d(source, target, covariances=covariances)
+        found = residual_statistics(pose, source, target, NOISE, covariances)
+        squares.append(((pose.apply(source) - target) ** 2).sum(axis=1).mean())
+        expected.append(found.expected_rms**2)
+        chi.append(found.chi_square)
+    assert np.mean(squares) == pytest.approx(np.mean(expected), rel=0.1)
+    assert np.mean(chi) == pytest.approx(7, rel=0.08)
+    assert np.mean(np.array(chi) > chi2.isf(0.1, 7)) == pytest.approx(0.1, abs=0.05)
+
+
+def test_exact_points_leave_nothing_and_two_pairs_leave_one_number():
+    exact = residual_statistics(POSE, SOURCE, POSE.apply(SOURCE), NOISE)
+    assert exact.chi_square == pytest.approx(0, abs=1e-12)
+    assert exact.expected_rms > 0.1
+    source, target = SOURCE[:2], np.add(POSE.apply(SOURCE[:2]), [[0.0, 0.0], [0.3, 0.0]])
+    two = residual_statistics(fit_rigid_2d(source, target), source, target, 0.01 * np.tile(np.eye(2), (2, 1, 1)))
+    apart = np.linalg.norm(np.diff(target, axis=0)) - np.linalg.norm(np.diff(source, axis=0))
+    assert two.degrees_of_freedom == 1
+    assert two.chi_square == pytest.approx(apart**2 / 0.02, rel=0.05)
+
+
+@pytest.mark.parametrize(("n", "limit"), [(1, 24.4), (7, 54.7), (17, 91.8)])
+def test_the_limit_is_two_and_a_quarter_times_the_quantile_of_a_thousandth(n, limit):
+    assert Residuals(0.1, limit + 0.5, n).contradict_the_pose
+    assert not Residuals(0.1, limit - 0.5, n).contradict_the_pose
+    assert Residuals(0.1, 4.0 * n, n).normalized == pytest.approx(2)
+
+
+def test_right_pairs_pass_and_one_wrong_pair_of_five_does_not(rng):
+    target, wrong = POSE.apply(SOURCE), POSE.apply(SOURCE[[1, 0, 2, 3, 4]])
+    passed = caught = 0
+    for _ in range(100):
+        source = measured(rng)
+        right = residual_statistics(fit_rigid_2d(source, target), source, target, NOISE)
+        passed += not right.contradict_the_pose
+        caught += residual_statistics(fit_rigid_2d(source, wrong), source, wrong, NOISE).contradict_the_pose
+    assert (passed, caught) == (100, 100)

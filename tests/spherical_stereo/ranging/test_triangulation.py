@@ -27,12 +27,6 @@ def seen(point, baseline=BASELINE):
     return point / np.linalg.norm(point, axis=-1, keepdims=True), lower / np.linalg.norm(lower, axis=-1, keepdims=True)
 
 
-def midpoint_of_rays(upper, lower, baseline):
-    """Least-squares meeting point of two rays: min over (s, t) of |s upper - (t lower + lower camera)|."""
-    (s, t), *_ = np.linalg.lstsq(np.stack([upper, -lower], axis=1), np.array([0, 0, -baseline]), rcond=None)
-    return 0.5 * (s * upper + t * lower + [0, 0, -baseline])
-
-
 @QUICK
 @given(point=points, baseline=st.floats(0.05, 1.0))
 def test_a_point_comes_back_from_the_two_directions_that_see_it(point, baseline):
@@ -40,14 +34,6 @@ def test_a_point_comes_back_from_the_two_directions_that_see_it(point, baseline)
     assume(triangulation_outcome(upper, lower) == "ok")
     assert triangulate(upper, lower, baseline) == pytest.approx(np.linalg.norm(point), rel=1e-9)
     np.testing.assert_allclose(object_position(upper, lower, baseline), point, rtol=1e-8, atol=1e-8)
-
-
-@QUICK
-@given(point=points)
-def test_where_the_rays_meet_the_distance_is_that_of_their_least_squares_point(point):
-    upper, lower = seen(point)
-    expected = midpoint_of_rays(upper, lower, BASELINE)
-    np.testing.assert_allclose(object_position(upper, lower, BASELINE), expected, rtol=1e-6, atol=1e-6)
 
 
 def test_skew_rays_give_the_distance_of_their_elevations(rng):
@@ -85,7 +71,7 @@ def test_directions_without_a_distance_have_a_named_outcome(upper, lower, name):
 
 
 def test_the_covariance_is_that_of_noise_drawn_by_hand(rng):
-    sigma_azimuth, sigma_elevation = 2 * np.pi / 1280, 0.3 * np.pi / 640
+    sigma_azimuth, sigma_elevation = 8 * np.pi / 1280, 0.3 * np.pi / 640
     for point in ([2.5, 1.0, -0.8], [-1.5, 0.3, -1.2], [0.2, -3.5, 0.4]):
         (azimuth, e_u), (_, e_l) = (azimuth_elevation(d) for d in seen(np.array(point)))
         noise = rng.normal(size=(3, 60_000)) * np.array([[sigma_azimuth], [sigma_elevation], [sigma_elevation]])
@@ -99,7 +85,7 @@ def test_noise_that_is_none_and_directions_that_are_none_are_refused():
     upper, lower = seen(np.array([2.0, 0, 0]))
     with pytest.raises(PanoramaError, match="baseline"):
         triangulate(upper, lower, 0.0)
-    with pytest.raises(PanoramaError, match="sigma_elevation"):
+    with pytest.raises(PanoramaError, match="a sigma must be"):
         triangulation_covariance(upper, lower, BASELINE, 0.001, -0.001)
     with pytest.raises(PanoramaError, match="direction"):
         triangulate(np.full(3, np.nan), lower, BASELINE)

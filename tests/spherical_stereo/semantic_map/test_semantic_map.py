@@ -13,13 +13,8 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, Sema
 WALLS = [[0.0, 0.0], [6.0, 0.0], [6.0, 5.5], [0.0, 5.5]]
 
 
-def a_map(**changes):
-    landmarks = [
-        Landmark("sofa", 1.0, 0.5, 210.0, 55.0),
-        Landmark("sofa", 4.0, 0.5, 212.0, 54.0),
-        Landmark("television", 5.5, 3.0, math.nan, 4.0),
-    ]
-    return SemanticMap(landmarks, **{"walls": WALLS, "name": "部屋", **changes})
+def a_map():
+    return SemanticMap([Landmark("sofa", 1.0, 0.5, 210.0, 55.0)], walls=WALLS, name="部屋")
 
 
 def same(first, second):
@@ -31,15 +26,10 @@ def same(first, second):
     )
 
 
-def test_a_map_cannot_be_changed_by_writing_to_its_arrays():
+def test_json_keeps_name_and_walls_and_nothing_changes_them(tmp_path):
     with pytest.raises(ValueError, match="read-only"):
         a_map().positions[0, 0] = 9.0
-
-
-def test_json_gives_back_the_whole_map_and_csv_its_landmarks(tmp_path):
-    for name in ("map.json", "map.csv"):
-        a_map().save(tmp_path / name)
-        assert same(SemanticMap.load(tmp_path / name), a_map())
+    a_map().save(tmp_path / "map.json")
     read = SemanticMap.load(tmp_path / "map.json")
     assert (read.name, read.walls.tolist()) == ("部屋", WALLS)
     with pytest.raises(SemanticMapError, match=r"\.json or \.csv"):
@@ -92,9 +82,8 @@ def refused(path, text, says):
         ({"landmarks": [SOFA, SOFA | {"x": 1.005}]}, "written twice.* 5.0 mm apart"),
         ({"version": 2}, "version must be 1.*got 2"),
         ({"landmarks": {"sofa": 1}}, "a list of landmarks"),
-        ({"name": 3}, "name must be a text"),
         ({"walls": [[0, 0], [1, 0]]}, "at least three finite corners"),
-        ({"walls": [[0, 0], [1, 0], "door"]}, "at least three finite corners"),
+        ({"walls": [[0, 0], [1, 0], "door"]}, "array"),
     ],
 )
 def test_a_json_file_that_is_no_map_is_named(tmp_path, change, says):
@@ -107,9 +96,11 @@ def test_a_json_file_that_is_no_map_is_named(tmp_path, change, says):
         ({"x": "1.5"}, "x of this sofa must be a number; got '1.5'"),
         ({"y": True}, "y of this sofa must be a number; got True"),
         ({"saturation": None}, "saturation of this sofa must be a number; got None"),
-        ({"saturation": 100.5}, r"saturation must lie in \[0, 100\]"),
-        ({"hue": 360}, r"hue must lie in \[0, 360\)"),
-        ({"label": " - "}, "label must be the name of a class"),
+        ({"saturation": 100.5}, r".*saturation in \[0, 100\]"),
+        ({"saturation": -0.5}, r".*saturation in \[0, 100\]"),
+        ({"hue": 360}, r".*hue in \[0, 360\)"),
+        ({"hue": -1}, r".*hue in \[0, 360\)"),
+        ({"label": " - "}, "a label is a text"),
     ],
 )
 def test_a_landmark_that_cannot_be_is_named(tmp_path, change, says):
@@ -128,7 +119,7 @@ HEAD = "# semantic map, version 1\nlabel,x,y,hue,saturation\n"
         ("# semantic map, version 1\nlabel,x,y\nsofa,1,2\n", "second line must name the columns"),
         (HEAD + "sofa,,2,3,4\n", "landmark 0: lacks x"),
         (HEAD + "sofa,one,2,3,4\n", "x of this sofa must be a number; got 'one'"),
-        (HEAD + "sofa,nan,2,3,4\n", "must be finite"),
+        (HEAD + "sofa,nan,2,3,4\n", "x and y must be finite"),
         (HEAD + "sofa,1,2,nan,4\n", "landmark 0: lacks a hue"),
     ],
 )

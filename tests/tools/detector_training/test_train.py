@@ -4,7 +4,7 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
 
-from course_lib.spherical_stereo.detection.darknet import check_weights  # noqa: E402
+from course_lib.spherical_stereo.detection.darknet import check_weights, read_cfg  # noqa: E402
 from tests.tools.detector_training.toy_panoramas import CLASSES, ROOM_NAMES, TINY_CFG, write_toy_folder  # noqa: E402
 from tools.detector_training.augmentation import AugmentationRanges  # noqa: E402
 from tools.detector_training.images import TrainingDataError, read_panoramas  # noqa: E402
@@ -70,7 +70,7 @@ def test_two_processes_train_one_network(toy, tmp_path):
     result = run(toy, tmp_path, plan(epochs=2, processes=2), log=lines.append)
     assert result.position.images_seen == 16
     assert len([line for line in lines if line.startswith("epoch")]) == 2
-    check_weights(toy / "tiny.cfg", result.weights)
+    check_weights(read_cfg(toy / "tiny.cfg"), result.weights)
 
 
 def test_what_cannot_be_trained_is_named(toy, tmp_path):
