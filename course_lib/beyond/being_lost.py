@@ -5,8 +5,6 @@ the covariance (`is_known`); and the frames before, because walls look alike (`D
 looks ahead, and none of it sees a pose that is wrong where the map looks alike.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 

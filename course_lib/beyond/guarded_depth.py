@@ -9,8 +9,6 @@ A frame at fault is not weighed: the particles move as if nothing had been measu
 are owed before a pose is "tracked". If no frame is at fault, the filter does exactly what it does without a guard.
 """
 
-from __future__ import annotations
-
 import warnings
 from typing import Literal, NamedTuple
 

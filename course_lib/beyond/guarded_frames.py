@@ -5,8 +5,6 @@ than the last frame, and another image? `FrameCheck`: did enough pixels measure 
 without noise, as in the last good frames? What lasts longer than `PATIENCE` frames is taken as the world.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from typing import Literal, NamedTuple
 

@@ -5,8 +5,6 @@ for upper, lower, time in pairs:
     outcome = guarded.localize(upper, lower, time).outcome      # "ok", or why there is no pose
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ A robot that is not sure moves a little and looks again. Two places that look al
 three, and with odometry a wrong hypothesis must be wrong in the same way every time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """How far off was it: the errors of paper 1's section 4, table 1 and figures 5 and 6, and what they leave out."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

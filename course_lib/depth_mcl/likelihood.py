@@ -6,8 +6,6 @@ weights               eqs (10), (11)
 paper_weighting       all of them as one part of the filter, which can be exchanged (fallon.py has another)
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple

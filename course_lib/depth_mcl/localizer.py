@@ -9,8 +9,6 @@ How particles move and how they are weighed are parts that can be exchanged: the
 the paper's weighting in likelihood.py, Fallon's in fallon.py.
 """
 
-from __future__ import annotations
-
 import warnings
 from typing import Literal, NamedTuple
 

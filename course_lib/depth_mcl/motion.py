@@ -15,8 +15,6 @@ A motion with a memory (a velocity, an odometer's increments) is another object 
 it remembers to itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@ Particles are an array `(N, 6)` of states [x, y, z, roll, pitch, yaw], eqs (1) a
 and a `numpy.random.Generator` in, arrays out. All four resampling schemes share one signature.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

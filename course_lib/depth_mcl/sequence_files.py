@@ -5,8 +5,6 @@ convention (x right, y down, z forward), metres: poses.txt as in the 7-Scenes da
 (t tx ty tz qx qy qz qw), or one 4 x 4 matrix.
 """
 
-from __future__ import annotations
-
 import io
 import re
 import warnings

@@ -10,8 +10,6 @@ kappa was calibrated on a wagon in the corridor of seed 10,001. No such covarian
 (course_lib.beyond.being_lost).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ A chunk is left out of a batch only if its bounding sphere lies outside one side
 so leaving it out changes no pixel.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.rendering.camera import DepthCamera

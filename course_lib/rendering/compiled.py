@@ -1,7 +1,5 @@
 """Compiling loops: what the fast forms of rendering and likelihood have in common."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Callable
 

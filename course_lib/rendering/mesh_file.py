@@ -1,7 +1,5 @@
 """A mesh file as vertices and faces: trimesh reads it; we count what came, because trimesh reads half a file, too."""
 
-from __future__ import annotations
-
 import codecs
 import io
 import re

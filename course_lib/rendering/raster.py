@@ -9,8 +9,6 @@ A chunk is also left out if every block of 8 x 8 pixels that its bounding sphere
 already.
 """
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 

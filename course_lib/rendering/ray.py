@@ -3,8 +3,6 @@
 Intel's Embree (embreex) where it has a wheel for the processor, else trimesh's own ray casting, which is slower by far.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import trimesh
 

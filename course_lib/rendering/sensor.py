@@ -1,7 +1,5 @@
 """The depth camera's data (paper 1, 3.3.2): its points become a depth image by the rules of the simulated views."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.rendering.camera import DepthCamera

@@ -5,8 +5,6 @@ metrics", 1997) until 99 of 100 vertices of the map lie just within a tolerance 
 in the user's cache, since it takes seconds.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import io

@@ -4,8 +4,6 @@ Tile k has a vtkRenderer of its own; all share one actor, the map. Threads take 
 After a fork OpenGL's threads are missing and whatever is asked of it waits for ever, so a child is refused by name.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import threading

@@ -1,7 +1,5 @@
 """How sure the best pose is: is it ahead of the others and of "none of them", and near what was seen?"""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ hypotheses (every two matches give a pose) -> score (one-to-one assignment, unma
 distinct poses -> confidence. Beyond the paper, whose own `associate_greedy` asks for no pose.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ Costs are negative logarithms of probabilities, so that they add up: a cost of 3
 h poses at once. Beyond the paper.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ paper.
 If objects look alike, no match can be believed alone, but two give a pose that everything else can judge.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Where in a map a camera can be: not inside a wall, and not outside the building."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.rendering.ray import EmbreeCaster

@@ -9,8 +9,6 @@ The answer is one pose only if no other pose explains the frames as well; where 
 several. Gravity is known (an accelerometer measures it), so only four degrees of freedom have to be searched.
 """
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 import numpy as np

@@ -8,8 +8,6 @@ candidate among others, because a filter that slid into a place that looks alike
 search decides.
 """
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 import numpy as np

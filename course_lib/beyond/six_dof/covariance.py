@@ -5,8 +5,6 @@ independent pixels. What an image does not show (along a smooth wall) keeps the 
 wall is a trap: the pose slides on its roughness, and the prediction takes the slide for a motion.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

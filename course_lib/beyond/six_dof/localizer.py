@@ -18,8 +18,6 @@ Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention. Noi
 their tangent space, which has no gimbal lock. Estimates are states, as `MonteCarloLocalizer` gives them.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from typing import Literal, NamedTuple

@@ -5,8 +5,6 @@ cloud as wide as recent motions were long. With one, the centre is its increment
 frame nearly as well, the cloud also starts from this rival.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

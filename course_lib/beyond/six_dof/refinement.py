@@ -17,8 +17,6 @@ Then the map is rendered again from the new pose. This is ICP with the z-buffer 
 Every step costs one render per pose.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """How a frame is searched: on images of which size, in which layers of particles, by which steps of refinement."""
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 import numpy as np
