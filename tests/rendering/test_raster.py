@@ -71,7 +71,7 @@ def test_a_chunk_that_a_view_can_see_is_never_left_out(rng):
     chunks = MeshChunks(scene.vertices, scene.faces)
     poses = optical_pose(random_states(5, rng, spread=9.0))
     visible = np.zeros(len(scene.faces), dtype=bool)
-    visible[chunks.order[chunks.faces_of(chunks.visible(OFF_CENTRE, poses))]] = True
+    visible[chunks.order[chunks.faces_of(chunks.visible(OFF_CENTRE, poses, scene.origin))]] = True
     for pose in poses:
         corners = (scene.vertices[scene.faces] - pose[:3, 3]) @ pose[:3, :3]
         u, v, z = OFF_CENTRE.project(corners)
@@ -84,7 +84,7 @@ def test_leaving_out_what_no_view_can_see_changes_no_pixel(rng, monkeypatch):
     scene, states = random_triangles(3000, rng, spread=20.0), random_states(16, rng, spread=9.0)
     with DepthRenderer(scene, SMALL, "vtk") as renderer:
         culled = [renderer.render(state) for state in states]
-        monkeypatch.setattr(MeshChunks, "visible", lambda self, camera, poses: np.ones(len(self.centers), dtype=bool))
+        monkeypatch.setattr(MeshChunks, "visible", lambda self, *_: np.ones(len(self.centers), dtype=bool))
         everything = [renderer.render(state) for state in states]
     assert np.array_equal(np.concatenate(culled), np.concatenate(everything))
 
