@@ -46,5 +46,5 @@ class FreeSpace:
             tried = rng.uniform(low, high, (_TRIES, 3))
             found.append(tried[self.contains(tried)])
         raise ValueError(
-            f"the map {self._map!r} has hardly a free place {CLEARANCE} m from all surfaces: is it closed, and in metres?"
+            f"{self._map!r} has hardly a free place {CLEARANCE} m from all surfaces: is it closed, and in metres?"
         )
