@@ -31,7 +31,7 @@ _MIN_SHARE = 0.01  # of the triangles: VTK wants a number
 def simplified(scene_map: SceneMap) -> SceneMap:
     """Return the map with fewer triangles: 99 % of its vertices lie within `TOLERANCE` of them.
 
-    A small map comes back as it is. A million triangles take 16 s, once, because the result is kept in the user's cache.
+    A small map comes back as it is. A million triangles take 16 s, once, because the user's cache keeps the result.
     """
     if len(scene_map) < MIN_TRIANGLES:
         return scene_map
