@@ -9,12 +9,10 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
 from course_lib.rendering.scene_map import SceneMapError
 
-# Metres: up to this length of edges OpenGL's depth of a plane seen from 2 m above it is right within half a millimetre.
-MAX_EDGE = 32.0
-# Metres: an edge that is longer is not cut. Such a triangle belongs to no building; `SceneMap.load` refuses it.
-MAX_CUT_EDGE = 20_000.0
-# A map that needs more pieces is refused.
-MAX_PIECES = 5_000_000
+MAX_EDGE = 32.0  # metres: so long edges OpenGL draws right to half a millimetre, seen from 2 m above
+MAX_CUT_EDGE = 20_000.0  # metres: a longer edge is not cut; it belongs to no building, and `SceneMap.load` refuses it
+MAX_PIECES = 5_000_000  # a map that needs more is refused
+CHUNK_SIZE = 0.5  # metres, edge of the cubes that triangles are sorted into: some hundred of a map's 100,000 (chosen)
 
 
 def cut_large_triangles(
@@ -22,8 +20,7 @@ def cut_large_triangles(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return vertices `(V', 3)` and faces `(F', 3)` of the same surface, no edge longer than `max_edge` metres.
 
-    In float32 a corner 10 km away is off by half a millimetre, and its plane, seen from near, by centimetres. A shared
-    edge is halved for both triangles at one point, so no gap opens. Unchanged arrays come back as they are.
+    A shared edge is halved for both triangles at one point, so no gap opens. Unchanged arrays come back as they are.
     """
     done: list[np.ndarray] = []
     while True:
@@ -36,10 +33,8 @@ def cut_large_triangles(
         done.append(faces[~cut])
         faces, long = faces[cut], long[cut]
         if 4 * len(faces) + sum(map(len, done)) > MAX_PIECES:
-            raise SceneMapError(
-                f"the map's triangles are so large that they make more than {MAX_PIECES:,} pieces of {max_edge:g} m: "
-                "are its coordinates metres? Remove what does not belong to the building"
-            )
+            told = f"the map's triangles make more than {MAX_PIECES:,} pieces of {max_edge:g} m"
+            raise SceneMapError(f"{told}: are its coordinates metres? Remove what does not belong to the building")
         vertices, faces = _halved(vertices, faces, long)
 
 
@@ -66,10 +61,6 @@ def _halved(vertices: np.ndarray, faces: np.ndarray, long: np.ndarray) -> tuple[
         }[count]
         pieces += [np.stack(row, axis=1) for row in rows]
     return vertices, np.concatenate(pieces).astype(faces.dtype)
-
-
-# Edge of the cubes that triangles are sorted into, metres (chosen: some hundred triangles of a 100,000-triangle map).
-CHUNK_SIZE = 0.5
 
 
 class MeshChunks:

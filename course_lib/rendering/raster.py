@@ -1,11 +1,9 @@
 """A z-buffer in plain loops, compiled by Numba: what a graphics card does with a mesh, on every processor.
 
-The chunks of the mesh that a view may see are drawn, the nearest first. Each triangle is filled row by row, and each
-pixel keeps the greatest 1/Z, which is linear in the image; 0 is "nothing hit".
+The chunks of the mesh that a view may see are drawn, the nearest first, unless all blocks of 8 x 8 pixels that they may
+cover hold nearer surfaces already. Each triangle is filled row by row, and each pixel keeps the greatest 1/Z.
 
-    u = fx X/Z + cx,    v = fy Y/Z + cy,    1/Z = a u + b v + c
-
-A chunk is also left out if all blocks of 8 x 8 pixels that its bounding sphere may cover hold nearer surfaces already.
+    u = fx X/Z + cx,    v = fy Y/Z + cy,    1/Z = a u + b v + c (0: nothing hit)
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -18,11 +16,10 @@ from course_lib.rendering.chunks import MeshChunks, chunks_in_view, inward_norma
 from course_lib.rendering.compiled import compiled
 from course_lib.rendering.scene_map import SceneMap
 
-VIEWS_A_TASK = 8  # so few that no thread waits long for the last, so many that starting one costs nothing
+VIEWS_A_TASK = 8  # so few that no thread waits long for the last, so many that starting one costs little
 BLOCK = 8  # pixels: edge of the blocks whose farthest depth is kept
 CHUNKS_BETWEEN = 32  # chunks drawn before the blocks are looked at again: looking at every pixel costs, too
-# Pixels by which a row's ends are stretched: two triangles leave no gap between them through rounding.
-_OVERLAP = 1e-4
+_OVERLAP = 1e-4  # pixels by which a row's ends are stretched, so that rounding leaves no gap between two triangles
 _ONE = np.float32(1.0)
 
 

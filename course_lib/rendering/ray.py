@@ -1,7 +1,4 @@
-"""Depth images by ray casting: one ray through every pixel centre. The reference for the z-buffer.
-
-Intel's Embree (embreex) where it has a wheel for the processor, else trimesh's own ray casting, which is slower by far.
-"""
+"""Depth images by ray casting, the reference: one ray through every pixel centre, by Embree where it can be had."""
 
 import numpy as np
 import trimesh

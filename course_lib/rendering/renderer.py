@@ -24,10 +24,8 @@ from course_lib.rendering.scene_map import SceneMap
 from course_lib.rendering.sensor import depth_image_from_points, measured_points
 
 MAX_BATCH_PIXELS = 200 * 176 * 144  # of one off-screen window: 200 images of the SR4000, 80 MB with colour and depth
-
 # Files in /dev that show a graphics card on Linux: most drivers', NVIDIA's, and Windows' (WSL).
 CARDS = ("dri/renderD*", "nvidia[0-9]*", "dxg")
-
 # Parts of the names under which OpenGL draws on the processor: Mesa's, Apple's, Microsoft's and Google's.
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "gdi generic", "basic render", "swiftshader")
 
@@ -42,14 +40,11 @@ class OpenGLError(RuntimeError):
     """OpenGL cannot start or draw, or it belongs to the process that this one was forked from."""
 
 
+@cache  # so that a process decides once
 def chosen_backend(backend: Backend) -> Backend:
     """Return `backend`, or what "auto" means on this computer: "vtk" on a graphics card, else "raster"."""
-    return _automatic_backend() if backend == "auto" else backend
-
-
-@cache
-def _automatic_backend() -> Backend:
-    """Decide once in a process. Without a card Linux opens no window; any error means "raster"."""
+    if backend != "auto":
+        return backend
     if sys.platform.startswith("linux") and not any(any(Path("/dev").glob(card)) for card in CARDS):
         return "raster"
     triangle, camera = SceneMap(np.eye(3), np.array([[0, 1, 2]])), DepthCamera(8, 8, 8.0, 8.0, 3.5, 3.5)
@@ -65,10 +60,9 @@ class DepthRenderer:
     """Draws depth images of a map from any number of poses; a context manager.
 
     backend: "vtk" (OpenGL's z-buffer), "raster" (a compiled z-buffer), "ray" (the reference), or "auto": "vtk" on a
-    graphics card, else "raster"; the attribute `backend` says which. exact: draw every triangle of the map; else a
-    large map is drawn with fewer triangles, which lie within centimetres of it. max_batch_pixels: bounds the memory of
-    a batch. Raises `OpenGLError` where OpenGL cannot start, `ValueError` for an unknown backend. After `close()` every
-    call raises `RendererClosedError`.
+    graphics card, else "raster"; the attribute `backend` says which. exact: draw every triangle; else a large map is
+    drawn with fewer triangles, which lie within centimetres of it. max_batch_pixels: bounds the memory of a batch.
+    Raises `OpenGLError` where OpenGL cannot start, `ValueError` for a bad backend, `RendererClosedError` after `close`.
     """
 
     def __init__(
@@ -80,8 +74,6 @@ class DepthRenderer:
         exact: bool = False,
         max_batch_pixels: int = MAX_BATCH_PIXELS,
     ) -> None:
-        if int(max_batch_pixels) != max_batch_pixels or max_batch_pixels < 1:
-            raise ValueError(f"max_batch_pixels must be a whole number, at least 1; got {max_batch_pixels!r}")
         self.scene_map = scene_map
         self.camera = camera
         self.backend = chosen_backend(backend)
@@ -123,11 +115,11 @@ class DepthRenderer:
         A single state `(6,)` counts as N = 1. Raises `ValueError` for states of a wrong shape or not finite.
         Source: paper 1, eq. (6).
         """
-        return self.render_poses(optical_pose(_particles(states)))
+        return self.render_poses(optical_pose(np.atleast_2d(as_states(states))))
 
     def batches(self, states: np.ndarray) -> Iterator[np.ndarray]:
         """Yield the same images a batch `(n, H, W)` at a time, for more particles than images fit into memory."""
-        states = _particles(states)
+        states = np.atleast_2d(states)
         for start in range(0, len(states), self.batch_size):
             yield self.render(states[start : start + self.batch_size])
 
@@ -186,11 +178,3 @@ class DepthRenderer:
 
     def __exit__(self, *error: object) -> None:
         self.close()
-
-
-def _particles(states: np.ndarray) -> np.ndarray:
-    """Return states `(N, 6)`; one alone may come as `(6,)`."""
-    states = np.atleast_2d(as_states(states))
-    if states.ndim != 2:
-        raise ValueError(f"states must have shape (N, 6); got {states.shape}")
-    return states

@@ -9,7 +9,6 @@ import codecs
 import io
 import re
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +21,6 @@ _MIN_AREA = 1e-16  # square metres: a smaller triangle has no inside that a pixe
 MAX_COORDINATE = 2e7  # metres, half the Earth's circumference: no map has its zero farther away
 MAX_DISTANCE = 5000.0  # metres: no part of a building lies farther from its middle
 MAX_BUILDING = 200.0  # metres: a map that is larger in all three directions is doubtful
-MAX_STEP = 1.5e-3  # metres between neighbouring numbers of a file in single precision; more is worth a warning
 # Metres between the points that coordinates are taken from (`SceneMap.anchor`). Drawn 0.7 km from it a wall is wrong by
 # 1 mm, at 80 m by 0.1 mm.
 _ANCHOR_STEP = 100.0
@@ -35,7 +33,7 @@ class SceneMapError(ValueError):
 
 
 class SceneMapWarning(UserWarning):
-    """A map that can be used, but its coordinates look wrong."""
+    """A map that can be used, but its coordinates look like millimetres."""
 
 
 class SceneMap:
@@ -47,24 +45,19 @@ class SceneMap:
     """
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
-        # A copy: the map is frozen below, and the caller's array must neither freeze with it nor change it.
+        # A copy, because the map is frozen below, and the caller's array must neither freeze with it nor change it.
         vertices = np.array(vertices, dtype=np.float64)
         faces = np.asarray(faces)
-        if vertices.ndim != 2 or vertices.shape[-1] != 3 or len(vertices) == 0:
-            raise SceneMapError(f"the map needs vertices of shape (V, 3), V at least 3; got {vertices.shape}")
-        if faces.ndim != 2 or faces.shape[-1] != 3 or len(faces) == 0:
+        if (vertices.shape[1:], faces.shape[1:]) != ((3,), (3,)) or not len(vertices) or not len(faces):
             raise SceneMapError(
-                f"the map needs triangles: faces of shape (F, 3), F at least 1; got {faces.shape}. "
-                "A point cloud has none: mesh it first"
+                f"the map needs triangles: vertices of shape (V, 3), faces of shape (F, 3); got {vertices.shape} and "
+                f"{faces.shape}. A point cloud has no faces: mesh it first"
             )
         if not np.isfinite(vertices).all():
-            n_bad = int((~np.isfinite(vertices)).any(axis=1).sum())
-            raise SceneMapError(f"{n_bad} of {len(vertices)} vertices are NaN or infinite; remove them from the mesh")
+            raise SceneMapError("vertices are NaN or infinite; remove them from the mesh")
         if not np.issubdtype(faces.dtype, np.integer) or faces.min() < 0 or faces.max() >= len(vertices):
-            raise SceneMapError(
-                f"faces must be whole numbers from 0 to {len(vertices) - 1} (the vertices); got {faces.dtype} from "
-                f"{faces.min()} to {faces.max()}"
-            )
+            numbers = f"{faces.min()} to {faces.max()} ({faces.dtype})"
+            raise SceneMapError(f"faces must be whole numbers from 0 to {len(vertices) - 1}; got {numbers}")
         corners = vertices[faces]
         if np.abs(corners).max() > MAX_COORDINATE:
             raise SceneMapError(f"the map reaches beyond {MAX_COORDINATE:g} m: coordinates must be metres. {_CURE}")
@@ -84,17 +77,18 @@ class SceneMap:
         """Return the map in any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
 
         drop_far: triangles farther than `MAX_DISTANCE` from the middle of the map are left out; else they are an error.
-        Warns (`SceneMapWarning`) of what looks like millimetres or like a loss of digits. Raises `FileNotFoundError`,
-        or `SceneMapError` for a file that cannot be read or holds fewer triangles than it announces (an OBJ announces
-        nothing).
+        Warns (`SceneMapWarning`) of what looks like millimetres. Raises `FileNotFoundError`, or `SceneMapError` for a
+        file that cannot be read or holds fewer triangles than it announces (an OBJ announces nothing).
         """
         vertices, faces = read_mesh(path)
         try:
             found = cls(vertices, _of_one_building(vertices, faces, drop_far))
         except SceneMapError as error:
             raise SceneMapError(f"{path}: {error}") from None
-        for doubt in _doubts(found):
-            warnings.warn(f"{path}: {doubt}", SceneMapWarning, stacklevel=2)
+        size = np.ptp(found.bounds, axis=0)
+        if size.min() > MAX_BUILDING:
+            told = " x ".join(f"{length:,.0f}" for length in size)
+            warnings.warn(f"{path}: the map is {told} m large: are these millimetres?", SceneMapWarning, stacklevel=2)
         return found
 
     def transformed(self, matrix: np.ndarray) -> SceneMap:
@@ -149,26 +143,10 @@ def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) ->
         first = int(np.argmax(far_away))
         x, y, z = corners[first][distance[first].argmax()]
         raise SceneMapError(
-            f"{int(far_away.sum())} of {len(corners)} triangles lie farther than {MAX_DISTANCE:g} m from the middle of "
-            f"the map: triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Coordinates must be metres (are these "
-            f"millimetres?). {_CURE}"
+            f"{int(far_away.sum())} of {len(corners)} triangles lie over {MAX_DISTANCE:g} m from the map's middle: "
+            f"triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Are these millimetres? {_CURE}"
         )
     return faces
-
-
-def _doubts(scene_map: SceneMap) -> Iterator[str]:
-    """Yield what looks wrong about a map that can be used."""
-    size = np.ptp(scene_map.bounds, axis=0)
-    if size.min() > MAX_BUILDING:
-        told = " x ".join(f"{length:,.0f}" for length in size)
-        yield f"the map is {told} m large: are these millimetres? Coordinates must be metres"
-    corners = scene_map.vertices[scene_map.faces]
-    step = float(np.spacing(np.float32(np.abs(corners).max())))
-    if step > MAX_STEP and np.array_equal(corners, corners.astype(np.float32)):
-        yield (
-            f"coordinates of {np.abs(corners).max():,.0f} m in single precision have steps of {step * 1000:g} mm: "
-            "move the map's zero into the building before saving it"
-        )
 
 
 def mesh_endings() -> set[str]:
@@ -194,13 +172,11 @@ def read_mesh(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
         vertices, faces = mesh.vertices, getattr(mesh, "faces", np.empty((0, 3), dtype=np.int64))
         if len(vertices) < n_vertices or len(faces) < n_faces:
             raise ValueError(
-                f"it announces {n_vertices:,} vertices and {n_faces:,} faces and holds {len(vertices):,} and "
-                f"{len(faces):,} triangles"
+                f"{n_vertices} vertices and {n_faces} faces announced, {len(vertices)} and {len(faces)} there"
             )
-    except Exception as reason:  # trimesh's readers raise whatever their parsing stumbles on
-        raise SceneMapError(
-            f"map {path} cannot be read as a mesh ({type(reason).__name__}: {reason}). Is the file complete?"
-        ) from reason
+    except Exception as reason:  # trimesh's readers raise errors of all kinds
+        told = f"map {path} cannot be read as a mesh ({type(reason).__name__}: {reason}). Is the file complete?"
+        raise SceneMapError(told) from reason
     return vertices, faces
 
 

@@ -1,7 +1,7 @@
-"""Fewer triangles that look the same to a depth camera: what `DepthRenderer` draws unless it is told `exact=True`.
+"""Fewer triangles that look the same to a depth camera: `DepthRenderer` draws them unless it is told `exact=True`.
 
-VTK merges triangles (quadric decimation, after Garland and Heckbert, "Surface simplification using quadric error
-metrics", 1997) while 99 of 100 vertices of the map lie within a tolerance of what is left. joblib keeps what was found.
+VTK merges triangles while 99 of 100 vertices of the map lie within a tolerance of what is left (after Garland and
+Heckbert, "Surface simplification using quadric error metrics", 1997). joblib keeps the result.
 """
 
 import contextlib

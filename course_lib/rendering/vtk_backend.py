@@ -85,10 +85,8 @@ class VtkBackend:
 
     def __init__(self, scene_map: SceneMap, camera: DepthCamera, batch_size: int) -> None:
         if camera.width > MAX_WINDOW_SIDE or camera.height > MAX_WINDOW_SIDE:
-            raise ValueError(
-                f"an image of {camera.width} x {camera.height} pixels is larger than one OpenGL window "
-                f"({MAX_WINDOW_SIDE} on a side): use camera.resized(...)"
-            )
+            size = f"{camera.width} x {camera.height}"
+            raise ValueError(f"{size} pixels are too many for OpenGL ({MAX_WINDOW_SIDE} on a side): use camera.resized")
         self.camera = camera
         # OpenGL clips so far beyond `farthest` that rounding decides nothing there.
         self._drawn = camera.with_clip_planes(camera.nearest, 1.01 * camera.farthest)
@@ -121,7 +119,7 @@ class VtkBackend:
 
     def _render_batch(self, poses: np.ndarray, out: np.ndarray) -> None:
         anchor = self._scene_map.anchor(poses[:, :3, 3])
-        if not np.array_equal(anchor, self._anchor):
+        if not np.array_equal(anchor, self._anchor):  # views seldom move on
             self._upload_vertices(anchor)
         self._draw_only(poses)
         self._make_room(len(poses))
@@ -131,12 +129,9 @@ class VtkBackend:
 
     def render_points(self, points: np.ndarray) -> np.ndarray:
         """Return the depth image `(H, W)` of points `(M, 3)` in the optical frame; NaN where none fell."""
-        count = len(points)
-        vtk_points = vtkPoints()
+        vtk_points, vertices = vtkPoints(), vtkCellArray()
         vtk_points.SetData(numpy_to_vtk(points.astype(np.float32), deep=True))
-        cells = np.stack([np.ones(count, dtype=np.int64), np.arange(count)], axis=1)
-        vertices = vtkCellArray()
-        vertices.ImportLegacyFormat(numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
+        vertices.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(points)), deep=True))
         image = np.empty(self.camera.shape, dtype=np.float32)
         with self._drawing():
             self._points_data.SetPoints(vtk_points)

@@ -247,7 +247,7 @@ def test_a_closed_renderer_says_so(backend):
 
 @pytest.mark.parametrize("states", [np.zeros(5), np.zeros((2, 2, 6)), [[np.nan] * 6]])
 def test_bad_states_are_refused(states):
-    with DepthRenderer(room(), SMALL) as renderer, pytest.raises(ValueError, match="states"):
+    with DepthRenderer(room(), SMALL) as renderer, pytest.raises(ValueError, match=r"states|camera_to_world"):
         renderer.render(states)
 
 
@@ -267,9 +267,9 @@ def test_an_unknown_backend_and_too_large_an_image_are_named():
 @pytest.fixture
 def undecided():
     """No process has chosen a backend yet, and the test's choice does not stay."""
-    renderer_module._automatic_backend.cache_clear()
+    chosen_backend.cache_clear()
     yield
-    renderer_module._automatic_backend.cache_clear()
+    chosen_backend.cache_clear()
 
 
 @pytest.mark.usefixtures("undecided")

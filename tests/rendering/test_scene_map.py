@@ -188,7 +188,6 @@ def test_a_triangle_that_cannot_belong_to_a_building_is_named_and_can_be_dropped
     ("vertices", "faces", "doubt"),
     [
         (room().vertices * 400, room().faces, "are these millimetres"),
-        (room().vertices + np.array([500_000, 5_300_000, 0]), room().faces, "steps of 500 mm"),
     ],
 )
 def test_a_map_that_looks_as_if_it_were_not_meant_is_used_with_a_warning(vertices, faces, doubt, tmp_path):
