@@ -15,8 +15,7 @@ TrackStatus = Literal["tracked", "doubtful", "lost"]
 
 MIN_PIXELS = 30  # with fewer a frame says nothing: a few stray returns are no view (chosen)
 
-# Of `judge_track`; chosen on development recordings (experiments/lost_on_purpose.py) so that a lost filter is hardly
-# ever called tracked.
+# Of `judge_track`; chosen (experiments/lost_on_purpose.py) so that a lost filter is hardly ever called tracked.
 TRACKED_SUPPORT = 0.55  # smallest support, -1 to 1, of a frame that is tracked
 LOST_SUPPORT = 0.45  # support below which it is lost
 RECOVERED_SUPPORT = 0.7  # smallest support after it was lost, because walls that look alike agree by chance

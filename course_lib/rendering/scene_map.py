@@ -21,8 +21,7 @@ _MIN_AREA = 1e-16  # square metres: a smaller triangle has no inside that a pixe
 MAX_COORDINATE = 2e7  # metres, half the Earth's circumference: no map has its zero farther away
 MAX_DISTANCE = 5000.0  # metres: no part of a building lies farther from its middle
 MAX_BUILDING = 200.0  # metres: a map that is larger in all three directions is doubtful
-# Metres between the points that coordinates are taken from (`SceneMap.anchor`). Drawn 0.7 km from it a wall is wrong by
-# 1 mm, at 80 m by 0.1 mm.
+# Metres between possible anchors. A wall drawn 0.7 km from the anchor is wrong by 1 mm, at 80 m by 0.1 mm.
 _ANCHOR_STEP = 100.0
 
 _CURE = "To leave such triangles out: SceneMap.load(path, drop_far=True), or `localize --drop-far`"
