@@ -5,8 +5,7 @@ lost_and_found/  a start that is not known, and finding the camera again after i
 being_lost       whether the filter still holds the track: "tracked", "doubtful" or "lost"
 look_alikes/     rooms whose objects look alike: poses of two matches, what speaks for each, how sure
 several_views    several views over time
-guarded_frames, guarded_depth, guarded_stereo
-                 sensor trouble: whether a frame can be used, and the outcome of each
+guarded_*        sensor trouble: whether a frame can be used, and the outcome of each
 """
 
 # ruff: noqa: F401 - the public names

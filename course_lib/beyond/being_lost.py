@@ -1,11 +1,8 @@
 """Is the filter lost? This module alone decides whether a pose is "tracked", "doubtful" or "lost".
 
 Weights cannot say it, because they are normalized. Three things can: how the image agrees with the map (`agreement`);
-the covariance (`is_known`); and the frames before, because walls look alike (`Debt`). Nothing here knows the truth or
-looks ahead, and none of it sees a pose that is wrong where the map looks alike.
+the covariance (`is_known`); and the frames before, because walls look alike (`Debt`). Nothing here looks ahead.
 """
-
-from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
@@ -18,17 +15,15 @@ TrackStatus = Literal["tracked", "doubtful", "lost"]
 
 MIN_PIXELS = 30  # with fewer a frame says nothing: a few stray returns are no view (chosen)
 
-# Of `judge_track`; chosen on development recordings (experiments/lost_on_purpose.py) so that a lost filter is hardly
-# ever called tracked.
+# Of `judge_track`; chosen (experiments/lost_on_purpose.py) so that a lost filter is hardly ever called tracked.
 TRACKED_SUPPORT = 0.55  # smallest support, -1 to 1, of a frame that is tracked
 LOST_SUPPORT = 0.45  # support below which it is lost
 RECOVERED_SUPPORT = 0.7  # smallest support after it was lost, because walls that look alike agree by chance
 _FRAMES_TO_RECOVER = 3  # in a row with this support
 _FRAMES_MEANED = 3  # a person who walks through one image must not decide alone
 
-# Of `judge_refined`; chosen on runs of the annealed filter that were made to get lost (kitchen, shipped corridor,
-# corridor seeds 10,011 to 10,014; 243 frames wrong by more than 0.2 m or 20 degrees: 96 % below the limit; 2,066 right
-# ones: 0.1 %).
+# Of `judge_refined`; chosen on runs that were made to get lost (kitchen, shipped corridor, corridor seeds 10,011 to
+# 10,014): 96 % of 243 frames wrong by more than 0.2 m or 20 degrees are below the limit, and 0.1 % of 2,066 right ones.
 REFINED_LOST = 0.4
 THROUGH_WEIGHT = 3.0  # a pixel measured behind the map counts against a pose as much as so many agreeing ones for it
 
@@ -46,13 +41,11 @@ class Agreement(NamedTuple):
     pixels: int  # How many pixels were measured; with none, the shares are NaN.
     score: float  # Eq. (8) divided by the number of pixels: 1 for perfect agreement.
     agreeing: float  # Within `ALPHA`, 0.1 m, of the map.
-    through: float  # More than `ALPHA` behind the map. A wrong pose does this, but a person or a moved chair cannot.
+    through: float  # More than `ALPHA` behind the map, as a wrong pose has it, but no person or moved chair.
 
     @property
     def support(self) -> float:
-        """Return agreeing - through: -1 to 1, NaN without a pixel. Pixels in front of the map and holes in it do not
-        count.
-        """
+        """Return agreeing - through: -1 to 1, NaN without a pixel."""
         return self.agreeing - self.through
 
     @property

@@ -6,13 +6,11 @@
         frame = localizer.step(depth, time)       # frame.outcome, frame.estimate
 
 A frame at fault is not weighed: the particles move as if nothing had been measured. After faults, as many good frames
-are owed before a pose is "tracked". If no frame is at fault, the filter does exactly what it does without a guard.
+must come before a pose is "tracked". Without faults the filter does exactly what it does without a guard.
 """
 
-from __future__ import annotations
-
 import warnings
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -31,20 +29,8 @@ from course_lib.depth_mcl.likelihood import checked_image
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
 
 Outcome = TrackStatus | Fault | Literal["no image"]
-OUTCOMES: tuple[Outcome, ...] = (
-    "tracked",
-    "doubtful",
-    "lost",
-    "no image",
-    "out of order",
-    "repeated",
-    "no return",
-    "saturated",
-    "noise",
-    "half covered",
-    "few returns",
-    "exposure jump",
-)  # fmt: skip - used, with one of the first three; or it never came; or not used
+# A frame was used (the first three), it never came, or it was not used.
+OUTCOMES: tuple[Outcome, ...] = (*get_args(TrackStatus), "no image", *get_args(Fault))
 
 
 class GuardedFrame(NamedTuple):
@@ -91,7 +77,7 @@ class GuardedLocalizer:
         return GuardedFrame(self._judged(depth), self._last, missed)
 
     def _move(self) -> Estimate | AnnealedEstimate:
-        """The filter's estimate after a frame of which nothing is used."""
+        """Return the filter's estimate after a frame of which nothing is used."""
         self._debt.add()
         self._agreements.append(NOTHING_MEASURED)
         with warnings.catch_warnings():
@@ -100,7 +86,7 @@ class GuardedLocalizer:
         return self._last
 
     def _judged(self, depth: np.ndarray) -> Outcome:
-        """The outcome of a frame that was used: the annealed filter judges itself, the paper's filter is judged."""
+        """Return the outcome of a frame that was used: the annealed filter judges itself, the paper's is judged."""
         status = self._last.status
         if not isinstance(self.localizer, AnnealedLocalizer):
             renderer = self.localizer.renderer

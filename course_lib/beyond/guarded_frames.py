@@ -1,11 +1,8 @@
 """A look at a sensor's frame before it is used: is it a new one, and is it an image of the world at all?
 
-A particle filter believes every pixel, so each frame is asked questions that need no map. `FrameOrder`: is it later
-than the last frame, and another image? `FrameCheck`: did enough pixels measure something, of more than one value and
-without noise, as in the last good frames? What lasts longer than `PATIENCE` frames is taken as the world.
+`FrameOrder`: is the frame later than the last one, and another image? `FrameCheck`: did enough pixels measure more than
+one value, without noise, as in the last good frames? What lasts `PATIENCE` frames is taken as the world.
 """
-
-from __future__ import annotations
 
 from collections import deque
 from typing import Literal, NamedTuple
@@ -21,8 +18,8 @@ Fault = Literal[
 CLOCK_WAS_SET = 3  # frames in a row, behind the latest but ascending, after which the clock was set back (chosen)
 MAX_MISSED = 50  # frames that a gap counts as, at most: after a longer one no motion model knows anything (chosen)
 
-# Limits, each with its reason; in brackets the worst of 1,983 undisturbed development frames: data/corridor, corridor
-# seeds 10,001 to 10,003 (wagon, less kind, and by hand; half the pixels each way), and a real Kinect's kitchen.
+# Limits; in brackets the worst of 1,983 undisturbed frames: data/corridor, corridor seeds 10,001 to 10,003 (also with
+# calibration errors and by hand; half the pixels each way), and a real Kinect's kitchen.
 MAX_OF_ONE_VALUE = 0.5  # share of the returns: a sensor at its stop gives one value (0.05)
 MAX_ROUGHNESS = 0.1  # of the distance: independent values differ by about half of it, surfaces by less (0.024)
 COVERED_HALF = 0.1  # of a half's usual returns (0.67); the other half must keep half of its own
@@ -76,7 +73,7 @@ class FrameOrder:
         return FrameStatus("repeated" if repeated else None, missed)
 
     def _clock_was_set(self, time: float) -> bool:
-        """Whether `CLOCK_WAS_SET` frames came one after the other, all behind the latest."""
+        """Return whether `CLOCK_WAS_SET` frames came one after the other, all behind the latest."""
         self._behind = [*self._behind, time] if not self._behind or time > self._behind[-1] else [time]
         if len(self._behind) < CLOCK_WAS_SET:
             return False
@@ -126,7 +123,12 @@ class FrameCheck:
         if order.fault == "out of order":
             return order
         looks = looks_of(depth, self.near, self.far)
-        fault = _fault_alone(looks, np.size(depth)) or order.fault
+        if looks.share * np.size(depth) < MIN_PIXELS:
+            fault = "no return"
+        elif looks.most_of_one_value > MAX_OF_ONE_VALUE:
+            fault = "saturated"
+        else:
+            fault = "noise" if looks.roughness > MAX_ROUGHNESS else order.fault
         if fault is None:
             change = self._change(looks)
             self._changed = self._changed + 1 if change else 0
@@ -139,7 +141,7 @@ class FrameCheck:
         return FrameStatus(fault, order.missed)
 
     def _change(self, looks: Looks) -> Fault | None:
-        """What sets a frame apart from the last good ones."""
+        """Return the fault that sets a frame apart from the last good ones."""
         if not self._usual:
             return None
         usual = Looks(*(np.median(values, axis=0) for values in zip(*self._usual, strict=True)))
@@ -150,12 +152,3 @@ class FrameCheck:
         if looks.roughness > ROUGHER * max(usual.roughness, MIN_USUAL_ROUGHNESS):
             return "exposure jump"
         return "few returns" if looks.share < FEW_RETURNS * usual.share else None
-
-
-def _fault_alone(looks: Looks, pixels: int) -> Fault | None:
-    """What is wrong with a frame whatever came before. pixels: of the image."""
-    if looks.share * pixels < MIN_PIXELS:
-        return "no return"
-    if looks.most_of_one_value > MAX_OF_ONE_VALUE:
-        return "saturated"
-    return "noise" if looks.roughness > MAX_ROUGHNESS else None

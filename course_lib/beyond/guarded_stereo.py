@@ -1,11 +1,4 @@
-"""Pairs of panoramas from a rig that moves: each pair is checked first, and gets an outcome.
-
-guarded = GuardedRig(localizer, period=1.0)
-for upper, lower, time in pairs:
-    outcome = guarded.localize(upper, lower, time).outcome      # "ok", or why there is no pose
-"""
-
-from __future__ import annotations
+"""Pairs of panoramas from a rig that moves: each pair is checked first, and gets an outcome."""
 
 from typing import NamedTuple
 
@@ -35,10 +28,7 @@ class GuardedRig:
         self._order = FrameOrder(period)
 
     def localize(self, upper_image: np.ndarray, lower_image: np.ndarray, time: float | None = None) -> GuardedPair:
-        """Return the outcome of two panoramas, taken at `time` (seconds; None: unknown).
-
-        In a stream exchanged images are an outcome, because cables can be exchanged.
-        """
+        """Return the outcome of two panoramas, taken at `time` (seconds; None: unknown), also of exchanged ones."""
         frame = self._order.look((np.asarray(upper_image), np.asarray(lower_image)), time)
         if frame.fault is not None:
             return GuardedPair(frame.fault, None, frame.missed)

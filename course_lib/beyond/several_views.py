@@ -1,10 +1,7 @@
 """Several views over time: a few pose hypotheses, each carried on and asked again. Beyond the paper.
 
-A robot that is not sure moves a little and looks again. Two places that look alike from one spot seldom look alike from
-three, and with odometry a wrong hypothesis must be wrong in the same way every time.
+A robot that is not sure moves a little and looks again, because two places seldom look alike from three spots.
 """
-
-from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -125,73 +122,60 @@ class SemanticTracker:
 
     def step(self, observations: Sequence[Observation], motion: Motion | None = None) -> Track:
         """Return the answer with one more view. motion: since the view before; None without odometry."""
-        self.belief = updated(
-            self.belief, observations, self.semantic_map, UNKNOWN_MOTION if motion is None else motion, self.evidence
-        )
-        return answer(self.belief, self.evidence, self.min_confidence)
+        motion = UNKNOWN_MOTION if motion is None else motion
+        if not (np.isfinite(motion[:3]).all() and np.isfinite(motion.covariance).all()):
+            raise ValueError(f"motion must be finite metres and radians with a finite covariance; got {motion}")
+        predicted = [carried_on(one, motion) for one in self.belief.hypotheses]
+        self.belief = self._joined(predicted, self._views(observations, predicted), len(observations))
+        return self._answer()
 
-
-def updated(
-    belief: Belief,
-    observations: Sequence[Observation],
-    semantic_map: SemanticMap,
-    motion: Motion,
-    evidence: Evidence = Evidence(),  # noqa: B008
-) -> Belief:
-    """Return the belief after one more view: predicted, joined with the view's own poses, and cut to the best few.
-
-    Each pose of the view also stands for itself, as one that the rig was carried to from elsewhere.
-    """
-    if not (np.isfinite(motion[:3]).all() and np.isfinite(motion.covariance).all()):
-        raise ValueError(f"motion must be finite metres and radians with a finite covariance; got {motion}")
-    predicted = [carried_on(one, motion) for one in belief.hypotheses]
-    views = list(rank_poses(observations, semantic_map, evidence, SHORT_LIST))
-    if predicted and len(observations):
-        # Where the belief is, the view is asked too, though its own search found other places better.
+    def _views(self, observations: Sequence[Observation], predicted: list[CarriedPose]) -> list[PoseHypothesis]:
+        """Return the poses of a view: those of its own search, and what it makes of the belief's poses."""
+        views = list(rank_poses(observations, self.semantic_map, self.evidence, SHORT_LIST))
+        if not (predicted and len(observations)):
+            return views
         means, covariances = (np.array([getattr(one, name) for one in predicted]) for name in ("mean", "covariance"))
-        views += explain(scene_of(observations, semantic_map), means, covariances, evidence)
-        kept = distinct(
-            np.array([one.pose for one in views]).reshape(-1, 3), np.array([v.score for v in views]), SHORT_LIST
+        views += explain(scene_of(observations, self.semantic_map), means, covariances, self.evidence)
+        poses = np.array([one.pose for one in views]).reshape(-1, 3)
+        return [views[k] for k in distinct(poses, np.array([v.score for v in views]), SHORT_LIST)]
+
+    def _joined(self, predicted: list[CarriedPose], views: list[PoseHypothesis], n_observations: int) -> Belief:
+        """Return the best few of all pairs of a carried hypothesis and a view's pose, and of the views' poses alone.
+
+        A view's pose alone is one that the rig was carried to from elsewhere.
+        """
+        belief = self.belief
+        if not views:  # what was believed is carried on, no surer than before
+            return belief._replace(hypotheses=tuple(predicted))
+        log_nothing = belief.log_nothing + TEMPER * n_observations * score_of_nothing(self.semantic_map)
+        prior = -np.log(2 * np.pi * area(self.semantic_map))
+        new = [fused(one, view, prior) for one in predicted for view in views]
+        elsewhere = 0.0
+        if belief.n_views:
+            logs = [belief.log_nothing, *(one.log_weight for one in belief.hypotheses)]
+            elsewhere = np.log(ELSEWHERE) + np.logaddexp.reduce(logs)
+        new += [
+            CarriedPose(np.array(view.pose), view.covariance, elsewhere + TEMPER * view.score, view, len(view.pairs))
+            for view in views
+        ]
+        kept = distinct(np.array([one.mean for one in new]), np.array([one.log_weight for one in new]), CARRIED)
+        return Belief(tuple(new[k] for k in kept), log_nothing, belief.n_views + 1)
+
+    def _answer(self) -> Track:
+        """Return the best pose of the belief if it is sure enough, else "unable", with all alternatives."""
+        hypotheses = self.belief.hypotheses
+        logs = np.array([*(one.log_weight for one in hypotheses), self.belief.log_nothing])
+        weights = np.exp(logs - logs.max())
+        shares = weights / weights.sum()  # the last is that of "none of them"
+        alternatives = tuple(
+            (Pose2D(*map(float, one.mean)), float(share)) for one, share in zip(hypotheses, shares, strict=False)
         )
-        views = [views[k] for k in kept]
-    log_nothing = belief.log_nothing + TEMPER * len(observations) * score_of_nothing(semantic_map)
-    prior = -np.log(2 * np.pi * area(semantic_map))
-    new = [fused(one, view, prior) for one in predicted for view in views]
-    elsewhere = 0.0
-    if belief.n_views:
-        elsewhere = np.log(ELSEWHERE) + np.logaddexp.reduce(
-            [belief.log_nothing, *(one.log_weight for one in belief.hypotheses)]
-        )
-    new += [
-        CarriedPose(np.array(view.pose), view.covariance, elsewhere + TEMPER * view.score, view, len(view.pairs))
-        for view in views
-    ]
-    if not new:
-        # Nothing could be made of this view: what was believed is carried on, no surer than before.
-        return Belief(tuple(predicted), belief.log_nothing, belief.n_views)
-    kept = distinct(np.array([one.mean for one in new]), np.array([one.log_weight for one in new]), CARRIED)
-    return Belief(tuple(new[k] for k in kept), log_nothing, belief.n_views + 1)
-
-
-def shares(belief: Belief) -> np.ndarray:
-    """Return the share `(k,)` of every hypothesis in the belief. The rest to 1 is "none of them"."""
-    logs = np.array([*(one.log_weight for one in belief.hypotheses), belief.log_nothing])
-    weights = np.exp(logs - logs.max())
-    return (weights / weights.sum())[:-1]
-
-
-def answer(belief: Belief, evidence: Evidence = Evidence(), min_confidence: float = MIN_CONFIDENCE) -> Track:  # noqa: B008
-    """Return the best pose of a belief if it is sure enough, else "unable", with all alternatives."""
-    share = shares(belief)
-    alternatives = tuple(
-        (Pose2D(*map(float, one.mean)), float(s)) for one, s in zip(belief.hypotheses, share, strict=True)
-    )
-    n_matches, confidence = 0, 0.0
-    if alternatives:
-        best, n_matches, confidence = belief.hypotheses[0], belief.hypotheses[0].n_matches, float(share[0])
-        if evidence.absolute:
-            confidence *= plausibility(best.view) if n_matches >= MIN_INLIERS else 0.0
-    reason = why_unable(len(alternatives), n_matches, confidence, min_confidence)
-    if reason is not None:
-        return Track(None, UNABLE, reason, confidence, None, alternatives)
-    return Track(alternatives[0][0], OK, None, confidence, best.covariance, alternatives)
+        n_matches, confidence = 0, 0.0
+        if hypotheses:
+            best, n_matches, confidence = hypotheses[0], hypotheses[0].n_matches, float(shares[0])
+            if self.evidence.absolute:
+                confidence *= plausibility(best.view) if n_matches >= MIN_INLIERS else 0.0
+        reason = why_unable(len(alternatives), n_matches, confidence, self.min_confidence)
+        if reason is not None:
+            return Track(None, UNABLE, reason, confidence, None, alternatives)
+        return Track(alternatives[0][0], OK, None, confidence, best.covariance, alternatives)

@@ -1,7 +1,5 @@
 """How far off was it: the errors of paper 1's section 4, table 1 and figures 5 and 6, and what they leave out."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +23,7 @@ class PositionError(NamedTuple):
 
 
 def nearest_path_error(estimated_xyz: np.ndarray, true_path_xyz: np.ndarray) -> PositionError:
-    """The paper's error: from each estimated position to the nearest point of the true path, on the horizontal plane.
+    """Return the paper's error: from each estimated position to the nearest point of the true path, horizontally.
 
     e_t = min_k | (x_t, y_t) - (x_k, y_k) |
 
@@ -39,7 +37,7 @@ def nearest_path_error(estimated_xyz: np.ndarray, true_path_xyz: np.ndarray) -> 
 
 
 def timed_error(estimated_xyz: np.ndarray, true_xyz: np.ndarray) -> PositionError:
-    """Horizontal distance between estimate and truth of the same frame: `(T, 2 or 3)` metres both."""
+    """Return the horizontal distance between estimate and truth of the same frame: `(T, 2 or 3)` metres both."""
     estimated, true = _horizontal(estimated_xyz, "estimated_xyz"), _horizontal(true_xyz, "true_xyz")
     if estimated.shape != true.shape:
         raise ValueError(f"estimate and truth must hold one position a frame; got {estimated.shape} and {true.shape}")
@@ -47,14 +45,14 @@ def timed_error(estimated_xyz: np.ndarray, true_xyz: np.ndarray) -> PositionErro
 
 
 def summarize(errors: np.ndarray) -> PositionError:
-    """Median, sigma about zero, and share within three of the paper's sigma, of errors `(T,)` in metres."""
+    """Return median, sigma about zero, and share within three of the paper's sigma, of errors `(T,)` in metres."""
     errors = np.asarray(errors, dtype=np.float64)
     within = np.mean(errors <= 3 * PAPER_SIGMA)
     return PositionError(errors, float(np.median(errors)), float(np.sqrt(np.mean(errors**2))), float(within))
 
 
 def pose_errors(estimated: np.ndarray, true: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distance in metres and angle in radians between poses `(..., 4, 4)`: |t_a - t_b| and the angle of R_a^T R_b."""
+    """Return metres and radians between poses `(..., 4, 4)`: |t_a - t_b| and the angle of R_a^T R_b."""
     position = np.linalg.norm(estimated[..., :3, 3] - true[..., :3, 3], axis=-1)
     relative = np.swapaxes(estimated[..., :3, :3], -1, -2) @ true[..., :3, :3]
     return position, rotation_angle(relative)

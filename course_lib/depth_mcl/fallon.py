@@ -8,8 +8,6 @@ The constants were made for 20 x 15 pixels. At full size the same sum has 84 tim
 independent of its neighbours: differences between particles grow in proportion, and the weights collapse onto one.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Literal
 

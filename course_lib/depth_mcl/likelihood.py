@@ -6,8 +6,6 @@ weights               eqs (10), (11)
 paper_weighting       all of them as one part of the filter, which can be exchanged (fallon.py has another)
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
@@ -36,43 +34,40 @@ def checked_image(depth: np.ndarray, camera: DepthCamera) -> np.ndarray:
 
 
 def valid_pixels(measured: np.ndarray) -> np.ndarray:
-    """Which pixels of a measured image were measured at all: finite and in front of the camera."""
+    """Return which pixels of a measured image were measured at all: finite and in front of the camera."""
     measured = np.asarray(measured)
     return np.isfinite(measured) & (np.nan_to_num(measured, posinf=0.0, neginf=0.0) > 0)
 
 
 def paired_pixels(measured: np.ndarray, simulated: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The mask of pixels that were measured, `(H, W)`, and the simulated images `(N, H, W)`, both checked.
-
-    Raises `DepthImageError` for images of other sizes, or simulated values that are NaN or negative (a miss is `inf`).
-    """
+    """Return the mask of measured pixels `(H, W)` and the simulated images `(N, H, W)`, both checked."""
     measured, simulated = np.asarray(measured), np.asarray(simulated)
     if measured.ndim != 2 or simulated.ndim != 3 or simulated.shape[1:] != measured.shape:
         raise DepthImageError(
             f"measured must have shape (H, W) and simulated (N, H, W); got {measured.shape} and {simulated.shape}"
         )
     if simulated.size and not simulated.min() >= 0:  # NaN is neither
-        raise DepthImageError("simulated images must not hold NaN or what is negative: where nothing is hit is inf")
+        raise DepthImageError("simulated images must not hold NaN or negative values; where nothing is hit is inf")
     return valid_pixels(measured), simulated
 
 
 def checked_alpha(alpha: float) -> float:
-    """Raises `ValueError` for alpha not positive, in metres."""
+    """Return alpha, in metres; `ValueError` unless it is positive."""
     if not (np.isfinite(alpha) and alpha > 0):
         raise ValueError(f"alpha must be a positive number of metres; got {alpha!r}")
     return float(alpha)
 
 
 def likelihood(measured: np.ndarray, simulated: np.ndarray, alpha: float = ALPHA) -> np.ndarray:
-    """Likelihood `(N,)` of every particle: how well its simulated depth image agrees with the measured one.
+    """Return the likelihood `(N,)` of every particle: how well its simulated depth image agrees with the measured one.
 
     l_(i) = sum_j ( 1 - |z_t^j - z_(i)^j| / (alpha + |z_t^j - z_(i)^j|) )
 
     measured: `(H, W)` metres, NaN = no measurement. simulated: `(N, H, W)` metres, `inf` = nothing hit. alpha: metres,
     the difference at which a pixel counts half. Result between 0 and the number of pixels compared.
     The paper is silent on empty pixels. Those that the camera did not measure are left out, for all particles alike. A
-    simulated miss contributes the limit of its term for a growing difference, 0, and stays in the count: were it left
-    out, a particle that looks into holes of the map would pay nothing for it.
+    simulated miss contributes 0, the limit of its term, and stays in the count. If it were left out, a particle that
+    looks into holes of the map would pay nothing for them.
     Raises `ValueError` for alpha not positive, `DepthImageError` for images that do not fit.
     Source: paper 1, eq. (8).
     """
@@ -120,11 +115,11 @@ def _sums(z, counts, images, alpha):
 
 
 def normalize_likelihood(l: np.ndarray) -> np.ndarray:  # noqa: E741 - the paper's letter
-    """Likelihoods `(N,)` spread over [0, 1]: 0 for the worst particle, 1 for the best.
+    """Return likelihoods `(N,)` spread over [0, 1]: 0 for the worst particle, 1 for the best.
 
     l~_(i) = (l_(i) - l_min) / (l_max - l_min)
 
-    Where all likelihoods agree this is 0/0; nothing then speaks for one particle over another, and all get 1.
+    Where all likelihoods agree this is 0/0, and all particles get 1.
     Raises `ValueError` for no likelihoods or values that are not finite.
     Source: paper 1, eq. (9).
     """
@@ -136,7 +131,7 @@ def normalize_likelihood(l: np.ndarray) -> np.ndarray:  # noqa: E741 - the paper
 
 
 def weights(l_normalized: np.ndarray, beta: float = BETA) -> np.ndarray:
-    """Weights `(N,)` of the particles, summing to one.
+    """Return the weights `(N,)` of the particles, which sum to one.
 
     w_(i) = exp( -(l~_(i) - 1)^2 / beta^2 ),    w~_(i) = w_(i) / sum_i w_(i)
 
@@ -151,7 +146,7 @@ def weights(l_normalized: np.ndarray, beta: float = BETA) -> np.ndarray:
         raise ValueError(f"beta must be a positive number; got {beta!r}")
     if values.ndim != 1 or len(values) == 0 or not ((values >= 0) & (values <= 1)).all():
         raise ValueError("l_normalized must be a non-empty array (N,) of numbers from 0 to 1 (normalize_likelihood)")
-    # Relative to the best particle: exp() of all of them could vanish, were the best not at 1. (a^2 - b^2) / beta^2.
+    # Relative to the best particle, because exp() of all of them could vanish: (a^2 - b^2) / beta^2.
     below, best = 1 - values, 1 - values.max()
     with np.errstate(over="ignore"):
         w = np.exp(-(below - best) / beta * ((below + best) / beta))
@@ -159,10 +154,9 @@ def weights(l_normalized: np.ndarray, beta: float = BETA) -> np.ndarray:
 
 
 class Weighting(NamedTuple):
-    """How particles are weighed: the filter's part that is exchanged for another rule. Both functions are pure.
+    """How particles are weighed: a part of the filter that can be exchanged, of two pure functions.
 
-    The two are apart because images are many and large: they are rendered, scored and dropped a batch at a time, and
-    only the scores are kept.
+    There are two because images are many and large. They are scored a batch at a time, and only the scores are kept.
     """
 
     score: Callable[[np.ndarray, np.ndarray], np.ndarray]

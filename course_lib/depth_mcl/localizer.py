@@ -9,8 +9,6 @@ How particles move and how they are weighed are parts that can be exchanged: the
 the paper's weighting in likelihood.py, Fallon's in fallon.py.
 """
 
-from __future__ import annotations
-
 import warnings
 from typing import Literal, NamedTuple
 
@@ -23,21 +21,18 @@ from course_lib.depth_mcl.uncertainty import carried_covariance, error_covarianc
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 
-# Standard deviations of the system noise a frame for the paper's experiment (x, y, yaw), metres and radians: x is
-# forward and y left where the body's axes count, as they do unless another motion is given. Chosen on tuning seeds; the
-# paper says "set by hand". Forward 1.5 of the wagon's longest steps (0.1 m). It is a wagon's noise: its camera looks
-# where it goes. A camera that is carried sideways, or anywhere, needs as much to the left as forward.
+# Standard deviations of the system noise a frame for the paper's experiment, metres and radians, forward and left. The
+# paper says "set by hand"; these were chosen on tuning seeds, forward 1.5 of the wagon's longest steps. A camera
+# that is carried sideways, or anywhere, needs as much to the left as forward.
 SIGMA_XY_YAW = (0.15, 0.04, 0.0, 0.0, 0.0, np.deg2rad(1.5))
 
-# How far outside the map's bounding box a start is still taken for a camera that looks at it, metres (chosen).
-MAP_MARGIN = 1.0
-
+MAP_MARGIN = 1.0  # metres outside the map's bounding box where a start is still taken for a camera that looks at it
 
 Status = Literal["ok", "no measurement"]
 
 
 class NoMeasurementWarning(UserWarning):
-    """A frame without a single measured pixel: the filter moved its particles and could not weigh them."""
+    """A frame has no measured pixel, so the filter moved its particles and could not weigh them."""
 
 
 class Estimate(NamedTuple):
@@ -112,10 +107,9 @@ class MonteCarloLocalizer:
     def step(self, depth: np.ndarray) -> Estimate:
         """One round of the paper's figure 1 for a depth image `(H, W)` in metres, NaN = no measurement.
 
-        A frame without any measurement moves the particles (A-1) but can neither weigh nor resample them: the cloud
-        grows, as what is known of a moving camera shrinks. It warns (`NoMeasurementWarning`), and the estimate's status
-        says so. The arrays of the estimate are the caller's own. Raises `DepthImageError` for an image of another size,
-        `RuntimeError` before `initialize`.
+        A frame without any measurement moves the particles (A-1) but can neither weigh nor resample them, so the cloud
+        grows. It warns (`NoMeasurementWarning`), and the estimate's status says so. The arrays of the estimate are the
+        caller's own. Raises `DepthImageError` for an image of another size, `RuntimeError` before `initialize`.
         """
         if self.particles is None:
             raise RuntimeError("call initialize(state0) before the first step: the paper's filter is given its start")
@@ -132,7 +126,7 @@ class MonteCarloLocalizer:
         return estimate
 
     def _moved_only(self, particles: np.ndarray) -> Estimate:
-        """The estimate of a frame without measurement: the particles as they moved, each with the same weight."""
+        """Return the estimate of a frame without measurement: the particles as they moved, equally weighted."""
         warnings.warn(
             "this frame holds no measurement between the camera's near and far planes; particles were moved only",
             NoMeasurementWarning,
@@ -154,8 +148,7 @@ class MonteCarloLocalizer:
 
 
 def checked_start(state0: np.ndarray, scene_map: SceneMap) -> np.ndarray:
-    """The start `(6,)` of a filter. Raises `ValueError` where it is not finite or lies outside the map (by more than a
-    metre)."""
+    """Return the start `(6,)` of a filter. Raises `ValueError` if it is not finite or lies outside the map."""
     start = initial_particles(state0, 1)[0]
     if not scene_map.contains(start[:3], MAP_MARGIN):
         raise ValueError(

@@ -1,21 +1,13 @@
-"""How particles move between two frames (paper 1, A-1): a part of the filter that is exchanged as the weighting is.
-
-A `Motion` says three things of one choice of coordinates: how system noise moves particles, what their mean is, and how
-far each lies from it. Three of them are here; they differ in the axes along which sigma is meant.
+"""How particles move between two frames (paper 1, A-1), in three motions that differ in the axes of sigma.
 
     WORLD_AXES     eq. (5) as printed: along the world's x, y, z, and on roll, pitch, yaw
     BODY_AXES      along the body's forward, left and up, and on roll, pitch, yaw: the filter's own choice
     TANGENT_SPACE  along and about all three axes of the body: six degrees of freedom, any attitude
 
-As printed, sigma = (0.15, 0.04, ...) says that the camera may move fast along the *world's* x: right in a corridor
-that runs along x, wrong in the same corridor drawn at another angle on the map. The other two know no direction of the
-world: turn map and recording about z, and the estimates turn with them.
-
-A motion with a memory (a velocity, an odometer's increments) is another object with these three calls, which keeps what
-it remembers to itself.
+As printed, sigma = (0.15, 0.04, ...) says that the camera may move fast along the *world's* x. This is right in a
+corridor that runs along x, but wrong if the same corridor is drawn at another angle. The other two know no direction of
+the world: if you turn map and recording about z, the estimates turn with them.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -27,7 +19,7 @@ from course_lib.geometry import as_states, pose_matrix, rotation_exp, rotation_l
 
 
 class Motion(NamedTuple):
-    """What the filter asks of a motion; every function is pure, and all three agree about the angles."""
+    """A part of the filter that can be exchanged; its functions are pure, and all three agree about the angles."""
 
     propagate: Callable[[np.ndarray, np.ndarray, np.random.Generator], np.ndarray]
     """(particles `(N, 6)`, sigma `(6,)` a frame, generator) -> moved particles `(N, 6)`, a new array."""
@@ -37,10 +29,7 @@ class Motion(NamedTuple):
 
 
 def checked_sigma(sigma: np.ndarray) -> np.ndarray:
-    """Standard deviations `(6,)` as a float64 array of their own.
-
-    Raises `ValueError` for another length, negative numbers or NaN.
-    """
+    """Return standard deviations `(6,)` as a new float64 array. Raises `ValueError` if they are none."""
     array = np.array(sigma, dtype=np.float64)
     if array.shape != (6,):
         raise ValueError(
@@ -52,7 +41,7 @@ def checked_sigma(sigma: np.ndarray) -> np.ndarray:
 
 
 def propagate(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Particles moved by system noise (A-1): the model knows nothing of the motion but how large it may be.
+    """Return particles moved by system noise (A-1): the model knows of the motion only how large it may be.
 
     X_t = X_{t-1} + V_t,    V_t ~ N(0, sigma^2)
 
@@ -67,14 +56,13 @@ def propagate(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator
 
 
 def propagate_body(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Particles moved by the same noise, its first two parts along each particle's own heading.
+    """Return particles moved by the same noise, its first two parts along each particle's own heading.
 
     (x, y)' = (x, y) + Rz(yaw) (v_forward, v_left),    z' = z + v_up,    angles' = angles + w
 
-    The axes follow the heading alone and stay level, for a body that a floor carries: with 0 in sigma z, roll and pitch
-    stay exactly as they were, whatever the tilt of the mount. Yaw is the one before its own noise. Arguments and errors
-    as in `propagate`; sigma is [forward, left, up, roll, pitch, yaw], and "forward" is where the camera looks: one that
-    is carried sideways needs the larger number in second place, one that may go anywhere the same in both.
+    The axes stay level, for a body that a floor carries: with 0 in sigma z, roll and pitch stay exactly as they were.
+    Yaw is the one before its own noise. Arguments and errors as in `propagate`; sigma is [forward, left, up, roll,
+    pitch, yaw]. A camera that is carried sideways needs the larger number in second place.
     """
     particles = as_states(particles, "particles")
     moved = propagate(particles, sigma, rng)
@@ -86,7 +74,7 @@ def propagate_body(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Gene
 
 
 def propagate_tangent(particles: np.ndarray, sigma: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Particles moved by noise along and about the body's own axes, for all six degrees of freedom.
+    """Return particles moved by noise along and about the body's own axes, for all six degrees of freedom.
 
     t' = t + R v,  R' = R Exp(w),  (v, w) ~ N(0, sigma^2)
 
@@ -104,14 +92,14 @@ def propagate_tangent(particles: np.ndarray, sigma: np.ndarray, rng: np.random.G
 
 
 def angle_deviations(particles: np.ndarray, state: np.ndarray) -> np.ndarray:
-    """Particles minus state `(N, 6)`, the differences of roll, pitch and yaw the short way round."""
+    """Return particles minus state `(N, 6)`, the differences of roll, pitch and yaw the short way round."""
     deviations = as_states(particles, "particles") - as_states(state, "state")
     deviations[..., 3:] = wrap_angle(deviations[..., 3:])
     return deviations
 
 
 def rotation_deviations(particles: np.ndarray, state: np.ndarray) -> np.ndarray:
-    """Particles minus state `(N, 6)`, turns as rotation vectors about the body's axes at the state: Log(R^T R_i)."""
+    """Return particles minus state `(N, 6)`, turns as rotation vectors about the body's axes: Log(R^T R_i)."""
     deviations = as_states(particles, "particles") - as_states(state, "state")
     rotation = pose_matrix(state)[:3, :3]
     deviations[..., 3:] = rotation_log(rotation.T @ pose_matrix(particles)[..., :3, :3])

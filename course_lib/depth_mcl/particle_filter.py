@@ -4,8 +4,6 @@ Particles are an array `(N, 6)` of states [x, y, z, roll, pitch, yaw], eqs (1) a
 and a `numpy.random.Generator` in, arrays out. All four resampling schemes share one signature.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np
@@ -16,7 +14,7 @@ Scheme = Literal["systematic", "stratified", "multinomial", "residual"]
 
 
 def initial_particles(state0: np.ndarray, n: int) -> np.ndarray:
-    """Particle set `(n, 6)` at the start: every particle has the given initial state.
+    """Return the particle set `(n, 6)` at the start: every particle has the given initial state.
 
     X_0 = [x_0, y_0, z_0, phi_0, theta_0, psi_0],    P_0 = {X_0, ..., X_0}
 
@@ -32,14 +30,13 @@ def initial_particles(state0: np.ndarray, n: int) -> np.ndarray:
 
 
 def weighted_mean_state(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """Estimate `(6,)`: the weighted sum of the particles, its angles on the circle.
+    """Return the estimate `(6,)`: the weighted sum of the particles, its angles on the circle.
 
     x~_t = sum_i w~_(i) p_t^i
 
     particles: `(N, 6)`. w: `(N,)`, summing to one. As printed, the sum of angles fails at the wrap: half the weight at
-    179 and half at -179 degrees would give 0, not 180. Positions are summed as printed; angles by `circular_mean`.
-    Three Euler angles averaged one by one are a rotation's mean only while pitch stays away from +-90 degrees; where it
-    does not, `weighted_mean_pose` serves. Raises `ValueError` for shapes that do not fit.
+    179 and half at -179 degrees would give 0, not 180. So angles are averaged by `circular_mean`, one by one, which is
+    a rotation's mean only while pitch stays away from +-90 degrees. Raises `ValueError` for shapes that do not fit.
     Source: paper 1, eq. (12).
     """
     particles, w = _checked_pair(particles, w)
@@ -47,7 +44,7 @@ def weighted_mean_state(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 
 def weighted_mean_pose(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """The same estimate `(6,)` with the mean taken on rotation matrices: independent of axes and of gimbal lock."""
+    """Return the same with the mean taken on rotation matrices: independent of axes and of gimbal lock."""
     particles, w = _checked_pair(particles, w)
     matrix = np.eye(4)
     matrix[:3, :3] = rotation_mean(pose_matrix(particles)[:, :3, :3], w)
@@ -56,7 +53,7 @@ def weighted_mean_pose(particles: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 
 def effective_sample_size(w: np.ndarray) -> float:
-    """How many equally weighted particles the weights `(N,)`, which sum to one, are worth: 1 / sum w~^2, from 1 to N.
+    """Return how many equally weighted particles the weights `(N,)` are worth: 1 / sum w~^2, from 1 to N.
 
     Raises `ValueError` for weights that are not finite, negative or all zero.
     """
@@ -69,7 +66,7 @@ def effective_sample_size(w: np.ndarray) -> float:
 def resample(
     w: np.ndarray, rng: np.random.Generator, scheme: Scheme = "systematic", n: int | None = None
 ) -> np.ndarray:
-    """Indices `(n,)` of the particles that live on: heavy ones are copied, light ones vanish (A-3).
+    """Return indices `(n,)` of the particles that live on: heavy ones are copied, light ones vanish (A-3).
 
     Every scheme is unbiased: particle i is drawn n w~_i times in the mean. They differ in how far single draws stray.
         systematic   one random offset, then n equal steps through the cumulative weights
@@ -101,10 +98,10 @@ def resample(
 
 
 def _pick(w: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """For each point in [0, 1) the particle whose share of the cumulative weights it falls into."""
+    """Return for each point in [0, 1) the particle whose share of the cumulative weights it falls into."""
     cumulative = np.minimum(np.cumsum(w), 1.0)
-    # The last sum may round to just below one, and the last point, (N - 1 + u) / N, up to one: either would name a
-    # particle that is not there. A particle without weight at the end must not be drawn in its place.
+    # The last sum may round to below one, and the last point, (N - 1 + u) / N, up to one. Both would name a particle
+    # that is not there. A particle without weight at the end must not be drawn in its place.
     cumulative[np.flatnonzero(w)[-1] :] = 1.0
     return np.searchsorted(cumulative, np.minimum(points, np.nextafter(1.0, 0.0)), side="right")
 

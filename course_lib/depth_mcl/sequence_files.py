@@ -5,8 +5,6 @@ convention (x right, y down, z forward), metres: poses.txt as in the 7-Scenes da
 (t tx ty tz qx qy qz qw), or one 4 x 4 matrix.
 """
 
-from __future__ import annotations
-
 import io
 import re
 import warnings
@@ -116,7 +114,7 @@ def _are_rigid(poses: np.ndarray) -> np.ndarray:
 
 
 def _nearest_rigid(poses: np.ndarray) -> np.ndarray:
-    """Files hold few digits: the nearest rotation makes good what rounding took."""
+    """Return poses with the nearest rotations, because files hold few digits."""
     rigid = poses.copy()
     rigid[:, :3, :3] = [rotation_mean(rotation[None]) for rotation in poses[:, :3, :3]]
     return rigid
@@ -155,8 +153,7 @@ def depth_files(folder: Path) -> dict[int, Path]:
         frame = int(digits.group())
         if frame in files:
             raise SequenceError(
-                f"{files[frame].name} and {path.name} in {folder / 'depth'} would both be frame {frame}: the frame "
-                "number must be the first number in the name"
+                f"{files[frame].name} and {path.name} in {folder / 'depth'} are both frame {frame}, the first number"
             )
         files[frame] = path
     if not files:
@@ -170,9 +167,8 @@ def require_same_frames(folder: Path, pose_frames: list[int], image_frames: list
         without_image = sorted(set(pose_frames) - set(image_frames))[:3]
         without_pose = sorted(set(image_frames) - set(pose_frames))[:3]
         raise SequenceError(
-            f"{folder / 'poses.txt'} and {folder / 'depth'} name other frames: {len(pose_frames)} poses, "
-            f"{len(image_frames)} images; poses without an image start {without_image}, images without a pose "
-            f"{without_pose}"
+            f"{folder / 'poses.txt'} and {folder / 'depth'} name other frames: poses without an image {without_image}, "
+            f"images without a pose {without_pose} first"
         )
 
 

@@ -1,16 +1,13 @@
 """How far off may the estimate be? A covariance from the particles and raw scores that a frame has anyway.
 
-The paper's weights cannot say it: with beta = 0.01 they leave about one particle, and reported a median of 2e-7 m where
-the error was 0.024 m. A likelihood of independent pixels cannot either, because a displaced door moves thousands of
-pixels at once. So we weigh the particles a second time, by exp(kappa l/m), as if the whole image were worth kappa
-independent pixels, fewer where particles are sparse. That is one frame's share of the error; `carried_covariance` takes
-the earlier ones along, as a Kalman filter would.
+The paper's weights cannot say it, because with beta = 0.01 they leave about one particle. A likelihood of independent
+pixels cannot either, because a displaced door moves thousands of pixels at once. So we weigh the particles a second
+time, by exp(kappa l/m), as if the whole image were worth kappa independent pixels. That is one frame's share of the
+error; `carried_covariance` takes the earlier ones along, as a Kalman filter would.
 
 kappa was calibrated on a wagon in the corridor of seed 10,001. No such covariance can say that the filter is lost
 (course_lib.beyond.being_lost).
 """
-
-from __future__ import annotations
 
 from typing import NamedTuple
 
@@ -39,7 +36,7 @@ class Tempered(NamedTuple):
 
 
 def temper(scores: np.ndarray, sample_size: float, sharpest: float = SHARPEST) -> Tempered:
-    """Return weights of exponential form, as sharp as leaves `sample_size` effective particles.
+    """Return weights of exponential form, so sharp that `sample_size` effective particles survive.
 
     w_i ~ exp(kappa s_i), kappa in [0, `sharpest`] such that 1 / sum w_i^2 = sample_size
 
@@ -68,7 +65,7 @@ def temper(scores: np.ndarray, sample_size: float, sharpest: float = SHARPEST) -
 
 
 def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
-    """Covariance `(6, 6)` that a frame leaves: the mean square deviation of the particles under tempered weights.
+    """Return the covariance `(6, 6)` that a frame leaves: the particles' mean square deviation, tempered weights.
 
     C = sum_i v_i d_i d_i',    v_i ~ exp(kappa s_i)
 
@@ -86,8 +83,7 @@ def error_covariance(deviations: np.ndarray, scores: np.ndarray) -> np.ndarray:
 
 
 def carried_covariance(covariance: np.ndarray, deviations: np.ndarray, earlier: np.ndarray) -> np.ndarray:
-    """Return the covariance `(6, 6)` of the estimate's error, with what is left of the error that the particles started
-    from.
+    """Return the covariance `(6, 6)` of the estimate's error, with what is left of the error of the frame before.
 
     P = C + A E A',    A = C Q^-1
 
@@ -109,7 +105,7 @@ def carried_covariance(covariance: np.ndarray, deviations: np.ndarray, earlier: 
 
 
 def positive_part(matrix: np.ndarray) -> np.ndarray:
-    """The symmetric matrix without its negative eigenvalues: a difference of covariances as a covariance.
+    """Return a symmetric matrix without its negative eigenvalues: a difference of covariances as a covariance.
 
     Components without a variance stay exactly without: what rounding gave them would add up from frame to frame.
     """
@@ -121,7 +117,7 @@ def positive_part(matrix: np.ndarray) -> np.ndarray:
 
 
 def normalized_error(deviation: np.ndarray, covariance: np.ndarray) -> float:
-    """Squared error in units of its covariance, e' C^-1 e / d: 1 in the mean where the covariance is honest.
+    """Return the squared error in units of its covariance, e' C^-1 e / d: 1 in the mean if the covariance is right.
 
     deviation: e `(6,)`, the true state's from the estimate (`Motion.deviations`); covariance: C `(6, 6)`, whose
     components without a variance, given and not estimated, are left out; d is the number of the others. NaN where C is

@@ -11,22 +11,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# How far rounding may move a surface that lies exactly on a clip plane: a tenth of a millimetre for float32 coordinates
-# (measured: at near at most 0.005 mm), and steps of a 24-bit z-buffer, Z^2 / (near 2^24) (at far: at most 2.6).
+# How far rounding may move a surface on a clip plane: metres for float32 coordinates (measured: at near at most
+# 0.005 mm), and steps Z^2 / (near 2^24) of a 24-bit z-buffer (measured: at far at most 2.6).
 PLANE_ROUNDING = 1e-4
 PLANE_ROUNDING_STEPS = 4
-
-# Share of the image's size by which a principal point read from a file may miss the middle (chosen).
-MAX_CENTRE_OFFSET = 0.2
+MAX_CENTRE_OFFSET = 0.2  # share of the image's size by which a file's principal point may miss the middle (chosen)
 
 
 @dataclass(frozen=True)
 class DepthCamera:
     """Pinhole depth camera.
 
-    width, height: pixels. fx, fy: focal lengths in pixels (they differ for an SR4000). cx, cy: principal point in
-    pixels, pixel centres at integers. near, far: clip planes in metres; a surface outside them is not hit, one on them
-    is. Raises `ValueError` for values that no camera has.
+    width, height: pixels. fx, fy: focal lengths in pixels. cx, cy: principal point in pixels, pixel centres at
+    integers. near, far: clip planes in metres; a surface outside them is not hit. Raises `ValueError` for bad values.
     """
 
     width: int
@@ -62,77 +59,63 @@ class DepthCamera:
         near: float = 0.1,
         far: float = 30.0,
     ) -> DepthCamera:
-        """Camera whose image edges span the given fields of view: fx = (width / 2) / tan(fov / 2), centred."""
-        for name, value in (("horizontal_fov_deg", horizontal_fov_deg), ("vertical_fov_deg", vertical_fov_deg)):
-            if not 0 < value < 180:
-                raise ValueError(f"{name} must lie between 0 and 180 degrees; got {value!r}")
+        """Return a camera whose image edges span the given fields of view: fx = (width / 2) / tan(fov / 2), centred."""
+        if not (0 < horizontal_fov_deg < 180 and 0 < vertical_fov_deg < 180):
+            raise ValueError(f"fields of view must be 0 to 180 degrees; got {horizontal_fov_deg}, {vertical_fov_deg}")
         fx = 0.5 * width / np.tan(np.deg2rad(horizontal_fov_deg) / 2)
         fy = 0.5 * height / np.tan(np.deg2rad(vertical_fov_deg) / 2)
         return cls(width, height, fx, fy, (width - 1) / 2, (height - 1) / 2, near, far)
 
     @classmethod
     def sr4000(cls, near: float = 0.1, far: float = 30.0) -> DepthCamera:
-        """The paper's camera (section 4): 176 x 144 pixels; 43.6 x 34.6 degrees by its maker's data sheet."""
+        """Return the paper's camera (section 4): 176 x 144 pixels; 43.6 x 34.6 degrees by its maker's data sheet."""
         return cls.from_fov(176, 144, 43.6, 34.6, near, far)
 
     @classmethod
     def from_matrix(
         cls, matrix: np.ndarray, width: int, height: int, near: float = 0.1, far: float = 30.0
     ) -> DepthCamera:
-        """Return a camera from a 3 x 3 intrinsic matrix K = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]; skew is not
-        modelled.
-        """
+        """Return the camera of an intrinsic matrix K = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], without skew."""
         k = np.asarray(matrix, dtype=np.float64)
-        if k.shape != (3, 3) or not np.isfinite(k).all():
-            raise ValueError(f"intrinsics must be a finite 3 x 3 matrix; got shape {k.shape}")
-        if not np.allclose([k[0, 1], k[1, 0], k[2, 0], k[2, 1], k[2, 2] - 1], 0):
+        if k.shape != (3, 3) or not np.allclose([k[0, 1], k[1, 0], k[2, 0], k[2, 1], k[2, 2] - 1], 0):
             raise ValueError(f"intrinsics must read [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]; got {k.tolist()}")
         centre = np.array([(width - 1) / 2, (height - 1) / 2])
-        # Intrinsics of an image half or twice the size miss the centre by a quarter or a half of it.
         if (np.abs(k[:2, 2] - centre) > MAX_CENTRE_OFFSET * np.array([width, height])).any():
             raise ValueError(
-                f"the principal point ({k[0, 2]:g}, {k[1, 2]:g}) lies far from the middle of an image of {width} x "
-                f"{height} pixels: these intrinsics are for another image size; scale fx, cx by the width and fy, cy "
-                "by the height"
+                f"the principal point ({k[0, 2]:g}, {k[1, 2]:g}) is far from the middle of {width} x {height} pixels: "
+                "these intrinsics are for another image size; scale fx, cx by the width and fy, cy by the height"
             )
         return cls(width, height, k[0, 0], k[1, 1], k[0, 2], k[1, 2], near, far)
 
     @property
     def matrix(self) -> np.ndarray:
-        """Intrinsic matrix K `(3, 3)`."""
+        """The intrinsic matrix K `(3, 3)`."""
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Shape (height, width) of its depth image."""
+        """The shape (height, width) of its depth image."""
         return self.height, self.width
 
     def resized(self, width: int, height: int) -> DepthCamera:
-        """The same view on another pixel grid: image *edges* stay where they are, so centres shift by half a pixel."""
+        """Return the same view on another pixel grid: image *edges* stay where they are, so pixel centres shift."""
         scale_x, scale_y = width / self.width, height / self.height
-        return dataclasses.replace(
-            self,
-            width=width,
-            height=height,
-            fx=self.fx * scale_x,
-            fy=self.fy * scale_y,
-            cx=(self.cx + 0.5) * scale_x - 0.5,
-            cy=(self.cy + 0.5) * scale_y - 0.5,
-        )
+        cx, cy = (self.cx + 0.5) * scale_x - 0.5, (self.cy + 0.5) * scale_y - 0.5
+        return DepthCamera(width, height, self.fx * scale_x, self.fy * scale_y, cx, cy, self.near, self.far)
 
     @property
     def nearest(self) -> float:
-        """Least depth in metres that counts as seen: near, less what rounding may take from a surface lying on it."""
+        """The least depth in metres that counts as seen: near, less what rounding may take from a surface on it."""
         return max(self.near - PLANE_ROUNDING, 0.99 * self.near)
 
     @property
     def farthest(self) -> float:
-        """Greatest depth in metres that counts as seen: far, and what rounding may add to a surface lying on it."""
+        """The greatest depth in metres that counts as seen: far, and what rounding may add to a surface on it."""
         step = self.far**2 / (self.near * 2**24)
         return self.far + PLANE_ROUNDING + PLANE_ROUNDING_STEPS * step
 
     def with_clip_planes(self, near: float, far: float) -> DepthCamera:
-        """The same camera with other clip planes, in metres."""
+        """Return the same camera with other clip planes, in metres."""
         return dataclasses.replace(self, near=near, far=far)
 
     def rays(self) -> np.ndarray:
@@ -141,14 +124,14 @@ class DepthCamera:
         return np.stack([(u - self.cx) / self.fx, (v - self.cy) / self.fy, np.ones(self.shape)], axis=-1)
 
     def project(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Column, row and depth of points `(..., 3)` in the optical frame; points behind it give NaN pixels."""
+        """Return column, row and depth of points `(..., 3)` in the optical frame; NaN pixels behind the camera."""
         points = np.asarray(points, dtype=np.float64)
         x, y, z = points[..., 0], points[..., 1], points[..., 2]
         safe = np.where(z > 0, z, np.nan)
         return self.fx * x / safe + self.cx, self.fy * y / safe + self.cy, z
 
     def points(self, depth: np.ndarray) -> np.ndarray:
-        """Points `(height, width, 3)` in the optical frame of a depth image `(height, width)`; NaN stays NaN."""
+        """Return points `(H, W, 3)` in the optical frame of a depth image `(H, W)`; NaN stays NaN."""
         depth = np.asarray(depth)
         if depth.shape != self.shape:
             raise ValueError(f"depth image must have shape {self.shape} (height, width); got {depth.shape}")
@@ -156,11 +139,7 @@ class DepthCamera:
             return self.rays() * depth[..., None].astype(np.float64)
 
     def projection_matrix(self) -> np.ndarray:
-        """Return OpenGL's projection `(4, 4)` of the optical frame turned to x right, y up, z backward.
-
-        Depth buffer value: b = far (Z - near) / (Z (far - near)). Image edges lie half a pixel outside the outer pixel
-        centres.
-        """
+        """Return OpenGL's projection `(4, 4)`, z backward, y up; depth b = far (Z - near) / (Z (far - near))."""
         w, h, n, f = self.width, self.height, self.near, self.far
         return np.array(
             [

@@ -1,22 +1,18 @@
 """A map made ready to be drawn: large triangles are cut, and all are sorted into compact chunks.
 
-A chunk is left out of a batch only if its bounding sphere lies outside one side, behind, or beyond far of *every* view,
-so leaving it out changes no pixel.
+A chunk is left out only if its bounding sphere lies outside one side, before near, or beyond far of a view.
 """
-
-from __future__ import annotations
 
 import numpy as np
 
 from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.mesh_file import SceneMapError
+from course_lib.rendering.compiled import compiled
+from course_lib.rendering.scene_map import SceneMapError
 
-# Metres: up to this length of edges OpenGL's depth of a plane seen from 2 m above it is right within half a millimetre.
-MAX_EDGE = 32.0
-# Metres: an edge that is longer is not cut. Such a triangle belongs to no building; `SceneMap.load` refuses it.
-MAX_CUT_EDGE = 20_000.0
-# A map that needs more pieces is refused.
-MAX_PIECES = 5_000_000
+MAX_EDGE = 32.0  # metres: so long edges OpenGL draws right to half a millimetre, seen from 2 m above
+MAX_CUT_EDGE = 20_000.0  # metres: a longer edge is not cut; it belongs to no building, and `SceneMap.load` refuses it
+MAX_PIECES = 5_000_000  # a map that needs more is refused
+CHUNK_SIZE = 0.5  # metres, edge of the cubes that triangles are sorted into: some hundred of a map's 100,000 (chosen)
 
 
 def cut_large_triangles(
@@ -24,9 +20,7 @@ def cut_large_triangles(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return vertices `(V', 3)` and faces `(F', 3)` of the same surface, no edge longer than `max_edge` metres.
 
-    In float64: in float32 a corner 10 km away is off by half a millimetre, and its plane, seen from near, by
-    centimetres. A shared edge is halved for both triangles at one point, so no gap opens. Unchanged arrays come back as
-    they are.
+    A shared edge is halved for both triangles at one point, so no gap opens. Unchanged arrays come back as they are.
     """
     done: list[np.ndarray] = []
     while True:
@@ -39,15 +33,13 @@ def cut_large_triangles(
         done.append(faces[~cut])
         faces, long = faces[cut], long[cut]
         if 4 * len(faces) + sum(map(len, done)) > MAX_PIECES:
-            raise SceneMapError(
-                f"the map has triangles so large that more than {MAX_PIECES:,} pieces of at most {max_edge:g} m "
-                "would have to be drawn: are its coordinates metres? Remove what does not belong to the building"
-            )
+            told = f"the map's triangles make more than {MAX_PIECES:,} pieces of {max_edge:g} m"
+            raise SceneMapError(f"{told}: are its coordinates metres? Remove what does not belong to the building")
         vertices, faces = _halved(vertices, faces, long)
 
 
 def _halved(vertices: np.ndarray, faces: np.ndarray, long: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Triangles `faces` cut at the middle of their edges marked `long` `(F, 3)`: each into two, three or four."""
+    """Return triangles cut at the middle of their edges marked `long` `(F, 3)`: each into two, three or four."""
     edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1), axis=-1)  # (F, 3, 2)
     unique, index = np.unique(edges[long], axis=0, return_inverse=True)
     middle = np.full(long.shape, -1)
@@ -71,10 +63,6 @@ def _halved(vertices: np.ndarray, faces: np.ndarray, long: np.ndarray) -> tuple[
     return vertices, np.concatenate(pieces).astype(faces.dtype)
 
 
-# Edge of the cubes that triangles are sorted into, metres (chosen: some hundred triangles of a 100,000-triangle map).
-CHUNK_SIZE = 0.5
-
-
 class MeshChunks:
     """Triangles sorted by the cube that their centre lies in."""
 
@@ -92,29 +80,21 @@ class MeshChunks:
         self.centers = 0.5 * (low + high)  # `(C, 3)` and radii `(C,)`: a sphere around each chunk, metres
         self.radii = 0.5 * np.linalg.norm(high - low, axis=1)
 
-    def visible(self, camera: DepthCamera, camera_to_world: np.ndarray) -> np.ndarray:
-        """Return which chunks any view can see: `(C,)` bool. camera_to_world: `(N, 4, 4)`, optical, in the vertices'
-        frame.
-        """
-        normals = inward_normals(camera)
-        rotation, position = camera_to_world[:, :3, :3], camera_to_world[:, :3, 3]
-        world_normals = np.einsum("nij,pj->npi", rotation, normals)
-        offsets = np.einsum("npi,ni->np", world_normals, position)
-        seen = np.zeros(len(self.centers), dtype=bool)
-        for view_normals, view_offsets, forward, eye in zip(
-            world_normals, offsets, rotation[:, :, 2], position, strict=True
-        ):
-            todo = np.flatnonzero(~seen)
-            if len(todo) == 0:
-                break
-            centers, radii = self.centers[todo], self.radii[todo]
-            inside = (centers @ view_normals.T - view_offsets >= -radii[:, None]).all(axis=1)
-            inside &= (centers - eye) @ forward <= camera.far + radii
-            seen[todo] = inside
-        return seen
+    def spheres(self, anchor: np.ndarray) -> np.ndarray:
+        """Return centres about `anchor` `(3,)` and radii, `(C, 4)` float32, the radii rounded up."""
+        return np.column_stack([self.centers - anchor, self.radii * (1 + 1e-5) + 1e-5]).astype(np.float32)
+
+    def visible(self, camera: DepthCamera, poses: np.ndarray, anchor: np.ndarray) -> np.ndarray:
+        """Return which chunks `(C,)` bool any of the camera poses `(N, 4, 4)` can see."""
+        lens, sides, spheres = lens_of(camera), inward_normals(camera), self.spheres(anchor)
+        seen, nearest = np.empty(len(spheres), np.int64), np.empty(len(spheres), np.float32)
+        visible = np.zeros(len(spheres), dtype=bool)
+        for rotation, position in zip(*world_to_cameras(poses, anchor), strict=True):
+            visible[seen[: chunks_in_view(seen, nearest, rotation, position, lens, sides, spheres)]] = True
+        return visible
 
     def with_own_vertices(self, faces: np.ndarray, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return vertices chunk by chunk `(V', 3)`, where each chunk's begin `(C + 1,)`, and faces counted so."""
+        """Return vertices chunk by chunk `(V', 3)`, where each chunk's begin `(C + 1,)`, and faces in these numbers."""
         chunk = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
         # One number for a vertex in a chunk; sorted, they stand chunk by chunk.
         keys = (chunk[:, None] * np.int64(len(vertices)) + faces[self.order]).ravel()
@@ -124,13 +104,57 @@ class MeshChunks:
         return vertices[own % len(vertices)], vertex_starts, np.ascontiguousarray(local, dtype=np.int32)
 
     def faces_of(self, chunks: np.ndarray) -> np.ndarray:
-        """Positions in chunk order of the triangles of the chunks marked in `(C,)` bool."""
+        """Return positions in chunk order of the triangles of the chunks marked in `(C,)` bool."""
         return np.flatnonzero(np.repeat(chunks, np.diff(self.starts)))
 
 
+def lens_of(camera: DepthCamera) -> np.ndarray:
+    """Return fx, fy, cx, cy, near and far `(6,)` float32 as the compiled loops read them."""
+    lens = (camera.fx, camera.fy, camera.cx, camera.cy, camera.nearest, camera.farthest)
+    return np.array(lens, dtype=np.float32)
+
+
 def inward_normals(camera: DepthCamera) -> np.ndarray:
-    """Unit normals `(5, 3)`, optical frame, pointing into the view: its left, right, top, bottom, and the front."""
+    """Return unit normals `(4, 3)` float32, optical frame, of the view's left, right, top and bottom, pointing in."""
     left, right = (-0.5 - camera.cx) / camera.fx, (camera.width - 0.5 - camera.cx) / camera.fx
     top, bottom = (-0.5 - camera.cy) / camera.fy, (camera.height - 0.5 - camera.cy) / camera.fy
-    planes = np.array([[1, 0, -left], [-1, 0, right], [0, 1, -top], [0, -1, bottom], [0, 0, 1]], dtype=np.float64)
-    return planes / np.linalg.norm(planes, axis=1, keepdims=True)
+    planes = np.array([[1, 0, -left], [-1, 0, right], [0, 1, -top], [0, -1, bottom]], dtype=np.float64)
+    return (planes / np.linalg.norm(planes, axis=1, keepdims=True)).astype(np.float32)
+
+
+def world_to_cameras(poses: np.ndarray, anchor: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return rotations `(N, 3, 3)` and positions `(N, 3)` about `anchor`, float32, of camera poses `(N, 4, 4)`."""
+    rotations = np.ascontiguousarray(poses[:, :3, :3].transpose(0, 2, 1), dtype=np.float32)
+    return rotations, (poses[:, :3, 3] - anchor).astype(np.float32)
+
+
+@compiled()
+def chunks_in_view(seen, nearest, rotation, position, lens, sides, spheres):
+    """Write the chunks that a view may see into `seen`, the least Z of each into `nearest`; return how many."""
+    near, far = lens[4], lens[5]
+    count = 0
+    for c in range(len(spheres)):
+        x, y, z = to_camera(rotation, position, spheres[c, 0], spheres[c, 1], spheres[c, 2])
+        radius = spheres[c, 3]
+        if z + radius < near or z - radius > far:
+            continue
+        inside = True
+        for side in range(4):
+            if sides[side, 0] * x + sides[side, 1] * y + sides[side, 2] * z < -radius:
+                inside = False
+                break
+        if inside:
+            seen[count], nearest[count] = c, z - radius
+            count += 1
+    return count
+
+
+@compiled()
+def to_camera(rotation, position, x, y, z):
+    """Return a point of the world in the camera's frame."""
+    x, y, z = x - position[0], y - position[1], z - position[2]
+    return (
+        rotation[0, 0] * x + rotation[0, 1] * y + rotation[0, 2] * z,
+        rotation[1, 0] * x + rotation[1, 1] * y + rotation[1, 2] * z,
+        rotation[2, 0] * x + rotation[2, 1] * y + rotation[2, 2] * z,
+    )

@@ -1,6 +1,4 @@
-"""Compiling loops: what the fast forms of rendering and likelihood have in common."""
-
-from __future__ import annotations
+"""Compiling loops: the fast forms of rendering, likelihood and refinement."""
 
 import contextlib
 from collections.abc import Callable
@@ -9,7 +7,7 @@ from numba import njit
 
 
 def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]:
-    """Decorator: Numba compiles the function at its first call; threads run it side by side (without Python's lock).
+    """Return a decorator: Numba compiles the function at its first call, and threads run it side by side.
 
     Compiled code is kept beside the source or in the user's cache. Where it cannot be, each process compiles anew.
     """
@@ -17,7 +15,7 @@ def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]
     def decorate(function: Callable) -> Callable:
         try:
             fast = njit(nogil=True, fastmath=fastmath, cache=True)(function)
-        except RuntimeError:  # Numba's, where it has no folder to keep code in
+        except RuntimeError:  # Numba has no folder to keep code in
             return njit(nogil=True, fastmath=fastmath)(function)
         fast._cache.load_overload = _or_none(fast._cache.load_overload)
         fast._cache.save_overload = _or_none(fast._cache.save_overload)
@@ -27,7 +25,7 @@ def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]
 
 
 def _or_none(step: Callable) -> Callable:
-    """Return the step of Numba's cache such that it gives None, as where nothing is kept, when it fails."""
+    """Return a step of Numba's cache that gives None when it fails: a full disk, a damaged file."""
 
     def tried(*arguments: object) -> object:
         with contextlib.suppress(Exception):

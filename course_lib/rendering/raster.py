@@ -1,73 +1,53 @@
 """A z-buffer in plain loops, compiled by Numba: what a graphics card does with a mesh, on every processor.
 
-The chunks of the mesh that a view may see are drawn, the nearest first. Each triangle is filled row by row, and each
-pixel keeps the greatest 1/Z, which is linear in the image; 0 is "nothing hit".
+The chunks of the mesh that a view may see are drawn, the nearest first, unless all blocks of 8 x 8 pixels that they may
+cover hold nearer surfaces already. Each triangle is filled row by row, and each pixel keeps the greatest 1/Z.
 
-    u = fx X/Z + cx,    v = fy Y/Z + cy,    1/Z = a u + b v + c
-
-A chunk is also left out if every block of 8 x 8 pixels that its bounding sphere may cover holds nearer surfaces
-already.
+    u = fx X/Z + cx,    v = fy Y/Z + cy,    1/Z = a u + b v + c (0: nothing hit)
 """
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
-from typing import NamedTuple
 
 import numba
 import numpy as np
 
 from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.chunks import MeshChunks, inward_normals
+from course_lib.rendering.chunks import MeshChunks, chunks_in_view, inward_normals, lens_of, to_camera, world_to_cameras
 from course_lib.rendering.compiled import compiled
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.rendering.sensor import depth_image_from_points
 
-VIEWS_A_TASK = 8  # small enough that no thread waits long for the last, large enough that starting one costs nothing
+VIEWS_A_TASK = 8  # so few that no thread waits long for the last, so many that starting one costs little
 BLOCK = 8  # pixels: edge of the blocks whose farthest depth is kept
 CHUNKS_BETWEEN = 32  # chunks drawn before the blocks are looked at again: looking at every pixel costs, too
-# Pixels by which a row's ends are stretched: two triangles leave no gap between them through rounding.
-_OVERLAP = 1e-4
+_OVERLAP = 1e-4  # pixels by which a row's ends are stretched, so that rounding leaves no gap between two triangles
 _ONE = np.float32(1.0)
 
 
-class _Mesh(NamedTuple):
-    """The chunks as the compiled loops read them: float32, relative to an anchor."""
-
-    anchor: np.ndarray
-    spheres: np.ndarray
-    vertices: np.ndarray
-
-
 class RasterBackend:
-    """Draws views into plain arrays. Threads share it: `_mesh` is only ever exchanged as a whole."""
+    """Draws views into plain arrays. Threads share it, because `_mesh` is only ever exchanged as a whole."""
 
     def __init__(self, scene_map: SceneMap, camera: DepthCamera) -> None:
-        self.camera = camera
         self._scene_map = scene_map
         self._chunks = MeshChunks(scene_map.vertices, scene_map.faces)
         self._vertices, self._vertex_starts, self._faces = self._chunks.with_own_vertices(
             scene_map.faces, scene_map.vertices
         )
-        lens = (camera.fx, camera.fy, camera.cx, camera.cy, camera.nearest, camera.farthest)
-        self._lens = np.array(lens, dtype=np.float32)
-        self._sides = inward_normals(camera)[:4].astype(np.float32)
+        self._lens, self._sides = lens_of(camera), inward_normals(camera)
         self._mesh = self._about(scene_map.origin)
 
     def render(self, poses: np.ndarray, out: np.ndarray) -> None:
         """Fill `out` `(N, H, W)` with the depth seen from camera poses `(N, 4, 4)`."""
-        anchor, mesh = self._scene_map.anchor(poses[:, :3, 3]), self._mesh
-        if not np.array_equal(mesh.anchor, anchor):  # views seldom move on
-            mesh = self._mesh = self._about(anchor)
-        rotations = np.ascontiguousarray(poses[:, :3, :3].transpose(0, 2, 1), dtype=np.float32)
-        positions = (poses[:, :3, 3] - mesh.anchor).astype(np.float32)
+        wanted, (anchor, spheres, vertices) = self._scene_map.anchor(poses[:, :3, 3]), self._mesh
+        if not np.array_equal(anchor, wanted):  # views seldom move on
+            anchor, spheres, vertices = self._mesh = self._about(wanted)
+        rotations, positions = world_to_cameras(poses, anchor)
 
         def draw(start: int) -> None:
             views = slice(start, start + VIEWS_A_TASK)
             scratch = np.empty((6, int(np.diff(self._vertex_starts).max())))
             draw_views(
-                out[views], rotations[views], positions[views], self._lens, self._sides, mesh.spheres,
-                self._vertex_starts, mesh.vertices, self._chunks.starts, self._faces, scratch,
+                out[views], rotations[views], positions[views], self._lens, self._sides, spheres,
+                self._vertex_starts, vertices, self._chunks.starts, self._faces, scratch,
             )  # fmt: skip
             invert(out[views], self._lens[5])
 
@@ -81,21 +61,13 @@ class RasterBackend:
             with ThreadPoolExecutor(threads) as pool:
                 list(pool.map(draw, starts))
 
-    def _about(self, anchor: np.ndarray) -> _Mesh:
-        """The mesh relative to `anchor` `(3,)`."""
-        spheres = np.column_stack([self._chunks.centers - anchor, self._chunks.radii * (1 + 1e-5) + 1e-5])
-        return _Mesh(anchor, spheres.astype(np.float32), (self._vertices - anchor).astype(np.float32))
-
-    def render_points(self, points: np.ndarray) -> np.ndarray:
-        """The camera's points as a depth image, in NumPy."""
-        return depth_image_from_points(points, self.camera)
+    def _about(self, anchor: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return an anchor `(3,)`, and the chunks' spheres and vertices about it in float32."""
+        return anchor, self._chunks.spheres(anchor), (self._vertices - anchor).astype(np.float32)
 
     def describe(self) -> str:
-        """What draws, and on how many processors."""
+        """Return what draws, and on how many processors."""
         return f"z-buffer in compiled loops on {numba.config.NUMBA_NUM_THREADS} processors (Numba)"
-
-    def close(self) -> None:
-        """Nothing is held that the renderer's own end does not free."""
 
 
 @compiled()
@@ -131,47 +103,15 @@ def draw_views(
 
 
 @compiled()
-def chunks_in_view(seen, nearest, rotation, position, lens, sides, spheres):
-    """Writes the chunks that a view may see into `seen`, the least Z of each into `nearest`; returns how many."""
-    near, far = lens[4], lens[5]
-    count = 0
-    for c in range(len(spheres)):
-        x, y, z = to_camera(rotation, position, spheres[c, 0], spheres[c, 1], spheres[c, 2])
-        radius = spheres[c, 3]
-        if z + radius < near or z - radius > far:
-            continue
-        inside = True
-        for side in range(4):
-            if sides[side, 0] * x + sides[side, 1] * y + sides[side, 2] * z < -radius:
-                inside = False
-                break
-        if inside:
-            seen[count], nearest[count] = c, z - radius
-            count += 1
-    return count
-
-
-@compiled()
-def to_camera(rotation, position, x, y, z):
-    """A point of the world in the camera's frame."""
-    x, y, z = x - position[0], y - position[1], z - position[2]
-    return (
-        rotation[0, 0] * x + rotation[0, 1] * y + rotation[0, 2] * z,
-        rotation[1, 0] * x + rotation[1, 1] * y + rotation[1, 2] * z,
-        rotation[2, 0] * x + rotation[2, 1] * y + rotation[2, 2] * z,
-    )
-
-
-@compiled()
 def cover(rotation, position, lens, sphere, height, width):
-    """Blocks (first and last row, first and last column) that a sphere may cover; all where it comes near the eye."""
+    """Return the blocks (first, last row; first, last column) that a sphere may cover; all if it comes near the eye."""
     x, y, z = to_camera(rotation, position, sphere[0], sphere[1], sphere[2])
     radius = sphere[3]
     front, back = z - radius, z + radius
     last_row, last_column = (height - 1) // BLOCK, (width - 1) // BLOCK
     if front <= lens[4]:
         return 0, last_row, 0, last_column
-    # Of the ball's bounding box: its sides, seen from in front where that is farther out.
+    # The sides of the ball's bounding box, as its front shows them if that is farther out, else its back.
     left = lens[0] * (x - radius) / (front if x < radius else back) + lens[2]
     right = lens[0] * (x + radius) / (front if x > -radius else back) + lens[2]
     top = lens[1] * (y - radius) / (front if y < radius else back) + lens[3]
@@ -186,7 +126,7 @@ def cover(rotation, position, lens, sphere, height, width):
 
 @compiled()
 def is_hidden(blocks, rectangle, nearest):
-    """Whether all pixels of the blocks in the rectangle hold something nearer than Z = `nearest`."""
+    """Return whether all pixels of the blocks in the rectangle hold something nearer than Z = `nearest`."""
     if nearest <= 0:
         return False
     inverse = _ONE / nearest
@@ -199,7 +139,7 @@ def is_hidden(blocks, rectangle, nearest):
 
 @compiled()
 def note_farthest(blocks, image):
-    """Writes the least 1/Z of each block."""
+    """Write the least 1/Z of each block."""
     height, width = image.shape
     for row in range(len(blocks)):
         for column in range(blocks.shape[1]):
@@ -212,7 +152,7 @@ def note_farthest(blocks, image):
 
 @compiled()
 def project(scratch, rotation, position, lens, vertices):
-    """Writes u, v, 1/Z and X, Y, Z of vertices `(n, 3)` into the first n columns of `scratch`."""
+    """Write u, v, 1/Z and X, Y, Z of vertices `(n, 3)` into the first n columns of `scratch`."""
     for i in range(len(vertices)):
         x, y, z = to_camera(rotation, position, vertices[i, 0], vertices[i, 1], vertices[i, 2])
         inverse = 1.0 / z if z > lens[4] else 0.0
@@ -224,7 +164,7 @@ def project(scratch, rotation, position, lens, vertices):
 
 @compiled()
 def draw_faces(image, scratch, lens, faces):
-    """Fills triangles `(F, 3)` of projected vertices; those that reach before the near plane are cut there."""
+    """Fill triangles `(F, 3)` of projected vertices; those that reach before the near plane are cut there."""
     u, v, w = scratch[0], scratch[1], scratch[2]
     for f in range(len(faces)):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
@@ -237,7 +177,7 @@ def draw_faces(image, scratch, lens, faces):
 
 @compiled()
 def draw_cut(image, scratch, lens, a, b, c):
-    """Fills the part of one triangle that lies behind the near plane: a polygon of three or four corners."""
+    """Fill the part of one triangle that lies behind the near plane: a polygon of three or four corners."""
     near = lens[4]
     corners = np.empty((4, 3), np.float64)
     count = 0
@@ -261,7 +201,7 @@ def draw_cut(image, scratch, lens, a, b, c):
 
 @compiled()
 def fill_triangle(image, u0, v0, w0, u1, v1, w1, u2, v2, w2):
-    """Keeps in each pixel whose centre lies in the triangle the greater of what it holds and the plane's 1/Z."""
+    """Keep in each pixel whose centre lies in the triangle the greater of what it holds and the plane's 1/Z."""
     height, width = image.shape
     if v1 < v0:
         u0, v0, w0, u1, v1, w1 = u1, v1, w1, u0, v0, w0
@@ -295,7 +235,7 @@ def fill_triangle(image, u0, v0, w0, u1, v1, w1, u2, v2, w2):
             start, end = end, start
         first = max(0, int(np.ceil(start - _OVERLAP)))
         last = min(width - 1, int(np.floor(end + _OVERLAP)))
-        # The row's first pixel in float64, for a corner far outside the image is far to reckon from; then in float32.
+        # The row's first pixel in float64, for a corner far outside the image is far away; then in float32.
         w_first, step = np.float32(w0 + along_v * (v - v0) + along_u * (first - u0)), np.float32(along_u)
         line = image[row]
         for column in range(first, last + 1):
@@ -305,7 +245,7 @@ def fill_triangle(image, u0, v0, w0, u1, v1, w1, u2, v2, w2):
 
 @compiled(fastmath=False)  # which knows no infinity
 def invert(images, farthest):
-    """Turns 1/Z into Z in place; `inf` where nothing was hit or it lies beyond `farthest`."""
+    """Turn 1/Z into Z in place; `inf` where nothing was hit or it lies beyond `farthest`."""
     for k in range(len(images)):
         image = images[k]
         for row in range(image.shape[0]):

@@ -1,16 +1,10 @@
-"""Depth images by ray casting: one ray through every pixel centre. The reference for the z-buffer.
-
-Intel's Embree (embreex) where it has a wheel for the processor, else trimesh's own ray casting, which is slower by far.
-"""
-
-from __future__ import annotations
+"""Depth images by ray casting, the reference: one ray through every pixel centre, by Embree where it can be had."""
 
 import numpy as np
 import trimesh
 
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.rendering.sensor import depth_image_from_points
 
 try:
     from embreex.mesh_construction import TriangleMesh
@@ -20,23 +14,21 @@ except ImportError:  # no wheel for this processor
 
 
 class EmbreeCaster:
-    """Triangles `(F, 3, 3)` ready to be hit by rays, in float32. Raises `ImportError` where embreex is missing."""
+    """Casts rays at triangles `(F, 3, 3)` in float32. Raises `ImportError` if embreex is missing."""
 
     def __init__(self, corners: np.ndarray) -> None:
         if EmbreeScene is None:
             raise ImportError(
-                "embreex is missing, which has wheels for x86-64 and for macOS: the simulated world needs it, so make "
-                "data there (the shipped data and the lessons do not need it)"
+                "embreex is missing, which has wheels for x86-64 and for macOS: make data there, or search for a start"
             )
         # robust: no ray slips through the edge that two triangles share.
         self._scene = EmbreeScene(robust=True)
         self._mesh = TriangleMesh(self._scene, np.ascontiguousarray(corners, dtype=np.float32))
 
     def cast(self, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the first hits of rays, origins and directions `(N, 3)`.
+        """Return where rays, origins and directions `(N, 3)`, first hit.
 
-        Distances `(N,)` in units of the direction's length, `inf` if nothing is hit; faces `(N,)`, -1; normals `(N,
-        3)`.
+        Distances `(N,)` in units of the direction's length, or `inf`; faces `(N,)`, or -1; normals `(N, 3)`.
         """
         origins, directions = (np.ascontiguousarray(array, dtype=np.float32) for array in (origins, directions))
         hits = self._scene.run(origins, directions, output=True)
@@ -44,13 +36,13 @@ class EmbreeCaster:
 
 
 class TrimeshCaster:
-    """What `EmbreeCaster` does, in Python and far slower."""
+    """Casts rays as `EmbreeCaster` does, in Python and far slower."""
 
     def __init__(self, corners: np.ndarray) -> None:
         self._mesh = trimesh.Trimesh(**trimesh.triangles.to_kwargs(corners), process=False)
 
     def cast(self, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """First hits of rays: as `EmbreeCaster.cast`."""
+        """Return what `EmbreeCaster.cast` returns."""
         faces, rays, places = self._mesh.ray.intersects_id(
             origins, directions, multiple_hits=False, return_locations=True
         )
@@ -62,7 +54,7 @@ class TrimeshCaster:
 
 
 class RayBackend:
-    """Casts rays into the map. Threads share it: anchor and caster are only ever exchanged together."""
+    """Casts rays into the map. Threads share it, because anchor and caster are only ever exchanged together."""
 
     def __init__(self, scene_map: SceneMap, camera: DepthCamera) -> None:
         self.camera = camera
@@ -77,25 +69,18 @@ class RayBackend:
             anchor, caster = self._anchor_and_caster = self._about(wanted)
         for pose, image in zip(poses, out, strict=True):
             directions = self._rays @ pose[:3, :3].T
-            # Rays start on the near plane: what lies before it is not hit.
+            # Rays start on the near plane, so that nothing before it is hit.
             origins = pose[:3, 3] - anchor + self.camera.nearest * directions
             depth = self.camera.nearest + caster.cast(origins, directions)[0].astype(np.float64)
             depth[depth > self.camera.farthest] = np.inf
             image[:] = depth.reshape(self.camera.shape)
 
     def _about(self, anchor: np.ndarray) -> tuple[np.ndarray, EmbreeCaster | TrimeshCaster]:
-        """`anchor` `(3,)` and a caster of the map relative to it."""
+        """Return an anchor `(3,)` and a caster of the map about it."""
         corners = (self._scene_map.vertices - anchor)[self._scene_map.faces]
         return anchor, TrimeshCaster(corners) if EmbreeScene is None else EmbreeCaster(corners)
 
-    def render_points(self, points: np.ndarray) -> np.ndarray:
-        """The camera's points as a depth image, in NumPy."""
-        return depth_image_from_points(points, self.camera)
-
     def describe(self) -> str:
-        """Name of the ray caster."""
+        """Return the name of the ray caster."""
         caster = self._anchor_and_caster[1]
         return f"ray casting with {'Embree (embreex)' if isinstance(caster, EmbreeCaster) else 'trimesh'}"
-
-    def close(self) -> None:
-        """Nothing is held that the renderer's own end does not free."""

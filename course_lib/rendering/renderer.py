@@ -1,11 +1,8 @@
 """GPU scene simulation (paper 1, 3.3.1): what a depth camera would measure at every particle's pose.
 
 "vtk" draws the map once per particle, as tiles of one off-screen window, and reads OpenGL's z-buffer back once.
-"raster" fills a z-buffer in compiled loops. "ray" shoots one ray through every pixel centre: the reference. All take
-float64 states, subtract the map's anchor before anything becomes float32, and give depth along the optical axis.
-
-Threads may share a renderer. A forked child may use an inherited one, unless it is "vtk". A pickled one opens again
-when first used.
+"raster" fills a z-buffer in compiled loops. "ray" shoots one ray through every pixel centre: the reference. Threads may
+share a renderer. A forked child may use an inherited one, unless it is "vtk". A pickled one opens at its first use.
 """
 
 from __future__ import annotations
@@ -14,27 +11,21 @@ import sys
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from types import TracebackType
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from course_lib.geometry import as_states, is_rotation, optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.chunks import cut_large_triangles
+from course_lib.rendering.raster import RasterBackend
+from course_lib.rendering.ray import RayBackend
 from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.sensor import depth_image_from_points, measured_points
 
-if TYPE_CHECKING:  # imported when asked for: Numba and VTK take their time, and VTK needs OpenGL's libraries
-    from course_lib.rendering.raster import RasterBackend
-    from course_lib.rendering.ray import RayBackend
-    from course_lib.rendering.vtk_backend import VtkBackend
-
-# Pixels of one off-screen window: 200 tiles of the SR4000, about 80 MB with colour and depth.
-MAX_BATCH_PIXELS = 200 * 176 * 144
-
-# Files in /dev that stand for a graphics card on Linux: most drivers', NVIDIA's, and that of Linux on Windows (WSL).
+MAX_BATCH_PIXELS = 200 * 176 * 144  # of one off-screen window: 200 images of the SR4000, 80 MB with colour and depth
+# Files in /dev that show a graphics card on Linux: most drivers', NVIDIA's, and Windows' (WSL).
 CARDS = ("dri/renderD*", "nvidia[0-9]*", "dxg")
-
 # Parts of the names under which OpenGL draws on the processor: Mesa's, Apple's, Microsoft's and Google's.
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "gdi generic", "basic render", "swiftshader")
 
@@ -46,17 +37,14 @@ class RendererClosedError(RuntimeError):
 
 
 class OpenGLError(RuntimeError):
-    """OpenGL could not start or draw, or belongs to the process that this one was forked from."""
+    """OpenGL cannot start or draw, or it belongs to the process that this one was forked from."""
 
 
+@cache  # so that a process decides once
 def chosen_backend(backend: Backend) -> Backend:
     """Return `backend`, or what "auto" means on this computer: "vtk" on a graphics card, else "raster"."""
-    return _automatic_backend() if backend == "auto" else backend
-
-
-@cache
-def _automatic_backend() -> Backend:
-    """Decide once in a process. On Linux no window is opened where there is no card; any error means "raster"."""
+    if backend != "auto":
+        return backend
     if sys.platform.startswith("linux") and not any(any(Path("/dev").glob(card)) for card in CARDS):
         return "raster"
     triangle, camera = SceneMap(np.eye(3), np.array([[0, 1, 2]])), DepthCamera(8, 8, 8.0, 8.0, 3.5, 3.5)
@@ -69,13 +57,12 @@ def _automatic_backend() -> Backend:
 
 
 class DepthRenderer:
-    """Depth images of a map from any number of poses; a context manager.
+    """Draws depth images of a map from any number of poses; a context manager.
 
     backend: "vtk" (OpenGL's z-buffer), "raster" (a compiled z-buffer), "ray" (the reference), or "auto": "vtk" on a
-    graphics card, else "raster"; the attribute `backend` says which. exact: draw every triangle of the map; else a
-    large map is drawn with fewer triangles, which lie within centimetres of it (simplification.py). max_batch_pixels:
-    bounds one batch's memory. After `close()` every call raises `RendererClosedError`. Raises `OpenGLError` where
-    OpenGL cannot start, `ValueError` for an unknown backend.
+    graphics card, else "raster"; the attribute `backend` says which. exact: draw every triangle; else a large map is
+    drawn with fewer triangles, which lie within centimetres of it. max_batch_pixels: bounds the memory of a batch.
+    Raises `OpenGLError` where OpenGL cannot start, `ValueError` for a bad backend, `RendererClosedError` after `close`.
     """
 
     def __init__(
@@ -87,8 +74,6 @@ class DepthRenderer:
         exact: bool = False,
         max_batch_pixels: int = MAX_BATCH_PIXELS,
     ) -> None:
-        if int(max_batch_pixels) != max_batch_pixels or max_batch_pixels < 1:
-            raise ValueError(f"max_batch_pixels must be a whole number, at least 1; got {max_batch_pixels!r}")
         self.scene_map = scene_map
         self.camera = camera
         self.backend = chosen_backend(backend)
@@ -103,27 +88,18 @@ class DepthRenderer:
             self.backend = "raster"
             self._open_backend = self._new_backend()
 
-    def _new_backend(self) -> RasterBackend | VtkBackend | RayBackend:
+    def _new_backend(self) -> object:
         if self.backend == "vtk":
-            from course_lib.rendering.vtk_backend import VtkBackend
+            from course_lib.rendering.vtk_backend import VtkBackend  # only here, because it needs OpenGL's libraries
 
             return VtkBackend(self.drawn, self.camera, self.batch_size)
-        if self.backend == "raster":
-            from course_lib.rendering.raster import RasterBackend
-
-            return RasterBackend(self.drawn, self.camera)
-        if self.backend == "ray":
-            from course_lib.rendering.ray import RayBackend
-
-            return RayBackend(self.drawn, self.camera)
-        raise ValueError(
-            "backend must be 'auto', 'vtk' (OpenGL's z-buffer), 'raster' (a compiled z-buffer) or 'ray' (ray casting); "
-            f"got {self.backend!r}"
-        )
+        if self.backend not in ("raster", "ray"):
+            raise ValueError(f"backend must be 'auto', 'vtk', 'raster' or 'ray'; got {self.backend!r}")
+        return {"raster": RasterBackend, "ray": RayBackend}[self.backend](self.drawn, self.camera)
 
     @property
     def drawn(self) -> SceneMap:
-        """The triangles that are drawn: the map, or, unless `exact`, fewer; none of them large."""
+        """The map that is drawn: with fewer triangles unless `exact`, and with none that is large."""
         drawn = self.scene_map
         if not self.exact:
             from course_lib.rendering.simplification import simplified
@@ -133,23 +109,22 @@ class DepthRenderer:
         return drawn if faces is drawn.faces else SceneMap(vertices, faces)
 
     def render(self, states: np.ndarray) -> np.ndarray:
-        """Depth images `(N, H, W)` float32 metres of the map from states `(N, 6)`; `inf` where nothing is hit.
+        """Return depth images `(N, H, W)` float32 metres of the map from states `(N, 6)`; `inf` where nothing is hit.
 
         Z_(i) = {z_(i)^1, ..., z_(i)^m}: one value a pixel, m = H x W as many as the real camera has.
-        A single state `(6,)` counts as N = 1. Drawn in batches of bounded memory.
-        Raises `ValueError` for states of a wrong shape or not finite, `RendererClosedError` after `close()`.
+        A single state `(6,)` counts as N = 1. Raises `ValueError` for states of a wrong shape or not finite.
         Source: paper 1, eq. (6).
         """
-        return self.render_poses(optical_pose(_particles(states)))
+        return self.render_poses(optical_pose(np.atleast_2d(as_states(states))))
 
     def batches(self, states: np.ndarray) -> Iterator[np.ndarray]:
-        """The same images a batch `(n, H, W)` at a time, for more particles than images fit into memory."""
-        states = _particles(states)
+        """Yield the same images a batch `(n, H, W)` at a time, for more particles than images fit into memory."""
+        states = np.atleast_2d(states)
         for start in range(0, len(states), self.batch_size):
             yield self.render(states[start : start + self.batch_size])
 
     def render_poses(self, camera_to_world: np.ndarray) -> np.ndarray:
-        """The same from camera-to-world matrices `(N, 4, 4)` in the optical convention."""
+        """Return the same from camera-to-world matrices `(N, 4, 4)` in the optical convention."""
         backend = self._backend()
         poses = np.asarray(camera_to_world, dtype=np.float64)
         if poses.ndim != 3 or poses.shape[1:] != (4, 4):
@@ -163,32 +138,30 @@ class DepthRenderer:
         return images
 
     def render_points(self, points: np.ndarray) -> np.ndarray:
-        """Depth image `(H, W)` float32 metres of the camera's own points; NaN where none fell.
+        """Return the depth image `(H, W)` float32 metres of the camera's own points; NaN where none fell.
 
-        points: `(..., 3)` metres in the optical frame; NaN points are no measurement. They go through the z-buffer of
-        the particles' views, so both images obey one rule. `depth_image_from_points` is the same in NumPy. Raises
-        `ValueError` for a wrong shape, `RendererClosedError` after `close()`. Source: paper 1, section 3.3.2.
+        points: `(..., 3)` metres in the optical frame; NaN points are no measurement. "vtk" sends them through its
+        z-buffer, the others through `depth_image_from_points`. Raises `ValueError` for a wrong shape.
+        Source: paper 1, section 3.3.2.
         """
         backend = self._backend()
-        points = np.asarray(points, dtype=np.float64)
-        if points.ndim == 0 or points.shape[-1] != 3:
-            raise ValueError(f"points must have shape (..., 3); got {points.shape}")
-        points = points.reshape(-1, 3)
-        return backend.render_points(points[np.isfinite(points).all(axis=1)])
+        if self.backend != "vtk":
+            return depth_image_from_points(points, self.camera)
+        return backend.render_points(measured_points(points))
 
     def describe(self) -> str:
-        """Name of what draws: the OpenGL renderer string, or the ray caster."""
+        """Return the name of what draws, such as OpenGL's name of the graphics card."""
         return self._backend().describe()
 
     def close(self) -> None:
         """Free the window and its memory; closing twice is harmless."""
         self._closed = True
-        if self._open_backend is not None:
+        if self.backend == "vtk" and self._open_backend is not None:
             self._open_backend.close()
-            self._open_backend = None
+        self._open_backend = None
 
-    def _backend(self) -> RasterBackend | VtkBackend | RayBackend:
-        """What draws. After unpickling it is opened at first use, because an error on arrival would hang a pool."""
+    def _backend(self) -> object:
+        """Open after unpickling at first use, because an error on arrival would hang a pool."""
         if self._closed:
             raise RendererClosedError("this renderer was closed; make a new DepthRenderer(scene_map, camera)")
         backend = self._open_backend
@@ -197,26 +170,11 @@ class DepthRenderer:
         return backend
 
     def __getstate__(self) -> dict[str, object]:
-        """For pickle and copy: everything but the window."""
+        """For pickle and copy: leave the window out."""
         return vars(self) | {"_open_backend": None}
 
     def __enter__(self) -> DepthRenderer:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
-
-    def __repr__(self) -> str:
-        state = "closed" if self._closed else "open"
-        size = f"{self.camera.width} x {self.camera.height}"
-        return f"DepthRenderer({self.scene_map!r}, {size} pixels, backend={self.backend!r}, {state})"
-
-
-def _particles(states: np.ndarray) -> np.ndarray:
-    """States `(N, 6)`, of which one alone may come as `(6,)`."""
-    states = np.atleast_2d(as_states(states))
-    if states.ndim != 2:
-        raise ValueError(f"states must have shape (N, 6); got {states.shape}")
-    return states

@@ -1,31 +1,38 @@
-"""The environment map of paper 1: a triangle mesh in the world frame, from a terrestrial laser scan (section 1)."""
+"""The environment map of paper 1: a triangle mesh in the world frame, from a terrestrial laser scan (section 1).
+
+trimesh reads the file. We count what came, because trimesh also reads half a file.
+"""
 
 from __future__ import annotations
 
+import codecs
+import io
+import re
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import trimesh
 
+from course_lib.files import read_bytes
 from course_lib.geometry import is_rotation
-from course_lib.rendering.mesh_file import SceneMapError, read_mesh
 
 _MIN_AREA = 1e-16  # square metres: a smaller triangle has no inside that a pixel centre could hit
 MAX_COORDINATE = 2e7  # metres, half the Earth's circumference: no map has its zero farther away
 MAX_DISTANCE = 5000.0  # metres: no part of a building lies farther from its middle
-MAX_BUILDING = 200.0  # metres: a map that is larger in all three directions is doubtful; so is a part this far away
-MAX_STEP = 1.5e-3  # metres between neighbouring numbers of a file in single precision; more is worth a warning
-# Metres between the points that coordinates are taken from (`SceneMap.anchor`). Drawn 0.7 km from it a wall is wrong by
-# 1 mm, at 80 m by 0.1 mm.
+MAX_BUILDING = 200.0  # metres: a map that is larger in all three directions is doubtful
+# Metres between possible anchors. A wall drawn 0.7 km from the anchor is wrong by 1 mm, at 80 m by 0.1 mm.
 _ANCHOR_STEP = 100.0
 
 _CURE = "To leave such triangles out: SceneMap.load(path, drop_far=True), or `localize --drop-far`"
 
 
+class SceneMapError(ValueError):
+    """A map that cannot be used: unreadable, empty, or with values that are no geometry."""
+
+
 class SceneMapWarning(UserWarning):
-    """A map that can be used, but looks as if it were not meant so."""
+    """A map that can be used, but its coordinates look like millimetres."""
 
 
 class SceneMap:
@@ -37,24 +44,19 @@ class SceneMap:
     """
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
-        # A copy: the map is frozen below, and the caller's array must neither freeze with it nor change it.
+        # A copy, because the map is frozen below, and the caller's array must neither freeze with it nor change it.
         vertices = np.array(vertices, dtype=np.float64)
         faces = np.asarray(faces)
-        if vertices.ndim != 2 or vertices.shape[-1] != 3 or len(vertices) == 0:
-            raise SceneMapError(f"the map needs vertices of shape (V, 3), V at least 3; got {vertices.shape}")
-        if faces.ndim != 2 or faces.shape[-1] != 3 or len(faces) == 0:
+        if (vertices.shape[1:], faces.shape[1:]) != ((3,), (3,)) or not len(vertices) or not len(faces):
             raise SceneMapError(
-                f"the map needs triangles: faces of shape (F, 3), F at least 1; got {faces.shape}. "
-                "A point cloud has none: mesh it first"
+                f"the map needs triangles: vertices of shape (V, 3), faces of shape (F, 3); got {vertices.shape} and "
+                f"{faces.shape}. A point cloud has no faces: mesh it first"
             )
         if not np.isfinite(vertices).all():
-            n_bad = int((~np.isfinite(vertices)).any(axis=1).sum())
-            raise SceneMapError(f"{n_bad} of {len(vertices)} vertices are NaN or infinite; remove them from the mesh")
+            raise SceneMapError("vertices are NaN or infinite; remove them from the mesh")
         if not np.issubdtype(faces.dtype, np.integer) or faces.min() < 0 or faces.max() >= len(vertices):
-            raise SceneMapError(
-                f"faces must be whole numbers from 0 to {len(vertices) - 1} (the vertices); got {faces.dtype} from "
-                f"{faces.min()} to {faces.max()}"
-            )
+            numbers = f"{faces.min()} to {faces.max()} ({faces.dtype})"
+            raise SceneMapError(f"faces must be whole numbers from 0 to {len(vertices) - 1}; got {numbers}")
         corners = vertices[faces]
         if np.abs(corners).max() > MAX_COORDINATE:
             raise SceneMapError(f"the map reaches beyond {MAX_COORDINATE:g} m: coordinates must be metres. {_CURE}")
@@ -74,17 +76,18 @@ class SceneMap:
         """Return the map in any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
 
         drop_far: triangles farther than `MAX_DISTANCE` from the middle of the map are left out; else they are an error.
-        Warns (`SceneMapWarning`) of what looks like millimetres or like a stray part. Raises `FileNotFoundError`, or
-        `SceneMapError` for a file that cannot be read or holds fewer triangles than it announces. An OBJ announces
-        nothing.
+        Warns (`SceneMapWarning`) of what looks like millimetres. Raises `FileNotFoundError`, or `SceneMapError` for a
+        file that cannot be read or holds fewer triangles than it announces (an OBJ announces nothing).
         """
         vertices, faces = read_mesh(path)
         try:
             found = cls(vertices, _of_one_building(vertices, faces, drop_far))
         except SceneMapError as error:
             raise SceneMapError(f"{path}: {error}") from None
-        for doubt in _doubts(found):
-            warnings.warn(f"{path}: {doubt}", SceneMapWarning, stacklevel=2)
+        size = np.ptp(found.bounds, axis=0)
+        if size.min() > MAX_BUILDING:
+            told = " x ".join(f"{length:,.0f}" for length in size)
+            warnings.warn(f"{path}: the map is {told} m large: are these millimetres?", SceneMapWarning, stacklevel=2)
         return found
 
     def transformed(self, matrix: np.ndarray) -> SceneMap:
@@ -95,10 +98,9 @@ class SceneMap:
         return SceneMap(self.vertices @ matrix[:3, :3].T + matrix[:3, 3], self.faces)
 
     def anchor(self, positions: np.ndarray) -> np.ndarray:
-        """Return the point `(3,)` that renderers subtract from vertices and cameras `(N, 3)` before anything becomes
-        float32.
+        """Return the point `(3,)` near cameras `(N, 3)` that renderers subtract before anything becomes float32.
 
-        The map's origin if the cameras are within some 50 m of it, else whole hundreds of metres from it, near them.
+        It is the map's origin, or whole hundreds of metres from it, so that it seldom moves.
         """
         if len(positions) == 0:
             return self.origin
@@ -106,11 +108,11 @@ class SceneMap:
         return self.origin + _ANCHOR_STEP * np.round((middle - self.origin) / _ANCHOR_STEP)
 
     def __reduce__(self) -> tuple[type[SceneMap], tuple[np.ndarray, np.ndarray]]:
-        """For pickle and copy: made anew, since arrays that travel forget that they are read-only."""
+        """For pickle and copy: make the map anew, because arrays that travel forget that they are read-only."""
         return SceneMap, (self.vertices, self.faces)
 
     def contains(self, positions: np.ndarray, margin: float = 0.0) -> np.ndarray:
-        """Whether positions `(..., 3)` lie in the map's bounding box grown by `margin` metres: `(...)` bool."""
+        """Return whether positions `(..., 3)` lie in the map's bounding box grown by `margin` metres: `(...)` bool."""
         positions = np.asarray(positions)
         low, high = self.bounds[0] - margin, self.bounds[1] + margin
         return ((positions >= low) & (positions <= high)).all(axis=-1)
@@ -124,11 +126,9 @@ class SceneMap:
 
 
 def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) -> np.ndarray:
-    """Return the faces without those absurdly far from the median of all corners. Raises `SceneMapError` unless
-    dropped.
-    """
-    shapes = np.shape(vertices)[1:], np.shape(faces)[1:]
-    if shapes != ((3,), (3,)) or not len(faces) or faces.min() < 0 or faces.max() >= len(vertices):
+    """Return the faces without those absurdly far from the median of all corners; an error unless `drop_far`."""
+    shapes = {np.shape(vertices)[1:], np.shape(faces)[1:]}
+    if shapes != {(3,)} or not len(faces) or faces.min() < 0 or faces.max() >= len(vertices):
         return faces  # the map itself says what is wrong
     corners = vertices[faces]
     with np.errstate(invalid="ignore", over="ignore"):
@@ -142,33 +142,61 @@ def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) ->
         first = int(np.argmax(far_away))
         x, y, z = corners[first][distance[first].argmax()]
         raise SceneMapError(
-            f"{int(far_away.sum())} of {len(corners)} triangles lie farther than {MAX_DISTANCE:g} m from the middle of "
-            f"the map: triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Coordinates must be metres (are these "
-            f"millimetres?). {_CURE}"
+            f"{int(far_away.sum())} of {len(corners)} triangles lie over {MAX_DISTANCE:g} m from the map's middle: "
+            f"triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Are these millimetres? {_CURE}"
         )
     return faces
 
 
-def _doubts(scene_map: SceneMap) -> Iterator[str]:
-    """Why a map that can be used looks as if it were not meant."""
-    corners = scene_map.vertices[scene_map.faces]
-    size = scene_map.bounds[1] - scene_map.bounds[0]
-    told = f"{size[0]:,.0f} x {size[1]:,.0f} x {size[2]:,.0f} m"
-    if size.min() > MAX_BUILDING:
-        yield f"the map is {told} large: are these millimetres? Coordinates must be metres"
-    middles = corners.mean(axis=1)
-    low, high = np.percentile(middles, (1, 99), axis=0)
-    most = np.linalg.norm(high - low)
-    if np.linalg.norm(size) > max(10 * most, MAX_BUILDING):
-        away = np.linalg.norm(middles - scene_map.origin, axis=1)
-        x, y, z = middles[away.argmax()]
-        yield (
-            f"the map is {told} large, but 98 % of its triangles lie within {most:,.0f} m: triangle {away.argmax()} at "
-            f"({x:g}, {y:g}, {z:g}) is {away.max():,.0f} m from the middle. Does it belong to the building?"
-        )
-    step = float(np.spacing(np.float32(np.abs(corners).max())))
-    if step > MAX_STEP and np.array_equal(corners, corners.astype(np.float32)):
-        yield (
-            f"coordinates of {np.abs(corners).max():,.0f} m in single precision have steps of {step * 1000:g} mm: "
-            "move the map's zero into the building before saving it"
-        )
+def mesh_endings() -> set[str]:
+    """Return the endings of files that are read as meshes, such as "ply"; archives are not, they may hold anything."""
+    return set(trimesh.available_formats()) - {"zip", "tar.gz", "tar.bz2"}
+
+
+def read_mesh(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
+    """Return the vertices `(V, 3)` and faces `(F, 3)` of a mesh file."""
+    path = Path(path)
+    data = read_bytes(path, "map", SceneMapError, missing=FileNotFoundError)
+    kind = path.suffix.lower().lstrip(".")
+    if kind not in mesh_endings():
+        raise SceneMapError(f"map {path} ends in {path.suffix!r}, which is no mesh: give PLY, OBJ, STL, OFF or GLB")
+    if kind in ("ply", "off", "obj"):
+        data = data.removeprefix(codecs.BOM_UTF8)  # with this mark trimesh would not know the first word
+    try:
+        n_vertices, n_faces = _announced(data, kind)
+        resolver = trimesh.resolvers.FilePathResolver(path)  # of the parts of a .gltf
+        mesh = trimesh.load(io.BytesIO(data), kind, resolver=resolver, process=False, skip_materials=True)
+        if isinstance(mesh, trimesh.Scene):
+            mesh = mesh.to_mesh()
+        vertices, faces = mesh.vertices, getattr(mesh, "faces", np.empty((0, 3), dtype=np.int64))
+        if len(vertices) < n_vertices or len(faces) < n_faces:
+            raise ValueError(
+                f"{n_vertices} vertices and {n_faces} faces announced, {len(vertices)} and {len(faces)} there"
+            )
+    except Exception as reason:  # trimesh's readers raise errors of all kinds
+        told = f"map {path} cannot be read as a mesh ({type(reason).__name__}: {reason}). Is the file complete?"
+        raise SceneMapError(told) from reason
+    return vertices, faces
+
+
+def _announced(data: bytes, kind: str) -> tuple[int, int]:
+    """Return at least how many vertices and faces a whole file of this kind gives, as far as it says."""
+    if kind == "stl":
+        return 0, 1  # trimesh reads nothing at all from half a file
+    if kind == "off":
+        rows = [row for line in data.splitlines() if (row := line.partition(b"#")[0].strip())]
+        counts = re.match(rb"\S*OFF\s+(\d+)\s+(\d+)", b" ".join(rows[:2]))
+        return (int(counts[1]), int(counts[2])) if counts else (0, 0)
+    if kind != "ply":
+        return 0, 0
+    header, _, body = data.partition(b"end_header")
+    counts = {name: int(count) for name, count in re.findall(rb"element\s+(\S+)\s+(\d+)", header)}
+    if re.search(rb"format\s+ascii", header):
+        rows = [line.split() for line in body.splitlines() if line.strip()]
+        if len(rows) < sum(counts.values()):
+            raise ValueError(f"it announces {sum(counts.values()):,} rows and holds {len(rows):,}")
+        first, _, others = header.partition(b"element")[2].partition(b"element")
+        n_words = len(re.findall(rb"property", first)) if b"list" not in first else 0
+        if others and n_words and any(len(words) != n_words for words in rows[: int(first.split()[1])]):
+            raise ValueError(f"a row of its element {first.split()[0].decode()} has not {n_words} numbers")
+    return counts.get(b"vertex", 0), counts.get(b"face", 0)

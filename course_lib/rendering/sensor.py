@@ -1,6 +1,4 @@
-"""The depth camera's data (paper 1, 3.3.2): its points become a depth image by the rules of the simulated views."""
-
-from __future__ import annotations
+"""The depth camera's data (paper 1, 3.3.2): its points become a depth image as the simulated views do."""
 
 import numpy as np
 
@@ -8,7 +6,7 @@ from course_lib.rendering.camera import DepthCamera
 
 
 def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarray:
-    """Depth image `(H, W)` float32 metres of points `(..., 3)` in the optical frame; NaN where no point fell.
+    """Return the depth image `(H, W)` float32 metres of points `(..., 3)` in the optical frame; NaN where none fell.
 
     A point (X, Y, Z) with near <= Z <= far (each within rounding: `DepthCamera.nearest`, `farthest`) falls on the pixel
     nearest to u = fx X / Z + cx, v = fy Y / Z + cy; of several on one pixel the nearest counts:
@@ -16,11 +14,7 @@ def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarr
     NaN points are no measurement. Raises `ValueError` for a wrong shape.
     Source: paper 1, eq. (7); NumPy reference of `DepthRenderer.render_points`.
     """
-    points = np.asarray(points, dtype=np.float64)
-    if points.ndim == 0 or points.shape[-1] != 3:
-        raise ValueError(f"points must have shape (..., 3); got {points.shape}")
-    points = points.reshape(-1, 3)
-    points = points[np.isfinite(points).all(axis=1)]
+    points = measured_points(points)
     points = points[(points[:, 2] >= camera.nearest) & (points[:, 2] <= camera.farthest)]
     u, v, z = camera.project(points)
     # Pixel j covers [j - 0.5, j + 0.5): floor(u + 0.5), as a rasterizer does it, not rint, which rounds to even.
@@ -33,9 +27,17 @@ def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarr
     return image
 
 
+def measured_points(points: np.ndarray) -> np.ndarray:
+    """Return those of points `(..., 3)` that are finite, `(M, 3)`."""
+    points = np.asarray(points, dtype=np.float64)
+    if points.ndim == 0 or points.shape[-1] != 3:
+        raise ValueError(f"points must have shape (..., 3); got {points.shape}")
+    points = points.reshape(-1, 3)
+    return points[np.isfinite(points).all(axis=1)]
+
+
 def subsample_depth(depth: np.ndarray, camera: DepthCamera, coarse: DepthCamera) -> np.ndarray:
-    """Return the depth image `(h, w)` of a coarser grid with the same view: the fine pixel nearest to each coarse
-    centre.
+    """Return the fine pixel nearest to each centre of a coarser grid `(h, w)` with the same view.
 
     Values are picked, not averaged, because the mean of depths across an edge is a surface that is not there.
     """

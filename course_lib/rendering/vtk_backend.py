@@ -1,12 +1,11 @@
 """Depth images by VTK's z-buffer: every particle's view is a tile of one off-screen window, read back once.
 
-Tile k has a vtkRenderer of its own; all share one actor, the map. Threads take turns with the window (`_drawing`).
-After a fork OpenGL's threads are missing and whatever is asked of it waits for ever, so a child is refused by name.
+Each tile has a vtkRenderer of its own; all share one actor, the map. Threads take turns with the window (`_drawing`).
+After a fork OpenGL's threads are missing and every call would wait for ever, so a child gets a named error.
 """
 
-from __future__ import annotations
-
 import os
+import re
 import sys
 import threading
 import weakref
@@ -21,10 +20,10 @@ from course_lib.rendering.renderer import OpenGLError, RendererClosedError
 from course_lib.rendering.scene_map import SceneMap
 
 if sys.platform.startswith("linux"):
-    # Before VTK is imported for the first time: no display is needed. An empty value would crash VTK.
+    # This must stand before the first import of VTK. No display is needed then. An empty value would crash VTK.
     os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = os.environ.get("VTK_DEFAULT_OPENGL_WINDOW") or "vtkEGLRenderWindow"
-    # Mesa keeps its compiled shaders in a file that it maps into memory: where the disk of the user's cache is full, it
-    # ends the process (SIGBUS). Without it the first image takes as long as before.
+    # Mesa maps a file of compiled shaders into memory. If the disk is full, it ends the process (SIGBUS). Without the
+    # file the first image takes as long as before.
     os.environ.setdefault("MESA_SHADER_CACHE_DISABLE", "true")
 
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - registers the OpenGL classes behind the names below
@@ -38,23 +37,16 @@ CURE = (
     "On Debian or Ubuntu: apt-get install libegl1 libgl1-mesa-dri libgl1 (`python3 course.py check` tells what is "
     'missing). Without OpenGL, DepthRenderer(..., backend="raster") gives the same images: leave out --backend vtk'
 )
-
-# The least that OpenGL 4.1 promises for a side of a framebuffer is 16,384 pixels; half of it is promised everywhere.
-MAX_WINDOW_SIDE = 8192
-
-# vtkPolyDataMapper::ShiftScaleMethodType::DISABLE_SHIFT_SCALE, whose name VTK does not give to Python.
-_NO_SHIFT_AND_SCALE = 0
-
-# Each tile costs VTK some 40 kB, however small its image, and is kept for the next frame.
-MAX_TILES = 1000
-
+MAX_WINDOW_SIDE = 8192  # pixels: every OpenGL draws windows of this size
+MAX_TILES = 1000  # each costs VTK some 40 kB, however small its image, and is kept for the next frame
+_NO_SHIFT_AND_SCALE = 0  # vtkPolyDataMapper's DISABLE_SHIFT_SCALE, a name that VTK does not give to Python
 
 _windows: weakref.WeakSet[vtkRenderWindow] = weakref.WeakSet()
 _process_of_the_first_window: int | None = None
 
 
 def off_screen_window() -> vtkRenderWindow:
-    """Return a new window off the screen, without multisampling, not yet of any size."""
+    """Return a new window off the screen, without multisampling."""
     global _process_of_the_first_window
     if _process_of_the_first_window is None:
         _process_of_the_first_window = os.getpid()
@@ -73,14 +65,13 @@ def _require_own_process(process: int) -> None:
     """Raise `OpenGLError` unless this is the process that opened the window."""
     if process != os.getpid():
         raise OpenGLError(
-            f"OpenGL was started in process {process}, and this is process {os.getpid()}, forked from it: a fork "
-            'leaves the threads of OpenGL behind, and drawing would hang. Start workers with "spawn" or "forkserver" '
-            '(multiprocessing.get_context("spawn")), or fork before the first renderer, or use backend="raster"'
+            f"OpenGL was started in process {process}; in process {os.getpid()}, forked from it, drawing would hang. "
+            'Start workers with multiprocessing.get_context("spawn"), or use backend="raster"'
         )
 
 
 def _leave_windows_to_the_parent() -> None:
-    """One reference too many, so that nothing in this forked child ever frees a window: that would hang."""
+    """Add a reference to each window, so that this forked child never frees one: that would hang."""
     for window in _windows:
         window.Register(None)
 
@@ -90,23 +81,21 @@ if hasattr(os, "register_at_fork"):  # not on Windows, which cannot fork
 
 
 class VtkBackend:
-    """Draws batches of at most `batch_size` views, fewer where a window would grow beyond what OpenGL allows."""
+    """Draws batches of at most `batch_size` views, fewer where a window would become too large for OpenGL."""
 
     def __init__(self, scene_map: SceneMap, camera: DepthCamera, batch_size: int) -> None:
         if camera.width > MAX_WINDOW_SIDE or camera.height > MAX_WINDOW_SIDE:
-            raise ValueError(
-                f"an image of {camera.width} x {camera.height} pixels is larger than one OpenGL window "
-                f"({MAX_WINDOW_SIDE} on a side): use camera.resized(...)"
-            )
+            size = f"{camera.width} x {camera.height}"
+            raise ValueError(f"{size} pixels are too many for OpenGL ({MAX_WINDOW_SIDE} on a side): use camera.resized")
         self.camera = camera
-        # What OpenGL clips: far enough beyond `farthest` that rounding decides nothing there.
+        # OpenGL clips so far beyond `farthest` that rounding decides nothing there.
         self._drawn = camera.with_clip_planes(camera.nearest, 1.01 * camera.farthest)
         self._columns = max(1, min(MAX_WINDOW_SIDE // camera.width, int(np.ceil(np.sqrt(batch_size)))))
         self._n_tiles = min(batch_size, MAX_TILES, self._columns * (MAX_WINDOW_SIDE // camera.height))
         self._process = os.getpid()
         self._turn = threading.Lock()
         self._window: vtkRenderWindow | None = None
-        self._window_rows = 0
+        self._rows = 0
         self._tiles: list[vtkRenderer] = []
         self._buffer = vtkFloatArray()
 
@@ -119,8 +108,6 @@ class VtkBackend:
         self._upload_vertices(scene_map.origin)
 
         self._points_data = vtkPolyData()
-        self._points_tile = vtkRenderer()
-        self._points_tile.AddActor(_plain_actor(self._points_data))
         self._open_window()
 
     def render(self, poses: np.ndarray, out: np.ndarray) -> None:
@@ -132,22 +119,19 @@ class VtkBackend:
 
     def _render_batch(self, poses: np.ndarray, out: np.ndarray) -> None:
         anchor = self._scene_map.anchor(poses[:, :3, 3])
-        if not np.array_equal(anchor, self._anchor):
+        if not np.array_equal(anchor, self._anchor):  # views seldom move on
             self._upload_vertices(anchor)
         self._draw_only(poses)
-        self._prepare_tiles(len(poses))
+        self._make_room(len(poses))
         for tile, pose in zip(self._tiles, poses, strict=False):
             _place(tile.GetActiveCamera(), pose[:3, :3], pose[:3, 3] - anchor)
         self._draw_and_read(self._tiles[: len(poses)], out)
 
     def render_points(self, points: np.ndarray) -> np.ndarray:
-        """Depth image `(H, W)` of points `(M, 3)` in the optical frame, through the same z-buffer; NaN where none."""
-        count = len(points)
-        vtk_points = vtkPoints()
+        """Return the depth image `(H, W)` of points `(M, 3)` in the optical frame; NaN where none fell."""
+        vtk_points, vertices = vtkPoints(), vtkCellArray()
         vtk_points.SetData(numpy_to_vtk(points.astype(np.float32), deep=True))
-        cells = np.stack([np.ones(count, dtype=np.int64), np.arange(count)], axis=1)
-        vertices = vtkCellArray()
-        vertices.ImportLegacyFormat(numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
+        vertices.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(points)), deep=True))
         image = np.empty(self.camera.shape, dtype=np.float32)
         with self._drawing():
             self._points_data.SetPoints(vtk_points)
@@ -158,15 +142,13 @@ class VtkBackend:
         return image
 
     def describe(self) -> str:
-        """The OpenGL renderer's name, for example llvmpipe (a CPU) or a graphics card."""
+        """Return OpenGL's name of what draws, such as llvmpipe (a CPU) or a graphics card."""
         with self._drawing():
-            for line in self._window.ReportCapabilities().splitlines():
-                if line.startswith("OpenGL renderer string:"):
-                    return line.split(":", 1)[1].strip()
-            return self._window.GetClassName()
+            named = re.search(r"^OpenGL renderer string: *(.+)$", self._window.ReportCapabilities(), re.MULTILINE)
+            return named[1].strip() if named else self._window.GetClassName()
 
     def close(self) -> None:
-        """Free the window with its framebuffers; after a fork it stays the parent's."""
+        """Free the window with its framebuffers; a forked child leaves it to its parent."""
         if self._process != os.getpid():
             return
         with self._turn:
@@ -180,9 +162,7 @@ class VtkBackend:
 
     @contextmanager
     def _drawing(self) -> Iterator[None]:
-        """Take the window's context for this thread: without it a thread would read an earlier image's depth, without
-        an error.
-        """
+        """Take the window's context for this thread, which would else read an earlier image without an error."""
         _require_own_process(self._process)  # before the lock: a fork copies it as it is, held or not
         with self._turn:
             if self._window is None:
@@ -194,15 +174,13 @@ class VtkBackend:
                 self._window.ReleaseCurrent()
 
     def _open_window(self) -> None:
-        # VTK reports on the console what the errors here say better.
         verbosity = vtkLogger.GetCurrentVerbosityCutoff()
-        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # the errors here say it better
         try:
             self._window = window = off_screen_window()
-            self._resize_window(1)
-            self._set_projection(self._points_tile)
+            self._points_tile = self._new_tile(_plain_actor(self._points_data))
             _place(self._points_tile.GetActiveCamera(), np.eye(3), np.zeros(3))
-            window.AddRenderer(self._points_tile)
+            self._make_room(0)
             window.Render()
             if not window.SupportsOpenGL() or window.GetDepthBufferSize() < 24:
                 raise OpenGLError(f"OpenGL gives no 24-bit depth buffer. {CURE}")
@@ -211,39 +189,30 @@ class VtkBackend:
         finally:
             vtkLogger.SetStderrVerbosity(verbosity)
 
-    def _resize_window(self, rows: int) -> None:
-        self._window_rows = rows
-        self._window.SetSize(self._columns * self.camera.width, rows * self.camera.height)
-        for index, tile in enumerate(self._tiles):
-            tile.SetViewport(*self._viewport(index))
-        self._points_tile.SetViewport(*self._viewport(0))
-
-    def _viewport(self, index: int) -> tuple[float, float, float, float]:
-        """Tile `index`, counted from the bottom left, as VTK's fractions (x_min, y_min, x_max, y_max) of the window."""
-        row, column = divmod(index, self._columns)
-        columns, rows = self._columns, self._window_rows
-        return column / columns, row / rows, (column + 1) / columns, (row + 1) / rows
-
-    def _prepare_tiles(self, count: int) -> None:
+    def _make_room(self, count: int) -> None:
         """Make the window and its tiles large and many enough; they only ever grow."""
-        rows = -(-count // self._columns)
-        if rows > self._window_rows:
-            self._resize_window(rows)
-        while len(self._tiles) < count:
-            tile = vtkRenderer()
-            tile.AddActor(self._map_actor)
-            tile.SetViewport(*self._viewport(len(self._tiles)))
-            self._set_projection(tile)
-            self._window.AddRenderer(tile)
-            self._tiles.append(tile)
+        rows, columns = max(1, self._rows, -(-count // self._columns)), self._columns
+        if rows == self._rows and count <= len(self._tiles):
+            return
+        self._rows = rows
+        self._window.SetSize(columns * self.camera.width, rows * self.camera.height)
+        self._tiles += [self._new_tile(self._map_actor) for _ in range(len(self._tiles), count)]
+        for tiles in (self._tiles, [self._points_tile]):
+            for index, tile in enumerate(tiles):  # from the bottom left, in fractions of the window
+                row, column = divmod(index, columns)
+                tile.SetViewport(column / columns, row / rows, (column + 1) / columns, (row + 1) / rows)
 
-    def _set_projection(self, tile: vtkRenderer) -> None:
-        matrix = vtkMatrix4x4()
+    def _new_tile(self, actor: vtkActor) -> vtkRenderer:
+        """Return a tile of the window that draws an actor as the camera projects it."""
+        tile, matrix = vtkRenderer(), vtkMatrix4x4()
+        tile.AddActor(actor)
         matrix.DeepCopy(self._drawn.projection_matrix().ravel())
         vtk_camera = tile.GetActiveCamera()
         vtk_camera.SetUseExplicitProjectionTransformMatrix(True)
         vtk_camera.SetExplicitProjectionTransformMatrix(matrix)
         vtk_camera.SetClippingRange(self._drawn.near, self._drawn.far)
+        self._window.AddRenderer(tile)
+        return tile
 
     def _upload_vertices(self, anchor: np.ndarray) -> None:
         """Give OpenGL the map's vertices, float32, relative to `anchor` `(3,)`."""
@@ -254,8 +223,8 @@ class VtkBackend:
         self._anchor = anchor
 
     def _draw_only(self, poses: np.ndarray) -> None:
-        """Put the triangles that one of the views may see into the map's actor; uploads only what is new."""
-        visible = self._chunks.visible(self._drawn, poses)
+        """Give OpenGL the triangles that one of the views may see, if it has not enough or far too many of them."""
+        visible = self._chunks.visible(self._drawn, poses, self._anchor)
         if (visible & ~self._drawn_chunks).any() or 2 * visible.sum() < self._drawn_chunks.sum():
             cells = vtkCellArray()
             faces = self._faces[self._chunks.faces_of(visible)]
@@ -265,19 +234,19 @@ class VtkBackend:
             self._drawn_chunks = visible
 
     def _draw_and_read(self, tiles: list[vtkRenderer], out: np.ndarray) -> None:
-        """Draw just these tiles and fill `out` `(n, H, W)` from them."""
+        """Draw only these tiles and fill `out` `(n, H, W)` from them."""
         try:
             for tile in tiles:
                 tile.DrawOn()
             self._window.Render()
             self._read_tiles(out)
         finally:
-            # Also after Ctrl-C: the map's first tile and the points' tile cover the same pixels.
+            # Also after Ctrl-C, because the map's first tile and the points' tile cover the same pixels.
             for tile in tiles:
                 tile.DrawOff()
 
     def _read_tiles(self, out: np.ndarray) -> None:
-        """Fill `out` `(n, H, W)` from the first n tiles: the window's z-buffer read once, cut up and linearized."""
+        """Read the z-buffer once and fill `out` `(n, H, W)` from its first n tiles."""
         height, width = self.camera.shape
         columns, rows = self._columns, -(-len(out) // self._columns)
         self._window.GetZbufferData(0, 0, columns * width - 1, rows * height - 1, self._buffer)
@@ -289,24 +258,23 @@ class VtkBackend:
 
 
 def depth_from_buffer(buffer: np.ndarray, camera: DepthCamera, farthest: float) -> np.ndarray:
-    """Return depth in metres, float32, of depth-buffer values in [0, 1] by the camera's planes; `inf` beyond
-    `farthest`.
+    """Return depth in metres, float32, of depth-buffer values b in [0, 1]; `inf` beyond `farthest`.
 
-    Z = near far / (far - b (far - near)), the inverse of b = far (Z - near) / (Z (far - near)).
+    Z = near far / (far - b (far - near)), the inverse of b = far (Z - near) / (Z (far - near))
     """
     near, far = camera.near, camera.far
-    # float64, since far - b (far - near) loses the digits that the two have in common.
+    # float64, because far - b (far - near) loses the digits that the two have in common.
     depth = near * far / (far - np.asarray(buffer, dtype=np.float64) * (far - near))
     return np.where(depth <= farthest, depth, np.inf).astype(np.float32)
 
 
 def _plain_actor(data: vtkPolyData) -> vtkActor:
-    """Actor without light, colour arrays or normals: only its depth is of interest."""
+    """Return an actor without light, colours or normals, because only its depth counts."""
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(data)
     mapper.ScalarVisibilityOff()
     mapper.SetResolveCoincidentTopologyToOff()
-    # VTK would move and scale the vertices by their bounding box, which one stray triangle can stretch.
+    # Else VTK scales the vertices by their bounding box, which one stray triangle can stretch.
     mapper.SetVBOShiftScaleMethod(_NO_SHIFT_AND_SCALE)
     actor = vtkActor()
     actor.SetMapper(mapper)
@@ -316,7 +284,7 @@ def _plain_actor(data: vtkPolyData) -> vtkActor:
 
 
 def _place(vtk_camera: object, rotation: np.ndarray, position: np.ndarray) -> None:
-    """Puts a VTK camera at a position `(3,)`; columns of `rotation` `(3, 3)`: its right, down and forward."""
+    """Put a VTK camera at a position `(3,)`; the columns of `rotation` `(3, 3)` are its right, down and forward."""
     vtk_camera.SetPosition(*position)
     vtk_camera.SetFocalPoint(*(position + rotation[:, 2]))
     vtk_camera.SetViewUp(*-rotation[:, 1])

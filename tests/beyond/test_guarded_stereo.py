@@ -15,17 +15,12 @@ HERE, THERE = pair_from(0.0, 0.0), pair_from(0.35, 0.1)
 
 
 @pytest.fixture
-def localizer():
-    return SemanticLocalizer(StereoRig(BASELINE), MAP, KnowingDetector(HERE, THERE))
+def rig():
+    return GuardedRig(SemanticLocalizer(StereoRig(BASELINE), MAP, KnowingDetector(HERE, THERE)), period=1.0)
 
 
-@pytest.fixture
-def rig(localizer):
-    return GuardedRig(localizer, period=1.0)
-
-
-def test_a_good_pair_is_what_the_localizer_says(rig, localizer):
-    alone = localizer.localize(*HERE[:2])
+def test_a_good_pair_is_what_the_localizer_says(rig):
+    alone = rig.localizer.localize(*HERE[:2])
     seen = rig.localize(*HERE[:2], 0.0)
     assert (seen.outcome, seen.missed) == ("ok", 0)
     assert seen.localization.pose == alone.pose
@@ -44,14 +39,6 @@ def test_a_pair_that_is_not_new_is_named_and_not_looked_into(rig):
 def test_exchanged_images_are_named(rig):
     assert rig.localize(HERE[1], HERE[0], 0.0).outcome == outcomes.SWAPPED
     assert rig.localize(*HERE[:2], 1.0).outcome == "ok"
-
-
-@pytest.mark.parametrize("dark", [0, 1])
-def test_a_dark_camera_with_hot_pixels_is_named(rig, rng, dark):
-    images = list(HERE[:2])
-    images[dark] = rng.integers(0, 9, images[dark].shape, dtype=np.uint8)
-    images[dark][5, 7] = images[dark][80, 300] = 255
-    assert rig.localize(*images, 0.0).outcome == outcomes.BLANK
 
 
 @pytest.mark.parametrize(("upper", "lower"), [(HERE, THERE), (THERE, HERE)])

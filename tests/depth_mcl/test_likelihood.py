@@ -20,15 +20,8 @@ from course_lib.depth_mcl.likelihood import (
     compiled_likelihood,
     likelihood,
     normalize_likelihood,
-    paper_weighting,
     weights,
 )
-
-
-def weigh(rule, measured, simulated):
-    """Weights of all particles at once."""
-    return rule.weigh(measured, rule.score(measured, simulated))
-
 
 finite_likelihoods = arrays(float, st.integers(1, 60), elements=st.floats(-1e6, 1e6))
 
@@ -91,40 +84,24 @@ def test_what_eq_8_cannot_compare_is_named(eq_8, measured, simulated, alpha, sai
     assert isinstance(told.value, DepthImageError) == (said != "alpha")
 
 
-def test_looking_into_a_hole_of_the_map_does_not_pay():
-    """Left out of the count, the misses would lift the mean agreement of the second particle above the first's."""
-    z = np.full((10, 10), 2.0)
-    sees_the_wall = np.full((10, 10), 2.05)
-    looks_into_the_hole = np.full((10, 10), np.inf)
-    looks_into_the_hole[:, 0] = 2.0
-    through_all, into_hole = likelihood(z, np.stack([sees_the_wall, looks_into_the_hole]))
-    assert through_all > 5 * into_hole
-    w = weigh(paper_weighting(), z, np.stack([sees_the_wall, looks_into_the_hole]))
-    assert w == pytest.approx([1, 0])
-
-
-@given(finite_likelihoods)
-def test_normalized_likelihoods_span_zero_to_one(values):
+@given(finite_likelihoods, st.floats(1e-3, 10))
+def test_likelihoods_are_spread_from_zero_to_one_and_weights_sum_to_one_with_the_best_first(values, beta):
     normalized = normalize_likelihood(values)
     assert normalized.max() == 1
     assert normalized.min() == (0 if values.max() > values.min() else 1)
-    assert (np.argsort(normalized, kind="stable") == np.argsort(values, kind="stable")).all() or len(
-        np.unique(normalized)
-    ) < len(np.unique(values))
-
-
-@given(finite_likelihoods, st.floats(1e-3, 10))
-def test_weights_sum_to_one_and_the_best_particle_weighs_most(values, beta):
-    w = weights(normalize_likelihood(values), beta)
+    assert (np.diff(normalized[np.argsort(values)]) >= 0).all()
+    w = weights(normalized, beta)
     assert w.sum() == pytest.approx(1)
     assert (w >= 0).all()
     assert w[values.argmax()] == w.max()
 
 
-def test_weights_are_never_nan_and_what_is_no_number_is_refused():
+def test_weights_are_the_papers_never_nan_and_what_is_no_number_is_refused():
     """Likelihoods that all agree (0/0) give equal weights; a tiny beta leaves the best particle all the weight."""
     assert weights(normalize_likelihood(np.full(8, 123.4))) == pytest.approx(np.full(8, 1 / 8))
     assert weights(np.array([0.0, 0.5]), 1e-200) == pytest.approx([0, 1])
+    formula = np.exp(-((np.array([0.0, 0.985, 0.99, 1.0]) - 1) ** 2) / 0.01**2)
+    assert weights(np.array([0.0, 0.985, 0.99, 1.0]), 0.01) == pytest.approx(formula / formula.sum())
     assert weights_from_log_likelihood([-1e5, -1e5 - np.log(3)]) == pytest.approx([0.75, 0.25])
     for beta in (0, -1, np.nan):
         with pytest.raises(ValueError, match="beta"):
@@ -132,12 +109,6 @@ def test_weights_are_never_nan_and_what_is_no_number_is_refused():
     for values in ([], [np.nan, 1.0], [[1.0]]):
         with pytest.raises(ValueError, match="likelihoods"):
             normalize_likelihood(np.asarray(values))
-
-
-def test_the_weight_is_the_papers_formula():
-    normalized = np.array([0.0, 0.985, 0.99, 1.0])
-    expected = np.exp(-((normalized - 1) ** 2) / 0.01**2)
-    assert weights(normalized, 0.01) == pytest.approx(expected / expected.sum())
 
 
 def test_fallons_score_is_a_mean_over_the_pixels_that_it_compares():

@@ -1,7 +1,5 @@
 """Laws of the three motions: eq. (5) as printed, along the body's axes, and in the tangent space."""
 
-import pickle
-
 import numpy as np
 import pytest
 
@@ -80,14 +78,3 @@ def test_the_mean_has_no_mean_deviation_and_deviations_are_the_short_way_round(n
     deviations = motion.deviations(particles, motion.mean(particles, w))
     assert w @ deviations == pytest.approx(np.zeros(6), abs=1e-3)
     assert np.abs(deviations[:, 3:]).max() < 0.6  # yaw lies around the wrap
-
-
-@pytest.mark.parametrize("name", MOTIONS)
-def test_a_motion_changes_nothing_that_it_was_given_and_can_be_sent_to_another_process(name):
-    motion, particles, sigma = MOTIONS[name], initial_particles(STATE, 9), np.full(6, 0.1)
-    again = pickle.loads(pickle.dumps(motion))
-    results = [m.propagate(particles, sigma, np.random.default_rng(2)) for m in (motion, again)]
-    assert np.array_equal(*results)
-    motion.deviations(particles, STATE)
-    assert (particles == STATE).all()
-    assert (sigma == 0.1).all()

@@ -20,12 +20,10 @@ WORTH = 50.0  # pixels: what the calibration found, written down a second time
 def test_as_many_particles_are_left_as_asked_for(rng, sample_size):
     scores = rng.random(100)
     tempered = temper(scores, sample_size)
+    expected = np.exp(tempered.sharpness * scores)
     assert tempered.ess == pytest.approx(sample_size, rel=1e-6)
-    assert tempered.weights.sum() == pytest.approx(1)
-    assert tempered.weights == pytest.approx(
-        np.exp(tempered.sharpness * scores) / np.exp(tempered.sharpness * scores).sum()
-    )
-    assert (np.diff(tempered.weights[np.argsort(scores)]) > 0).all()
+    assert tempered.sharpness > 0
+    assert tempered.weights == pytest.approx(expected / expected.sum())
 
 
 def test_too_few_particles_weigh_the_same_and_equal_scores_too(rng):
@@ -33,6 +31,9 @@ def test_too_few_particles_weigh_the_same_and_equal_scores_too(rng):
     assert temper(rng.random(5), 10).sharpness == 0
     equal = temper(np.full(20, 0.7), 4)
     assert (equal.sharpness, equal.ess) == (SHARPEST, pytest.approx(20))
+    for scores in ([], [0.1, np.nan], [[0.1, 0.2]]):
+        with pytest.raises(ValueError, match="scores must be"):
+            temper(np.array(scores), 2)
 
 
 def test_a_quadratic_score_gives_the_gaussian_that_it_describes(rng):
@@ -104,9 +105,7 @@ def test_along_a_wall_errors_add_up_and_the_covariance_with_them(rng):
     """Of 100 walks the squared error of x grows with time, as its variance says: one frame's share says far less."""
     ratios, by_one_frame = [], []
     for seed in range(100):
-        localizer = MonteCarloLocalizer(
-            Wall(), 60, [0.1, 0.1, 0, 0, 0, 0], seed=seed, motion=BODY_AXES, weighting=distance_to_the_wall
-        )
+        localizer = MonteCarloLocalizer(Wall(), 60, [0.1, 0.1, 0, 0, 0, 0], seed=seed, weighting=distance_to_the_wall)
         true = np.zeros(6)
         localizer.initialize(true)
         for _ in range(20):
@@ -148,15 +147,14 @@ def test_too_few_particles_have_no_normalized_error(covariance):
     assert np.isnan(normalized_error(np.full(6, 0.1), covariance))
 
 
-@pytest.mark.parametrize("seed", [10_001, 10_002])
-def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_folder, seed):
+def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_folder):
     """Between 0.5 and 2 in the mean; by the spread of the paper's weights they are beyond any number."""
     sequence = read_sequence(corridor_folder / "wagon")
     camera = sequence.camera()
     small, frames = camera.resized(44, 36), range(40)
     true = state_from_optical_pose(sequence.camera_to_world[: len(frames)])
     with DepthRenderer(SceneMap.load(corridor_folder / "map.ply"), small, "ray") as renderer:
-        localizer = MonteCarloLocalizer(renderer, 100, seed=seed)
+        localizer = MonteCarloLocalizer(renderer, 100, seed=10_001)
         localizer.initialize(true[0])
         estimates = [localizer.step(subsample_depth(sequence.depth(i), camera, small)) for i in frames]
     pairs = list(zip(estimates, true, strict=True))
@@ -165,9 +163,3 @@ def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_
     assert 0.5 < np.mean(normalized) < 2
     # The spread of the paper's own weights is no answer: beyond ten sigma in more than half of the frames.
     assert np.median([abs(e.state[0] - state[0]) / np.sqrt(e.covariance[0, 0] + 1e-30) for e, state in pairs]) > 10
-
-
-@pytest.mark.parametrize("scores", [[], [0.1, np.nan], [[0.1, 0.2]]])
-def test_scores_that_are_none_are_named(scores):
-    with pytest.raises(ValueError, match="scores must be"):
-        temper(np.array(scores), 2)

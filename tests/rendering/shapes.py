@@ -27,16 +27,18 @@ def rough_wall(rng, distance=0.9, half=3.0, edge=0.08, sigma=0.012):
     return SceneMap(np.column_stack([distance + sigma * rng.standard_normal(n * n), y, z]), faces.reshape(-1, 3))
 
 
+def _with_boxes(mesh, *boxes):
+    """A mesh and boxes of (size, place)."""
+    boxes = [trimesh.creation.box(size, trimesh.transformations.translation_matrix(at)) for size, at in boxes]
+    joined = trimesh.util.concatenate([mesh, *boxes])
+    return SceneMap(joined.vertices, joined.faces)
+
+
 def fence(distance=0.9, pitch=0.4):
     """A wall with posts that look alike, one every `pitch` metres along y, and a sill."""
-    posts = [
-        trimesh.creation.box((0.1, 0.12, 6.0), trimesh.transformations.translation_matrix((distance, y, 0.0)))
-        for y in pitch * np.arange(-25, 26)
-    ]
-    sill = trimesh.creation.box((0.3, 40.0, 0.2), trimesh.transformations.translation_matrix((distance, 0.0, -0.3)))
     behind = wall(distance + 0.05)
-    joined = trimesh.util.concatenate([trimesh.Trimesh(behind.vertices, behind.faces), *posts, sill])
-    return SceneMap(joined.vertices, joined.faces)
+    posts = [((0.1, 0.12, 6.0), (distance, y, 0.0)) for y in pitch * np.arange(-25, 26)]
+    return _with_boxes(trimesh.Trimesh(behind.vertices, behind.faces), *posts, ((0.3, 40, 0.2), (distance, 0, -0.3)))
 
 
 def room(size=6.0, offset=(0.0, 0.0, 0.0)):
@@ -53,10 +55,7 @@ def furnished_room():
         ((0.4, 1.0, 0.8), (2.8, 0.9, 0.4)), ((0.5, 0.6, 1.3), (2.75, -0.5, 1.1)), ((1.1, 0.3, 0.5), (0.4, -2.85, 0.6)),
         ((0.7, 0.4, 0.4), (0.8, 0.2, 2.8)), ((0.3, 0.9, 0.5), (2.85, -2.2, 0.2)), ((0.9, 0.3, 1.2), (1.6, 2.85, 0.9)),
     ]  # fmt: skip
-    meshes = [trimesh.creation.box((6.0,) * 3)]
-    meshes += [trimesh.creation.box(size, trimesh.transformations.translation_matrix(at)) for size, at in boxes]
-    joined = trimesh.util.concatenate(meshes)
-    return SceneMap(joined.vertices, joined.faces)
+    return _with_boxes(trimesh.creation.box((6.0,) * 3), *boxes)
 
 
 def room_depth(camera, states, size=6.0, offset=(0.0, 0.0, 0.0)):
@@ -81,15 +80,3 @@ def random_states(n, rng, spread=3.0):
     states[:, 3:] = rng.uniform(-np.pi, np.pi, (n, 3))
     states[:, 4] /= 2
     return states
-
-
-def neighbours_agree(image):
-    """Pixels `(N, H, W)` whose whole 3 x 3 neighbourhood holds the same value; image borders are left out."""
-    same = np.zeros(image.shape, dtype=bool)
-    inner = np.ones(image[:, 1:-1, 1:-1].shape, dtype=bool)
-    for row in (0, 1, 2):
-        for column in (0, 1, 2):
-            height, width = image.shape[1:]
-            inner &= image[:, row : row + height - 2, column : column + width - 2] == image[:, 1:-1, 1:-1]
-    same[:, 1:-1, 1:-1] = inner
-    return same

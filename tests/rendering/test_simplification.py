@@ -1,7 +1,5 @@
 """Fewer triangles that look the same: within the tolerance, holes where they were, kept for the next process."""
 
-import warnings
-
 import numpy as np
 import pytest
 
@@ -64,54 +62,37 @@ def test_corners_written_for_each_triangle_are_one_and_distance_from_the_worlds_
         assert len(simplification.simplified(other)) == pytest.approx(len(simplification.simplified(wall)), rel=0.05)
 
 
-def test_a_map_that_is_small_or_of_which_nothing_can_go_is_drawn_as_it_is():
+def test_a_map_that_is_small_or_of_which_nothing_can_go_is_drawn_as_it_is(monkeypatch):
     small, rough = SceneMap(np.eye(3), np.array([[0, 1, 2]])), bumpy_wall(amplitude=0.3)
     assert simplification.simplified(small) is small
-    assert len(simplification.simplified(rough, 0.001)) > 0.95 * len(rough)
+    monkeypatch.setattr(simplification, "TOLERANCE", 0.001)
+    assert len(simplification.simplified(rough)) > 0.95 * len(rough)
 
 
 def test_what_was_found_is_kept_for_the_next_process(monkeypatch, a_cache_of_its_own):
-    wall = bumpy_wall()
+    """And made again where what was kept is damaged, and where nothing can be kept."""
+    wall, kept = bumpy_wall(), lambda: list(a_cache_of_its_own.rglob("output.pkl"))
     first = simplification.simplified(wall)
     simplification.simplified.cache_clear()
     with monkeypatch.context() as patched:
-        patched.setattr(simplification, "_simplify", lambda *_: pytest.fail("it was made again"))
+        patched.setattr(simplification, "_welded", lambda *_: pytest.fail("it was made again"))
         again = simplification.simplified(wall)
         np.testing.assert_array_equal(again.vertices, first.vertices)
         np.testing.assert_array_equal(again.faces, first.faces)
     simplification.simplified(bumpy_wall(seed=4))
-    simplification.simplified(wall, 0.01)
-    assert len(list(a_cache_of_its_own.rglob("*.npz"))) == 3
-
-
-def test_what_is_damaged_is_made_again_and_where_nothing_can_be_kept_it_works(monkeypatch, a_cache_of_its_own):
-    wall = bumpy_wall()
-    first = simplification.simplified(wall)
-    (kept,) = a_cache_of_its_own.rglob("*.npz")
-    kept.write_bytes(kept.read_bytes()[:1000])
-    simplification.simplified.cache_clear()
-    assert len(simplification.simplified(wall)) == len(first)
+    with monkeypatch.context() as patched:
+        patched.setattr(simplification, "TOLERANCE", 0.01)
+        simplification.simplified.cache_clear()
+        simplification.simplified(wall)
+    assert len(kept()) == 3
     file = a_cache_of_its_own / "a file, no folder"
     file.write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(file))
-    simplification.simplified.cache_clear()
-    assert len(simplification.simplified(wall)) == len(first)
-
-
-def test_who_has_to_wait_is_told_why_and_only_once(monkeypatch):
-    monkeypatch.setattr(simplification, "QUICK_TRIANGLES", 21_000)
-    with pytest.warns(simplification.LargeMapWarning, match="exact=True"):
-        simplification.simplified(bumpy_wall())
-    simplification.simplified.cache_clear()
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        simplification.simplified(bumpy_wall())
-
-
-@pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf])
-def test_a_tolerance_that_is_none_is_refused(tolerance):
-    with pytest.raises(ValueError, match="tolerance must be a positive number"):
-        simplification.simplified(bumpy_wall(), tolerance)
+    for path in kept():
+        path.write_bytes(path.read_bytes()[:1000])
+    for place in (a_cache_of_its_own, file):
+        monkeypatch.setenv("XDG_CACHE_HOME", str(place))
+        simplification.simplified.cache_clear()
+        assert len(simplification.simplified(wall)) == len(first)
 
 
 def test_against_the_true_world_fewer_triangles_are_no_worse(corridor_folder):

@@ -1,16 +1,9 @@
-"""One renderer in several threads, after a fork, and pickled: right images or a named error, never a hang.
-
-Whoever could hang is waited for with a limit and killed, so that a hang is a failure of one test. The limit is no
-measure of speed: it only has to be longer than a slow, busy machine takes, for a forked child (which has all it needs
-in memory) and for a new process.
-"""
+"""One renderer in several threads, after a fork, and pickled: right images or a named error, never a hang."""
 
 import gc
 import multiprocessing
 import os
-import select
-import signal
-import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -18,8 +11,7 @@ import pytest
 from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from tests.rendering.shapes import SMALL, random_states, room, room_depth
 
-PATIENCE_WITH_A_CHILD = 30.0
-PATIENCE = 240.0
+PATIENCE_WITH_A_CHILD, PATIENCE = 30.0, 240.0  # seconds that a forked child or a new process takes on no machine
 CAMERA = SMALL.resized(32, 24)
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
@@ -43,46 +35,23 @@ def is_right(images, states):
     return bool(np.mean(np.abs(images - room_depth(CAMERA, states)) < 1e-3) > 0.98)
 
 
-def run_together(works):
-    """Runs each function in a thread of its own, all at once, and returns what they returned, or their errors."""
-    results = [None] * len(works)
-    start = threading.Barrier(len(works))
-
-    def run(index):
-        start.wait()
-        try:
-            results[index] = works[index]()
-        except Exception as error:
-            results[index] = error
-
-    threads = [threading.Thread(target=run, args=(index,), daemon=True) for index in range(len(works))]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join(PATIENCE)
-    assert not any(thread.is_alive() for thread in threads), "a thread hangs"
-    return results
-
-
 def in_a_fork(work):
     """What `work()` returns in a forked child, or its error's name and message, or HANGS (it is killed then)."""
-    read_end, write_end = os.pipe()
-    child = os.fork()
-    if child == 0:
+    receiver, sender = multiprocessing.Pipe(duplex=False)
+
+    def answer():
         try:
-            answer = str(work())
+            sender.send(str(work()))
         except BaseException as error:
-            answer = f"{type(error).__name__}: {error}"
-        os.write(write_end, answer.encode())
-        os._exit(0)
-    os.close(write_end)
+            sender.send(f"{type(error).__name__}: {error}")
+
+    child = multiprocessing.get_context("fork").Process(target=answer)
+    child.start()
     try:
-        answered = select.select([read_end], [], [], PATIENCE_WITH_A_CHILD)[0]
-        return os.read(read_end, 10_000).decode() if answered else "HANGS"
+        return receiver.recv() if receiver.poll(PATIENCE_WITH_A_CHILD) else "HANGS"
     finally:
-        os.kill(child, signal.SIGKILL)
-        os.waitpid(child, 0)
-        os.close(read_end)
+        child.kill()
+        child.join()
 
 
 def test_threads_that_share_a_renderer_each_get_their_own_images_and_measurement(renderer):
@@ -96,8 +65,9 @@ def test_threads_that_share_a_renderer_each_get_their_own_images_and_measurement
             for states in rounds
         ]
 
-    assert run_together([lambda seed=seed: work(seed) for seed in range(4)]) == [[True] * 10] * 4
-    assert run_together([renderer.close]) == [None]
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(work, range(4), timeout=PATIENCE)) == [[True] * 10] * 4
+        pool.submit(renderer.close).result(PATIENCE)
     with pytest.raises(RendererClosedError):
         renderer.render(np.zeros(6))
 

@@ -1,7 +1,5 @@
 """How sure the best pose is: is it ahead of the others and of "none of them", and near what was seen?"""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,8 +9,7 @@ from course_lib.beyond.look_alikes.evidence import CLUTTER_DENSITY, FAR_RANGE, E
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-# Share of the evidence that is believed when hypotheses are weighed, because errors of one room, such as a wrong
-# baseline, are in all its observations at once.
+# Share of the evidence that is believed, because errors such as a wrong baseline are in all observations at once.
 TEMPER = 0.5
 MIN_INLIERS = 3  # Matched observations that a pose needs, because two always fit.
 DOUBT = 0.001  # Share of the right poses whose residuals may be called too large, if the covariances are exact.
@@ -37,17 +34,10 @@ def area(semantic_map: SemanticMap) -> float:
     return float(np.prod(np.ptp(semantic_map.positions, axis=0) + 2 * MARGIN))
 
 
-def with_shares(
-    ranked: Sequence[PoseHypothesis],
-    score_of_none: float,
-    evidence: Evidence = Evidence(),  # noqa: B008
-) -> tuple[PoseHypothesis, ...]:
-    """Return the same poses with their shares of the belief: exp(`TEMPER` score) over the sum of all.
-
-    With `absolute` evidence the sum contains "none of these", because a pose must be ahead of it too.
-    """
+def with_shares(ranked: Sequence[PoseHypothesis], score_of_none: float | None) -> tuple[PoseHypothesis, ...]:
+    """Return the same poses with their shares of the belief: exp(`TEMPER` score) over the sum of all and of none."""
     scores = [one.score for one in ranked]
-    if evidence.absolute:
+    if score_of_none is not None:
         scores.append(score_of_none)
     weights = np.exp(TEMPER * (np.array(scores) - max(scores)))
     shares = weights / weights.sum()

@@ -4,8 +4,6 @@ hypotheses (every two matches give a pose) -> score (one-to-one assignment, unma
 distinct poses -> confidence. Beyond the paper, whose own `associate_greedy` asks for no pose.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -63,10 +61,10 @@ def rank_poses(
     ranked = explain(scene, found.poses[chosen], found.covariances[chosen], evidence)
     if not ranked:
         return ()
-    scores = np.array([one.score for one in ranked])
-    kept = distinct(np.array([one.pose for one in ranked]), scores, len(ranked))
+    kept = distinct(np.array([one.pose for one in ranked]), np.array([one.score for one in ranked]), len(ranked))
     ranked = [ranked[k] for k in kept]
-    return with_shares(ranked, len(observations) * score_of_nothing(semantic_map), evidence)[:n]
+    nothing = len(observations) * score_of_nothing(semantic_map) if evidence.absolute else None
+    return with_shares(ranked, nothing)[:n]
 
 
 def associate_consistent(
@@ -132,12 +130,7 @@ def assign(cost: np.ndarray, one_to_one: bool = True) -> tuple[tuple[int, int], 
     return tuple((int(i), int(j)) for i, j in zip(*linear_sum_assignment(gains), strict=True) if gains[i, j] < 0)
 
 
-def explain(
-    scene: Scene,
-    poses: np.ndarray,
-    covariances: np.ndarray,
-    evidence: Evidence = Evidence(),  # noqa: B008
-) -> list[PoseHypothesis]:
+def explain(scene: Scene, poses: np.ndarray, covariances: np.ndarray, evidence: Evidence) -> list[PoseHypothesis]:
     """Return what each pose `(h, 3)` with its covariance `(h, 3, 3)` makes of the scene: assigned, refitted, scored.
 
     A pose that explains fewer than two observations is left out.
@@ -159,17 +152,10 @@ def explain(
         if len(pairs) < 2:
             continue
         i, j = np.array(pairs).T
-        missed = sorted(set(np.flatnonzero(chance[k] > 0.5)) - set(j))
-        explained.append(
-            PoseHypothesis(
-                Pose2D(*map(float, pose)),
-                spread[k],
-                pairs,
-                float(-cost[k][i, j].sum() - base[k]),
-                float(squared[k][i, j].sum()),
-                tuple(map(int, missed)),
-            )
-        )
+        score, chi_square = float(-cost[k][i, j].sum() - base[k]), float(squared[k][i, j].sum())
+        missed = sorted(set(map(int, np.flatnonzero(chance[k] > 0.5))) - set(map(int, j)))
+        pose = Pose2D(*map(float, pose))
+        explained.append(PoseHypothesis(pose, spread[k], pairs, score, chi_square, tuple(missed)))
     return explained
 
 

@@ -1,10 +1,7 @@
-"""How well a pose explains what is seen and what is not: each kind of evidence a function, all in nats.
+"""How well h poses explain what is seen and what is not: each kind of evidence a function.
 
-Costs are negative logarithms of probabilities, so that they add up: a cost of 3 is odds of 20 to 1. All functions take
-h poses at once. Beyond the paper.
+Costs are negative logarithms of probabilities, in nats, so that they add up: a cost of 3 is odds of 20 to 1.
 """
-
-from __future__ import annotations
 
 from typing import NamedTuple
 
@@ -87,7 +84,7 @@ def detection_probabilities(semantic_map: SemanticMap, poses: np.ndarray, max_ra
 
 
 def free_space_costs(semantic_map: SemanticMap, poses: np.ndarray) -> np.ndarray:
-    """Cost `(h,)`: `OUTSIDE_COST` for a pose inside furniture or outside the walls, as far as the map knows; else 0."""
+    """Return costs `(h,)`: `OUTSIDE_COST` for a pose inside furniture or outside the walls, as far as known; else 0."""
     distance = np.linalg.norm(semantic_map.positions[None] - poses[:, None, :2], axis=-1)
     blocked = (distance < BODY_RADIUS).any(axis=1)
     if semantic_map.walls is not None:
@@ -96,7 +93,7 @@ def free_space_costs(semantic_map: SemanticMap, poses: np.ndarray) -> np.ndarray
 
 
 def inside_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Whether points `(h, 2)` lie inside a polygon of corners `(k, 2)`: an odd number of its edges to their right."""
+    """Return whether points `(h, 2)` are inside a polygon `(k, 2)`: an odd number of its edges is to their right."""
     x, y = points[:, 0, None], points[:, 1, None]
     ends = np.roll(corners, -1, axis=0)
     crosses = (corners[:, 1] > y) != (ends[:, 1] > y)

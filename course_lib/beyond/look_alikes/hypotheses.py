@@ -1,10 +1,7 @@
-"""Poses of two matches: every pair of observations is laid on every pair of landmarks that it may show. Beyond the
-paper.
+"""Poses of two matches: every pair of observations is laid on every pair of landmarks that it may show.
 
 If objects look alike, no match can be believed alone, but two give a pose that everything else can judge.
 """
-
-from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -109,8 +106,7 @@ def fit_poses(
     """Return the anisotropic fits of many poses at once: poses `(h, 3)` and their covariances `(h, 3, 3)`.
 
     Gauss-Newton steps from `start` `(h, 3)` on sum_k r_k^T (R C_k R^T + `MAP_SIGMA`^2 I)^-1 r_k, r_k = R z_k + t - m_k.
-    places, targets: `(h, k, 2)`. covariances: `(h, k, 2, 2)`, body frame. used: `(h, k)` bool, two or more of each
-    pose.
+    places, targets: `(h, k, 2)`. covariances: `(h, k, 2, 2)`, body frame. used: `(h, k)` bool, two or more a pose.
     """
     poses = np.array(start, dtype=np.float64).reshape(-1, 3)
     normal = np.tile(np.eye(3), (len(poses), 1, 1))
@@ -138,6 +134,6 @@ def seen_from(poses: np.ndarray, places: np.ndarray, covariances: np.ndarray) ->
 
 
 def rotations(theta: np.ndarray) -> np.ndarray:
-    """R(theta) `(..., 2, 2)` of angles `(...)`, radians."""
+    """Return R(theta) `(..., 2, 2)` of angles `(...)`, radians."""
     cosine, sine = np.cos(theta), np.sin(theta)
     return np.stack([np.stack([cosine, -sine], axis=-1), np.stack([sine, cosine], axis=-1)], axis=-2)

@@ -1,7 +1,5 @@
 """The matchers by name. All are called as `associate_greedy` is, and any can stand for another."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from scipy.optimize import linear_sum_assignment

@@ -7,8 +7,6 @@ below epsilon with the probability of quantile z if
     n = (k - 1) / (2 epsilon) (1 - 2 / (9 (k - 1)) + sqrt(2 / (9 (k - 1))) z)^3
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.stats import norm
 

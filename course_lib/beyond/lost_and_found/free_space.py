@@ -1,25 +1,17 @@
 """Where in a map a camera can be: not inside a wall, and not outside the building."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.rendering.ray import EmbreeCaster
 from course_lib.rendering.scene_map import SceneMap
 
 CLEARANCE = 0.15  # metres to the nearest surface (chosen: no camera is nearer, and it would see nothing)
-# Share of directions that must meet the map, in a map of a building (chosen: just outside a wall it is half).
-ENCLOSED = 0.65
-# A map whose box is smaller than this, in cubic metres, is searched whole. It may show one side of one room, and the
-# camera stands where the scanner stood, on the open side (chosen: a large room).
+ENCLOSED = 0.65  # share of directions that must meet the map of a building (chosen: just outside a wall it is half)
+# Cubic metres. A smaller map is searched whole, because it may show one side of one room (chosen: a large room).
 SMALL_MAP = 100.0
 _DIRECTIONS = 32
 _TRIES = 20_000  # positions drawn at once
 _MAX_ROUNDS = 30
-
-
-class FreeSpaceError(ValueError):
-    """A map without free space for a camera."""
 
 
 class FreeSpace:
@@ -45,7 +37,7 @@ class FreeSpace:
         return distances.reshape(len(positions), _DIRECTIONS)
 
     def draw(self, n: int, rng: np.random.Generator) -> np.ndarray:
-        """Draw positions `(n, 3)` evenly from the free space. Raises `FreeSpaceError` if there is hardly any."""
+        """Draw positions `(n, 3)` evenly from the free space. Raises `ValueError` if there is hardly any."""
         found: list[np.ndarray] = []
         low, high = self._map.bounds
         for _ in range(_MAX_ROUNDS):
@@ -53,7 +45,6 @@ class FreeSpace:
                 return np.concatenate(found)[:n]
             tried = rng.uniform(low, high, (_TRIES, 3))
             found.append(tried[self.contains(tried)])
-        raise FreeSpaceError(
-            f"hardly a free place in the map {self._map!r}: {sum(map(len, found))} of {_TRIES * _MAX_ROUNDS} positions "
-            f"were {CLEARANCE} m from every surface and enclosed. Is the map closed, and in metres?"
+        raise ValueError(
+            f"{self._map!r} has hardly a free place {CLEARANCE} m from all surfaces: is it closed, and in metres?"
         )

@@ -9,8 +9,6 @@ The answer is one pose only if no other pose explains the frames as well; where 
 several. Gravity is known (an accelerometer measures it), so only four degrees of freedom have to be searched.
 """
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -76,9 +74,7 @@ class _Followed(MotionPrediction):
 
 
 class GlobalSearch:
-    """Looks for the camera in all free space of a map. least, most: bounds on the poses drawn in a frame
-    (KLD-sampling).
-    """
+    """Looks for the camera in all free space of a map. least, most: poses drawn in a frame (KLD-sampling)."""
 
     def __init__(self, renderer: DepthRenderer, *, seed: int = 0, least: int = 1_000, most: int = 10_000) -> None:
         self.renderer = renderer
@@ -118,11 +114,14 @@ class GlobalSearch:
         poses, scores = self._draw(gravity, tilt_sigma)
         self._add_new(poses, scores, suggested)
         self._drop()
-        status, candidates = self._answer()
-        return PoseCandidates(status, candidates, len(poses), sum(level.renders for level in levels))
+        candidates = [
+            PoseCandidate(state_from_optical_pose(one.pose), one.evidence, one.frames)
+            for one in sorted(self._followed, key=lambda one: -one.evidence)
+        ]
+        return PoseCandidates(_status(candidates), candidates, len(poses), sum(level.renders for level in levels))
 
     def _draw(self, gravity: np.ndarray, tilt_sigma: float) -> tuple[np.ndarray, np.ndarray]:
-        """Poses from free space and their scores on the coarsest image."""
+        """Return poses from free space and their scores on the coarsest image."""
         poses, scores = [], []
         for begin in range(0, self._count, BATCH):
             positions = self.free_space.draw(min(BATCH, self._count - begin), self.rng)
@@ -131,7 +130,7 @@ class GlobalSearch:
         return np.concatenate(poses), np.concatenate(scores)
 
     def _follow(self) -> None:
-        """Every candidate moves on: the best of a small cloud, refined."""
+        """Move every candidate on to the best of a small cloud, refined."""
         if not self._followed:
             return
         clouds = [one.draw(FOLLOWERS, one.spread(), self.rng) for one in self._followed]
@@ -151,7 +150,7 @@ class GlobalSearch:
             one.saw(poses[best], values[best])
 
     def _add_new(self, poses: np.ndarray, scores: np.ndarray, suggested: np.ndarray | None) -> None:
-        """The best of the new poses, refined, become candidates unless they are known ones."""
+        """Refine the best of the new poses and follow them, unless they are known."""
         poses = poses[distinct(poses, scores, STARTS[0], APART)]
         for scale, keep in zip(START_SCALES, STARTS, strict=True):
             images = self._coarse.draw(poses)
@@ -172,7 +171,7 @@ class GlobalSearch:
         return poses
 
     def _values(self, poses: np.ndarray) -> np.ndarray:
-        """agreeing - 3 through of every pose, on the middle image."""
+        """Return agreeing - 3 through of every pose, on the middle image."""
         found = [agreement(self._middle.measured, image) for image in self._middle.draw(poses)]
         return np.nan_to_num([one.refined_support for one in found], nan=-1.0)
 
@@ -186,18 +185,14 @@ class GlobalSearch:
         bins = occupied_bins(np.array([one.pose for one in self._followed]), 0.5, 0.5)
         self._count = self.most if bins == 0 else kld_count(bins, self.least, self.most)
 
-    def _answer(self) -> tuple[str, list[PoseCandidate]]:
-        """What the candidates amount to, and the candidates, best first."""
-        poses = [
-            PoseCandidate(state_from_optical_pose(one.pose), one.evidence, one.frames)
-            for one in sorted(self._followed, key=lambda one: -one.evidence)
-        ]
-        old = [one for one in poses if one.frames >= FRAMES_TO_BELIEVE]
-        status = "searching"
-        if old:
-            rivals = [one for one in poses if one is not old[0] and one.evidence > old[0].evidence - CLEAR_GAP]
-            status = "several" if rivals else "found"
-        return status, poses
+
+def _status(poses: list[PoseCandidate]) -> Literal["found", "several", "searching"]:
+    """Return what candidates, best first, amount to."""
+    old = [one for one in poses if one.frames >= FRAMES_TO_BELIEVE]
+    if not old:
+        return "searching"
+    rivals = [one for one in poses if one is not old[0] and one.evidence > old[0].evidence - CLEAR_GAP]
+    return "several" if rivals else "found"
 
 
 def upright_poses(
@@ -217,15 +212,15 @@ def upright_poses(
 
 
 def _turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The rotation `(3, 3)` that turns unit vector a into b by the shortest way."""
+    """Return the rotation `(3, 3)` that turns unit vector a into b by the shortest way."""
     axis, cosine = np.cross(a, b), float(a @ b)
     sine = np.linalg.norm(axis)
-    if sine < 1e-9:
-        if cosine > 0:
-            return np.eye(3)
-        axis, sine = np.cross(a, np.eye(3)[np.argmin(np.abs(a))]), 0.0
-        return rotation_exp(np.pi * axis / np.linalg.norm(axis))
-    return rotation_exp(axis / sine * np.arctan2(sine, cosine))
+    if sine >= 1e-9:
+        return rotation_exp(axis / sine * np.arctan2(sine, cosine))
+    if cosine > 0:
+        return np.eye(3)
+    axis = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
+    return rotation_exp(np.pi * axis / np.linalg.norm(axis))
 
 
 def same_place(a: np.ndarray, b: np.ndarray) -> bool:

@@ -1,14 +1,9 @@
 """Carried away while it could not see: the filter notices by its raw score, and searches.
 
-The weights of a particle filter cannot say that all particles are in the wrong place. The raw score can, because it is
-not normalized. Two running means of it are kept, one short and one long (augmented MCL: Thrun, Burgard, Fox,
-Probabilistic Robotics, 8.3.5). A global search begins if the short mean falls well below the long one and the pose
-cannot be right, or if the camera was covered. The filter goes on beside the search and suggests its own pose, as one
-candidate among others, because a filter that slid into a place that looks alike is as sure as one that is right. The
-search decides.
+A short and a long running mean of the raw score are kept (augmented MCL: Thrun, Burgard, Fox, Probabilistic Robotics,
+8.3.5). A global search begins if the short mean falls well below the long one and the pose cannot be right, or if the
+camera was covered. The filter goes on and suggests its pose as one candidate among others. The search decides.
 """
-
-from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
@@ -24,15 +19,17 @@ SHORT, LONG = 0.4, 0.03  # shares of a new frame in the two means
 ALARM = 0.8  # the short mean below this share of the long one
 COVERED = 3  # frames in a row without a measurement, in which the camera may have been carried away
 PATIENCE = 20  # frames of a search that cannot decide, after which a filter that is tracked is believed
-# Without an accelerometer: the tilt is that of the last frame that was tracked, to within so much.
-UNKNOWN_TILT_SIGMA = np.deg2rad(15.0)
+UNKNOWN_TILT_SIGMA = np.deg2rad(15.0)  # of the last tracked frame's tilt, which serves without an accelerometer
+
+
+Mode = Literal["following", "searching", "found again"]  # the last if the search set the filter to a new place
 
 
 class RecoveryEstimate(NamedTuple):
     """What one frame gave."""
 
     estimate: AnnealedEstimate  # Of the filter; its status says what it is worth.
-    mode: Literal["following", "searching", "found again"]  # the last where the search set the filter to a new place
+    mode: Mode
     candidates: PoseCandidates | None  # The answer of the search, while there is one.
     short: float
     long: float  # The two means of the raw score.
@@ -69,7 +66,8 @@ class RecoveringLocalizer:
             self._covered += 1
             return RecoveryEstimate(estimate, self._mode(), None, self._short or 0.0, self._long or 0.0)
         self._remember(estimate)
-        if not self.searching and (self._covered >= COVERED or self._alarmed(estimate)):
+        alarm = estimate.status == "lost" and self._short < ALARM * self._long
+        if not self.searching and (self._covered >= COVERED or alarm):
             self.searching, self._searched = True, 0
             self.search.forget()
         self._covered = 0
@@ -84,9 +82,7 @@ class RecoveringLocalizer:
             estimate = self.localizer.step(depth)
         return RecoveryEstimate(estimate, mode, candidates, self._short, self._long)
 
-    def _decide(
-        self, estimate: AnnealedEstimate, candidates: PoseCandidates
-    ) -> Literal["following", "searching", "found again"]:
+    def _decide(self, estimate: AnnealedEstimate, candidates: PoseCandidates) -> Mode:
         """End the search if it knows, and set the filter to the pose that it found, unless it is there already."""
         if candidates.status == "found":
             best = candidates.poses[0].state
@@ -98,7 +94,7 @@ class RecoveringLocalizer:
         self.searching = self._searched < PATIENCE or estimate.status != "tracked"
         return self._mode()
 
-    def _mode(self) -> Literal["following", "searching"]:
+    def _mode(self) -> Mode:
         return "searching" if self.searching else "following"
 
     def _remember(self, estimate: AnnealedEstimate) -> None:
@@ -106,14 +102,11 @@ class RecoveringLocalizer:
         if not self.searching:  # a lost filter does not score as usual
             self._long = _mean(self._long, estimate.score, LONG)
 
-    def _alarmed(self, estimate: AnnealedEstimate) -> bool:
-        return estimate.status == "lost" and self._short < ALARM * self._long
-
 
 def _mean(before: float | None, new: float, share: float) -> float:
     return new if before is None else (1 - share) * before + share * new
 
 
 def _down_in_camera(state: np.ndarray) -> np.ndarray:
-    """The world's down `(3,)` in the optical frame of a state `(6,)`."""
+    """Return the world's down `(3,)` in the optical frame of a state `(6,)`."""
     return -optical_pose(state)[2, :3]

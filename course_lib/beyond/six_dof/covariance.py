@@ -1,11 +1,8 @@
 """How far off a refined pose may be: the image answers for some directions, the prediction for the others.
 
-Errors of the map and the camera shift thousands of pixels at once, so the whole image counts as a small number of
-independent pixels. What an image does not show (along a smooth wall) keeps the prediction's variance. Otherwise a bare
-wall is a trap: the pose slides on its roughness, and the prediction takes the slide for a motion.
+Errors of the map and the camera shift thousands of pixels at once, so an image counts as a few independent pixels. What
+it does not show keeps the prediction's variance: before a bare wall the pose would else slide on its roughness.
 """
-
-from __future__ import annotations
 
 from collections.abc import Sequence
 
@@ -17,7 +14,7 @@ from course_lib.beyond.six_dof.refinement import surface_normals
 from course_lib.geometry import BODY_FROM_OPTICAL, rotation_exp
 from course_lib.rendering.camera import DepthCamera
 
-# Chosen on development recordings: the kitchen, the shipped corridor, and walks through rooms (seeds from 10,041 on).
+# Chosen on the kitchen, the shipped corridor, and walks through rooms (seeds from 10,041 on).
 INDEPENDENT_PIXELS = 20.0
 SCALE = 0.05  # metres: robust scale of the residuals, as in the last steps of the refinement
 MIN_SIGMA = 0.005  # metres: no map and no camera are better

@@ -9,16 +9,15 @@ A frame goes through the paper's steps several times, each time closer:
 
     predict    draw particles about where the camera may be, as wide as it has been moving (prediction.py)
     anneal     weigh them on coarse images, gently, so that enough survive (uncertainty.py); resample; with less noise
-    refine     take the best that differ, by Gauss-Newton on finer and finer images (refinement.py), and drop the worst
+    refine     take the best that differ (poses.py) and refine them by Gauss-Newton on finer and finer images
+               (refinement.py, schedule.py)
     doubt      if the best agrees less with the map than frames did before, look once more with a wider cloud
     fuse       believe the prediction along what the image does not show (covariance.py)
     judge      say whether the pose is known (being_lost.py)
 
-Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention. Noise, means and deviations are taken in
-their tangent space, which has no gimbal lock. Estimates are states, as `MonteCarloLocalizer` gives them.
+Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention, and their noise is drawn in the tangent
+space, which has no gimbal lock. Estimates are states, as `MonteCarloLocalizer` gives them.
 """
-
-from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
@@ -45,8 +44,7 @@ from course_lib.depth_mcl.uncertainty import Tempered, temper
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 
-# All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th; what
-# concerns rivals on walks through rooms, seeds 10,041 to 10,066.
+# All chosen on the kitchen and the shipped corridor; those of rivals on walks through rooms, seeds 10,041 to 10,066.
 APART = 0.2  # of the prediction's spread: two particles nearer than this are one hypothesis
 DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same for two refined poses
 RIVAL_WITHIN = 0.06  # of raw score: a pose that fits less is no rival of the best
@@ -54,7 +52,7 @@ RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
 
 
 class AnnealedEstimate(NamedTuple):
-    """What one frame gave: the same as `Estimate`, and how it was reached."""
+    """What one frame gave: as `Estimate`, and how it was reached."""
 
     state: np.ndarray  # `(6,)` the best refined pose.
     covariance: np.ndarray  # `(6, 6)` of the last particles, metres in world axes, radians in body axes
@@ -119,9 +117,7 @@ class AnnealedLocalizer:
         self._covariance: np.ndarray | None = None
 
     def initialize(self, state0: np.ndarray) -> None:
-        """Say where the camera `(6,)` is before the first frame, to within some decimetres and degrees
-        (`START_SPREAD`).
-        """
+        """Say where the camera `(6,)` is before the first frame, to within `START_SPREAD`."""
         self._prediction = self._new_prediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
         self._judge = TrackJudge()
         self._covariance = None
@@ -129,9 +125,8 @@ class AnnealedLocalizer:
     def step(self, depth: np.ndarray, increment: np.ndarray | None = None) -> AnnealedEstimate:
         """Return where the camera is, from a depth image `(H, W)` in metres, NaN = no measurement.
 
-        increment: motion `(6,)` since the last frame by an odometer or an IMU, metres along and radians about the
-        camera's own optical axes. A frame without any measurement warns (`NoMeasurementWarning`): the state is then the
-        prediction.
+        increment: motion `(6,)` since the last frame by an odometer or an IMU, along and about the camera's own optical
+        axes. A frame without any measurement warns (`NoMeasurementWarning`), and its state is the prediction.
         """
         prediction = self._prediction
         if prediction is None:
@@ -149,9 +144,7 @@ class AnnealedLocalizer:
         return self._estimate(found, status)
 
     def _look_twice(self, spread: np.ndarray, increment: np.ndarray | None) -> tuple[_Found, np.ndarray]:
-        """Return the best pose of a cloud, or of a wider one if it agrees less than usual, and the spread that was
-        believed.
-        """
+        """Return the best pose of a cloud, or of a wider one if it agrees less than usual, and its spread."""
         not_known = 0.0 if self._covariance is None else np.sqrt(np.diag(self._covariance))
         cloud = np.minimum(np.hypot(spread, not_known), np.repeat(MAX_SPREAD, 3))
         found = self._look(self.layers, cloud, increment)
@@ -181,13 +174,13 @@ class AnnealedLocalizer:
         return found
 
     def _predicted_covariance(self, motion: np.ndarray, spread: np.ndarray) -> np.ndarray:
-        """The covariance of the pose after a motion `(6,)`; at the first image the start's, as wide as the cloud."""
+        """Return the covariance after a motion `(6,)`; at the first image that of the start, as wide as the cloud."""
         if self._covariance is None:
             return np.diag(spread**2)
         return predicted_covariance(self._covariance, motion, spread)
 
     def _look(self, layers: tuple[Layer, ...], spread: np.ndarray, increment: np.ndarray | None) -> _Found:
-        """Particles through the layers, the best of them through the steps of refinement, the best of those."""
+        """Return the best of the particles that went through the layers and the steps of refinement."""
 
         def merit(scores: np.ndarray, poses: np.ndarray) -> np.ndarray:
             return scores + self._prediction.preference(poses, spread, increment)
@@ -219,7 +212,7 @@ class AnnealedLocalizer:
     def _anneal(
         self, layers: tuple[Layer, ...], spread: np.ndarray, increment: np.ndarray | None
     ) -> tuple[list[np.ndarray], list[np.ndarray], tuple[Tempered, ...]]:
-        """Particles, their scores and their weights, layer by layer."""
+        """Return particles, their scores and their weights, layer by layer."""
         coarse = self.levels[0]
         drawn, scores, tempered = [], [], []
         for layer in layers:
@@ -235,7 +228,7 @@ class AnnealedLocalizer:
         return drawn, scores, tuple(tempered)
 
     def _not_measured(self, spread: np.ndarray, increment: np.ndarray | None) -> AnnealedEstimate:
-        """The prediction alone, because nothing was seen."""
+        """Return the prediction alone, because nothing was seen."""
         warnings.warn(
             "this frame holds no measurement between the camera's near and far planes; the pose is predicted only",
             NoMeasurementWarning,

@@ -4,8 +4,6 @@ A motion `(..., 6)` is a translation along the camera's own axes in metres, then
 (axis times angle, radians). It lives in the tangent space of the pose, which has no gimbal lock.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.geometry import rotation_exp, rotation_log

@@ -1,11 +1,8 @@
 """Where the camera may be when the next image comes: as it has moved before, or as an odometer says.
 
-The paper's system noise is set by hand; here it follows the camera. Without an odometer the last motion goes on, in a
-cloud as wide as recent motions were long. With one, the centre is its increment. If another pose explained the last
-frame nearly as well, the cloud also starts from this rival.
+Without an odometer the last motion goes on, in a cloud as wide as recent motions were long. With one, the centre is its
+increment. If another pose explained the last frame nearly as well, the cloud also starts from this rival.
 """
-
-from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -14,8 +11,7 @@ import numpy as np
 
 from course_lib.beyond.six_dof.poses import lengths, local, retract
 
-# All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th; what
-# concerns rivals on walks through rooms, seeds 10,041 to 10,066.
+# All chosen on the kitchen and the shipped corridor; those of rivals on walks through rooms, seeds 10,041 to 10,066.
 MIN_SPREAD = np.array([0.015, np.deg2rad(1.0)])  # metres, radians: of a camera at rest
 MAX_SPREAD = np.array([0.5, np.deg2rad(30.0)])
 START_SPREAD = np.array([0.2, np.deg2rad(10.0)])  # of a start that was set by hand, before a motion was seen
@@ -76,9 +72,8 @@ class MotionPrediction:
     def preference(self, poses: np.ndarray, spread: np.ndarray, increment: np.ndarray | None = None) -> np.ndarray:
         """Return what the prediction says of poses `(N, 4, 4)`, in units of the raw score: `(N,)`, at most 0.
 
-        max_k PRIOR_SHARE (-d_k^2 / 2) + CARRIED evidence_k, over the last pose and its rivals k
-
-        d: distance from the nearest motion between rest and going on (or from the odometer's), in units of the spread.
+        max_k PRIOR_SHARE (-d_k^2 / 2) + CARRIED evidence_k, over the last pose and its rivals k; d: distance from the
+        nearest motion between rest and going on (or from the odometer's), in units of the spread.
         """
         return np.max([preference for preference, _ in self._ways(poses, spread, increment)], axis=0)
 
@@ -96,7 +91,7 @@ class MotionPrediction:
     def _ways(
         self, poses: np.ndarray, spread: np.ndarray, increment: np.ndarray | None
     ) -> list[tuple[np.ndarray, np.ndarray]]:
-        """For each last pose: the preference `(N,)` for poses `(N, 4, 4)`, and the predicted poses nearest to them."""
+        """Return for each last pose the preference `(N,)` for poses `(N, 4, 4)`, and the nearest predicted poses."""
         going_on = self.motion if increment is None else np.asarray(increment, dtype=np.float64)
         ahead = going_on / spread
         ways = []
@@ -111,9 +106,7 @@ class MotionPrediction:
         return ways
 
     def found(self, pose: np.ndarray, seen: bool = True, rivals: Sequence[Rival] = ()) -> None:
-        """Tell that the camera is at `pose`. seen: False if the image leaves a direction open; then no length is
-        learned.
-        """
+        """Tell that the camera is at `pose`. seen: False if the image leaves a direction open: no length is learned."""
         if self._started:
             before = min(self._last_poses(), key=lambda last: float(np.linalg.norm(local(last.pose, pose))))
             self.motion = local(before.pose, pose)

@@ -1,23 +1,17 @@
 """From a pose near the right one to the right one: Gauss-Newton on the rendered depth.
 
-A particle filter finds the valley, and it needs ever more particles to find the lowest point. But a formula gives the
-lowest point. The map rendered from a pose is a depth image, so every pixel holds a point q of the map and, from its
-neighbours, the surface's normal n. The same pixel of the camera holds a measured point p. If the pose is right, p lies
-on that surface:
+The map rendered from a pose is a depth image, so every pixel holds a point q of the map and, from its neighbours, the
+surface's normal n. The same pixel of the camera holds a measured point p. If the pose is right, p lies on that surface:
 
     r_j = n_j . (p_j - q_j) = 0
 
 A small motion (v, w) of the camera moves p to p + v + w x p, and it changes r_j to first order by n . v + (p x n) . w.
-We look for the motion with the smallest sum_j rho(r_j). The function rho is robust, because doors stand open and people
-walk by. The motion solves
+With a robust rho, because doors stand open and people walk by, the motion of the smallest sum_j rho(r_j) solves
 
     (sum_j w_j J_j J_j') (v, w) = - sum_j w_j J_j r_j,    J_j = (n_j, p_j x n_j)
 
 Then the map is rendered again from the new pose. This is ICP with the z-buffer in place of a search for nearest points.
-Every step costs one render per pose.
 """
-
-from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -29,8 +23,8 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
 from course_lib.rendering.renderer import DepthRenderer
 
-# Neighbours on one surface differ in depth by at most this share of the depth for every radian between their rays
-# (chosen: a surface seen under less than about 7 degrees of grazing gives no normal).
+# Neighbours on one surface differ in depth by at most this share for every radian between their rays (chosen: a surface
+# seen under less than about 7 degrees of grazing gives no normal).
 EDGE_PER_RADIAN = 8.0
 DAMPING = 1e-4  # added to the mean of J J': along what the image does not show, the pose stays where it is (chosen)
 LONGEST_STEP = (0.2, 0.3)  # metres, radians: the first order is not valid beyond them (chosen)
@@ -66,7 +60,7 @@ def surface_normals(images: np.ndarray, camera: DepthCamera) -> tuple[np.ndarray
 
 
 def _edge_share(camera: DepthCamera) -> float:
-    """The largest difference in depth of neighbours on one surface, as a share of the depth."""
+    """Return the largest difference in depth of neighbours on one surface, as a share of the depth."""
     return EDGE_PER_RADIAN / max(camera.fx, camera.fy)
 
 

@@ -1,7 +1,5 @@
 """How a frame is searched: on images of which size, in which layers of particles, by which steps of refinement."""
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -75,7 +73,7 @@ class Step(NamedTuple):
     hypotheses: int  # How many poses are kept, the best that differ.
 
 
-# All chosen on development recordings: the kitchen and the shipped corridor, with every frame to every 12th.
+# All chosen on the kitchen and the shipped corridor.
 LAYERS = (Layer(1.0, 1.0, 0.1), Layer(0.4, 0.35, 0.1))
 SECOND_LOOK = (Layer(0.45, 1.0, 0.1),)
 STEPS = (

@@ -16,9 +16,8 @@ from course_lib.geometry import rotation_exp
 from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.paths import data_path
 from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.mesh_file import mesh_endings
 from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap
+from course_lib.rendering.scene_map import SceneMap, mesh_endings
 
 STAND_IN_FRAMES = 24  # of the corridor run that was carried by hand: as many as the panel steps through (chosen)
 _OPENGL_TO_OPTICAL = np.diag([1.0, -1.0, -1.0, 1.0])

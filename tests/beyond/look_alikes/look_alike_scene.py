@@ -21,12 +21,8 @@ POSE = np.array([1.2, -0.7, 0.4])
 OTHER_POSE = np.array([-1.2, 0.7, 0.4 - np.pi])
 
 
-def with_landmarks(semantic_map, *landmarks):
-    return SemanticMap((*semantic_map.landmarks, *landmarks), semantic_map.walls)
-
-
 PLANT = Landmark("potted plant", -1.5, -2.0, 120.0, 50.0)
-PLANTED = with_landmarks(SYMMETRIC, PLANT)
+PLANTED = SemanticMap((*SYMMETRIC.landmarks, PLANT), SYMMETRIC.walls)
 
 
 def stereo_covariance(place):
@@ -63,9 +59,6 @@ def turned(semantic_map, angle, shift=(0.0, 0.0)):
 
 def scattered(rng):
     """A room of eight blue objects of four classes, anywhere."""
-    labels = ("sofa", "sofa", "sofa", "chair", "chair", "table", "table", "potted plant")
-    places = [rng.uniform(-3, 3, 2).round(1) for _ in labels]
-    return SemanticMap(
-        [Landmark(label, *map(float, place), *BLUE) for label, place in zip(labels, places, strict=True)],
-        SYMMETRIC.walls,
-    )
+    labels = ("sofa",) * 3 + ("chair",) * 2 + ("table",) * 2 + ("potted plant",)
+    objects = [Landmark(label, *map(float, rng.uniform(-3, 3, 2).round(1)), *BLUE) for label in labels]
+    return SemanticMap(objects, SYMMETRIC.walls)

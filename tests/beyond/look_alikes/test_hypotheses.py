@@ -11,7 +11,6 @@ from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, observed
 def test_every_pair_of_right_matches_is_among_the_hypotheses_and_gives_the_pose():
     found = pair_poses(scene_of(observed(PLANTED, POSE), PLANTED))
     right = (found.observations == found.landmarks).all(axis=1)
-    assert right.sum() == 6 * 5 / 2
     np.testing.assert_allclose(found.poses[right], np.tile(POSE, (15, 1)), atol=1e-6)
     assert len(found.poses) > 15, "look-alikes give wrong pairs too"
 
@@ -37,10 +36,8 @@ def test_the_fits_covariance_is_that_of_its_errors():
     rng = np.random.default_rng(3)
     errors = []
     for _ in range(300):
-        noisy = observed(PLANTED, POSE, rng=rng)
-        places = np.array([[one.x, one.y] for one in noisy])
-        covariances = np.array([one.covariance for one in noisy])
-        fitted, spread = fit_poses(POSE, places[None], PLANTED.positions[None], covariances[None])
+        scene = scene_of(observed(PLANTED, POSE, rng=rng), PLANTED)
+        fitted, spread = fit_poses(POSE, scene.places[None], PLANTED.positions[None], scene.covariances[None])
         error = fitted[0] - POSE
         error[2] = wrap_angle(error[2])
         errors.append(error @ np.linalg.solve(spread[0], error))

