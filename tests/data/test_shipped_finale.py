@@ -8,7 +8,7 @@ import pytest
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.room.depth_world import depth_caster
 from course_lib.simulation.room.finale_data import SEED
-from course_lib.simulation.room.look_alike_room import make_look_alike_room
+from course_lib.simulation.room.furnishing import make_look_alike_room
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "finale"

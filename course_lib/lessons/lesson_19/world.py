@@ -21,13 +21,12 @@ from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.room.depth_world import CAMERA, PLACE, STREAM, depth_caster
 from course_lib.simulation.room.finale_data import SEED
-from course_lib.simulation.room.footprints import distance_to, footprint
+from course_lib.simulation.room.furnishing import make_look_alike_room
 from course_lib.simulation.room.look_alike_recording import RecordingModels, mount_of
-from course_lib.simulation.room.look_alike_room import make_look_alike_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
-from course_lib.simulation.sensors.panorama_camera import photograph
+from course_lib.simulation.room.scene import distance_to, footprint
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import stand_up
+from course_lib.simulation.sensors.panorama_rig import photograph, stand_up
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer

@@ -10,7 +10,6 @@ from numpy.random import Generator
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from course_lib.geometry import pose_matrix, rotation_angle
-from course_lib.simulation.smooth_signal import smooth_signal
 
 FRAME_RATE = 10.0  # frames per second; chosen, within the SR4000's rates
 
@@ -80,6 +79,14 @@ class FloorSurveyModel:
     spacing: float = 0.01  # m between points along the line; chosen
     noise: float = 0.002  # m, one sigma per axis; chosen
     registration: float = 0.003  # m, one sigma per axis, one offset for the whole line; chosen
+
+
+def smooth_signal(n: int, width: float, rng: Generator) -> np.ndarray:
+    """Smooth random signal `(n,)` with zero mean and standard deviation one; `width` in frames."""
+    margin = int(4 * width)
+    kernel = np.exp(-0.5 * (np.arange(-margin, margin + 1) / width) ** 2)
+    signal = np.convolve(rng.normal(size=n + 2 * margin), kernel, mode="valid")
+    return signal / np.sqrt(np.sum(kernel**2))
 
 
 def wagon_run(

@@ -22,8 +22,7 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor import recorded_runs
 from course_lib.simulation.corridor.mesh_building import WorldMesh
 from course_lib.simulation.corridor.recorded_runs import FloorSurveyModel, HandModel, PushModel, WagonModel
-from course_lib.simulation.corridor.scene_changes import DayModel, scene_change
-from course_lib.simulation.corridor.world import Building, draw_building
+from course_lib.simulation.corridor.world import Building, DayModel, draw_building, scene_change
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import (
     CalibrationErrors,

@@ -14,9 +14,14 @@ from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.stereo_photographs import photograph_pair, write_poses
 from course_lib.simulation.room.survey import RoomSurveyModel, survey_room
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, RigModel, assemble, stand_up
+from course_lib.simulation.sensors.panorama_rig import (
+    NEARLY_PERFECT_RIG,
+    PanoramaCameraModel,
+    RigModel,
+    assemble,
+    stand_up,
+)
 
 PRODUCTS = ("experiment_1", "experiment_2", "semantic_map.json", "PARAMETERS.md", "SHA256SUMS")
 

@@ -16,15 +16,14 @@ from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor.mesh_building import write_ply
+from course_lib.simulation.corridor.recorded_runs import smooth_signal
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
 from course_lib.simulation.furniture.solids import merged
-from course_lib.simulation.room.footprints import NoFreePlace, clear_of, footprint, free_places
-from course_lib.simulation.room.look_alike_room import LookAlikeLimits, make_look_alike_room
-from course_lib.simulation.room.scene import Room
+from course_lib.simulation.room.furnishing import LookAlikeLimits, make_look_alike_room
+from course_lib.simulation.room.scene import NoFreePlace, Room, clear_of, footprint, free_places
 from course_lib.simulation.sensors.laser_survey import ScannerModel, survey
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
-from course_lib.simulation.smooth_signal import smooth_signal, smoothed
 
 STREAM = 77  # joins a seed's generators of what the depth camera meets: apart from those of the photographs
 MAP, CAMERA, PLACE, WALK, WALK_CAMERA = range(1, 6)
@@ -114,6 +113,16 @@ def walk_states(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
     roll, pitch = (np.deg2rad(model.tilt_sway_deg) * smooth_signal(n, model.sway_frames, rng) for _ in range(2))
     z = model.height + model.height_sway * smooth_signal(n, model.sway_frames, rng)
     return np.column_stack([way, z, roll, np.deg2rad(model.pitch_deg) + pitch, wrap_angle(heading)])
+
+
+def smoothed(values: np.ndarray, width: float) -> np.ndarray:
+    """Values `(T,)` or `(T, k)` smoothed over frames by a bell curve of `width` frames; the ends are held."""
+    margin = int(4 * width)
+    kernel = np.exp(-0.5 * (np.arange(-margin, margin + 1) / width) ** 2)
+    kernel /= kernel.sum()
+    columns = np.asarray(values, dtype=np.float64).reshape(len(values), -1).T
+    padded = np.pad(columns, ((0, 0), (margin, margin)), mode="edge")
+    return np.stack([np.convolve(column, kernel, mode="valid") for column in padded], axis=1).reshape(np.shape(values))
 
 
 def _way(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:

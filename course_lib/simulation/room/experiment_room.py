@@ -10,15 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.random import Generator
 
-from course_lib.simulation import prints, textures
-from course_lib.simulation.furniture.cabinet import Cabinet, build_cabinet
-from course_lib.simulation.furniture.chair import Chair, build_chair
-from course_lib.simulation.furniture.plant import Plant, build_plant
-from course_lib.simulation.furniture.refrigerator import Refrigerator, build_refrigerator
-from course_lib.simulation.furniture.sofa import Sofa, build_sofa
+from course_lib.simulation import textures
+from course_lib.simulation.furniture import pieces as f
 from course_lib.simulation.furniture.solids import Piece, joined
-from course_lib.simulation.furniture.table import Table, build_table
-from course_lib.simulation.furniture.television import Television, build_television
 from course_lib.simulation.room import shell as room_shell
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.scene import Lamp, Room
@@ -52,8 +46,8 @@ LAYOUT = (
 def _sofa(rng: Generator, hue: float) -> Piece:
     cover = cloth(rng, colour(hue, 62, 62), "tartan", size=0.9, pixels=512)
     legs = wood(rng, colour(22, 60, 30), 0.4, 128)
-    shape = Sofa(1.5, 0.8, 0.42, 0.8, "box", arm_width=0.28, arm_height=0.58, leg_height=0.07, seats=2)
-    return build_sofa(shape, cover, cover, legs, cover)
+    shape = f.Sofa(1.5, 0.8, 0.42, 0.8, "box", arm_width=0.28, arm_height=0.58, leg_height=0.07, seats=2)
+    return f.build_sofa(shape, cover, cover, legs, cover)
 
 
 def _chairs(rng: Generator) -> dict[str, Piece]:
@@ -62,31 +56,34 @@ def _chairs(rng: Generator) -> dict[str, Piece]:
         for hue, value in ((4, 75), (98, 62), (222, 72))
     )
     return {
-        "red chair": build_chair(Chair(0.5, 0.48, 0.45, 0.92, splay=0.0, leg_radius=0.03), red[1], red[0]),
-        "green chair": build_chair(Chair(0.52, 0.5, 0.44, 0.86, splay=0.02, leg_radius=0.029), green[1], green[0]),
-        "blue chair": build_chair(Chair(0.48, 0.48, 0.46, 0.78, back="shell", leg_radius=0.028), blue[1], blue[0]),
+        "red chair": f.build_chair(f.Chair(0.5, 0.48, 0.45, 0.92, splay=0.0, leg_radius=0.03), red[1], red[0]),
+        "green chair": f.build_chair(f.Chair(0.52, 0.5, 0.44, 0.86, splay=0.02, leg_radius=0.029), green[1], green[0]),
+        "blue chair": f.build_chair(f.Chair(0.48, 0.48, 0.46, 0.78, back="shell", leg_radius=0.028), blue[1], blue[0]),
     }
 
 
 def _tables(rng: Generator) -> dict[str, Piece]:
     oak, blue = wood(rng, colour(30, 68, 78), 0.9, 512), wood(rng, colour(208, 60, 55), 0.6)
     spread = cloth(rng, colour(205, 66, 74), "tartan", size=0.7, pixels=512)
-    square = Table(0.8, 1.1, 0.72, base="legs", thickness=0.07, apron=0.17, leg=0.11)
-    rounded = Table(0.85, 0.85, 0.7, round=True, base="pedestal", thickness=0.03, cloth=0.45)
-    return {"wooden table": build_table(square, oak, oak, oak), "blue table": build_table(rounded, blue, blue, spread)}
+    square = f.Table(0.8, 1.1, 0.72, base="legs", thickness=0.07, apron=0.17, leg=0.11)
+    rounded = f.Table(0.85, 0.85, 0.7, round=True, base="pedestal", thickness=0.03, cloth=0.45)
+    return {
+        "wooden table": f.build_table(square, oak, oak, oak),
+        "blue table": f.build_table(rounded, blue, blue, spread),
+    }
 
 
 def _plants(rng: Generator) -> dict[str, Piece]:
     earth = textures.carpet(rng, colour(28, 45, 22), 0.5, 128)
     pieces = {}
     for name, hue, pot_hue, shape in (
-        ("green plant", 104, 120, Plant("cylinder", 0.26, 0.42, "broad", 1.0, 0.34, 30, 0.075)),
-        ("purple plant", 305, 290, Plant("cone", 0.25, 0.4, "spiky", 0.98, 0.34, 40, 0.07)),
+        ("green plant", 104, 120, f.Plant("cylinder", 0.26, 0.42, "broad", 1.0, 0.34, 30, 0.075)),
+        ("purple plant", 305, 290, f.Plant("cone", 0.25, 0.4, "spiky", 0.98, 0.34, 40, 0.07)),
     ):
         skins = [textures.leaves(rng, colour(hue + shift, 70, 55)) for shift in (-6, 6)]
         clay = textures.ceramic(rng, colour(pot_hue, 62, 66), 0.5)
         bark = wood(rng, colour(hue, 50, 35), 0.4, 128)
-        pieces[name] = build_plant(shape, clay, earth, skins, bark, rng)
+        pieces[name] = f.build_plant(shape, clay, earth, skins, bark, rng)
     return pieces
 
 
@@ -94,22 +91,22 @@ def _cabinets(rng: Generator) -> dict[str, Piece]:
     brass = metal(rng, colour(45, 45, 75), 0.3, 128)
     mahogany = wood(rng, colour(8, 72, 62), 0.9, 512)
     teal, dark_teal = wood(rng, colour(178, 62, 66), 0.9, 512), wood(rng, colour(182, 66, 50), 0.9)
-    books = [prints.book_row(rng, 0.55, 0.28, hue=8) for _ in range(2)]
-    shelf = Cabinet(1.2, 0.4, 0.98, 2, (("door", 1.2), ("open", 1.0)), "knob", board=0.042)
-    drawers = Cabinet(1.1, 0.4, 0.82, 2, (("drawer", 1.0),) * 3, "bar", legs=0.07, board=0.04)
+    books = [textures.book_row(rng, 0.55, 0.28, hue=8) for _ in range(2)]
+    shelf = f.Cabinet(1.2, 0.4, 0.98, 2, (("door", 1.2), ("open", 1.0)), "knob", board=0.042)
+    drawers = f.Cabinet(1.1, 0.4, 0.82, 2, (("drawer", 1.0),) * 3, "bar", legs=0.07, board=0.04)
     return {
-        "red cabinet": build_cabinet(shelf, mahogany, [mahogany], mahogany, brass, books),
-        "teal cabinet": build_cabinet(drawers, teal, [teal, dark_teal], teal, brass, []),
+        "red cabinet": f.build_cabinet(shelf, mahogany, [mahogany], mahogany, brass, books),
+        "teal cabinet": f.build_cabinet(drawers, teal, [teal, dark_teal], teal, brass, []),
     }
 
 
 def _pieces(rng: Generator) -> dict[str, Piece]:
     """All furniture by the names in LAYOUT."""
     steel, dark = metal(rng, (0.7, 0.72, 0.74), 0.3, 128), metal(rng, (0.13, 0.13, 0.14), 0.4, 128)
-    notes = [prints.label(rng, 0.15, 0.2) for _ in range(3)]
-    fridge = Refrigerator(0.6, 0.6, 1.55, (0.4,), handle="bar", radius=0.037)
-    screen = prints.picture(rng, 1.0, 0.5625, emission=0.8, pixels=256)
-    television = Television(1.0, 0.06, 0.045, "floor", 0.45)
+    notes = [textures.label(rng, 0.15, 0.2) for _ in range(3)]
+    fridge = f.Refrigerator(0.6, 0.6, 1.55, (0.4,), handle="bar", radius=0.037)
+    screen = textures.picture(rng, 1.0, 0.5625, emission=0.8, pixels=256)
+    television = f.Television(1.0, 0.06, 0.045, "floor", 0.45)
     return {
         "sofa south": _sofa(rng, 344.0),
         "sofa east": _sofa(rng, 346.0),
@@ -118,8 +115,8 @@ def _pieces(rng: Generator) -> dict[str, Piece]:
         **_tables(rng),
         **_plants(rng),
         **_cabinets(rng),
-        "refrigerator": build_refrigerator(fridge, metal(rng, colour(158, 46, 82), 0.8, 512), steel, dark, notes),
-        "television": build_television(television, dark, screen),
+        "refrigerator": f.build_refrigerator(fridge, metal(rng, colour(158, 46, 82), 0.8, 512), steel, dark, notes),
+        "television": f.build_television(television, dark, screen),
     }
 
 
@@ -132,7 +129,7 @@ def _shell(rng: Generator) -> tuple[TexturedMesh, ...]:
     floor = wood(rng, colour(30, 40, 62), 1.8, 512, boards=12)
     ceiling = textures.plaster(rng, colour(45, 4, 80), 2.0, 256)
     meshes = room_shell.bare_room(LOW, HIGH, HEIGHT, [paper, plain, paper, plain], floor, ceiling, trim)
-    view = [prints.window_view(rng, 1.6, 1.1) for _ in range(2)]
+    view = [textures.window_view(rng, 1.6, 1.1) for _ in range(2)]
     meshes += room_shell.window(east, 2.6, 1.6, 1.1, 1.0, view[0], trim)
     meshes += room_shell.window(south, 2.65, 1.4, 1.1, 1.0, view[1], trim)
     leaf = wood(rng, colour(28, 50, 60), 1.0)
@@ -146,7 +143,7 @@ def _shell(rng: Generator) -> tuple[TexturedMesh, ...]:
         (south, 0.9, 1.55, 0.6, 0.6),
         (south, 5.0, 1.6, 0.45, 0.6),
     ):
-        meshes += room_shell.framed_picture(wall, s, z, prints.picture(rng, width, tall), frame)
+        meshes += room_shell.framed_picture(wall, s, z, textures.picture(rng, width, tall), frame)
     glow = textures.glow(colour(48, 10, 100))
     for x, y in ((1.6, 2.5), (3.7, 2.5)):
         meshes += room_shell.ceiling_lamp(x, y, HEIGHT, 0.2, glow, 0.25)

@@ -14,15 +14,21 @@ import numpy as np
 from numpy.random import Generator
 
 from course_lib.geometry import wrap_angle
-from course_lib.simulation.room.footprints import clear_of, footprint, free_places
-from course_lib.simulation.room.look_alike_room import STREAM, LookAlikeLimits, make_look_alike_room
+from course_lib.simulation.room.furnishing import STREAM, LookAlikeLimits, make_look_alike_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
-from course_lib.simulation.room.scene import Room
+from course_lib.simulation.room.scene import Room, clear_of, footprint, free_places
 from course_lib.simulation.room.stereo_photographs import photograph_pair, write_poses
 from course_lib.simulation.room.survey import RoomSurveyModel, UnseenObject, survey_room
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import Mount, RigModel, assemble, stand_up
+from course_lib.simulation.sensors.panorama_rig import (
+    Mount,
+    PanoramaCameraModel,
+    RigModel,
+    assemble,
+    photograph,
+    stand_up,
+    write_photograph,
+)
 from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 

@@ -11,10 +11,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.random import Generator
 
-from course_lib.simulation import prints, textures
+from course_lib.simulation import textures
 from course_lib.simulation.furniture.solids import box, cylinder, grid_faces, joined, lathe, panel, rod, textured, turn
-from course_lib.simulation.room.footprints import clear_of, overlap, rectangle
-from course_lib.simulation.room.scene import Lamp, Room, RoomObject
+from course_lib.simulation.room.scene import Lamp, Room, RoomObject, clear_of, overlap, rectangle
 from course_lib.simulation.textures import Surface, TexturedMesh, colour, random_colour
 
 WALL_CELL = 0.5  # metres: longest edge of a wall's cell
@@ -239,7 +238,7 @@ def _small_things(rng: Generator, wall: Wall) -> tuple[list[TexturedMesh], np.nd
     if kind == 0:
         size = rng.uniform((0.2, 0.25, 0.15), (0.4, 0.5, 0.45))
         brown = textures.cloth(rng, random_colour(rng, (15, 60), (40, 85)), "blotches", size=0.5, pixels=128)
-        meshes = carton(wall, s, size, brown, prints.label(rng, 0.2, 0.15))
+        meshes = carton(wall, s, size, brown, textures.label(rng, 0.2, 0.15))
     elif kind == 1:
         side = textures.ceramic(rng, random_colour(rng, (0, 80), (20, 95)), pixels=128)
         meshes = waste_bin(wall, s, float(rng.uniform(0.11, 0.17)), float(rng.uniform(0.22, 0.4)), side)
@@ -255,7 +254,7 @@ def _add_window(rng: Generator, plan: Plan, index: int, trim: Surface) -> None:
     """A window, its daylight, and in six of ten cases curtains."""
     wall, width, tall = plan.walls[index], float(rng.uniform(0.9, 1.9)), float(rng.uniform(0.9, 1.3))
     s, sill = float(rng.uniform(1.5, wall.length - 1.5)), float(rng.uniform(0.75, 1.0))
-    plan.meshes += window(wall, s, width, tall, sill, prints.window_view(rng, width, tall), trim)
+    plan.meshes += window(wall, s, width, tall, sill, textures.window_view(rng, width, tall), trim)
     reach = width / 2 + 0.1
     if rng.random() < 0.6:
         pattern = str(rng.choice(textures.CLOTH_PATTERNS))
@@ -287,7 +286,7 @@ def _add_pictures(rng: Generator, plan: Plan, trim: Surface) -> None:
         wall, width = plan.walls[int(index)], float(rng.uniform(0.3, 0.9))
         s = free_stretch(rng, wall, plan.spans[int(index)], width + 0.06)
         if s is not None:
-            print_ = prints.picture(rng, width, float(width * rng.uniform(0.6, 1.4)), pixels=160)
+            print_ = textures.picture(rng, width, float(width * rng.uniform(0.6, 1.4)), pixels=160)
             plan.meshes += framed_picture(wall, s, float(rng.uniform(1.4, 1.65)), print_, trim)
 
 

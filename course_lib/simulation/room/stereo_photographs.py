@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.random import Generator
 
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import RigPose
+from course_lib.simulation.sensors.panorama_rig import PanoramaCameraModel, RigPose, photograph, write_photograph
 from course_lib.spherical_stereo.recording import POSES_FILE, VERSION, TrueObject
 
 Box = tuple[float, float, float, float]

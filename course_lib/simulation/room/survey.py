@@ -8,10 +8,9 @@ import numpy as np
 from numpy.random import Generator
 
 from course_lib.geometry import circular_mean
-from course_lib.simulation.room.footprints import free_places
-from course_lib.simulation.room.scene import Lamp, Room
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph
+from course_lib.simulation.room.scene import Lamp, Room, free_places
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
+from course_lib.simulation.sensors.panorama_rig import PanoramaCameraModel, photograph
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 

@@ -10,12 +10,17 @@ from pathlib import Path
 import numpy as np
 
 from course_lib.files import atomic_write, read_json
-from course_lib.simulation.room.footprints import free_places
 from course_lib.simulation.room.furnishing import make_room
+from course_lib.simulation.room.scene import free_places
 from course_lib.simulation.room.stereo_photographs import box_entries
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, stand_up
+from course_lib.simulation.sensors.panorama_rig import (
+    NEARLY_PERFECT_RIG,
+    PanoramaCameraModel,
+    photograph,
+    stand_up,
+    write_photograph,
+)
 from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.recording import TrueObject, true_object
 

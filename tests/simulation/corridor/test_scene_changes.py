@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.simulation.corridor.scene_changes import DayModel, scene_change
-from course_lib.simulation.corridor.world import draw_building, make_corridor
+from course_lib.simulation.corridor.world import DayModel, draw_building, make_corridor, scene_change
 
 SEEDS = (10_000, 10_001, 10_002)
 

@@ -12,8 +12,8 @@ from course_lib.simulation.corridor.surface_fusion import FusionModel
 from course_lib.simulation.data_folder import checksums
 from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh
 from course_lib.simulation.room.finale_data import PRODUCTS, FinaleModels, make_finale_data
+from course_lib.simulation.room.furnishing import make_look_alike_room
 from course_lib.simulation.room.look_alike_recording import RecordingModels
-from course_lib.simulation.room.look_alike_room import make_look_alike_room
 from course_lib.simulation.room.survey import RoomSurveyModel
 from course_lib.simulation.sensors.laser_survey import ScannerModel
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import wrap_angle
-from course_lib.simulation.room.footprints import clear_of, distance_to, footprint
-from course_lib.simulation.room.furnishing import make_room
+from course_lib.simulation.room.furnishing import LookAlikeLimits, make_look_alike_room, make_room
 from course_lib.simulation.room.look_alike_recording import WalkModel, measurement_poses, walk_from
-from course_lib.simulation.room.look_alike_room import LookAlikeLimits, make_look_alike_room
+from course_lib.simulation.room.scene import clear_of, distance_to, footprint
 
 SEEDS = (10_200, 10_201, 10_202)
 LIMITS = LookAlikeLimits()

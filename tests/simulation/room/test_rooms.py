@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from course_lib.simulation.room.experiment_room import LAYOUT, make_experiment_room
-from course_lib.simulation.room.footprints import footprint, overlap
 from course_lib.simulation.room.furnishing import make_room
+from course_lib.simulation.room.scene import footprint, overlap
 
 SEEDS = (3, 11)
 

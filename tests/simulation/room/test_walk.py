@@ -9,8 +9,8 @@ from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.recorded_runs import steps_and_turns
 from course_lib.simulation.corridor.surface_fusion import FusionModel
 from course_lib.simulation.room.depth_world import DepthSurveyModel, WalkModel, WalkModels, record_walk, walk_states
-from course_lib.simulation.room.footprints import NoFreePlace, distance_to, footprint
-from course_lib.simulation.room.look_alike_room import make_look_alike_room
+from course_lib.simulation.room.furnishing import make_look_alike_room
+from course_lib.simulation.room.scene import NoFreePlace, distance_to, footprint
 from course_lib.simulation.sensors.laser_survey import ScannerModel
 
 SEEDS = (10_050, 10_051, 10_052)

@@ -9,9 +9,15 @@ import pytest
 
 from course_lib.simulation.room.furnishing import make_room
 from course_lib.simulation.room.stereo_photographs import object_boxes
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph
 from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, RigModel, RigPose, stand_up
+from course_lib.simulation.sensors.panorama_rig import (
+    NEARLY_PERFECT_RIG,
+    PanoramaCameraModel,
+    RigModel,
+    RigPose,
+    photograph,
+    stand_up,
+)
 from course_lib.spherical_stereo.panorama import direction_to_pixel
 from tests.simulation.plain_room import plain_object, plain_room
 
