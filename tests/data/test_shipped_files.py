@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from course_lib.experiments.project_rooms import SEEDS
-from course_lib.simulation.corridor.idealizations import corridor_parameters
+from course_lib.simulation.corridor.seeded_recording import corridor_parameters
 from course_lib.simulation.data_folder import checksums, parameter_tables
 from course_lib.simulation.room import data as room
 from course_lib.simulation.room import finale_data as finale

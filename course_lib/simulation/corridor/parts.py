@@ -21,7 +21,6 @@ def wall(
     b: MeshBuilder, place: Placement, start: float, end: float, openings: list[tuple[float, float, float, float]]
 ) -> None:
     """Wall surface from `start` to `end` with rectangular openings (start, end, bottom, top), none overlapping."""
-    b.part = "wall"
     at = start
     for low, high, bottom, top in [*sorted(openings), (end, end, 0.0, 0.0)]:
         if low - at > 1e-6:
@@ -37,7 +36,6 @@ def wall(
 
 def recess(b: MeshBuilder, place: Placement, low: float, high: float, bottom: float, top: float, depth: float) -> None:
     """The four cheeks of an opening, from the wall surface to `depth`."""
-    b.part = "recess"
     d, h = depth + BEAD, top - bottom
     for along in (low, high):
         b.panel(place, (along, -BEAD, bottom), (0, d, 0), (0, 0, h), m.WALL_PAINT)
@@ -48,17 +46,13 @@ def recess(b: MeshBuilder, place: Placement, low: float, high: float, bottom: fl
         b.panel(place, (low, -BEAD, 0), (high - low, 0, 0), (0, d, 0), m.LINOLEUM)
 
 
-def door(
-    b: MeshBuilder, place: Placement, name: str, width: float, depth: float, angle_deg: float, hinge_at_end: bool
-) -> None:
+def door(b: MeshBuilder, place: Placement, width: float, depth: float, angle_deg: float, hinge_at_end: bool) -> None:
     """Door in a recess around the local origin: cheeks, frame, leaf turned into the room by `angle_deg`."""
     low, high, top = -width / 2 - 0.06, width / 2 + 0.06, 2.06
     recess(b, place, low, high, 0.0, top, depth)
-    b.part = f"{name} frame"
     for side in (low, high - 0.06):
         b.box(place, (side, depth - 0.09, 0), (side + 0.06, depth + 0.03, top), m.METAL_FRAME, bevel=0.006)
     b.box(place, (low, depth - 0.09, top - 0.06), (high, depth + 0.03, top), m.METAL_FRAME, bevel=0.006)
-    b.part = f"{name} leaf"
     leaf_height, thick = top - 0.065, 0.042
     if hinge_at_end:
         hinge, turn, sense = place.moved(width / 2, depth - 0.02), -angle_deg, -1.0
@@ -71,13 +65,11 @@ def door(
         b.box(leaf, (grip - 0.02, side, 0.95), (grip + 0.02, side + out * 0.008, 1.17), m.STEEL, bevel=0.002)
         b.tube(leaf, (grip, side, 1.06), (grip, side + out * 0.055, 1.06), 0.010, m.STEEL)
         b.tube(leaf, (grip, side + out * 0.05, 1.06), (grip - sense * 0.12, side + out * 0.05, 1.06), 0.010, m.STEEL)
-    b.part = f"{name} plate"
     b.box(place, (high + 0.10, -0.012, 1.5), (high + 0.28, 0.0, 1.62), m.PAPER, bevel=0.002)
 
 
 def room_behind(b: MeshBuilder, place: Placement, width: float, depth: float, cupboard_height: float) -> None:
     """Stub of a room behind a door: its walls, a desk and a shelf, so that rays through an open door end somewhere."""
-    b.part = "room"
     near, far, half = depth - 0.02, depth + 2.4, width / 2 + 0.7
     b.panel(place, (-half, near, 0), (2 * half, 0, 0), (0, far - near, 0), m.LINOLEUM)
     b.panel(place, (-half, near, CEILING_HEIGHT), (2 * half, 0, 0), (0, far - near, 0), m.CEILING_PAINT)
@@ -94,7 +86,6 @@ def window_niche(b: MeshBuilder, place: Placement, low: float, high: float, dept
     """Window over a sill: cheeks, frame and mullions. Its glass is not in the mesh: laser and camera light go out."""
     bottom, top = 0.88, 2.28
     recess(b, place, low, high, bottom, top, depth)
-    b.part = "window"
     frame = 0.065
     for along in (low, *(low + (high - low) * share - frame / 2 for share in mullions), high - frame):
         b.box(place, (along, depth - 0.07, bottom), (along + frame, depth, top), m.WINDOW_FRAME, bevel=0.008)
@@ -106,7 +97,6 @@ def window_niche(b: MeshBuilder, place: Placement, low: float, high: float, dept
 
 def radiator(b: MeshBuilder, place: Placement, low: float, high: float) -> None:
     """Panel radiator with fins every 50 mm, a valve and a pipe to the floor."""
-    b.part = "radiator"
     bottom, top = 0.14, 0.72
     b.box(place, (low, -0.055, bottom), (high, -0.045, top), m.RADIATOR_ENAMEL)
     for along in np.arange(low + 0.012, high - 0.012, 0.05):
@@ -121,14 +111,12 @@ def radiator(b: MeshBuilder, place: Placement, low: float, high: float) -> None:
 
 def pillar(b: MeshBuilder, place: Placement, width: float, out: float) -> None:
     """Concrete pillar before the wall, with a bevel of 20 mm and a steel guard at its foot."""
-    b.part = "pillar"
     b.box(place, (-width / 2, -out, 0), (width / 2, 0.05, CEILING_HEIGHT + 0.03), m.CONCRETE, bevel=0.02)
     b.box(place, (-width / 2 - 0.006, -out - 0.006, 0.0), (width / 2 + 0.006, 0.02, 0.22), m.STEEL, bevel=0.004)
 
 
 def bench(b: MeshBuilder, place: Placement, length: float) -> None:
     """Bench along the wall: five seat slats, two back slats, three steel frames."""
-    b.part = "bench"
     for i in range(5):
         near = -0.50 + 0.085 * i
         b.box(place, (-length / 2, near, 0.43), (length / 2, near + 0.065, 0.46), m.BENCH_WOOD, bevel=0.006)
@@ -143,7 +131,6 @@ def bench(b: MeshBuilder, place: Placement, length: float) -> None:
 
 def notice_board(b: MeshBuilder, place: Placement, length: float, height: float, rng: Generator) -> None:
     """Cork board with a frame, papers that stand off by millimetres, and one leaflet holder."""
-    b.part = "notice board"
     low, high, bottom = -length / 2, length / 2, 1.0
     b.box(place, (low, -0.018, bottom), (high, 0.01, bottom + height), m.CORK)
     for up in (bottom - 0.03, bottom + height):
@@ -160,14 +147,12 @@ def notice_board(b: MeshBuilder, place: Placement, length: float, height: float,
 
 def lamp(b: MeshBuilder, place: Placement, length: float) -> None:
     """Ceiling lamp: a tray with a bevelled cover, along the first local axis, hung from the local origin."""
-    b.part = "lamp"
     b.box(place, (-length / 2, -0.15, -0.035), (length / 2, 0.15, 0.03), m.METAL_FRAME, bevel=0.006)
     b.box(place, (-length / 2 + 0.02, -0.13, -0.085), (length / 2 - 0.02, 0.13, -0.035), m.LAMP_COVER, bevel=0.02)
 
 
 def portal(b: MeshBuilder, place: Placement, half_width: float, jamb: float, drop: float, thick: float) -> None:
     """Fire-door portal across the corridor: two jambs, a lintel, both leaves hooked back against the walls."""
-    b.part = "portal"
     for side in (-1.0, 1.0):
         low, high = sorted((side * (half_width - jamb), side * (half_width + 0.05)))
         b.box(place, (0, low, 0), (thick, high, CEILING_HEIGHT), m.METAL_FRAME, bevel=0.012)
@@ -184,7 +169,6 @@ def portal(b: MeshBuilder, place: Placement, half_width: float, jamb: float, dro
 
 def extinguisher(b: MeshBuilder, place: Placement) -> None:
     """Fire-extinguisher on its bracket, with hose and sign."""
-    b.part = "extinguisher"
     b.tube(place, (0, -0.12, 0.35), (0, -0.12, 0.85), 0.075, m.EXTINGUISHER_RED, n=24)
     b.ellipsoid(place, (0, -0.12, 0.85), (0.075, 0.075, 0.06), m.EXTINGUISHER_RED)
     b.tube(place, (0, -0.12, 0.88), (0, -0.12, 0.98), 0.018, m.STEEL)
@@ -196,7 +180,6 @@ def extinguisher(b: MeshBuilder, place: Placement) -> None:
 
 def exit_sign(b: MeshBuilder, place: Placement) -> None:
     """Exit sign that hangs across the corridor from the local origin by two rods."""
-    b.part = "exit sign"
     for side in (-0.16, 0.16):
         b.tube(place, (0, side, 0.0), (0, side, -0.2), 0.006, m.STEEL)
     b.box(place, (-0.025, -0.2, -0.38), (0.025, 0.2, -0.2), m.SIGN_GREEN, bevel=0.004)
@@ -204,7 +187,6 @@ def exit_sign(b: MeshBuilder, place: Placement) -> None:
 
 def cable_tray(b: MeshBuilder, place: Placement, start: float, end: float, brackets: np.ndarray) -> None:
     """Cable tray under the ceiling along the first local axis, with brackets and three cables."""
-    b.part = "cable tray"
     b.box(place, (start, -0.15, -0.22), (end, 0.15, -0.215), m.STEEL)
     for side in (-0.15, 0.145):
         b.box(place, (start, side, -0.22), (end, side + 0.005, -0.16), m.STEEL)
@@ -217,7 +199,6 @@ def cable_tray(b: MeshBuilder, place: Placement, start: float, end: float, brack
 
 def stairwell(b: MeshBuilder, place: Placement, width: float) -> None:
     """Stairs behind an opening of the wall: landing, one flight down and one up, strings, a railing with balusters."""
-    b.part = "stairs"
     rise, run, landing, steps, depth = 0.17, 0.28, 1.3, 9, 5.2
     half = width / 2
     b.panel(place, (-half, 0, 0), (width, 0, 0), (0, landing, 0), m.CONCRETE)
@@ -227,7 +208,6 @@ def stairwell(b: MeshBuilder, place: Placement, width: float) -> None:
         b.box(place, *down, m.CONCRETE, bevel=0.008)
         b.box(place, (0.1, near - 0.03, rise * i), (half, near + run, rise * (i + 1)), m.CONCRETE, bevel=0.008)
     low, high = -rise * (steps + 1), CEILING_HEIGHT + 1.8
-    b.part = "stairwell"
     b.panel(place, (-half, landing, low), (width, 0, 0), (0, depth - landing, 0), m.CONCRETE)
     b.panel(place, (-half, depth, low), (width, 0, 0), (0, 0, high - low), m.WALL_PAINT)
     for side in (-half, half):
@@ -235,7 +215,6 @@ def stairwell(b: MeshBuilder, place: Placement, width: float) -> None:
     b.panel(place, (-half, -BEAD, CEILING_HEIGHT), (width, 0, 0), (0, landing, 0), m.CEILING_PAINT)
     b.panel(place, (-half, landing, high), (width, 0, 0), (0, depth - landing, 0), m.CEILING_PAINT)
     b.panel(place, (-half, landing, CEILING_HEIGHT), (width, 0, 0), (0, 0, 1.8), m.WALL_PAINT)
-    b.part = "railing"
     length, drop = run * steps, rise * steps
     for slope, side in ((-1.0, -0.12), (1.0, 0.12)):
         b.tube(place, (side, landing, 0.92), (side, landing + length, 0.92 + slope * drop), 0.022, m.STEEL)
