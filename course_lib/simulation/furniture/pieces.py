@@ -85,9 +85,8 @@ def build_sofa(shape: Sofa, cover: Surface, seat: Surface, legs: Surface, pillow
             lean = shape.back_lean + 0.08
             parts += turn(cushion, x=-d / 2 + BACK_DEPTH + 0.16, y=y, z=shape.seat_height - 0.01, pitch=-lean)
     if low > 0.02:
-        for x in (-d / 2 + 0.09, d / 2 - 0.09):
-            for y in (-w / 2 + 0.1, w / 2 - 0.1):
-                parts += cylinder(0.022, low + 0.01, (x, y, 0.0), legs, top=0.03, n=10)
+        for x, y in itertools.product((-d / 2 + 0.09, d / 2 - 0.09), (-w / 2 + 0.1, w / 2 - 0.1)):
+            parts += cylinder(0.022, low + 0.01, (x, y, 0.0), legs, top=0.03, n=10)
     for index in range(shape.pillows):
         sign = 1.0 if index % 2 == 0 else -1.0
         y = sign * (inner / 2 - 0.22 - 0.3 * (index // 2))
@@ -162,10 +161,9 @@ def _chair_base(shape: Chair, frame: Surface) -> list:
             for ends in itertools.pairwise(corners):
                 parts += rod(ends, r, frame)
     else:
-        for x in (-d, d):
-            for y in (-w, w):
-                out = 1.0 + shape.splay / max(abs(x), 1e-3)
-                parts += rod([(x * out, y * out, 0.0), (x, y, top)], r, frame)
+        for x, y in itertools.product((-d, d), (-w, w)):
+            out = 1.0 + shape.splay / max(abs(x), 1e-3)
+            parts += rod([(x * out, y * out, 0.0), (x, y, top)], r, frame)
         if shape.splay < 0.02:
             for y in (-w, w):
                 parts += rod([(-d, y, 0.2), (d, y, 0.2)], 0.6 * r, frame)
@@ -229,22 +227,24 @@ def random_chair(rng: Generator) -> Piece:
     if kind == "wooden":
         shape = Chair(*size, rng.uniform(0.8, 1.05), back=str(rng.choice(["ladder", "spindles", "solid"])), **legs)
         frame = timber if rng.random() < 0.6 else painted
-        return build_chair(shape, frame, frame if rng.random() < 0.6 else painted)
-    if kind == "upholstered":
+        cover = frame if rng.random() < 0.6 else painted
+    elif kind == "upholstered":
         shape = Chair(*size, rng.uniform(0.8, 1.08), armrests=bool(rng.random() < 0.3), **legs)
-        return build_chair(shape, (timber, timber, steel, painted)[int(rng.integers(4))], fabric)
-    if kind == "office":
+        frame, cover = (timber, timber, steel, painted)[int(rng.integers(4))], fabric
+    elif kind == "office":
         shape = Chair(*size, rng.uniform(0.85, 1.15), "star", armrests=bool(rng.random() < 0.6), **legs)
-        return build_chair(shape, steel, fabric)
-    if kind == "shell":
+        frame, cover = steel, fabric
+    elif kind == "shell":
         base = str(rng.choice(["legs", "sledge"]))
         shape = Chair(*size, rng.uniform(0.75, 0.9), base, "shell", **legs)
         frame = (timber, steel, painted)[int(rng.integers(3))]
-        return build_chair(shape, frame, painted if rng.random() < 0.5 else fabric)
-    seat_height = rng.uniform(0.5, 0.68)
-    height = seat_height + rng.uniform(0.2, 0.32)
-    shape = Chair(width, width, seat_height, height, back="ladder", round_seat=True, **legs)
-    return build_chair(shape, steel if rng.random() < 0.5 else timber, painted)
+        cover = painted if rng.random() < 0.5 else fabric
+    else:
+        seat_height = rng.uniform(0.5, 0.68)
+        height = seat_height + rng.uniform(0.2, 0.32)
+        shape = Chair(width, width, seat_height, height, back="ladder", round_seat=True, **legs)
+        frame, cover = steel if rng.random() < 0.5 else timber, painted
+    return build_chair(shape, frame, cover)
 
 
 @dataclass(frozen=True)
@@ -280,12 +280,11 @@ def _table_base(shape: Table, frame: Surface) -> list:
         return parts + box((0.03, 2 * w, 0.16), (0, 0, under - 0.16), frame)
     if shape.base == "box":
         return box((shape.depth - 0.14, shape.width - 0.14, under), (0, 0, under / 2), frame)
-    for x in (-d, d):
-        for y in (-w, w):
-            if shape.square_legs:
-                parts += box((shape.leg, shape.leg, under), (x, y, under / 2), frame)
-            else:
-                parts += rod([(1.06 * x, 1.06 * y, 0.0), (x, y, under)], shape.leg / 2, frame)
+    for x, y in itertools.product((-d, d), (-w, w)):
+        if shape.square_legs:
+            parts += box((shape.leg, shape.leg, under), (x, y, under / 2), frame)
+        else:
+            parts += rod([(1.06 * x, 1.06 * y, 0.0), (x, y, under)], shape.leg / 2, frame)
     if shape.apron > 0.02:
         level = under - shape.apron / 2
         for sign in (-1.0, 1.0):
@@ -363,15 +362,6 @@ class Cabinet:
     board: float = 0.022
 
 
-def _open_bay(left: float, low: float, width: float, height: float, depth: float, inside: Surface, books: list) -> list:
-    """A back wall and, if there are books, a row of them."""
-    parts = [panel((0.04 - depth / 2, left, low), (0, width, 0), (0, 0, height), inside)]
-    if books:
-        tall = min(0.88 * height, 0.34)
-        parts += box((depth * 0.6, width * 0.94, tall), (-0.02, left + width / 2, low + tall / 2), inside, front=books)
-    return parts
-
-
 def _closed_bay(
     kind: str, y: float, z: float, width: float, height: float, shape: Cabinet, face: Surface, knob: Surface, hinge: int
 ) -> list:
@@ -405,9 +395,8 @@ def build_cabinet(
         parts += box((d - 0.02, t, h - low - t), (-0.01, y, (h + low - t) / 2), upright)
     parts += box((0.02, w - 0.01, h - low), (-d / 2 + 0.012, 0, (h + low) / 2), body)
     if shape.legs:
-        for x in (-d / 2 + 0.05, d / 2 - 0.07):
-            for y in (-w / 2 + 0.06, w / 2 - 0.06):
-                parts += cylinder(0.014, low + 0.005, (x, y, 0), knob, top=0.022, n=8)
+        for x, y in itertools.product((-d / 2 + 0.05, d / 2 - 0.07), (-w / 2 + 0.06, w / 2 - 0.06)):
+            parts += cylinder(0.014, low + 0.005, (x, y, 0), knob, top=0.022, n=8)
     else:
         parts += box((d - 0.05, w - 0.02, low), (-0.02, 0, low / 2), body)
     total = sum(share for _, share in shape.rows)
@@ -420,8 +409,11 @@ def build_cabinet(
         for column in range(shape.columns):
             left, width, tall = -w / 2 + t / 2 + column * bay + t / 2, bay - t, height - t
             if kind == "open":
-                row = books[order % len(books)] if books else None
-                parts += _open_bay(left, level + 0.4 * t, width, tall, d, inside, row)
+                low_edge, book = level + 0.4 * t, min(0.88 * tall, 0.34)
+                parts.append(panel((0.04 - d / 2, left, low_edge), (0, width, 0), (0, 0, tall), inside))
+                if books:
+                    size, centre = (d * 0.6, width * 0.94, book), (-0.02, left + width / 2, low_edge + book / 2)
+                    parts += box(size, centre, inside, front=books[order % len(books)])
             else:
                 face, hinge = fronts[order % len(fronts)], 1 if order % 2 == 0 else -1
                 parts += _closed_bay(kind, left + width / 2, level + tall / 2, width, tall, shape, face, knob, hinge)
@@ -578,9 +570,8 @@ def build_television(shape: Television, case: Surface, screen: Surface) -> Piece
         parts += box((0.4, w * 0.55, 0.03), (0, 0, 0.015), case)
         parts += box((0.05, 0.1, low + 0.15), (-t / 2 - 0.03, 0, (low + 0.15) / 2 + 0.01), case)
     elif shape.stand == "foot" and shape.two_feet:
-        for y in (-w * 0.35, w * 0.35):
-            for x in (0.12, -0.12):
-                parts += rod([(x, y, 0.008), (0, y, low + 0.01)], 0.01, case)
+        for y, x in itertools.product((-w * 0.35, w * 0.35), (0.12, -0.12)):
+            parts += rod([(x, y, 0.008), (0, y, low + 0.01)], 0.01, case)
     elif shape.stand == "foot":
         parts += cylinder(0.13, 0.018, (0, 0, 0), case, top=0.12, n=24)
         parts += box((0.03, 0.08, low + 0.02), (-0.01, 0, (low + 0.02) / 2), case)
@@ -636,10 +627,9 @@ def _pot(shape: Plant, clay: Surface, earth: Surface) -> list:
     return lathe(profile, (0, 0, 0), clay, 24) + lathe(soil, (0, 0, 0), earth, 14)
 
 
-def _leaf(
-    start: np.ndarray, direction: float, rise: float, droop: float, length: float, width: float, skin: Surface
-) -> list:
-    """One leaf from start: it leaves at the angle rise above the horizon and bends down by droop along its length."""
+def _leaf(start: np.ndarray, direction: float, rise: float, droop: float, size: tuple, skin: Surface) -> list:
+    """A leaf of size (width, length) from start: it leaves at the angle rise above the horizon, and bends by droop."""
+    width, length = size
     s = np.linspace(0.0, 1.0, 6)
     angle = rise - droop * s
     step = length / 5
@@ -649,11 +639,14 @@ def _leaf(
     side = np.array([-np.sin(direction), np.cos(direction), 0.0])
     widths = width / 2 * np.maximum(np.sin(np.pi * (0.12 + 0.86 * s)) ** 0.8, 0.06)
     # One tile spans the leaf's width, so that the midrib runs along its middle.
-    return swept(path, side, widths, np.full(6, 0.003), Surface(skin.image, (width, length)), n=4)
+    return swept(path, side, widths, np.full(6, 0.003), Surface(skin.image, size), n=4)
 
 
-def _foliage(shape: Plant, skins: list[Surface], bark: Surface, rng: Generator) -> list:
-    parts: list = []
+def build_plant(
+    shape: Plant, clay: Surface, earth: Surface, skins: list[Surface], bark: Surface, rng: Generator
+) -> Piece:
+    """The plant's pot, stems and leaves; rng: scatters the leaves."""
+    parts = _pot(shape, clay, earth)
     base, rise = shape.pot_height, shape.height - shape.pot_height
     golden = np.pi * (3 - np.sqrt(5))
     stem = 0.0
@@ -691,15 +684,8 @@ def _foliage(shape: Plant, skins: list[Surface], bark: Surface, rng: Generator) 
             start = np.array([x, y, base + rise * 0.52 + 0.36 * rise * z])
             length = 0.13 * rng.uniform(0.7, 1.3) + 0.1 * shape.spread
             elevation, droop, width = rng.uniform(-0.4, 1.2), 0.6, width * 1.6
-        parts += _leaf(start, direction, elevation, droop, length, width, skins[index % len(skins)])
-    return parts
-
-
-def build_plant(
-    shape: Plant, clay: Surface, earth: Surface, skins: list[Surface], bark: Surface, rng: Generator
-) -> Piece:
-    """The plant's parts; rng: scatters the leaves."""
-    return Piece.of("potted plant", _pot(shape, clay, earth) + _foliage(shape, skins, bark, rng))
+        parts += _leaf(start, direction, elevation, droop, (width, length), skins[index % len(skins)])
+    return Piece.of("potted plant", parts)
 
 
 def random_plant(rng: Generator) -> Piece:
