@@ -44,6 +44,9 @@ class TexturedMesh:
         return replace(self, vertices=np.asarray(self.vertices, float) @ pose[:3, :3].T + pose[:3, 3])
 
 
+Meshes = list[TexturedMesh]
+
+
 def colour(hue: float, saturation: float, value: float) -> Colour:
     """RGB 0 to 1 of a hue in degrees, a saturation and a value in percent (HSV)."""
     return colorsys.hsv_to_rgb((hue % 360.0) / 360.0, saturation / 100.0, value / 100.0)

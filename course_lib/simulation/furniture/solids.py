@@ -13,12 +13,11 @@ import numpy as np
 
 from course_lib.geometry import pose_matrix
 from course_lib.simulation.room.scene import RoomObject
-from course_lib.simulation.textures import Surface, TexturedMesh
+from course_lib.simulation.textures import Meshes, Surface, TexturedMesh
 
 CELL = 0.4  # metres: longest edge of a flat cell, because straight edges bulge in a panorama
 
 Triple = Sequence[float]
-Meshes = list[TexturedMesh]
 
 # The six sides of a box: normal axis, its sign, axis along, its sign, axis up, its sign; along x up = outward normal.
 SIDES = (
