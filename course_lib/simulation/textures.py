@@ -14,6 +14,7 @@ import scipy.fft
 from numpy.random import Generator
 
 Colour = tuple[float, float, float]
+Pair = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -52,14 +53,12 @@ def colour(hue: float, saturation: float, value: float) -> Colour:
     return colorsys.hsv_to_rgb((hue % 360.0) / 360.0, saturation / 100.0, value / 100.0)
 
 
-def random_colour(
-    rng: Generator, saturation: tuple[float, float] = (25.0, 90.0), value: tuple[float, float] = (40.0, 95.0)
-) -> Colour:
+def random_colour(rng: Generator, saturation: Pair = (25.0, 90.0), value: Pair = (40.0, 95.0)) -> Colour:
     """A colour from anywhere on the hue circle; saturation and value in percent, drawn from the two ranges."""
     return colour(rng.uniform(0.0, 360.0), rng.uniform(*saturation), rng.uniform(*value))
 
 
-def band_noise(rng: Generator, pixels: int, wavelength: float, stretch: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
+def band_noise(rng: Generator, pixels: int, wavelength: float, stretch: Pair = (1.0, 1.0)) -> np.ndarray:
     """Noise `(pixels, pixels)` that repeats, mean 0, deviation 1; wavelength, pixels; stretch of blobs (across, up)."""
     spectrum = scipy.fft.rfft2(rng.standard_normal((pixels, pixels), dtype=np.float32))
     across = np.fft.rfftfreq(pixels).astype(np.float32)[None, :] * stretch[0]
@@ -83,17 +82,6 @@ def _coordinates(pixels: int) -> tuple[np.ndarray, np.ndarray]:
     return line[None, :], line[:, None]
 
 
-def _dots(rng: Generator, pixels: int, count: int, radius: tuple[float, float]) -> np.ndarray:
-    """Filled discs, wrapped at the edges: `(pixels, pixels)` float32, 0 outside, strength 0.4 to 1 inside."""
-    mask = np.zeros((pixels, pixels), np.float32)
-    for _ in range(count):
-        column, row = rng.integers(0, pixels, 2)
-        size, strength = max(1, round(rng.uniform(*radius))), float(rng.uniform(0.4, 1.0))
-        for shift in ((0, 0), (pixels, 0), (-pixels, 0), (0, pixels), (0, -pixels)):
-            cv2.circle(mask, (int(column + shift[0]), int(row + shift[1])), size, strength, -1, cv2.LINE_AA)
-    return mask
-
-
 def _mottled(rng: Generator, base: float | np.ndarray, size: float, pixels: int, *layers: tuple) -> np.ndarray:
     """A brightness with layers of noise on it, each (strength, wavelength in metres, and how it is stretched)."""
     for strength, metres, *stretch in layers:
@@ -101,9 +89,17 @@ def _mottled(rng: Generator, base: float | np.ndarray, size: float, pixels: int,
     return base
 
 
-def _stained(rng: Generator, size: float, pixels: int, count: int, radius: tuple[float, float]) -> np.ndarray:
-    """`_dots` with radii in metres."""
-    return _dots(rng, pixels, count, (radius[0] / size * pixels, radius[1] / size * pixels))
+def _stained(rng: Generator, size: float, pixels: int, count: int, radius: Pair) -> np.ndarray:
+    """Filled discs, wrapped at the edges: `(pixels, pixels)` float32, 0 outside, 0.4 to 1 inside; radius: metres."""
+    low, high = radius[0] / size * pixels, radius[1] / size * pixels
+    mask = np.zeros((pixels, pixels), np.float32)
+    for _ in range(count):
+        column, row = rng.integers(0, pixels, 2)
+        reach, strength = max(1, round(rng.uniform(low, high))), float(rng.uniform(0.4, 1.0))
+        for shift in ((0, 0), (pixels, 0), (-pixels, 0), (0, pixels), (0, -pixels)):
+            centre = int(column + shift[0]), int(row + shift[1])
+            cv2.circle(mask, centre, reach, strength, -1, cv2.LINE_AA)
+    return mask
 
 
 # The patterns that generated rooms draw from; "tartan" and "lattice" are left to the room of the experiment.
@@ -111,12 +107,7 @@ CLOTH_PATTERNS = ("plain", "stripes", "checks", "dots", "herringbone", "blotches
 
 
 def cloth(
-    rng: Generator,
-    rgb: Colour,
-    pattern: str = "plain",
-    second: Colour | None = None,
-    size: float = 0.8,
-    pixels: int = 256,
+    rng: Generator, rgb: Colour, pattern="plain", second: Colour | None = None, size: float = 0.8, pixels: int = 256
 ) -> Surface:
     """Woven cloth: threads, worn patches and a pattern; second: the pattern's colour (None: the same hue, darker)."""
     across, up = _coordinates(pixels)
@@ -146,7 +137,7 @@ def cloth(
     else:
         mask = _stained(rng, size, pixels, 40, (0.004, 0.012)) > 0.5
     weight = mask.astype(np.float32)[..., None]
-    other = np.asarray(second if second is not None else np.asarray(rgb) * 0.62, np.float32)
+    other = np.asarray(np.asarray(rgb) * 0.62 if second is None else second, np.float32)
     tint = np.asarray(rgb, np.float32) * (1 - weight) + other * weight
     return Surface(shaded(tint, brightness), (size, size))
 
@@ -275,8 +266,7 @@ def _lines_of_print(image: np.ndarray, rng: Generator, box: tuple[int, int, int,
 
 def picture(rng: Generator, width: float, height: float, emission: float = 0.0, pixels: int = 192) -> Surface:
     """A landscape or a composition of figures with some print; width, height: metres."""
-    columns = pixels
-    rows = max(48, round(pixels * height / width))
+    columns, rows = pixels, max(48, round(pixels * height / width))
     image = _gradient(random_colour(rng, (10, 70), (60, 100)), random_colour(rng, (10, 70), (30, 90)), rows, columns)
     if rng.random() < 0.5:
         x = np.arange(columns)
@@ -298,9 +288,8 @@ def picture(rng: Generator, width: float, height: float, emission: float = 0.0, 
             corners = np.stack([[x, y], [x + a, y + b], [x - b, y + a]]).astype(np.int32)
             cv2.fillConvexPoly(image, corners, tint, cv2.LINE_AA)
     left, top = int(columns * rng.uniform(0.05, 0.5)), int(rows * rng.uniform(0.6, 0.8))
-    _lines_of_print(
-        image, rng, (left, top, left + columns // 3, min(rows, top + 30)), random_colour(rng, (0, 20), (0, 100))
-    )
+    box = (left, top, left + columns // 3, min(rows, top + 30))
+    _lines_of_print(image, rng, box, random_colour(rng, (0, 20), (0, 100)))
     return Surface(image, (width, height), emission)
 
 
@@ -347,11 +336,9 @@ def book_row(rng: Generator, width: float, height: float, hue: float | None = No
 
 def window_view(rng: Generator, width: float, height: float) -> Surface:
     """What is seen through a window by day: sky, clouds, roofs or trees; shines by itself."""
-    columns, rows = 192, 192
+    columns = rows = 192
     image = _gradient(colour(210, 25, 100), colour(205, 8, 100), rows, columns)
-    clouds = band_noise(rng, 192, 50.0)[..., None] > 0.7
-    image = np.where(clouds, np.uint8(252), image)
-    image = np.ascontiguousarray(image)
+    image[band_noise(rng, 192, 50.0) > 0.7] = 252
     for _ in range(int(rng.integers(4, 9))):
         x, top = int(rng.integers(columns)), int(rows * rng.uniform(0.55, 0.85))
         tint = _bytes(random_colour(rng, (10, 45), (50, 85)))

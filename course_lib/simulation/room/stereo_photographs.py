@@ -18,8 +18,7 @@ Box = tuple[float, float, float, float]
 def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[TrueObject]:
     """The boxes of all objects of which at least one pixel is seen from `state` `(6,)`, in the order of `room.objects`.
 
-    visible_box is around the pixels that show an object, unoccluded_box around those that would show it alone;
-    visible_fraction: the first pixels' number over the second's. u_max passes the width at the seam.
+    visible_box lies around the pixels that show an object, unoccluded_box around those that would show it alone.
     """
     numbers = renderer.render_objects(state)
     scale = numbers.shape[1] / renderer.width

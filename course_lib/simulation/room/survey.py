@@ -39,7 +39,17 @@ def survey_room(room: Room, model: RoomSurveyModel, rng: Generator) -> SemanticM
     """
     colour = np.asarray(model.lamp_colour)
     lamps = tuple(Lamp(one.position, tuple(colour * one.colour), one.strength * model.lamp_gain) for one in room.lamps)
-    colours = _photographed_colours(replace(room, lamps=lamps, ambient=tuple(colour * room.ambient)), model, rng)
+    colours: list[list] = [[] for _ in room.objects]  # of each object, its (hue, saturation) from each place
+    lit = replace(room, lamps=lamps, ambient=tuple(colour * room.ambient))
+    with PanoramaRenderer(lit, model.width, number_scale=1) as renderer:
+        for x, y in free_places(room, model.places, rng):
+            state = np.array([x, y, model.camera_height, 0.0, 0.0, rng.uniform(-np.pi, np.pi)])
+            image = photograph(renderer.render(state), PanoramaCameraModel(), rng)
+            numbers = renderer.render_objects(state)
+            for number, seen in enumerate(colours):
+                mask = numbers == number
+                if mask.sum() >= model.fewest_pixels:
+                    seen.append(mean_hue_saturation(image, mask=mask))
     landmarks = []
     for number, thing in enumerate(room.objects):
         if not colours[number]:
@@ -48,21 +58,6 @@ def survey_room(room: Room, model: RoomSurveyModel, rng: Generator) -> SemanticM
         x, y = np.array([thing.x, thing.y]) + model.position_error * rng.standard_normal(2)
         landmarks.append(Landmark(thing.label, round(float(x), 3), round(float(y), 3), hue, saturation))
     return SemanticMap(tuple(landmarks), walls=np.asarray(room.walls, float))
-
-
-def _photographed_colours(room: Room, model: RoomSurveyModel, rng: Generator) -> list[list]:
-    """For every object its (hue, saturation) from each place that sees it well."""
-    colours: list[list] = [[] for _ in room.objects]
-    with PanoramaRenderer(room, model.width, number_scale=1) as renderer:
-        for x, y in free_places(room, model.places, rng):
-            state = np.array([x, y, model.camera_height, 0.0, 0.0, rng.uniform(-np.pi, np.pi)])
-            image = photograph(renderer.render(state), PanoramaCameraModel(), rng)
-            numbers = renderer.render_objects(state)
-            for number in range(len(room.objects)):
-                mask = numbers == number
-                if mask.sum() >= model.fewest_pixels:
-                    colours[number].append(mean_hue_saturation(image, mask=mask))
-    return colours
 
 
 def _mean_colour(colours: list[tuple[float, float]]) -> tuple[float, float]:
