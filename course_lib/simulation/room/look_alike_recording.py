@@ -67,14 +67,10 @@ def measurement_poses(room: Room, n: int, seed: int) -> np.ndarray:
     Two headings a place, the second some quarters of a turn further. Source: paper 2, table 1
     """
     rng = np.random.default_rng([STREAM, seed, PLACES])
-    n_places = -(-n // HEADINGS_A_PLACE)
     first, quarters = rng.uniform(-np.pi, np.pi, 1000), rng.integers(1, 4, 1000)
-    places = free_places(room, n_places, rng)
-    poses = [
-        (x, y, first[k] + turn * quarters[k] * np.pi / 2)
-        for k, (x, y) in enumerate(places)
-        for turn in range(HEADINGS_A_PLACE)
-    ]
+    places = free_places(room, -(-n // HEADINGS_A_PLACE), rng)
+    turns = range(HEADINGS_A_PLACE)
+    poses = [(x, y, first[k] + t * quarters[k] * np.pi / 2) for k, (x, y) in enumerate(places) for t in turns]
     return np.array(poses[:n])
 
 
