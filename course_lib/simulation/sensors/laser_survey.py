@@ -54,12 +54,9 @@ class RegisteredScan:
     azimuths: np.ndarray  # `(A,)` radians
     registered_pose: np.ndarray  # `(4, 4)` scanner-to-world, where registration believes that the scanner stood
 
-    def points(self) -> np.ndarray:
-        """Measured points `(n, 3)` in the world by the registered pose."""
-        return self._points(self.registered_pose)
-
-    def _points(self, pose: np.ndarray) -> np.ndarray:
-        measured = np.isfinite(self.ranges)
+    def points(self, pose: np.ndarray | None = None) -> np.ndarray:
+        """Measured points `(n, 3)` in the world, by the registered pose if no other is given."""
+        pose, measured = self.registered_pose if pose is None else pose, np.isfinite(self.ranges)
         local = _directions(self.elevations, self.azimuths)[measured] * self.ranges[measured][:, None]
         return local @ pose[:3, :3].T + pose[:3, 3]
 
@@ -69,10 +66,6 @@ class Scan(RegisteredScan):
     """One station as the simulation knows it. true_pose `(4, 4)` scanner-to-world: where it really stood."""
 
     true_pose: np.ndarray
-
-    def points(self, registered: bool = True) -> np.ndarray:
-        """Measured points `(n, 3)` in the world by the registered or by the true pose."""
-        return self._points(self.registered_pose if registered else self.true_pose)
 
     def as_registered(self) -> RegisteredScan:
         """What leaves the simulation: the scan without its true pose."""
@@ -139,16 +132,14 @@ def _ranges(
 def registration_error(scans: list[Scan], rng: Generator, n_points: int = 20_000) -> dict[str, float]:
     """How far apart neighbouring stations' points lie, m: the paper's "mean point distance after registration".
 
-    Mean distance from points of one, seen by both, to the nearest of the other, over the pairs. Spacing and noise are
-    in it: the same number with the true poses stands beside it, and the stations' position errors.
+    Spacing and noise are in it, so the same number with the true poses stands beside it.
     """
     result = {}
-    for key, registered in (("mean_point_distance_m", True), ("mean_point_distance_true_poses_m", False)):
+    for key, name in (("mean_point_distance_m", "registered_pose"), ("mean_point_distance_true_poses_m", "true_pose")):
         means = []
         for first, second in pairwise(scans):
-            target = second.points(registered)
+            source, target = (one.points(getattr(one, name)) for one in (first, second))
             near = target[np.linalg.norm(target - second.true_pose[:3, 3], axis=1) < _DENSE_RANGE]
-            source = first.points(registered)
             source = source[np.linalg.norm(source - second.true_pose[:3, 3], axis=1) < _DENSE_RANGE - 0.1]
             source = source[rng.choice(len(source), min(n_points, len(source)), replace=False)]
             distance = cKDTree(near).query(source, distance_upper_bound=0.05)[0]
