@@ -22,7 +22,7 @@ from course_lib.paths import data_path
 from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor import recorded_runs
 from course_lib.simulation.corridor.mesh_building import WorldMesh
-from course_lib.simulation.corridor.recorded_runs import FloorSurveyModel, HandModel, PushModel, WagonModel
+from course_lib.simulation.corridor.recorded_runs import FloorSurveyModel, HandModel, PushModel, Run, WagonModel
 from course_lib.simulation.corridor.world import Building, DayModel, draw_building, scene_change
 from course_lib.simulation.data_folder import parameter_table, parameter_tables
 from course_lib.simulation.sensors.ray_casting import WorldCaster
@@ -68,7 +68,7 @@ def record(
     folder: Path,
     world: WorldMesh,
     camera: TimeOfFlightCamera,
-    run: tuple[np.ndarray, np.ndarray],
+    run: Run,
     floor_survey: FloorSurveyModel,
     rng: Generator,
     progress: Callable[[Iterable], Iterable] = iter,
