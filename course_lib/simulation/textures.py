@@ -1,6 +1,6 @@
 """Seeded pictures of materials, which repeat without a seam, and prints, which are shown once; RGB uint8, in metres.
 
-All carry contrast at 1 to 10 cm, for AKAZE to hold on to. Patterns change the brightness first: hues stay.
+They carry contrast at 1 to 10 cm for AKAZE. Patterns change the brightness, so hues stay.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""What surfaces are made of: diffuse reflectivity at 850 nm, 0 to 1 but for retroreflective tape, and a colour.
-
-All are chosen, in the usual ranges for indoor materials in the near infrared (leaves and most cloth are bright there).
-"""
+"""Diffuse reflectivity at 850 nm and colour of what the corridor is made of; chosen in the usual ranges for indoors."""
 
 from __future__ import annotations
 

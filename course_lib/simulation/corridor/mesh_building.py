@@ -149,10 +149,7 @@ def to_polydata(vertices: np.ndarray, faces: np.ndarray):
 def write_ply(
     path: str | Path, vertices: np.ndarray, faces: np.ndarray, comment: str, columns: Sequence[tuple] = ()
 ) -> None:
-    """Triangles as binary little-endian PLY: float32 vertices in metres, int32 indices.
-
-    columns: what else each vertex has, as (name, NumPy's type, PLY's type, values).
-    """
+    """Triangles as binary PLY, metres; columns: what else a vertex has, (name, NumPy's type, PLY's type, values)."""
     columns = [*((name, "<f4", "float", values) for name, values in zip("xyz", vertices.T, strict=True)), *columns]
     table = np.zeros(len(vertices), dtype=[(name, kind) for name, kind, _, _ in columns])
     for name, _, _, values in columns:

@@ -1,7 +1,6 @@
-"""What is built into the corridor, and the clutter that stands in it on the run day; `rng` varies it.
+"""What is built into the corridor, and the clutter that `rng` varies. Metres, all chosen, by the usual building sizes.
 
-Local axes of a wall: along, into (away from the corridor), up; what sticks out has negative `into`. Metres, all chosen,
-by the usual building sizes.
+Local axes of a wall: along, into (away from the corridor), up; what sticks out has negative `into`.
 """
 
 from __future__ import annotations

@@ -27,9 +27,8 @@ def planar_simplification(
     """The large planes of a map, each flattened; everything else is dropped.
 
     Repeated: of the trial planes the one with most area in support (triangles within `distance` metres, of a like
-    direction) is refitted to it by least squares. Of its triangles those in regions of `min_area` square metres are
-    projected onto it and kept, until no plane is so large. Last, the share `reduction` of the triangles is decimated
-    away. Raises `ValueError` for a map without such planes.
+    direction) is refitted by least squares. Its regions of `min_area` square metres are projected onto it and kept, until
+    no plane is so large. Last, the share `reduction` of the triangles is decimated away.
     Source: Fallon et al. 2012, section III (large planar segments); RANSAC: Fischler and Bolles 1981.
     """
     corners = scene_map.vertices[scene_map.faces]

@@ -1,7 +1,4 @@
-"""Recordings: every seed is another day and another run in one building, with other errors of the camera.
-
-Each has a stream of random numbers to itself: two recordings of a seed differ only in what they are asked to differ in.
-"""
+"""Recordings of a building: a seed gives the day, the run and the camera's errors, each from a stream of its own."""
 
 from __future__ import annotations
 
@@ -74,10 +71,9 @@ def record(
     progress: Callable[[Iterable], Iterable] = iter,
     frames: int | None = None,
 ) -> Counter[str]:
-    """Capture a run, states `(T, 6)` and times `(T,)`, write it to `folder`, and return counts over its pixels.
+    """Capture a run, or its first `frames`, write what a user is told to `folder`, and return counts over its pixels.
 
-    What is written is what a user is told: nominal intrinsics, and the poses where the user believes the camera to be.
-    frames: only the first so many images and poses; the line on the floor is always the whole run's.
+    A user is told nominal intrinsics, the poses as believed, and the line on the floor of the whole run.
     """
     states, times = run
     caster, depths, counts = WorldCaster.of(world), [], Counter()
@@ -102,11 +98,10 @@ def record_seed(
     progress: Callable[[Iterable], Iterable] = iter,
     carried: Literal["wagon", "hand"] = "wagon",
 ) -> None:
-    """Write the recording of a seed to a new `folder`.
+    """Write the recording of a seed to a new `folder`. Raises `ValueError` for an unknown hardship.
 
     camera: what the user is told (default: the SR4000's). frames: only the first so many. carried: on a wagon, or by
     hand with all six degrees of freedom moving.
-    Raises `ValueError` for an unknown hardship, or a folder that holds a recording.
     """
     unknown = sorted(set(hardships) - set(HARDSHIPS))
     if unknown:

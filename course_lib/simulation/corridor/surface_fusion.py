@@ -1,6 +1,6 @@
 """From registered scans to a triangle mesh: truncated signed distances on a voxel grid, iso-surface, decimation.
 
-A voxel that no station saw stays empty, and no triangle touches it: what was hidden on the survey day remains a hole.
+A voxel that no station saw stays empty, so what was hidden on the survey day remains a hole.
 Source: Curless and Levoy, "A volumetric method for building complex models from range images", SIGGRAPH 1996.
 """
 

@@ -1,7 +1,4 @@
-"""The true world: a fourth-floor corridor of 40 m along +x, on the survey day and on the run day.
-
-z is up, the floor is at z = 0, left is +y. Positions follow no common spacing: no place looks like the next.
-"""
+"""The true world: a fourth-floor corridor of 40 m along +x (z up, left is +y), on the survey day and on a run day."""
 
 from __future__ import annotations
 
@@ -131,10 +128,10 @@ def run_day(
     rng: Generator | None = None,
     rooms: Sequence[bool] | None = None,
 ) -> tuple[WorldMesh, np.ndarray]:
-    """The building with left doors open by `door_angles` (degrees), and with things that vary with `rng` in the way.
+    """The building with left doors open by `door_angles` (degrees) and things in the way: its mesh, and their boxes.
 
-    rng: by default it goes on from the building's small parts. rooms: which left doors have a room behind them, by
-    default the open ones. Returns the mesh and the boxes of the things on the floor plan `(n, 2, 2)`, metres.
+    rng: varies the things, by default as the building's small parts. rooms: which left doors have a room behind them,
+    by default the open ones. The boxes are on the floor plan, `(n, 2, 2)`, metres.
     """
     builder = MeshBuilder(lambda points: _bow(points, building.phases))
     detail = np.random.default_rng(building.detail_seed)

@@ -1,7 +1,4 @@
-"""The solids of furniture and rooms, as textured triangles with outward counter-clockwise winding.
-
-Texture coordinates are metres divided by the tile's size. A piece is built with x forward, y left, floor at z = 0.
-"""
+"""The solids of furniture and rooms, as textured triangles; a piece is built with x forward, y left, floor at z = 0."""
 
 from __future__ import annotations
 

@@ -1,8 +1,4 @@
-"""The furnished rooms of paper 2 as paper 1 sees them: a world for a depth camera, and its laser-scanned mesh map.
-
-The camera sees the room itself, the map is made of a few registered scans of it. A person carries the camera where the
-floor is free, and looks about: all six degrees of freedom move.
-"""
+"""A furnished room as paper 1 sees it: its laser-scanned mesh map, and what a carried depth camera measures in it."""
 
 from __future__ import annotations
 

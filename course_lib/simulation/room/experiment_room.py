@@ -1,8 +1,7 @@
-"""The room of the experiment: designed by hand, in the frame of the semantic map, around the paper's ten places.
+"""The room of the experiment, designed by hand around the paper's ten places, in the frame of the semantic map.
 
-Three look-alike sofas, told apart only by their distance from the centroid of all furniture, are what the paper's
-greedy matching confuses. This is development data: the generator's limits were moved to just beside the measures here
-after the detector's misses had been published (data/room/README.md). Source: paper 2, section 3 (table 1, figure 7)
+Only their distance from the centroid of all furniture tells three sofas apart. This is development data: the limits
+of `make_room` were moved to just beside it (data/room/README.md). Source: paper 2, section 3 (table 1, figure 7)
 """
 
 from __future__ import annotations

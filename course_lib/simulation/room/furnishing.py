@@ -1,7 +1,6 @@
 """Rooms from a seed: `make_room` for training the detector, `make_look_alike_room` for reporting.
 
-In a room for reporting three to five sofas or chairs look alike. Its limits were committed before any such room was
-drawn, and nobody shaped one. No seed gives one room in both generators, so the detector has seen none of them.
+The limits for reporting were committed before any such room was drawn. No seed gives one room in both generators.
 """
 
 from __future__ import annotations
@@ -166,10 +165,7 @@ class LookAlikeLimits:
 
 
 def make_look_alike_room(seed: int, draw: int = 0, limits: LookAlikeLimits = LookAlikeLimits()) -> Room:
-    """The room of a seed, its south-west corner at the origin; the look-alikes are its first objects.
-
-    draw: another room of the same seed. A room whose pieces find no place is drawn again; `ValueError` at last.
-    """
+    """The room of a seed; the look-alikes are its first objects. draw: another room of the same seed."""
     for rng in np.random.default_rng([STREAM, seed, draw]).spawn(MAX_DRAWS):
         high = rng.uniform(*limits.side, 2)
         plan = random_shell(rng, np.zeros(2), high, float(rng.uniform(*limits.height)))

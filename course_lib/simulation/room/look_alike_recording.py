@@ -1,7 +1,4 @@
-"""A room of look-alikes surveyed, and photographed by the paper's rig at both heights, from a seed.
-
-Every random thing has a stream of its own: another tilt, or another number of poses, changes nothing else.
-"""
+"""A room of look-alikes surveyed and photographed from a seed. Every random thing has a stream of its own."""
 
 from __future__ import annotations
 
@@ -62,10 +59,7 @@ def surveyed_room(seed: int, models: RecordingModels) -> tuple[Room, SemanticMap
 
 
 def measurement_poses(room: Room, n: int, seed: int) -> np.ndarray:
-    """Where the rig stands: `(n, 3)` [x, y, heading], metres and radians; fewer poses are the first of more.
-
-    Two headings a place, the second some quarters of a turn further. Source: paper 2, table 1
-    """
+    """Where the rig stands: `(n, 3)` [x, y, heading], two headings a place; fewer are the first of more. Source: paper 2"""
     rng = np.random.default_rng([STREAM, seed, PLACES])
     first, quarters = rng.uniform(-np.pi, np.pi, 1000), rng.integers(1, 4, 1000)
     places = free_places(room, -(-n // HEADINGS_A_PLACE), rng)

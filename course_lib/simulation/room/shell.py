@@ -1,7 +1,4 @@
-"""What a room is apart from its listed furniture: floor, walls, windows, door, pictures, lamps, and small things.
-
-The small things are there so that a detector meets what is not of its classes; they stand within 0.45 m of a wall.
-"""
+"""A room apart from its listed furniture; small things by its walls let a detector meet what is not of its classes."""
 
 from __future__ import annotations
 

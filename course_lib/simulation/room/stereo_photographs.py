@@ -16,16 +16,13 @@ Box = tuple[float, float, float, float]
 
 
 def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[TrueObject]:
-    """The boxes of all objects of which at least one pixel is seen from `state` `(6,)`, in the order of `room.objects`.
-
-    visible_box lies around the pixels that show an object, unoccluded_box around those that would show it alone.
-    """
+    """The boxes of all objects of which at least one pixel is seen from `state` `(6,)`, in the order of `room.objects`."""
     numbers = renderer.render_objects(state)
     scale = numbers.shape[1] / renderer.width
     boxes = []
     for number in np.flatnonzero(np.bincount(numbers.ravel(), minlength=BACKGROUND + 1)[:BACKGROUND]):
         visible = numbers == number
-        whole = renderer.render_alone(state, int(number)) | visible
+        whole = renderer.render_alone(state, int(number)) | visible  # as if nothing stood before it
         label, share = renderer.room.objects[number].label, float(visible.sum() / whole.sum())
         boxes.append(TrueObject(int(number), label, box_around(visible, scale), box_around(whole, scale), share))
     return boxes

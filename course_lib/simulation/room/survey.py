@@ -33,10 +33,7 @@ class UnseenObject(ValueError):
 
 
 def survey_room(room: Room, model: RoomSurveyModel, rng: Generator) -> SemanticMap:
-    """The semantic map of a room; colours are means over an object's pixels, and over the places that see it well.
-
-    Raises `UnseenObject` for an object that no place sees.
-    """
+    """The semantic map of a room, its colours the means over what several places see. Raises `UnseenObject`."""
     colour = np.asarray(model.lamp_colour)
     lamps = tuple(Lamp(one.position, tuple(colour * one.colour), one.strength * model.lamp_gain) for one in room.lamps)
     colours: list[list] = [[] for _ in room.objects]  # of each object, its (hue, saturation) from each place

@@ -1,7 +1,4 @@
-"""A terrestrial laser survey: stations, scans with their errors, and how well they are registered.
-
-A scan knows where the scanner stood, and where registration believes it stood; only the second reaches the map.
-"""
+"""A terrestrial laser survey: stations, scans with their errors, and how well the stations are registered."""
 
 from __future__ import annotations
 
@@ -91,9 +88,7 @@ def survey(caster: WorldCaster, model: ScannerModel, rng: Generator, stations: t
 def scan(
     caster: WorldCaster, model: ScannerModel, true_pose: np.ndarray, registered_pose: np.ndarray, rng: Generator
 ) -> Scan:
-    """One station's scan, with noise, drop-outs, and mixed pixels: where a second ray within the beam's footprint meets
-    another surface, the instrument reports a weighted mean of both ranges, a point in mid-air.
-    """
+    """One station's scan, with noise, drop-outs and mixed pixels."""
     step = np.deg2rad(model.step_deg)
     elevations = np.arange(np.deg2rad(model.lowest_deg), np.pi / 2 - step, step)
     azimuths = np.arange(round(2 * np.pi / step)) * step - np.pi
@@ -116,6 +111,7 @@ def _ranges(
     angle = rng.uniform(0, 2 * np.pi, shape)
     beside = directions + (offset * np.cos(angle))[..., None] * _tangent(directions)
     beside += (offset * np.sin(angle))[..., None] * np.cross(directions, _tangent(directions))
+    # Where a second ray within the beam's footprint meets another surface, the range is a weighted mean of both.
     other = caster.cast(pose[:3, 3], beside).distance
     share = rng.uniform(0.0, 0.5, shape)
     both = np.isfinite(other) & np.isfinite(ranges)
@@ -130,10 +126,8 @@ def _ranges(
 
 
 def registration_error(scans: list[Scan], rng: Generator, n_points: int = 20_000) -> dict[str, float]:
-    """How far apart neighbouring stations' points lie, m: the paper's "mean point distance after registration".
-
-    Spacing and noise are in it, so the same number with the true poses stands beside it.
-    """
+    """How far apart neighbouring stations' points lie, m: the paper's "mean point distance after registration"."""
+    # Spacing and noise are in it, so the same number with the true poses stands beside it.
     result = {}
     for key, name in (("mean_point_distance_m", "registered_pose"), ("mean_point_distance_true_poses_m", "true_pose")):
         means = []

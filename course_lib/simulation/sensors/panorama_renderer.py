@@ -1,7 +1,4 @@
-"""Equirectangular pictures of a room from any place, and which object each pixel shows.
-
-VTK bends the six faces of a cube into one panorama. Two scenes: one lit, one with each object painted in its number.
-"""
+"""Equirectangular pictures of a room from any place, and which object each pixel shows, both drawn by VTK."""
 
 from __future__ import annotations
 

@@ -26,10 +26,7 @@ class PanoramaCameraModel:
 
 
 def photograph(light: np.ndarray, model: PanoramaCameraModel, rng: Generator) -> np.ndarray:
-    """One photograph of the light of a panorama.
-
-    light: `(H, W, 3)` float32 BGR, 255 = full scale at exposure 1. Returns `(H, W, 3)` uint8 BGR.
-    """
+    """One photograph `(H, W, 3)` uint8 of the light `(H, W, 3)` float32 of a panorama, BGR, 255 = full at exposure 1."""
     gain = 2.0 ** rng.normal(0.0, model.exposure_stops) * rng.normal(1.0, model.white_balance, 3)
     image = light * gain.astype(np.float32)
     sigma = rng.uniform(*model.blur) * light.shape[1] / 1280
