@@ -64,8 +64,7 @@ class FinaleWorld:
     def photographs(self, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The upper and the lower panorama `(640, 1280, 3)` BGR, as the cameras give them."""
         rng = _generator(pose, PANORAMAS)
-        x, y, heading = map(float, pose)
-        rig = stand_up(x, y, heading, self.rig.upper_height, self.rig.baseline, self.models.rig, rng, self._mount)
+        rig = stand_up(pose, self.rig.upper_height, self.rig.baseline, self.models.rig, rng, self._mount)
         images = [photograph(self._photographer.render(s), self.models.camera, rng) for s in rig.camera_states()]
         return images[0], images[1]
 

@@ -26,9 +26,9 @@ def planar_simplification(
 ) -> SceneMap:
     """The large planes of a map, each flattened; everything else is dropped.
 
-    Repeated: of the trial planes the one with most area in support (triangles within `distance` metres, of a like
-    direction) is refitted by least squares. Its regions of `min_area` square metres are projected onto it and kept, until
-    no plane is so large. Last, the share `reduction` of the triangles is decimated away.
+    Repeated until no plane is so large: of the trial planes the one with most area in support (triangles within
+    `distance` metres, of a like direction) is refitted by least squares, and its regions of `min_area` square metres
+    are projected onto it. Last, the share `reduction` of the triangles is decimated away.
     Source: Fallon et al. 2012, section III (large planar segments); RANSAC: Fischler and Bolles 1981.
     """
     corners = scene_map.vertices[scene_map.faces]

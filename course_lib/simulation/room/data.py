@@ -68,8 +68,8 @@ def make_room_data(
             (folder / f"experiment_{experiment}").mkdir()
         with PanoramaRenderer(room, models.width) as renderer:
             for experiment, place, turn in progress(shots):
-                heading = np.deg2rad(place.headings_deg[turn])
-                rig = stand_up(place.x, place.y, heading, heights[experiment], baseline, models.rig, rng, mount)
+                pose = place.x, place.y, np.deg2rad(place.headings_deg[turn])
+                rig = stand_up(pose, heights[experiment], baseline, models.rig, rng, mount)
                 name, where = f"{place.place:02d}_{'ab'[turn]}", folder / f"experiment_{experiment}"
                 lists[experiment].append(photograph_pair(renderer, rig, where, name, models.camera, rng))
         for experiment, entries in lists.items():

@@ -22,7 +22,6 @@ from course_lib.simulation.sensors.panorama_rig import (
     PanoramaCameraModel,
     RigModel,
     assemble,
-    photograph,
     stand_up,
     write_photograph,
 )
@@ -59,7 +58,7 @@ def surveyed_room(seed: int, models: RecordingModels) -> tuple[Room, SemanticMap
 
 
 def measurement_poses(room: Room, n: int, seed: int) -> np.ndarray:
-    """Where the rig stands: `(n, 3)` [x, y, heading], two headings a place; fewer are the first of more. Source: paper 2"""
+    """Poses `(n, 3)` of the rig, two headings a place; fewer poses are the first of more. Source: paper 2, table 1"""
     rng = np.random.default_rng([STREAM, seed, PLACES])
     first, quarters = rng.uniform(-np.pi, np.pi, 1000), rng.integers(1, 4, 1000)
     places = free_places(room, -(-n // HEADINGS_A_PLACE), rng)
@@ -82,9 +81,9 @@ def photograph_room(folder: Path, room: Room, seed: int, n_poses: int, models: R
             folders.append(folder / f"experiment_{number}")
             folders[-1].mkdir()
             entries = []
-            for k, (x, y, heading) in enumerate(poses):
+            for k, pose in enumerate(poses):
                 rng = np.random.default_rng([STREAM, seed, POSE, number, k])
-                rig = stand_up(float(x), float(y), float(heading), upper, upper - lower, models.rig, rng, mount)
+                rig = stand_up(pose, upper, upper - lower, models.rig, rng, mount)
                 entries.append(photograph_pair(renderer, rig, folders[-1], f"{k:02d}", models.camera, rng))
             write_poses(folders[-1], seed, models.width, round(upper - lower, 6), entries)
     return folders
@@ -140,12 +139,11 @@ def photograph_walks(
             rng = np.random.default_rng([STREAM, seed, WALK, k])
             upper, lower = CAMERA_HEIGHTS[experiment_of(k)]
             views = []
-            for x, y, heading in walk_from(room, pose, n, rng, walk):
-                rig = stand_up(float(x), float(y), float(heading), upper, upper - lower, models.rig, rng, mount)
+            for place in walk_from(room, pose, n, rng, walk):
+                rig = stand_up(place, upper, upper - lower, models.rig, rng, mount)
                 images = []
                 for state in rig.camera_states():
-                    image = photograph(renderer.render(state), models.camera, rng)
-                    write_photograph(folder / "view.jpg", image, models.camera, rng)
+                    write_photograph(folder / "view.jpg", renderer.render(state), models.camera, rng)
                     images.append(read_panorama(folder / "view.jpg"))
-                views.append(NearbyView(np.array([x, y, heading]), *images))
+                views.append(NearbyView(place, *images))
             yield views

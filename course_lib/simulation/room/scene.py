@@ -90,7 +90,7 @@ class NoFreePlace(ValueError):
 
 
 def free_places(room: Room, n: int, rng: Generator, clearance: float = 0.3, wall: float = 0.5) -> np.ndarray:
-    """Places `(n, 2)` at least clearance from every footprint and wall from every wall; metres. Raises `NoFreePlace`."""
+    """Places `(n, 2)` at least clearance (m) from every footprint and wall from every wall. Raises `NoFreePlace`."""
     low, high = np.asarray(room.walls).min(axis=0) + wall, np.asarray(room.walls).max(axis=0) - wall
     places = rng.uniform(low, high, (500 * n, 2))
     free = clear_of([footprint(item) for item in room.objects], places, clearance)

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.random import Generator
 
 from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import PanoramaCameraModel, RigPose, photograph, write_photograph
+from course_lib.simulation.sensors.panorama_rig import PanoramaCameraModel, RigPose, write_photograph
 from course_lib.spherical_stereo.recording import POSES_FILE, VERSION, TrueObject
 
 Box = tuple[float, float, float, float]
 
 
 def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[TrueObject]:
-    """The boxes of all objects of which at least one pixel is seen from `state` `(6,)`, in the order of `room.objects`."""
+    """The boxes of all objects that show in the picture from `state` `(6,)`, in the order of `room.objects`."""
     numbers = renderer.render_objects(state)
     scale = numbers.shape[1] / renderer.width
     boxes = []
@@ -62,7 +62,7 @@ def photograph_pair(
     entry = {"name": name, "rig": rig.as_dict()}
     for side, state in zip(("upper", "lower"), rig.camera_states(), strict=True):
         file = f"{name}_{side}.jpg"
-        write_photograph(folder / file, photograph(renderer.render(state), camera, rng), camera, rng)
+        write_photograph(folder / file, renderer.render(state), camera, rng)
         entry[side] = {"file": file, "objects": box_entries(renderer, state)}
     return entry
 

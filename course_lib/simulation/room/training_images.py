@@ -17,7 +17,6 @@ from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import (
     NEARLY_PERFECT_RIG,
     PanoramaCameraModel,
-    photograph,
     stand_up,
     write_photograph,
 )
@@ -78,11 +77,11 @@ def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:
     images = []
     with PanoramaRenderer(room, WIDTH, number_scale=1) as renderer:
         for index, (x, y) in enumerate(free_places(room, count, rng)):
-            rig = stand_up(x, y, rng.uniform(-np.pi, np.pi), rng.uniform(*CAMERA_HEIGHTS), 0.3, NEARLY_PERFECT_RIG, rng)
+            pose = x, y, rng.uniform(-np.pi, np.pi)
+            rig = stand_up(pose, rng.uniform(*CAMERA_HEIGHTS), 0.3, NEARLY_PERFECT_RIG, rng)
             state, _ = rig.camera_states()
             name = f"{seed:06d}_{index}.jpg"
-            image = photograph(renderer.render(state), TRAINING_CAMERA, rng)
-            write_photograph(folder / name, image, TRAINING_CAMERA, rng)
+            write_photograph(folder / name, renderer.render(state), TRAINING_CAMERA, rng)
             size = {"width": WIDTH, "height": WIDTH // 2}
             images.append({"file": name, "room_seed": seed, **size, "objects": box_entries(renderer, state)})
     return images

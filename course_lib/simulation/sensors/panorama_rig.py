@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -26,7 +27,7 @@ class PanoramaCameraModel:
 
 
 def photograph(light: np.ndarray, model: PanoramaCameraModel, rng: Generator) -> np.ndarray:
-    """One photograph `(H, W, 3)` uint8 of the light `(H, W, 3)` float32 of a panorama, BGR, 255 = full at exposure 1."""
+    """One photograph `(H, W, 3)` uint8 of light `(H, W, 3)` float32, both BGR; 255 = full scale at exposure 1."""
     gain = 2.0 ** rng.normal(0.0, model.exposure_stops) * rng.normal(1.0, model.white_balance, 3)
     image = light * gain.astype(np.float32)
     sigma = rng.uniform(*model.blur) * light.shape[1] / 1280
@@ -39,8 +40,9 @@ def photograph(light: np.ndarray, model: PanoramaCameraModel, rng: Generator) ->
     return np.clip(np.rint(image), 0, 255).astype(np.uint8)
 
 
-def write_photograph(path: str | Path, image: np.ndarray, model: PanoramaCameraModel, rng: Generator) -> None:
-    """Write a photograph as JPEG with a quality of its own. Raises `OSError` when it cannot be written."""
+def write_photograph(path: str | Path, light: np.ndarray, model: PanoramaCameraModel, rng: Generator) -> None:
+    """Write one photograph of the light as JPEG with a quality of its own."""
+    image = photograph(light, model, rng)
     quality = int(rng.integers(model.jpeg_quality[0], model.jpeg_quality[1] + 1))
     atomic_write(path, cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes())
 
@@ -63,7 +65,7 @@ class RigModel:
 
 # The rig of data/room, which was photographed before these faults had parameters: kinder than a real one.
 NEARLY_PERFECT_RIG = RigModel(
-    relative_tilt_deg=0.05, relative_yaw_deg=0.0, baseline_error=0.0, height_error=0.0, assembled_anew=True
+    1.0, 0.05, relative_yaw_deg=0.0, baseline_error=0.0, height_error=0.0, assembled_anew=True
 )
 
 
@@ -103,10 +105,7 @@ class RigPose:
 
     def as_dict(self) -> dict:
         """For JSON. A yaw of exactly 0 is left out: data/room's files were written before rigs had one."""
-        fields = asdict(self)
-        if self.relative_yaw == 0.0:
-            del fields["relative_yaw"]
-        return fields
+        return {name: value for name, value in asdict(self).items() if name != "relative_yaw" or value != 0.0}
 
 
 def assemble(model: RigModel, rng: Generator) -> Mount:
@@ -115,29 +114,23 @@ def assemble(model: RigModel, rng: Generator) -> Mount:
     # A generator of its own: the numbers that rng gives next do not depend on how many faults a mount has.
     (faults,) = rng.spawn(1)
     yaw = np.deg2rad(model.relative_yaw_deg)
-    return Mount(
-        relative_tilt,
-        float(faults.uniform(-yaw, yaw)),
-        float(model.baseline_error * faults.standard_normal()),
-        float(model.height_error * faults.standard_normal()),
-    )
+    turn, errors = float(faults.uniform(-yaw, yaw)), faults.standard_normal(2)
+    return Mount(relative_tilt, turn, float(model.baseline_error * errors[0]), float(model.height_error * errors[1]))
 
 
 def stand_up(
-    x: float,
-    y: float,
-    heading: float,
+    pose: Sequence[float],
     upper_height: float,
     baseline: float,
     model: RigModel,
     rng: Generator,
     mount: Mount | None = None,
 ) -> RigPose:
-    """A rig set up at a place, tilted as a whole; lengths as told to the method, metres. No mount: assembled anew."""
+    """A rig set up at [x, y, heading], tilted as a whole; lengths as told to the method. No mount: assembled anew."""
     tilt = _from_disk(np.deg2rad(model.tilt_deg), rng)
     mount = mount or assemble(model, rng)
     heights = upper_height + mount.height_error, baseline + mount.baseline_error
-    return RigPose(x, y, heading, *heights, tilt, mount.relative_tilt, mount.relative_yaw)
+    return RigPose(*map(float, pose), *heights, tilt, mount.relative_tilt, mount.relative_yaw)
 
 
 def _from_disk(radius: float, rng: Generator) -> tuple[float, float]:

@@ -86,7 +86,7 @@ def test_a_hidden_object_knows_how_much_of_it_is_seen(renderer):
 
 def test_rig_tilts_stay_within_their_limits_and_are_shared():
     model, rng = RigModel(), np.random.default_rng(3)
-    rigs = [stand_up(1.0, 2.0, 0.5, 1.44, 0.3, model, rng) for _ in range(200)]
+    rigs = [stand_up((1.0, 2.0, 0.5), 1.44, 0.3, model, rng) for _ in range(200)]
     tilts = np.rad2deg([np.hypot(*rig.tilt) for rig in rigs])
     relative = np.rad2deg([np.hypot(*rig.relative_tilt) for rig in rigs])
     yaws = np.rad2deg([rig.relative_yaw for rig in rigs])
@@ -104,10 +104,10 @@ def test_rig_tilts_stay_within_their_limits_and_are_shared():
 def test_the_faults_of_a_mount_do_not_change_what_is_drawn_after_it():
     """So that data/room, made before rigs had a yaw and a wrong baseline, comes out as it was."""
     used, reference = (np.random.default_rng(5) for _ in range(2))
-    stand_up(1.0, 2.0, 0.5, 1.44, 0.3, RigModel(), used)
+    stand_up((1.0, 2.0, 0.5), 1.44, 0.3, RigModel(), used)
     reference.uniform(size=4)  # the length and the direction of two tilts
     assert used.uniform() == reference.uniform()
-    perfect = stand_up(1.0, 2.0, 0.5, 1.44, 0.3, NEARLY_PERFECT_RIG, used)
+    perfect = stand_up((1.0, 2.0, 0.5), 1.44, 0.3, NEARLY_PERFECT_RIG, used)
     assert (perfect.baseline, perfect.upper_height) == (0.3, 1.44)
     assert "relative_yaw" not in perfect.as_dict()
 
