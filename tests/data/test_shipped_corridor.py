@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import rotation_angle
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.mesh_building import read_world_ply
 from course_lib.simulation.corridor.world import CLUTTER, make_corridor
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from tools.corridor_data import CorridorModels
@@ -35,7 +35,8 @@ def map_caster():
 
 @pytest.fixture(scope="module")
 def true_caster():
-    return WorldCaster(*read_world_ply(FOLDER / "true_world.ply"))
+    mesh = trimesh.load(FOLDER / "true_world.ply", process=False)
+    return WorldCaster(np.asarray(mesh.vertices), np.asarray(mesh.faces))
 
 
 @pytest.mark.parametrize(("run", "least_frames"), [("wagon", 300), ("hand", 150)])
@@ -106,9 +107,11 @@ def test_seed_models_and_true_world_are_those_of_the_code(summary):
     assert summary["seed"] == 4
     assert summary["models"] == json.loads(json.dumps(dataclasses.asdict(CorridorModels())))
     world = make_corridor(np.random.default_rng(4).spawn(7)[0])
-    vertices, faces, _ = read_world_ply(FOLDER / "true_world.ply")
-    assert np.array_equal(faces, world.run_day.faces)
-    assert vertices == pytest.approx(world.run_day.vertices, abs=1e-5)
+    mesh = trimesh.load(FOLDER / "true_world.ply", process=False)
+    assert np.array_equal(mesh.faces, world.run_day.faces)
+    assert mesh.vertices == pytest.approx(world.run_day.vertices, abs=1e-5)
+    reflectivity = mesh.metadata["_ply_raw"]["vertex"]["data"]["reflectivity"][mesh.faces[:, 0]]
+    assert np.ravel(reflectivity) == pytest.approx(world.run_day.reflectivity, rel=1e-6)
 
 
 def test_the_readme_tells_the_measured_numbers(summary):
