@@ -92,7 +92,7 @@ def record_seed(
     building: Building,
     seed: int,
     hardships: Collection[Hardship] = (),
-    models: SeedModels | None = None,
+    models: SeedModels = SeedModels(),
     camera: DepthCamera | None = None,
     frames: int | None = None,
     progress: Callable[[Iterable], Iterable] = iter,
@@ -106,7 +106,6 @@ def record_seed(
     unknown = sorted(set(hardships) - set(HARDSHIPS))
     if unknown:
         raise ValueError(f"unknown hardship {unknown[0]!r}: there are {', '.join(HARDSHIPS)}")
-    models = models or SeedModels()
     # The seed's own key keeps these streams apart from those of the data with the same seed.
     streams = np.random.default_rng([seed, 1]).spawn(6)
     day_rng, path_rng, push_rng, calibration_rng, pattern_rng, noise_rng = streams

@@ -48,13 +48,9 @@ class RoomModels:
 
 
 def make_room_data(
-    out: str | Path,
-    seed: int,
-    models: RoomModels | None = None,
-    progress: Callable[[Iterable], Iterable] = lambda items: items,
+    out: str | Path, seed: int, models: RoomModels = RoomModels(), progress: Callable[[Iterable], Iterable] = iter
 ) -> dict:
     """Make the data in folder `out`; return a summary. One seed gives one set of bytes."""
-    models = models or RoomModels()
     survey_rng, rng = np.random.default_rng(seed).spawn(2)
     room = make_experiment_room()
     mount = None if models.rig.assembled_anew else assemble(models.rig, rng.spawn(1)[0])
