@@ -15,7 +15,6 @@ from numpy.random import Generator
 from course_lib.files import staging_dir
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.idealizations import corridor_parameters
 from course_lib.simulation.corridor.mesh_building import WorldMesh, to_polydata, write_ply, write_world_ply
 from course_lib.simulation.corridor.planar_map import planar_simplification
 from course_lib.simulation.corridor.recorded_runs import (
@@ -27,7 +26,7 @@ from course_lib.simulation.corridor.recorded_runs import (
     steps_and_turns,
     wagon_run,
 )
-from course_lib.simulation.corridor.seeded_recording import record
+from course_lib.simulation.corridor.seeded_recording import corridor_parameters, record
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
 from course_lib.simulation.corridor.world import LENGTH, make_corridor
 from course_lib.simulation.data_folder import checksums

@@ -7,24 +7,17 @@ import numpy as np
 import pytest
 
 from course_lib.experiments.room import experiment_summary, localize_pair, range_errors, run_experiment
-from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.recording import read_stereo_recording
-from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "room"
 SHIPPED_SEED = 4
-EXPERIMENTS = ("experiment_1", "experiment_2")
-
-
-@pytest.fixture(scope="module")
-def semantic_map():
-    return SemanticMap.load(FOLDER / "semantic_map.json")
+EXPERIMENTS = (1, 2)
 
 
 def rows_of(experiment, source):
     with (FOLDER / "results" / f"seed_{SHIPPED_SEED}.csv").open() as file:
-        rows = [row for row in csv.DictReader(file) if (row["experiment"], row["source"]) == (experiment, source)]
+        of_both = (f"experiment_{experiment}", source)
+        rows = [row for row in csv.DictReader(file) if (row["experiment"], row["source"]) == of_both]
     return {row["place"]: row for row in rows}
 
 
@@ -36,18 +29,11 @@ def far_from(result, row):
 
 
 @pytest.fixture(scope="module")
-def recordings():
-    return {experiment: read_stereo_recording(FOLDER / experiment) for experiment in EXPERIMENTS}
-
-
-@pytest.fixture(scope="module")
 def from_exact_boxes(recordings, semantic_map):
-    return {
-        experiment: run_experiment(
-            recording, SemanticLocalizer(recording.rig, semantic_map, reject_implausible=False), "exact_boxes"
-        )
-        for experiment, recording in recordings.items()
+    localizers = {
+        k: SemanticLocalizer(one.rig, semantic_map, reject_implausible=False) for k, one in recordings.items()
     }
+    return {k: run_experiment(one, localizers[k], "exact_boxes") for k, one in recordings.items()}
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
@@ -57,11 +43,9 @@ def test_poses_from_exact_boxes_come_out_as_stored(experiment, from_exact_boxes)
     assert [one.pair.name for one in from_exact_boxes[experiment] if far_from(one, rows[one.pair.name])] == []
 
 
-def test_poses_from_images_come_out_as_stored(recordings, semantic_map):
-    recording, rows = recordings["experiment_2"], rows_of("experiment_2", "images")
-    localizer = SemanticLocalizer(
-        recording.rig, semantic_map, YoloDetector.load(FOLDER.parent / "detector"), reject_implausible=False
-    )
+def test_poses_from_images_come_out_as_stored(recordings, semantic_map, detector):
+    recording, rows = recordings[2], rows_of(2, "images")
+    localizer = SemanticLocalizer(recording.rig, semantic_map, detector, reject_implausible=False)
     chosen = recording.pairs[::4]
     far = [pair.name for pair in chosen if far_from(localize_pair(pair, localizer), rows[pair.name])]
     # Another processor may round a score across the threshold, so that one pose comes out otherwise.

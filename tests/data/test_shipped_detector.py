@@ -9,37 +9,20 @@ import pytest
 from course_lib.experiments.room import localize_pair, turn_summary, turn_the_rig, weigh_by_covariance
 from course_lib.spherical_stereo.detection.darknet import check_weights, read_cfg
 from course_lib.spherical_stereo.detection.detected_object import CANONICAL_LABELS, box_iou
-from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.recording import read_stereo_recording
-from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from tools.detector_evaluation import labelled_panoramas, score_detector
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "detector"
-ROOM = FOLDER.parent / "room"
-TEST_ROOM = 200  # the first of the rooms that neither training nor validation has seen
 
 
 @pytest.fixture(scope="module")
-def detector():
-    return YoloDetector.load(FOLDER)
+def recording(recordings):
+    return recordings[1]
 
 
 @pytest.fixture(scope="module")
-def recording():
-    return read_stereo_recording(ROOM / "experiment_1")
-
-
-@pytest.fixture(scope="module")
-def localizer(detector, recording):
-    return SemanticLocalizer(
-        recording.rig, SemanticMap.load(ROOM / "semantic_map.json"), detector, reject_implausible=False
-    )
-
-
-@pytest.fixture(scope="module")
-def scores():
-    return json.loads((FOLDER / "scores.json").read_text())
+def localizer(detector, recording, semantic_map):
+    return SemanticLocalizer(recording.rig, semantic_map, detector, reject_implausible=False)
 
 
 def test_the_network_is_small_and_whole(detector):
@@ -48,10 +31,11 @@ def test_the_network_is_small_and_whole(detector):
     assert sorted(detector.labels) == sorted(CANONICAL_LABELS)
 
 
-def test_the_experiments_room_scores_as_stored(detector, recording, scores):
+def test_the_experiments_room_scores_as_stored(detector, recording):
+    stored = json.loads((FOLDER / "scores.json").read_text())["experiment_room"]
     score = score_detector(detector, list(labelled_panoramas(recording))[::2])
-    assert score.precision == pytest.approx(scores["experiment_room"]["precision"], abs=0.04)
-    assert score.recall == pytest.approx(scores["experiment_room"]["recall"], abs=0.04)
+    assert score.precision == pytest.approx(stored["precision"], abs=0.04)
+    assert score.recall == pytest.approx(stored["recall"], abs=0.04)
 
 
 @pytest.mark.parametrize("shift", range(0, 1280, 128))
@@ -68,15 +52,11 @@ def test_a_sofa_is_found_exactly_once_wherever_the_seam_is(detector, recording, 
     assert (overlap > 0.5).sum() == 1
 
 
-@pytest.fixture(scope="module")
-def rolled(localizer, recording):
-    """Four pairs with their images rolled by two numbers of columns, 640 of them half a turn."""
-    results = [localize_pair(pair, localizer) for pair in recording.pairs[4:12:2]]
-    return turn_the_rig(results, localizer, (97, 640))
-
-
 @pytest.mark.slow
-def test_weighted_by_covariance_a_turn_never_moves_the_pose_by_more_than_a_decimetre(rolled, localizer):
+def test_weighted_by_covariance_a_turn_never_moves_the_pose_by_more_than_a_decimetre(recording, localizer):
+    """Of four pairs with their images rolled by two numbers of columns, 640 of them half a turn."""
+    results = [localize_pair(pair, localizer) for pair in recording.pairs[4:12:2]]
+    rolled = turn_the_rig(results, localizer, (97, 640))
     found = turn_summary(weigh_by_covariance(rolled, localizer))
     assert found["within_0.10_m"] == found["associations_agree"]
     assert found["greatest_turned_deg"] < 2.0

@@ -1,7 +1,6 @@
 """The shipped room: as large as promised, and an honest experiment."""
 
 from itertools import combinations
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,21 +9,7 @@ from course_lib.experiments.room_evaluation import counts_as_object
 from course_lib.geometry import wrap_angle
 from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES
-from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.association import hue_difference
-from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
-
-FOLDER = Path(__file__).resolve().parents[2] / "data" / "room"
-
-
-@pytest.fixture(scope="module")
-def recordings():
-    return {number: read_stereo_recording(FOLDER / f"experiment_{number}") for number in (1, 2)}
-
-
-@pytest.fixture(scope="module")
-def semantic_map():
-    return SemanticMap.load(FOLDER / "semantic_map.json")
 
 
 def test_twenty_pairs_stand_at_the_papers_places_at_both_heights(recordings):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import trimesh
 
 from course_lib.simulation.room.scene import Lamp, Room, RoomObject
 from course_lib.simulation.textures import TexturedMesh
@@ -10,25 +11,9 @@ from course_lib.simulation.textures import TexturedMesh
 
 def box_mesh(low, high, colour, inward=False) -> TexturedMesh:
     """An axis-parallel box with a plain colour (RGB), corners counter-clockwise seen from outside (or inside)."""
-    low, high = np.asarray(low, float), np.asarray(high, float)
-    vertices, faces = [], []
-    for axis in range(3):
-        first, second = (axis + 1) % 3, (axis + 2) % 3
-        for side in (0, 1):
-            start = len(vertices)
-            for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)):
-                corner = low.copy()
-                corner[axis], corner[first], corner[second] = (
-                    (low, high)[side][axis],
-                    (low, high)[i][first],
-                    (low, high)[j][second],
-                )
-                vertices.append(corner)
-            outward = side == 1
-            order = (0, 1, 2, 0, 2, 3) if outward != inward else (0, 2, 1, 0, 3, 2)
-            faces += [[start + k for k in order[:3]], [start + k for k in order[3:]]]
-    texture = np.full((4, 4, 3), colour, np.uint8)
-    return TexturedMesh(np.array(vertices), np.array(faces), np.zeros((len(vertices), 2)), texture)
+    box = trimesh.creation.box(bounds=(low, high))
+    faces = box.faces[:, ::-1] if inward else box.faces
+    return TexturedMesh(box.vertices, faces, np.zeros((8, 2)), np.full((4, 4, 3), colour, np.uint8))
 
 
 def plain_object(label: str, x: float, y: float, width: float, height: float, colour) -> RoomObject:

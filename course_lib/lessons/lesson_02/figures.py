@@ -19,7 +19,7 @@ def idea_figure(scan: Scan) -> Figure:
     draw_cut(axes, room_cut(False), "black", 1.2, "room, cut at 1.2 m")
     station = scan.true_pose[:3, 3]
     level = int(np.abs(scan.elevations).argmin())
-    row = scan.points(registered=False)
+    row = scan.points(scan.true_pose)
     row = row[np.abs(row[:, 2] - station[2]) < 0.02]
     for x, y, _ in row[::6]:
         axes.plot([station[0], x], [station[1], y], color="0.8", linewidth=0.6, zorder=1)
@@ -37,7 +37,7 @@ def registration_figure(stations: tuple[Scan, ...]) -> Figure:
     figure, axes = figures.new_figure(1, 2, size=(9.0, 2.9))
     for a, registered in zip(axes, (False, True), strict=True):
         for index, scan in enumerate(stations[:2]):
-            p = scan.points(registered)
+            p = scan.points(scan.registered_pose if registered else scan.true_pose)
             p = p[(np.abs(p[:, 2]) < 0.15) & (np.abs(p[:, 0] - 2.9) < 0.7) & (np.abs(p[:, 1] - 0.9) < 0.1)]
             style = figures.line_style(index) | {"linestyle": "none", "markersize": 4}
             a.plot(p[:, 0], 1000 * p[:, 2], **style, label=f"station {index + 1}")

@@ -12,7 +12,7 @@ from course_lib.lessons.lesson_19.figures import draw_room, ellipse
 from course_lib.lessons.lesson_19.stages import Journey, journey, state_error
 from course_lib.lessons.lesson_19.world import world
 from course_lib.plots import figures
-from course_lib.simulation.room.footprints import free_places
+from course_lib.simulation.room.scene import free_places
 
 STORY = {"x": 3.35, "y": 3.3, "heading": 65.0, "hidden": 0.0, "cap": False}
 """Where the lesson's robot stands, and the panel's at first."""

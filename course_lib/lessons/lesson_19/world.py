@@ -21,13 +21,12 @@ from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.room.depth_world import CAMERA, PLACE, STREAM, depth_caster
 from course_lib.simulation.room.finale_data import SEED
-from course_lib.simulation.room.footprints import distance_to, footprint
+from course_lib.simulation.room.furnishing import make_look_alike_room
 from course_lib.simulation.room.look_alike_recording import RecordingModels, mount_of
-from course_lib.simulation.room.look_alike_room import make_look_alike_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
-from course_lib.simulation.sensors.panorama_camera import photograph
+from course_lib.simulation.room.scene import distance_to, footprint
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import stand_up
+from course_lib.simulation.sensors.panorama_rig import photograph, stand_up
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
@@ -66,8 +65,7 @@ class FinaleWorld:
     def photographs(self, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The upper and the lower panorama `(640, 1280, 3)` BGR, as the cameras give them."""
         rng = _generator(pose, PANORAMAS)
-        x, y, heading = map(float, pose)
-        rig = stand_up(x, y, heading, self.rig.upper_height, self.rig.baseline, self.models.rig, rng, self._mount)
+        rig = stand_up(pose, self.rig.upper_height, self.rig.baseline, self.models.rig, rng, self._mount)
         images = [photograph(self._photographer.render(s), self.models.camera, rng) for s in rig.camera_states()]
         return images[0], images[1]
 

@@ -1,7 +1,4 @@
-"""What surfaces are made of: diffuse reflectivity at 850 nm, 0 to 1 but for retroreflective tape, and a colour.
-
-All are chosen, in the usual ranges for indoor materials in the near infrared (leaves and most cloth are bright there).
-"""
+"""Diffuse reflectivity at 850 nm and colour of what the corridor is made of; chosen in the usual ranges for indoors."""
 
 from __future__ import annotations
 
@@ -22,7 +19,6 @@ LINOLEUM = Material(0.38, (128, 116, 104))
 DOOR_MAT = Material(0.12, (58, 56, 54))
 SKIRTING = Material(0.30, (92, 78, 66))
 CONCRETE = Material(0.42, (168, 166, 160))
-WOOD_DOOR = Material(0.55, (168, 122, 78))
 PAINTED_DOOR = Material(0.62, (110, 138, 150))
 METAL_FRAME = Material(0.48, (120, 124, 128))
 STEEL = Material(0.55, (186, 188, 190))

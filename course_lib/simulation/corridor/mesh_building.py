@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -28,18 +28,6 @@ class WorldMesh:
     faces: np.ndarray  # `(F, 3)`
     reflectivity: np.ndarray  # `(F,)` at 850 nm, 0 to 1
     colours: np.ndarray  # `(F, 3)` 0 to 255
-    parts: np.ndarray  # `(F,)` index into part_names
-    part_names: tuple[str, ...]
-
-    def faces_of(self, part_name: str) -> np.ndarray:
-        """Indices of the faces of every part whose name begins with `part_name`."""
-        wanted = [i for i, name in enumerate(self.part_names) if name.startswith(part_name)]
-        return np.flatnonzero(np.isin(self.parts, wanted))
-
-    def part_bounds(self, part_name: str) -> np.ndarray:
-        """Corners `(2, 3)` of the box, along the world axes, around the parts whose name begins with `part_name`."""
-        points = self.vertices[self.faces[self.faces_of(part_name)]].reshape(-1, 3)
-        return np.array([points.min(axis=0), points.max(axis=0)])
 
 
 @dataclass(frozen=True)
@@ -60,13 +48,12 @@ class Placement:
 
 
 class MeshBuilder:
-    """Collects solids; `build` gives the `WorldMesh`. `part` names what is added from then on."""
+    """Collects solids; `build` gives the `WorldMesh`."""
 
     def __init__(self, bow: Callable[[np.ndarray], np.ndarray] | None = None) -> None:
         """bow: displacement in metres of large panels at world points `(N, 3)`, along the panel's normal."""
-        self._pieces: list[tuple[np.ndarray, np.ndarray, Material, str]] = []
+        self._pieces: list[tuple[np.ndarray, np.ndarray, Material]] = []
         self._bow = bow or (lambda points: np.zeros(len(points)))
-        self.part = "building"
 
     def add(self, vertices: np.ndarray, faces: np.ndarray, material: Material, closed: bool = True) -> None:
         """Add triangles given in world coordinates; those of a closed solid are turned to face outward."""
@@ -74,7 +61,7 @@ class MeshBuilder:
         if closed:
             signed_volume = trimesh.Trimesh(vertices - vertices.mean(axis=0), faces, process=False).volume
             faces = faces if signed_volume > 0 else faces[:, ::-1]
-        self._pieces.append((vertices, faces, material, self.part))
+        self._pieces.append((vertices, faces, material))
 
     def box(self, place: Placement, low: tuple, high: tuple, material: Material, bevel: float = 0.0) -> None:
         """Box between two local corners; `bevel` metres are cut off every edge."""
@@ -117,14 +104,13 @@ class MeshBuilder:
         caps = np.concatenate([np.stack([k, i, np.full(24, 48)], 1), np.stack([i + 24, k + 24, np.full(24, 49)], 1)])
         self.add(place(np.asarray(at) + points), np.concatenate([sides, caps]), material)
 
-    def take(self, other: MeshBuilder, part: str) -> None:
-        """Add all solids of another builder under one part name."""
-        self._pieces += [(vertices, faces, material, part) for vertices, faces, material, _ in other._pieces]
+    def take(self, other: MeshBuilder) -> None:
+        """Add all solids of another builder."""
+        self._pieces += other._pieces
 
     def build(self) -> WorldMesh:
         """All solids as one mesh."""
-        vertices, faces, materials, parts = zip(*self._pieces, strict=True)
-        names = tuple(dict.fromkeys(parts))
+        vertices, faces, materials = zip(*self._pieces, strict=True)
         counts = [len(each) for each in faces]
         starts = np.cumsum([0] + [len(each) for each in vertices[:-1]])
         return WorldMesh(
@@ -132,8 +118,6 @@ class MeshBuilder:
             faces=np.concatenate([each + start for each, start in zip(faces, starts, strict=True)]),
             reflectivity=np.repeat([material.reflectivity for material in materials], counts),
             colours=np.repeat(np.array([material.colour for material in materials], np.uint8), counts, axis=0),
-            parts=np.repeat([names.index(part) for part in parts], counts),
-            part_names=names,
         )
 
 
@@ -162,25 +146,12 @@ def to_polydata(vertices: np.ndarray, faces: np.ndarray):
     return pyvista.PolyData.from_regular_faces(np.asarray(vertices), np.asarray(faces, dtype=np.int64))
 
 
-def write_ply(path: str | Path, vertices: np.ndarray, faces: np.ndarray, comment: str) -> None:
-    """Triangles as binary little-endian PLY: float32 vertices in metres, int32 indices."""
-    columns = [(name, "<f4", "float", column) for name, column in zip("xyz", np.asarray(vertices).T, strict=True)]
-    _write_ply(path, columns, faces, comment)
-
-
-def write_world_ply(path: str | Path, world: WorldMesh, comment: str) -> None:
-    """A world as PLY, colour and reflectivity at its vertices: solids share none, so they are values of faces."""
-    colours, reflectivity = np.zeros((len(world.vertices), 3), np.uint8), np.zeros(len(world.vertices), np.float32)
-    colours[world.faces] = world.colours[:, None]
-    reflectivity[world.faces] = world.reflectivity[:, None]
-    columns = [(name, "<f4", "float", column) for name, column in zip("xyz", world.vertices.T, strict=True)]
-    columns += [(name, "u1", "uchar", one) for name, one in zip(("red", "green", "blue"), colours.T, strict=True)]
-    _write_ply(path, [*columns, ("reflectivity", "<f4", "float", reflectivity)], world.faces, comment)
-
-
-def _write_ply(path: str | Path, columns: list[tuple], faces: np.ndarray, comment: str) -> None:
-    """columns: of every vertex, as (name, NumPy's type, PLY's type, values)."""
-    table = np.zeros(len(columns[0][3]), dtype=[(name, kind) for name, kind, _, _ in columns])
+def write_ply(
+    path: str | Path, vertices: np.ndarray, faces: np.ndarray, comment: str, columns: Sequence[tuple] = ()
+) -> None:
+    """Triangles as binary PLY, metres; columns: what else a vertex has, (name, NumPy's type, PLY's type, values)."""
+    columns = [*((name, "<f4", "float", values) for name, values in zip("xyz", vertices.T, strict=True)), *columns]
+    table = np.zeros(len(vertices), dtype=[(name, kind) for name, kind, _, _ in columns])
     for name, _, _, values in columns:
         table[name] = values
     rows = np.zeros(len(faces), dtype=[("count", "u1"), ("index", "<i4", 3)])
@@ -191,9 +162,11 @@ def _write_ply(path: str | Path, columns: list[tuple], faces: np.ndarray, commen
     Path(path).write_bytes("\n".join(header).encode("ascii") + table.tobytes() + rows.tobytes())
 
 
-def read_world_ply(path: str | Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices `(V, 3)`, faces `(F, 3)` and reflectivity per face `(F,)` of a file by `write_world_ply`."""
-    mesh = trimesh.load(path, process=False)
-    table = mesh.metadata["_ply_raw"]["vertex"]["data"]
-    faces = np.asarray(mesh.faces)
-    return np.asarray(mesh.vertices), faces, np.asarray(table["reflectivity"])[faces[:, 0]].ravel()
+def write_world_ply(path: str | Path, world: WorldMesh, comment: str) -> None:
+    """A world as PLY, colour and reflectivity at its vertices: solids share none, so they are values of faces."""
+    colours, reflectivity = np.zeros((len(world.vertices), 3), np.uint8), np.zeros(len(world.vertices), np.float32)
+    colours[world.faces] = world.colours[:, None]
+    reflectivity[world.faces] = world.reflectivity[:, None]
+    columns = [(name, "u1", "uchar", one) for name, one in zip(("red", "green", "blue"), colours.T, strict=True)]
+    columns.append(("reflectivity", "<f4", "float", reflectivity))
+    write_ply(path, world.vertices, world.faces, comment, columns)

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from course_lib.geometry import pose_matrix, rotation_angle
-from course_lib.simulation.smooth_signal import smooth_signal
 
 FRAME_RATE = 10.0  # frames per second; chosen, within the SR4000's rates
+
+Run = tuple[np.ndarray, np.ndarray]  # states `(T, 6)` and times `(T,)`
+Pushing = tuple[
+    np.ndarray, np.ndarray, np.ndarray
+]  # `(T,)` each: factor on the speed, radians turned, metres to the left
 
 
 @dataclass(frozen=True)
@@ -48,14 +51,6 @@ class PushModel:
     wobble: float = 0.012  # m sideways, amplitude with every second step; chosen: a head's sway is about twice that
 
 
-class Pushing(NamedTuple):
-    """What pushing does to each frame, all `(T,)`."""
-
-    speed: np.ndarray  # factor on the speed; its mean without stops is one
-    sway: np.ndarray  # radians added to the heading
-    wobble: np.ndarray  # metres to the left of the path
-
-
 @dataclass(frozen=True)
 class HandModel:
     """How the camera is carried by hand."""
@@ -82,30 +77,32 @@ class FloorSurveyModel:
     registration: float = 0.003  # m, one sigma per axis, one offset for the whole line; chosen
 
 
-def wagon_run(
-    model: WagonModel, clutter_boxes: np.ndarray, rng: Generator, pushing: Pushing | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """States `(T, 6)` and times `(T,)` of the wagon, clear of the clutter `(n, 2, 2)`; no pushing: it rolls evenly."""
+def smooth_signal(n: int, width: float, rng: Generator) -> np.ndarray:
+    """Smooth random signal `(n,)` with zero mean and standard deviation one; `width` in frames."""
+    margin = int(4 * width)
+    kernel = np.exp(-0.5 * (np.arange(-margin, margin + 1) / width) ** 2)
+    signal = np.convolve(rng.normal(size=n + 2 * margin), kernel, mode="valid")
+    return signal / np.sqrt(np.sum(kernel**2))
+
+
+def wagon_run(model: WagonModel, clutter_boxes: np.ndarray, rng: Generator, pushing: Pushing | None = None) -> Run:
+    """The run of the wagon, clear of the clutter `(n, 2, 2)`; without pushing it rolls evenly."""
     length = model.mean_step * model.frames * (1 + model.step_spread) + 1.0
     path = _clear_path(model.start, length, model.wander, model.knot_spacing, model.clearance, clutter_boxes, rng)
     # Arc length along the path, so that steps are steps along the floor.
     x = np.linspace(model.start, model.start + length, 8000)
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(path(x))))])
     speed = 1 + np.clip(smooth_signal(model.frames, 25, rng), -2, 2) * model.step_spread
-    speed = speed if pushing is None else speed * pushing.speed
+    factor, sway, wobble = pushing or (1.0, 0.0, np.zeros(1))
+    speed = speed * factor
     travelled = np.cumsum(model.mean_step * speed) - model.mean_step * speed[0]
     at = np.interp(travelled, arc, x)
     along = np.arctan(path(at, 1))
-    heading = along + np.deg2rad(model.heading_wobble_deg) * smooth_signal(model.frames, 6, rng)
-    place = np.column_stack([at, path(at)])
-    if pushing is not None:
-        heading += pushing.sway
-        place += pushing.wobble[:, None] * np.column_stack([-np.sin(along), np.cos(along)])
+    heading = along + np.deg2rad(model.heading_wobble_deg) * smooth_signal(model.frames, 6, rng) + sway
+    place = np.column_stack([at, path(at)]) + wobble[:, None] * np.column_stack([-np.sin(along), np.cos(along)])
     jitter = np.clip(rng.normal(size=(model.frames, 3)), -2, 2)
-    tilt = np.deg2rad(model.tilt_jitter_deg)
-    z = model.height + model.height_jitter * jitter[:, 0]
-    states = np.column_stack([place, z, tilt * jitter[:, 1], tilt * jitter[:, 2], heading])
-    return states, np.arange(model.frames) / FRAME_RATE
+    z, tilts = model.height + model.height_jitter * jitter[:, 0], np.deg2rad(model.tilt_jitter_deg) * jitter[:, 1:]
+    return np.column_stack([place, z, tilts, heading]), np.arange(model.frames) / FRAME_RATE
 
 
 def draw_pushing(model: PushModel, frames: int, rng: Generator) -> Pushing:
@@ -121,21 +118,18 @@ def draw_pushing(model: PushModel, frames: int, rng: Generator) -> Pushing:
         moving *= (1 - np.cos(np.pi * share)) / 2
     # Left and right foot: what turns and shifts the wagon takes two steps to come back.
     side = moving * np.sin(step / 2)
-    return Pushing(
-        slow * (1 + model.step_spread * np.sin(step)) * moving, np.deg2rad(model.sway_deg) * side, model.wobble * side
-    )
+    speed = slow * (1 + model.step_spread * np.sin(step)) * moving  # its mean without stops is one
+    return speed, np.deg2rad(model.sway_deg) * side, model.wobble * side
 
 
-def hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
-    """States `(T, 6)` and times `(T,)` of the camera carried by hand, no step or turn above the greatest."""
+def hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: Generator) -> Run:
+    """The run of the camera carried by hand, without a step or a turn above the greatest."""
     for _ in range(100):
         states, times = _draw_hand_run(model, clutter_boxes, rng)
         step, turn = steps_and_turns(states)
         if step.max() <= model.greatest_step and np.rad2deg(turn.max()) <= model.greatest_turn_deg:
             return states, times
-    raise ValueError(
-        f"100 runs had a step over {model.greatest_step} m or a turn over {model.greatest_turn_deg} degrees"
-    )
+    raise ValueError(f"100 runs had steps over {model.greatest_step} m or turns over {model.greatest_turn_deg} degrees")
 
 
 def steps_and_turns(states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -145,7 +139,7 @@ def steps_and_turns(states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.linalg.norm(np.diff(states[:, :3], axis=0), axis=1), turns
 
 
-def _draw_hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
+def _draw_hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: Generator) -> Run:
     times = np.arange(model.frames) / FRAME_RATE
     length = model.mean_step * model.frames + 2.0
     path = _clear_path(model.start, length, model.wander, 2.3, 0.40, clutter_boxes, rng)
@@ -153,15 +147,13 @@ def _draw_hand_run(model: HandModel, clutter_boxes: np.ndarray, rng: Generator) 
     knots = np.arange(0, times[-1] + 2 * model.knot_seconds, model.knot_seconds)
 
     def wave(low: float, high: float) -> np.ndarray:
-        values = rng.uniform(low, high, len(knots))
-        return PchipInterpolator(knots, values)(times)
+        return PchipInterpolator(knots, rng.uniform(low, high, len(knots)))(times)
 
     # Steps of the body while walking: two steps a second, up and down and from side to side.
     gait = 2 * np.pi * 1.7 * times
     z = wave(model.heights[0] + 0.02, model.heights[1] - 0.02) + 0.012 * np.sin(gait)
     y = path(x) + 0.012 * np.sin(gait / 2)
-    angles = np.stack([wave(-model.tilt_deg, model.tilt_deg), wave(-model.tilt_deg, model.tilt_deg),
-                       wave(-model.look_deg, model.look_deg)], axis=1)  # fmt: skip
+    angles = np.stack([wave(-most, most) for most in (model.tilt_deg, model.tilt_deg, model.look_deg)], axis=1)
     angles += model.tremor_deg * rng.normal(size=angles.shape)
     return np.column_stack([x, y, z, np.deg2rad(angles)]), times
 
@@ -199,5 +191,4 @@ def _clear_path(
     # Clamp, smooth the corners that clamping makes, and clamp only by what smoothing may undo (centimetres).
     window = np.hanning(41) / np.hanning(41).sum()
     clamped = np.clip(y, low + 0.02, high - 0.02)
-    padded = np.concatenate([np.full(20, clamped[0]), clamped, np.full(20, clamped[-1])])
-    return CubicSpline(x, np.convolve(padded, window, mode="valid"))
+    return CubicSpline(x, np.convolve(np.pad(clamped, 20, mode="edge"), window, mode="valid"))

@@ -1,11 +1,12 @@
 """From registered scans to a triangle mesh: truncated signed distances on a voxel grid, iso-surface, decimation.
 
-A voxel that no station saw stays empty, and no triangle touches it: what was hidden on the survey day remains a hole.
+A voxel that no station saw stays empty, so what was hidden on the survey day remains a hole.
 Source: Curless and Levoy, "A volumetric method for building complex models from range images", SIGGRAPH 1996.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,8 @@ from course_lib.simulation.corridor.mesh_building import to_polydata
 from course_lib.simulation.sensors.laser_survey import RegisteredScan
 
 _BLOCK = 8  # voxels along the edge of a block; only blocks near measured points are worked on
+
+Pair = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -28,21 +31,15 @@ class FusionModel:
     triangles: int = 120_000  # after decimation; chosen
 
 
-def fuse(
-    scans: list[RegisteredScan], model: FusionModel, progress=lambda slabs: slabs
-) -> tuple[np.ndarray, np.ndarray]:
+def fuse(scans: list[RegisteredScan], model: FusionModel, progress=lambda slabs: slabs) -> Pair:
     """Surface of the scans at their registered poses: vertices `(V, 3)` metres, faces `(F, 3)`, before decimation."""
-    clouds = []
-    for scan in scans:
-        points = scan.points()
-        away = np.linalg.norm(points - scan.registered_pose[:3, 3], axis=1)
-        clouds.append(points[away < model.greatest_range])
-    if not sum(map(len, clouds)):
-        raise ValueError("the scans hold no surface")
     block = _BLOCK * model.voxel
-    occupied = np.unique(np.concatenate([np.floor(c / block).astype(np.int32) for c in clouds]), axis=0)
-    around = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    blocks = np.unique((occupied[:, None] + around).reshape(-1, 3), axis=0)
+    clouds = [(scan.points(), scan.registered_pose[:3, 3]) for scan in scans]
+    near = [points[np.linalg.norm(points - eye, axis=1) < model.greatest_range] for points, eye in clouds]
+    if not sum(map(len, near)):
+        raise ValueError("the scans hold no surface")
+    occupied = np.unique(np.floor(np.concatenate(near) / block).astype(np.int32), axis=0)
+    blocks = np.unique((occupied[:, None] + _grid([-1, 0, 1])).reshape(-1, 3), axis=0)
     low, high = blocks.min(axis=0), blocks.max(axis=0) + 1
     images = [_range_image(scan) for scan in scans]
     per_slab = max(1, round(model.slab / block))
@@ -63,7 +60,12 @@ def fuse(
     return _weld(np.concatenate(vertices) * model.voxel, np.concatenate(faces))
 
 
-def simplify(vertices: np.ndarray, faces: np.ndarray, model: FusionModel) -> tuple[np.ndarray, np.ndarray]:
+def _grid(steps: Sequence[int]) -> np.ndarray:
+    """All points `(n^3, 3)` with these steps along each axis."""
+    return np.stack(np.meshgrid(*[steps] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def simplify(vertices: np.ndarray, faces: np.ndarray, model: FusionModel) -> Pair:
     """Removes loose pieces and decimates by quadric errors to `model.triangles`; vertices come back as float32."""
     mesh = to_polydata(vertices, faces)
     labels = mesh.connectivity("all").cell_data["RegionId"]
@@ -74,7 +76,7 @@ def simplify(vertices: np.ndarray, faces: np.ndarray, model: FusionModel) -> tup
     return _weld(np.asarray(mesh.points, np.float32), np.asarray(mesh.regular_faces))
 
 
-def _range_image(scan: RegisteredScan) -> tuple[np.ndarray, np.ndarray]:
+def _range_image(scan: RegisteredScan) -> Pair:
     """Ranges and cosines of incidence `(E, A)` of a scan; the slopes are one-sided where the other side jumps."""
     ranges = scan.ranges.astype(np.float64)
     reach = 3  # pixels: a slope over one pixel would be mostly noise
@@ -103,10 +105,9 @@ def _integrate(
     origin: np.ndarray,
     size: np.ndarray,
     model: FusionModel,
-) -> tuple[np.ndarray, np.ndarray]:
+) -> Pair:
     """Weighted mean of truncated signed distances on one slab, in metres, and the weights; both `size`."""
-    inside = np.stack(np.meshgrid(*[np.arange(_BLOCK)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    index = (blocks[:, None] * _BLOCK + inside - origin).reshape(-1, 3)
+    index = (blocks[:, None] * _BLOCK + _grid(range(_BLOCK)) - origin).reshape(-1, 3)
     index = index[(index < size).all(axis=1)]
     world = (index + origin) * model.voxel
     total, weight = np.zeros(len(index)), np.zeros(len(index))
@@ -143,7 +144,7 @@ def _integrate(
     return distances, weights
 
 
-def _iso_surface(distance: np.ndarray, observed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _iso_surface(distance: np.ndarray, observed: np.ndarray) -> Pair:
     """Zero surface in voxel units, without the triangles of cells that have an unobserved corner."""
     import pyvista
 
@@ -158,7 +159,7 @@ def _iso_surface(distance: np.ndarray, observed: np.ndarray) -> tuple[np.ndarray
     return points, faces[whole[tuple(cell.T)]]
 
 
-def _weld(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _weld(vertices: np.ndarray, faces: np.ndarray) -> Pair:
     """One vertex per place; unused vertices and triangles without three corners are dropped."""
     used, inverse = np.unique(vertices[faces].reshape(-1, 3), axis=0, return_inverse=True)
     faces = inverse.reshape(-1, 3)

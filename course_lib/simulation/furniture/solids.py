@@ -1,7 +1,4 @@
-"""The solids of furniture and rooms, as textured triangles with outward counter-clockwise winding.
-
-Texture coordinates are metres divided by the tile's size. A piece is built with x forward, y left, floor at z = 0.
-"""
+"""The solids of furniture and rooms, as textured triangles; a piece is built with x forward, y left, floor at z = 0."""
 
 from __future__ import annotations
 
@@ -11,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from course_lib.geometry import pose_matrix
 from course_lib.simulation.room.scene import RoomObject
-from course_lib.simulation.textures import Surface, TexturedMesh
+from course_lib.simulation.textures import Meshes, Surface, TexturedMesh
 
 CELL = 0.4  # metres: longest edge of a flat cell, because straight edges bulge in a panorama
 
@@ -31,7 +29,7 @@ SIDES = (
 
 @dataclass(frozen=True)
 class Piece:
-    """label: class name. meshes: one per texture, in the piece's frame, the footprint's centre at the origin."""
+    """label: class name. meshes: one for each texture, in the piece's frame; the origin is the footprint's centre."""
 
     label: str
     meshes: tuple[TexturedMesh, ...]
@@ -68,9 +66,7 @@ def textured(vertices: np.ndarray, faces: np.ndarray, metres: np.ndarray, surfac
     return TexturedMesh(vertices, faces, metres / np.asarray(surface.size), surface.image, surface.emission)
 
 
-def panel(
-    corner: Triple, along: Triple, up: Triple, surface: Surface, fit: bool = False, cell: float = CELL
-) -> TexturedMesh:
+def panel(corner: Triple, along: Triple, up: Triple, surface: Surface, fit=False, cell: float = CELL) -> TexturedMesh:
     """A flat rectangle from its lower left corner as seen from outside; fit: the picture covers it exactly once."""
     corner, along, up = (np.asarray(vector, float) for vector in (corner, along, up))
     length = np.array([np.linalg.norm(along), np.linalg.norm(up)])
@@ -83,7 +79,7 @@ def panel(
     return textured(corner + s * along + t * up, grid_faces(rows + 1, columns + 1), metres, surface)
 
 
-def box(size: Triple, centre: Triple, surface: Surface, front: Surface | None = None) -> list[TexturedMesh]:
+def box(size: Triple, centre: Triple, surface: Surface, front: Surface | None = None) -> Meshes:
     """A box; front: a picture that covers the side towards +x exactly once."""
     dx, dy, dz = np.asarray(size, float)
     x0, y0, z0 = np.asarray(centre, float) - (dx / 2, dy / 2, dz / 2)
@@ -98,9 +94,7 @@ def box(size: Triple, centre: Triple, surface: Surface, front: Surface | None = 
     ]
 
 
-def rounded_box(
-    size: Triple, centre: Triple, surface: Surface, radius: float = 0.04, bulge: float = 0.0
-) -> list[TexturedMesh]:
+def rounded_box(size: Triple, centre: Triple, surface: Surface, radius: float = 0.04, bulge: float = 0.0) -> Meshes:
     """A box with rounded edges; radius: metres; bulge: metres by which its upper side rises in the middle."""
     half = np.asarray(size, float) / 2
     radius = min(radius, 0.98 * float(half.min()))
@@ -127,13 +121,7 @@ def rounded_box(
     return meshes
 
 
-def lathe(
-    profile: Sequence[tuple[float, float]],
-    centre: Triple,
-    surface: Surface,
-    n: int = 18,
-    stretch: tuple[float, float] = (1.0, 1.0),
-) -> list[TexturedMesh]:
+def lathe(profile: Sequence, centre: Triple, surface: Surface, n: int = 18, stretch: tuple = (1.0, 1.0)) -> Meshes:
     """A solid of revolution about the vertical axis through centre; profile: (radius, height) from below to above."""
     profile = np.asarray(profile, float)
     angle = np.linspace(0.0, 2 * np.pi, n + 1)
@@ -156,7 +144,7 @@ def lathe(
 
 def cylinder(
     radius: float, height: float, centre: Triple, surface: Surface, top: float | None = None, n: int = 14
-) -> list[TexturedMesh]:
+) -> Meshes:
     """An upright cylinder, or a cone's frustum with another radius at the top; centre: of its lower end."""
     upper = radius if top is None else top
     return lathe([(0.0, 0.0), (radius, 0.0), (upper, height), (0.0, height)], centre, surface, n)
@@ -164,19 +152,16 @@ def cylinder(
 
 def swept(
     path: np.ndarray, side: np.ndarray, widths: np.ndarray, thicknesses: np.ndarray, surface: Surface, n: int = 8
-) -> list[TexturedMesh]:
+) -> Meshes:
     """A bar or a leaf along a path `(k, 3)`: elliptic sections of half-axes widths (along side) and thicknesses."""
-    path, side = np.asarray(path, float), np.asarray(side, float)
     tangent = np.gradient(path, axis=0)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     across = side - (tangent @ side)[:, None] * tangent
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     upward = np.cross(tangent, across)
     angle = np.linspace(0.0, 2 * np.pi, n + 1)
-    section = (
-        np.cos(angle)[None, :, None] * (across * np.reshape(widths, (-1, 1)))[:, None]
-        + np.sin(angle)[None, :, None] * (upward * np.reshape(thicknesses, (-1, 1)))[:, None]
-    )
+    section = np.cos(angle)[None, :, None] * (across * widths[:, None])[:, None]
+    section = section + np.sin(angle)[None, :, None] * (upward * thicknesses[:, None])[:, None]
     k = len(path)
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
     reach = float(np.max(widths))
@@ -190,7 +175,7 @@ def swept(
     return meshes
 
 
-def rod(points: Sequence[Triple], radius: float, surface: Surface, n: int = 8) -> list[TexturedMesh]:
+def rod(points: Sequence[Triple], radius: float, surface: Surface, n: int = 8) -> Meshes:
     """A round bar through the points."""
     path = np.asarray(points, float)
     side = np.eye(3)[int(np.argmin(np.abs(path[-1] - path[0])))]
@@ -200,12 +185,9 @@ def rod(points: Sequence[Triple], radius: float, surface: Surface, n: int = 8) -
 
 def turn(
     meshes: Sequence[TexturedMesh], x: float = 0.0, y: float = 0.0, z: float = 0.0, yaw: float = 0.0, pitch: float = 0.0
-) -> list[TexturedMesh]:
+) -> Meshes:
     """The meshes pitched about y (positive leans the top towards +x), turned by yaw about z, then shifted."""
-    cy, sy, cp, sp = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch)
-    pose = np.eye(4)
-    pose[:3, :3] = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]]) @ np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
-    pose[:3, 3] = x, y, z
+    pose = pose_matrix(np.array([x, y, z, 0.0, pitch, yaw]))
     return [mesh.moved(pose) for mesh in meshes]
 
 

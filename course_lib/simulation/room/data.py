@@ -14,9 +14,14 @@ from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.stereo_photographs import photograph_pair, write_poses
 from course_lib.simulation.room.survey import RoomSurveyModel, survey_room
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, RigModel, assemble, stand_up
+from course_lib.simulation.sensors.panorama_rig import (
+    NEARLY_PERFECT_RIG,
+    PanoramaCameraModel,
+    RigModel,
+    assemble,
+    stand_up,
+)
 
 PRODUCTS = ("experiment_1", "experiment_2", "semantic_map.json", "PARAMETERS.md", "SHA256SUMS")
 
@@ -43,13 +48,9 @@ class RoomModels:
 
 
 def make_room_data(
-    out: str | Path,
-    seed: int,
-    models: RoomModels | None = None,
-    progress: Callable[[Iterable], Iterable] = lambda items: items,
+    out: str | Path, seed: int, models: RoomModels = RoomModels(), progress: Callable[[Iterable], Iterable] = iter
 ) -> dict:
     """Make the data in folder `out`; return a summary. One seed gives one set of bytes."""
-    models = models or RoomModels()
     survey_rng, rng = np.random.default_rng(seed).spawn(2)
     room = make_experiment_room()
     mount = None if models.rig.assembled_anew else assemble(models.rig, rng.spawn(1)[0])
@@ -63,8 +64,8 @@ def make_room_data(
             (folder / f"experiment_{experiment}").mkdir()
         with PanoramaRenderer(room, models.width) as renderer:
             for experiment, place, turn in progress(shots):
-                heading = np.deg2rad(place.headings_deg[turn])
-                rig = stand_up(place.x, place.y, heading, heights[experiment], baseline, models.rig, rng, mount)
+                pose = place.x, place.y, np.deg2rad(place.headings_deg[turn])
+                rig = stand_up(pose, heights[experiment], baseline, models.rig, rng, mount)
                 name, where = f"{place.place:02d}_{'ab'[turn]}", folder / f"experiment_{experiment}"
                 lists[experiment].append(photograph_pair(renderer, rig, where, name, models.camera, rng))
         for experiment, entries in lists.items():

@@ -1,8 +1,4 @@
-"""The furnished rooms of paper 2 as paper 1 sees them: a world for a depth camera, and its laser-scanned mesh map.
-
-The camera sees the room itself, the map is made of a few registered scans of it. A person carries the camera where the
-floor is free, and looks about: all six degrees of freedom move.
-"""
+"""A furnished room as paper 1 sees it: its laser-scanned mesh map, and what a carried depth camera measures in it."""
 
 from __future__ import annotations
 
@@ -16,15 +12,14 @@ from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose, wrap_angle
 from course_lib.rendering.camera import DepthCamera
 from course_lib.simulation.corridor.mesh_building import write_ply
+from course_lib.simulation.corridor.recorded_runs import smooth_signal
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
 from course_lib.simulation.furniture.solids import merged
-from course_lib.simulation.room.footprints import NoFreePlace, clear_of, footprint, free_places
-from course_lib.simulation.room.look_alike_room import LookAlikeLimits, make_look_alike_room
-from course_lib.simulation.room.scene import Room
+from course_lib.simulation.room.furnishing import make_look_alike_room
+from course_lib.simulation.room.scene import NoFreePlace, Room, clear_of, footprint, free_places
 from course_lib.simulation.sensors.laser_survey import ScannerModel, survey
 from course_lib.simulation.sensors.ray_casting import WorldCaster
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
-from course_lib.simulation.smooth_signal import smooth_signal, smoothed
 
 STREAM = 77  # joins a seed's generators of what the depth camera meets: apart from those of the photographs
 MAP, CAMERA, PLACE, WALK, WALK_CAMERA = range(1, 6)
@@ -41,14 +36,10 @@ class DepthSurveyModel:
     fusion: FusionModel = field(default_factory=lambda: FusionModel(triangles=60_000))  # chosen
 
 
-def room_triangles(room: Room) -> tuple[np.ndarray, np.ndarray]:
-    """All triangles of a room: vertices `(V, 3)` metres, faces `(F, 3)`."""
-    return merged([*room.shell, *(mesh for thing in room.objects for mesh in thing.meshes)])
-
-
 def depth_caster(room: Room) -> WorldCaster:
     """What a depth camera's rays meet in a room."""
-    return WorldCaster(*room_triangles(room), REFLECTIVITY)
+    meshes = [*room.shell, *(mesh for thing in room.objects for mesh in thing.meshes)]
+    return WorldCaster(*merged(meshes), REFLECTIVITY)
 
 
 def surveyed_mesh(room: Room, model: DepthSurveyModel, rng: Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -77,27 +68,18 @@ class WalkModel:
     sway_frames: float = 8.0  # frames over which the hand sways and the view turns; chosen
 
 
-@dataclass(frozen=True)
-class WalkModels:
-    """All parameters of a recorded walk."""
-
-    limits: LookAlikeLimits = field(default_factory=LookAlikeLimits)
-    mesh: DepthSurveyModel = field(default_factory=DepthSurveyModel)
-    camera: TimeOfFlightModel = field(default_factory=TimeOfFlightModel)
-    walk: WalkModel = field(default_factory=WalkModel)
-
-
-def record_walk(folder: Path, seed: int, models: WalkModels | None = None) -> None:
+def record_walk(
+    folder: Path, seed: int, mesh: DepthSurveyModel = DepthSurveyModel(), walk: WalkModel = WalkModel()
+) -> None:
     """Write a seed's recording and its mesh map, map.ply, to a new `folder`. Same seed, same bytes."""
-    models = models or WalkModels()
-    room = make_look_alike_room(seed, limits=models.limits)
-    vertices, faces = surveyed_mesh(room, models.mesh, np.random.default_rng([STREAM, seed, MAP]))
-    states = walk_states(room, models.walk, np.random.default_rng([STREAM, seed, WALK]))
+    room = make_look_alike_room(seed)
+    vertices, faces = surveyed_mesh(room, mesh, np.random.default_rng([STREAM, seed, MAP]))
+    states = walk_states(room, walk, np.random.default_rng([STREAM, seed, WALK]))
     pattern_rng, noise_rng = np.random.default_rng([STREAM, seed, WALK_CAMERA]).spawn(2)
-    sensor = TimeOfFlightCamera(DepthCamera.sr4000(), models.camera, pattern_rng)
+    sensor = TimeOfFlightCamera(DepthCamera.sr4000(), TimeOfFlightModel(), pattern_rng)
     caster = depth_caster(room)
     depths = [sensor.capture(caster, state, noise_rng).depth for state in states]
-    times = np.arange(len(states)) / models.walk.frames_per_second
+    times = np.arange(len(states)) / walk.frames_per_second
     write_sequence(folder, sensor.camera.matrix, list(range(len(states))), depths, optical_pose(states), times, "z")
     write_ply(folder / "map.ply", vertices, faces, "generated room, simulated laser survey; CC BY 4.0")
 
@@ -116,14 +98,30 @@ def walk_states(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
     return np.column_stack([way, z, roll, np.deg2rad(model.pitch_deg) + pitch, wrap_angle(heading)])
 
 
+def smoothed(values: np.ndarray, width: float) -> np.ndarray:
+    """Values `(T,)` or `(T, k)` smoothed by a bell curve of `width` frames; the ends are held."""
+    margin = int(4 * width)
+    kernel = np.exp(-0.5 * (np.arange(-margin, margin + 1) / width) ** 2)
+    kernel /= kernel.sum()
+    columns = np.asarray(values, dtype=np.float64).reshape(len(values), -1).T
+    padded = np.pad(columns, ((0, 0), (margin, margin)), mode="edge")
+    return np.stack([np.convolve(column, kernel, mode="valid") for column in padded], axis=1).reshape(np.shape(values))
+
+
 def _way(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
     """Places `(frames, 2)` on straight stretches between free places, each clear of the furniture."""
     footprints = [footprint(item) for item in room.objects]
+
+    def can_go(here: np.ndarray, there: np.ndarray) -> bool:
+        between = here + (there - here) * np.linspace(0, 1, 50)[:, None]
+        far = np.linalg.norm(there - here) >= model.shortest_stretch
+        return bool(far and clear_of(footprints, between, model.clearance).all())
+
     for _ in range(MAX_BEGINNINGS):
         here = free_places(room, 1, rng)[0]
         stretches, count = [here[None]], 1
         while count < model.frames:
-            there = next((p for p in free_places(room, 200, rng) if _can_go(here, p, footprints, model)), None)
+            there = next((p for p in free_places(room, 200, rng) if can_go(here, p)), None)
             if there is None:
                 break  # a dead end: the walk begins anew elsewhere
             steps = int(np.ceil(np.linalg.norm(there - here) / model.step))
@@ -132,9 +130,3 @@ def _way(room: Room, model: WalkModel, rng: Generator) -> np.ndarray:
         else:
             return np.concatenate(stretches)[: model.frames]
     raise NoFreePlace(f"no walk of {model.frames} frames keeps {model.clearance} m from the furniture: less clearance?")
-
-
-def _can_go(here: np.ndarray, there: np.ndarray, footprints: list[np.ndarray], model: WalkModel) -> bool:
-    between = here + (there - here) * np.linspace(0, 1, 50)[:, None]
-    far = np.linalg.norm(there - here) >= model.shortest_stretch
-    return bool(far and clear_of(footprints, between, model.clearance).all())

@@ -27,9 +27,8 @@ class FinaleModels:
     depth_camera: TimeOfFlightModel = field(default_factory=TimeOfFlightModel)
 
 
-def make_finale_data(out: str | Path, seed: int, models: FinaleModels | None = None) -> dict:
+def make_finale_data(out: str | Path, seed: int, models: FinaleModels = FinaleModels()) -> dict:
     """Make the data in folder `out`; return a summary. One seed gives one set of bytes."""
-    models = models or FinaleModels()
     with staging_dir(out, PRODUCTS) as folder:
         room, semantic_map = surveyed_room(seed, models.recording)
         semantic_map.save(folder / "semantic_map.json")

@@ -1,31 +1,33 @@
-"""Rooms from a seed, such as the detector is trained on: furniture finds its place apart from all that stands there."""
+"""Rooms from a seed: `make_room` for training the detector, `make_look_alike_room` for reporting.
+
+The limits for reporting were committed before any such room was drawn. No seed gives one room in both generators.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator
 
-from course_lib.simulation.furniture import RANDOM_PIECES
-from course_lib.simulation.furniture.cabinet import random_cabinet
+from course_lib.simulation.furniture.pieces import RANDOM_PIECES, random_cabinet, random_television
 from course_lib.simulation.furniture.solids import Piece
-from course_lib.simulation.furniture.television import random_television
-from course_lib.simulation.room.footprints import rectangle
-from course_lib.simulation.room.scene import Room
+from course_lib.simulation.room.scene import Room, rectangle
 from course_lib.simulation.room.shell import GAP, Plan, free_stretch, random_shell
 
 MIN_PIECES, MAX_PIECES = 9, 16  # pieces of furniture
-# How likely each class stands with its back to a wall.
-AGAINST_WALL = {
-    "sofa": 0.8, "chair": 0.3, "table": 0.3, "television": 0.85, "potted plant": 0.75, "refrigerator": 1.0,
-    "cabinet": 0.97,
-}  # fmt: skip
-# How likely each class is to be drawn, and how many of it a room has at most.
-SHARES = {
-    "sofa": (0.13, 3), "chair": (0.24, 5), "table": (0.13, 3), "television": (0.1, 2), "potted plant": (0.17, 4),
-    "refrigerator": (0.09, 2), "cabinet": (0.14, 3),
-}  # fmt: skip
-# Large pieces come first, while there is space for them.
-ORDER = ("television", "refrigerator", "sofa", "cabinet", "table", "potted plant", "chair")
+# Of each class: how likely it stands with its back to a wall, how likely it is drawn, how many a room has at most.
+# Large pieces come first, because later there is less space for them.
+CLASSES = {
+    "television": (0.85, 0.1, 2),
+    "refrigerator": (1.0, 0.09, 2),
+    "sofa": (0.8, 0.13, 3),
+    "cabinet": (0.97, 0.14, 3),
+    "table": (0.3, 0.13, 3),
+    "potted plant": (0.75, 0.17, 4),
+    "chair": (0.3, 0.24, 5),
+}
+DRAWN = ("sofa", "chair", "table", "television", "potted plant", "refrigerator", "cabinet")  # in the order of the draws
 
 Spot = tuple[float, float, float]  # x, y in metres, heading in radians
 
@@ -60,7 +62,7 @@ def _at_a_table(rng: Generator, plan: Plan, size: np.ndarray) -> Spot:
 
 def _find_spot(rng: Generator, plan: Plan, label: str, size: np.ndarray) -> Spot | None:
     """Where a piece of this size fits between what stands already, or None after 60 tries."""
-    at_wall = rng.random() < AGAINST_WALL[label]
+    at_wall = rng.random() < CLASSES[label][0]
     at_table = label == "chair" and bool(plan.tables) and rng.random() < 0.5
     for attempt in range(60):
         if at_table and attempt < 20:
@@ -75,7 +77,7 @@ def _find_spot(rng: Generator, plan: Plan, label: str, size: np.ndarray) -> Spot
     return None
 
 
-def add_television(rng: Generator, plan: Plan) -> None:
+def _add_television(rng: Generator, plan: Plan) -> None:
     """A television on its own stand, on the wall, or on a low cabinet, which the map then lists too."""
     stand = str(rng.choice(["floor", "wall", "foot", "foot"]))
     piece = random_television(rng, stand)
@@ -92,56 +94,96 @@ def add_television(rng: Generator, plan: Plan) -> None:
     under = random_cabinet(rng, "sideboard") if stand == "foot" else None
     size = np.maximum(piece.size, under.size) if under else piece.size
     spot = _find_spot(rng, plan, "television", size)
-    if spot is None:
-        return
-    if under:
-        plan.objects.append(under.at(*spot))
-    plan.objects.append(piece.at(*spot, z=float(under.size[2]) if under else 0.0))
-    plan.taken.append(rectangle(*spot, *size[:2]))
+    if spot is not None:
+        plan.objects += [under.at(*spot)] if under else []
+        plan.objects.append(piece.at(*spot, z=float(under.size[2]) if under else 0.0))
+        plan.taken.append(rectangle(*spot, *size[:2]))
 
 
-def add_piece(rng: Generator, plan: Plan, piece: Piece) -> bool:
-    """Places the piece where it fits, and says whether it did; without space the room does without it."""
+def _add_piece(rng: Generator, plan: Plan, piece: Piece) -> bool:
+    """Place the piece where it fits, and say whether it did; without space the room does without it."""
     spot = _find_spot(rng, plan, piece.label, piece.size)
     if spot is None:
         return False
-    corners = rectangle(*spot, *piece.size[:2])
     plan.objects.append(piece.at(*spot))
-    plan.taken.append(corners)
+    plan.taken.append(rectangle(*spot, *piece.size[:2]))
     if piece.label == "table":
-        plan.tables.append(corners)
+        plan.tables.append(plan.taken[-1])
     return True
+
+
+def _add(rng: Generator, plan: Plan, label: str) -> None:
+    """Draw a piece of a class and place it where it fits."""
+    if label == "television":
+        _add_television(rng, plan)
+    else:
+        _add_piece(rng, plan, RANDOM_PIECES[label](rng))
 
 
 def _draw_labels(rng: Generator, n: int) -> list[str]:
     """The classes of n pieces; at least five different ones, so that no room teaches only chairs."""
-    names = list(SHARES)
-    share = np.array([SHARES[name][0] for name in names])
-    labels = [names[index] for index in rng.permutation(len(names))[: int(rng.integers(5, 8))]]
+    share = np.array([CLASSES[name][1] for name in DRAWN])
+    labels = [DRAWN[index] for index in rng.permutation(len(DRAWN))[: int(rng.integers(5, 8))]]
     while len(labels) < n:
-        name = names[int(rng.choice(len(names), p=share / share.sum()))]
-        if labels.count(name) < SHARES[name][1]:
+        name = DRAWN[int(rng.choice(len(DRAWN), p=share / share.sum()))]
+        if labels.count(name) < CLASSES[name][2]:
             labels.append(name)
-    return sorted(labels, key=ORDER.index)
+    return sorted(labels, key=list(CLASSES).index)
 
 
 def make_room(seed: int | Generator) -> Room:
-    """A furnished rectangular room, 4.5 to 7.5 m a side, its south-west corner at the origin.
-
-    seed: the same seed gives the same room, byte for byte.
-    """
+    """A furnished rectangular room, 4.5 to 7.5 m a side, its south-west corner at the origin; a seed gives one room."""
     rng = np.random.default_rng(seed)
     high = rng.uniform(4.5, 7.5, 2)
     plan = random_shell(rng, np.zeros(2), high, float(rng.uniform(2.4, 3.0)))
     n = int(np.clip(round(rng.normal(6 + high.prod() / 6.0, 1.5)), MIN_PIECES, MAX_PIECES - 2))
     for label in _draw_labels(rng, n):
-        if label == "television":
-            add_television(rng, plan)
-        else:
-            add_piece(rng, plan, RANDOM_PIECES[label](rng))
+        _add(rng, plan, label)
     for _ in range(60):
         # What found no space is made up for with small pieces.
         if len(plan.objects) >= MIN_PIECES:
             break
-        add_piece(rng, plan, RANDOM_PIECES[str(rng.choice(["chair", "potted plant"]))](rng))
+        _add(rng, plan, str(rng.choice(["chair", "potted plant"])))
     return plan.room()
+
+
+STREAM = 0x100A11E  # joins every seed, so that no random number of these rooms is one of make_room's
+MAX_DRAWS = 100  # rooms drawn for one seed before giving up; chosen
+
+
+@dataclass(frozen=True)
+class LookAlikeLimits:
+    """Between what a room of look-alikes is drawn, uniformly where two numbers stand."""
+
+    side: tuple[float, float] = (5.0, 7.0)  # m, length of either pair of walls; chosen: the paper's room is about 6 x 6
+    height: tuple[float, float] = (2.4, 3.0)  # m, of the ceiling; chosen, as in make_room
+    kinds: tuple[str, ...] = ("sofa", "chair")  # of which one kind's pieces look alike; the paper's own case is sofas
+    look_alikes: tuple[int, int] = (3, 5)  # pieces of one shape and one colour; chosen around the paper's three
+    others: tuple[int, int] = (6, 10)  # pieces of the other classes; chosen: the paper's map has about a dozen in all
+    most_of_a_class: int = 2  # of the other classes; chosen
+    fewest_others: int = 5  # that must have found a place, else the room is drawn again; chosen
+
+
+def make_look_alike_room(seed: int, draw: int = 0, limits: LookAlikeLimits = LookAlikeLimits()) -> Room:
+    """The room of a seed; the look-alikes are its first objects. draw: another room of the same seed."""
+    for rng in np.random.default_rng([STREAM, seed, draw]).spawn(MAX_DRAWS):
+        high = rng.uniform(*limits.side, 2)
+        plan = random_shell(rng, np.zeros(2), high, float(rng.uniform(*limits.height)))
+        if _furnish(rng, plan, limits):
+            return plan.room()
+    raise ValueError(f"seed {seed}: in {MAX_DRAWS} rooms the furniture found no place; ask for fewer or larger ones")
+
+
+def _furnish(rng: Generator, plan: Plan, limits: LookAlikeLimits) -> bool:
+    """Places the look-alikes, then the others; says whether enough of them found a place."""
+    kind = str(rng.choice(limits.kinds))
+    piece = RANDOM_PIECES[kind](rng)
+    for _ in range(int(rng.integers(limits.look_alikes[0], limits.look_alikes[1] + 1))):
+        if not _add_piece(rng, plan, piece):
+            return False
+    alike = len(plan.objects)
+    classes = sorted(set(RANDOM_PIECES) - {kind}) * limits.most_of_a_class
+    n = int(rng.integers(limits.others[0], limits.others[1] + 1))
+    for label in rng.permutation(classes)[:n]:
+        _add(rng, plan, str(label))
+    return len(plan.objects) - alike >= limits.fewest_others

@@ -1,7 +1,4 @@
-"""A room of look-alikes surveyed, and photographed by the paper's rig at both heights, from a seed.
-
-Every random thing has a stream of its own: another tilt, or another number of poses, changes nothing else.
-"""
+"""A room of look-alikes surveyed and photographed from a seed. Every random thing has a stream of its own."""
 
 from __future__ import annotations
 
@@ -14,15 +11,20 @@ import numpy as np
 from numpy.random import Generator
 
 from course_lib.geometry import wrap_angle
-from course_lib.simulation.room.footprints import clear_of, footprint, free_places
-from course_lib.simulation.room.look_alike_room import STREAM, LookAlikeLimits, make_look_alike_room
+from course_lib.simulation.room.furnishing import STREAM, LookAlikeLimits, make_look_alike_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
-from course_lib.simulation.room.scene import Room
+from course_lib.simulation.room.scene import Room, clear_of, footprint, free_places
 from course_lib.simulation.room.stereo_photographs import photograph_pair, write_poses
 from course_lib.simulation.room.survey import RoomSurveyModel, UnseenObject, survey_room
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import Mount, RigModel, assemble, stand_up
+from course_lib.simulation.sensors.panorama_rig import (
+    Mount,
+    PanoramaCameraModel,
+    RigModel,
+    assemble,
+    stand_up,
+    write_photograph,
+)
 from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -56,19 +58,12 @@ def surveyed_room(seed: int, models: RecordingModels) -> tuple[Room, SemanticMap
 
 
 def measurement_poses(room: Room, n: int, seed: int) -> np.ndarray:
-    """Where the rig stands: `(n, 3)` [x, y, heading], metres and radians; fewer poses are the first of more.
-
-    Two headings a place, the second some quarters of a turn further. Source: paper 2, table 1
-    """
+    """Poses `(n, 3)` of the rig, two headings a place; fewer poses are the first of more. Source: paper 2, table 1"""
     rng = np.random.default_rng([STREAM, seed, PLACES])
-    n_places = -(-n // HEADINGS_A_PLACE)
     first, quarters = rng.uniform(-np.pi, np.pi, 1000), rng.integers(1, 4, 1000)
-    places = free_places(room, n_places, rng)
-    poses = [
-        (x, y, first[k] + turn * quarters[k] * np.pi / 2)
-        for k, (x, y) in enumerate(places)
-        for turn in range(HEADINGS_A_PLACE)
-    ]
+    places = free_places(room, -(-n // HEADINGS_A_PLACE), rng)
+    turns = range(HEADINGS_A_PLACE)
+    poses = [(x, y, first[k] + t * quarters[k] * np.pi / 2) for k, (x, y) in enumerate(places) for t in turns]
     return np.array(poses[:n])
 
 
@@ -86,9 +81,9 @@ def photograph_room(folder: Path, room: Room, seed: int, n_poses: int, models: R
             folders.append(folder / f"experiment_{number}")
             folders[-1].mkdir()
             entries = []
-            for k, (x, y, heading) in enumerate(poses):
+            for k, pose in enumerate(poses):
                 rng = np.random.default_rng([STREAM, seed, POSE, number, k])
-                rig = stand_up(float(x), float(y), float(heading), upper, upper - lower, models.rig, rng, mount)
+                rig = stand_up(pose, upper, upper - lower, models.rig, rng, mount)
                 entries.append(photograph_pair(renderer, rig, folders[-1], f"{k:02d}", models.camera, rng))
             write_poses(folders[-1], seed, models.width, round(upper - lower, 6), entries)
     return folders
@@ -144,12 +139,11 @@ def photograph_walks(
             rng = np.random.default_rng([STREAM, seed, WALK, k])
             upper, lower = CAMERA_HEIGHTS[experiment_of(k)]
             views = []
-            for x, y, heading in walk_from(room, pose, n, rng, walk):
-                rig = stand_up(float(x), float(y), float(heading), upper, upper - lower, models.rig, rng, mount)
+            for place in walk_from(room, pose, n, rng, walk):
+                rig = stand_up(place, upper, upper - lower, models.rig, rng, mount)
                 images = []
                 for state in rig.camera_states():
-                    image = photograph(renderer.render(state), models.camera, rng)
-                    write_photograph(folder / "view.jpg", image, models.camera, rng)
+                    write_photograph(folder / "view.jpg", renderer.render(state), models.camera, rng)
                     images.append(read_panorama(folder / "view.jpg"))
-                views.append(NearbyView(np.array([x, y, heading]), *images))
+                views.append(NearbyView(place, *images))
             yield views

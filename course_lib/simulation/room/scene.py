@@ -1,10 +1,12 @@
-"""What a furnished room is: its objects, its shell, its light, and how large it is."""
+"""What a furnished room is, and where things stand in it: footprints are rectangles on the floor."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 
 from course_lib.simulation.textures import TexturedMesh
 
@@ -43,3 +45,63 @@ class Room:
     shell: tuple[TexturedMesh, ...]  # what it does not list: floor, walls, ceiling, windows, doors, pictures
     lamps: tuple[Lamp, ...]
     ambient: tuple[float, float, float] = (0.35, 0.35, 0.35)  # RGB, the light that comes from everywhere
+
+
+def rectangle(x: float, y: float, heading: float, depth: float, width: float) -> np.ndarray:
+    """Corners `(4, 2)`, metres, counter-clockwise; depth: along the heading (radians), width: across it."""
+    forward = np.array([np.cos(heading), np.sin(heading)])
+    left = np.array([-forward[1], forward[0]])
+    signs = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) / 2.0
+    return np.array([x, y]) + signs[:, :1] * depth * forward + signs[:, 1:] * width * left
+
+
+def footprint(item: RoomObject) -> np.ndarray:
+    """The smallest rectangle `(4, 2)` along the object's heading that holds all of it, seen from above; metres."""
+    forward = np.array([np.cos(item.heading), np.sin(item.heading)])
+    axes = np.stack([forward, [-forward[1], forward[0]]], 1)
+    along = item.vertices()[:, :2] @ axes
+    low, high = along.min(axis=0), along.max(axis=0)
+    corners = np.array([[high[0], high[1]], [low[0], high[1]], [low[0], low[1]], [high[0], low[1]]])
+    return corners @ axes.T
+
+
+def overlap(first: np.ndarray, second: np.ndarray, gap: float = 0.0) -> bool:
+    """Whether two rectangles come closer than gap (metres) along every edge direction (separating axes)."""
+    for corners in (first, second):
+        for edge in (corners[1] - corners[0], corners[2] - corners[1]):
+            axis = edge / np.linalg.norm(edge)
+            a, b = first @ axis, second @ axis
+            if a.max() + gap <= b.min() or b.max() + gap <= a.min():
+                return False
+    return True
+
+
+def distance_to(corners: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Distances `(n,)` of places `(n, 2)` from a rectangle, 0 inside it; metres."""
+    middle = corners.mean(axis=0)
+    axes = np.stack([corners[0] - corners[1], corners[1] - corners[2]], 1)
+    lengths = np.linalg.norm(axes, axis=0)
+    along = np.abs((np.asarray(places, float) - middle) @ (axes / lengths)) - lengths / 2
+    return np.linalg.norm(np.maximum(along, 0.0), axis=1)
+
+
+class NoFreePlace(ValueError):
+    """The room has not enough space where a rig can stand."""
+
+
+def free_places(room: Room, n: int, rng: Generator, clearance: float = 0.3, wall: float = 0.5) -> np.ndarray:
+    """Places `(n, 2)` at least clearance (m) from every footprint and wall from every wall. Raises `NoFreePlace`."""
+    low, high = np.asarray(room.walls).min(axis=0) + wall, np.asarray(room.walls).max(axis=0) - wall
+    places = rng.uniform(low, high, (500 * n, 2))
+    free = clear_of([footprint(item) for item in room.objects], places, clearance)
+    if free.sum() < n:
+        raise NoFreePlace(f"{n} places {clearance} m clear: found {free.sum()} among {500 * n}; ask for less clearance")
+    return places[free][:n]
+
+
+def clear_of(footprints: Sequence[np.ndarray], places: np.ndarray, clearance: float) -> np.ndarray:
+    """Whether each place `(n, 2)` keeps the clearance (metres) from every footprint: `(n,)` bool."""
+    free = np.ones(len(places), bool)
+    for corners in footprints:
+        free &= distance_to(corners, places) >= clearance
+    return free

@@ -1,24 +1,24 @@
-"""What a room is apart from its listed furniture: floor, walls, windows, door, pictures, lamps, and small things.
-
-The small things are there so that a detector meets what is not of its classes; they stand within 0.45 m of a wall.
-"""
+"""A room apart from its listed furniture; small things by its walls let a detector meet what is not of its classes."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.random import Generator
 
-from course_lib.simulation import prints, textures
+from course_lib.simulation import textures
 from course_lib.simulation.furniture.solids import box, cylinder, grid_faces, joined, lathe, panel, rod, textured, turn
-from course_lib.simulation.room.footprints import clear_of, overlap, rectangle
-from course_lib.simulation.room.scene import Lamp, Room, RoomObject
-from course_lib.simulation.textures import Surface, TexturedMesh, colour, random_colour
+from course_lib.simulation.room.scene import Lamp, Room, RoomObject, clear_of, overlap, rectangle
+from course_lib.simulation.textures import Meshes, Surface, TexturedMesh, colour, random_colour
 
 WALL_CELL = 0.5  # metres: longest edge of a wall's cell
 LIFT = 0.004  # metres between two faces that would otherwise lie in one plane
+GAP = 0.06  # metres between two footprints
+
+Pair = Sequence[float]  # x, y
 
 
 @dataclass(frozen=True)
@@ -35,29 +35,24 @@ class Wall:
         x, y = self.start + s * self.along + out * self.inward
         return {"x": float(x), "y": float(y), "z": z, "yaw": float(np.arctan2(self.inward[1], self.inward[0]))}
 
+    def rectangle(self, s: float, out: float, depth: float, width: float) -> np.ndarray:
+        """Corners `(4, 2)` of a footprint by the wall, its middle at s and out as in `pose`."""
+        pose = self.pose(s, out=out)
+        return rectangle(pose["x"], pose["y"], pose["yaw"], depth, width)
 
-def walls_of(low: Sequence[float], high: Sequence[float]) -> list[Wall]:
+
+def walls_of(low: Pair, high: Pair) -> list[Wall]:
     """The four walls of the rectangle low to high: south (y = low), east, north, west, seen from inside."""
     (x0, y0), (x1, y1) = low, high
-    sides = [
-        ((x1, y0), (-1, 0), (0, 1), x1 - x0),
-        ((x1, y1), (0, -1), (-1, 0), y1 - y0),
-        ((x0, y1), (1, 0), (0, -1), x1 - x0),
-        ((x0, y0), (0, 1), (1, 0), y1 - y0),
-    ]
+    sides = [((x1, y0), (-1, 0), (0, 1), x1 - x0), ((x1, y1), (0, -1), (-1, 0), y1 - y0)]
+    sides += [((x0, y1), (1, 0), (0, -1), x1 - x0), ((x0, y0), (0, 1), (1, 0), y1 - y0)]
     return [Wall(*(np.array(vector, float) for vector in vectors), float(length)) for *vectors, length in sides]
 
 
 def bare_room(
-    low: Sequence[float],
-    high: Sequence[float],
-    height: float,
-    papers: Sequence[Surface],
-    floor: Surface,
-    ceiling: Surface,
-    trim: Surface,
-) -> list[TexturedMesh]:
-    """Floor, ceiling, four walls (papers: one surface per wall) and skirting boards."""
+    low: Pair, high: Pair, height: float, papers: Sequence[Surface], floor: Surface, ceiling: Surface, trim: Surface
+) -> Meshes:
+    """Floor, ceiling, four walls (papers: one surface for each) and skirting boards."""
     (x0, y0), (x1, y1) = low, high
     meshes = [
         panel((x0, y0, 0), (x1 - x0, 0, 0), (0, y1 - y0, 0), floor, cell=WALL_CELL),
@@ -71,9 +66,7 @@ def bare_room(
     return meshes
 
 
-def window(
-    wall: Wall, s: float, width: float, height: float, sill: float, view: Surface, frame: Surface
-) -> list[TexturedMesh]:
+def window(wall: Wall, s: float, width: float, height: float, sill: float, view: Surface, frame: Surface) -> Meshes:
     """A window with its middle s metres along the wall: a view that shines, a frame with a bar, a sill."""
     parts = [panel((LIFT, -width / 2, 0), (0, width, 0), (0, 0, height), view, fit=True)]
     for y in (-width / 2, 0.0, width / 2):
@@ -84,23 +77,21 @@ def window(
     return turn(parts, **wall.pose(s, sill))
 
 
-def curtain(wall: Wall, s: float, width: float, height: float, cover: Surface) -> list[TexturedMesh]:
+def curtain(wall: Wall, s: float, width: float, height: float, cover: Surface) -> Meshes:
     """A hanging curtain in folds, its middle s metres along the wall, from just above the floor to height."""
     folds = max(3, round(width / 0.09))
     y = np.linspace(-width / 2, width / 2, 4 * folds + 1)
     x = 0.09 + 0.025 * np.sin(np.linspace(0, 2 * np.pi * folds, 4 * folds + 1))
-    rows = np.linspace(0.06, height, 6)
     parts = []
     for offset, order in ((0.006, 1), (0.0, -1)):
-        vertices = np.stack([np.tile(x + offset, 6), np.tile(y, 6), np.repeat(rows, len(y))], 1)
-        vertices = vertices.reshape(6, -1, 3)[:, ::order].reshape(-1, 3)
-        metres = vertices[:, 1:] * (1.25, 1.0)
-        parts.append(textured(vertices, grid_faces(6, len(y)), metres, cover))
+        sheet = np.stack([np.tile(x + offset, 6), np.tile(y, 6), np.repeat(np.linspace(0.06, height, 6), len(y))], 1)
+        sheet = sheet.reshape(6, -1, 3)[:, ::order].reshape(-1, 3)
+        parts.append(textured(sheet, grid_faces(6, len(y)), sheet[:, 1:] * (1.25, 1.0), cover))
     parts += rod([(0.09, -width / 2 - 0.08, height + 0.02), (0.09, width / 2 + 0.08, height + 0.02)], 0.012, cover)
     return turn(parts, **wall.pose(s))
 
 
-def door(wall: Wall, s: float, leaf: Surface, frame: Surface, knob: Surface) -> list[TexturedMesh]:
+def door(wall: Wall, s: float, leaf: Surface, frame: Surface, knob: Surface) -> Meshes:
     """A closed door of 0.85 x 2.0 m with panels, a frame and a handle."""
     parts = box((0.03, 0.85, 2.0), (0.015, 0, 1.0), leaf)
     for z, tall in ((0.5, 0.7), (1.4, 0.9)):
@@ -113,7 +104,7 @@ def door(wall: Wall, s: float, leaf: Surface, frame: Surface, knob: Surface) -> 
     return turn(parts, **wall.pose(s))
 
 
-def framed_picture(wall: Wall, s: float, z: float, print_: Surface, frame: Surface) -> list[TexturedMesh]:
+def framed_picture(wall: Wall, s: float, z: float, print_: Surface, frame: Surface) -> Meshes:
     """A picture on the wall, its middle s metres along and z metres up; its size is the print's."""
     width, height = print_.size
     parts = box((0.025, width + 0.06, height + 0.06), (0.0125, 0, 0), frame)
@@ -121,44 +112,22 @@ def framed_picture(wall: Wall, s: float, z: float, print_: Surface, frame: Surfa
     return turn(parts, **wall.pose(s, z))
 
 
-def ceiling_lamp(
-    x: float, y: float, height: float, radius: float, glow: Surface, drop: float = 0.12
-) -> list[TexturedMesh]:
+def ceiling_lamp(x: float, y: float, height: float, radius: float, glow: Surface, drop: float = 0.12) -> Meshes:
     """A bowl of light under the ceiling; drop: how far it hangs down, metres."""
     bowl = [(0.0, 0.0), (0.7 * radius, 0.02), (radius, 0.07), (0.9 * radius, 0.1), (0.0, 0.1)]
     meshes = lathe(bowl, (x, y, height - drop), glow, 20)
     return meshes + cylinder(0.012, drop - 0.09, (x, y, height - drop + 0.09), glow)
 
 
-def rug(x: float, y: float, heading: float, length: float, width: float, cover: Surface) -> list[TexturedMesh]:
+def rug(x: float, y: float, heading: float, length: float, width: float, cover: Surface) -> Meshes:
     """A flat rug on the floor."""
     return turn(box((length, width, 0.008), (0, 0, 0.005), cover), x=x, y=y, yaw=heading)
 
 
-def carton(wall: Wall, s: float, size: Sequence[float], sides: Surface, face: Surface) -> list[TexturedMesh]:
-    """A cardboard box by the wall, with a label on its front."""
-    d, w, h = size
-    parts = box(size, (d / 2 + 0.02, 0, h / 2), sides)
-    across, up = 0.6 * w, 0.5 * h
-    parts.append(panel((d + 0.02 + LIFT, -across / 2, 0.25 * h), (0, across, 0), (0, 0, up), face, fit=True))
-    return turn(parts, **wall.pose(s))
-
-
-def waste_bin(wall: Wall, s: float, radius: float, height: float, side: Surface) -> list[TexturedMesh]:
+def waste_bin(wall: Wall, s: float, radius: float, height: float, side: Surface) -> Meshes:
     """A round bin by the wall, wider at its top."""
     profile = [(0, 0), (0.8 * radius, 0), (radius, height), (0.9 * radius, height), (0.75 * radius, 0.05), (0, 0.05)]
     return turn(lathe(profile, (radius + 0.03, 0, 0), side, 18), **wall.pose(s))
-
-
-def floor_lamp(wall: Wall, s: float, height: float, pole: Surface, shade: Surface) -> list[TexturedMesh]:
-    """A standing lamp with a conical shade by the wall."""
-    x = 0.22
-    parts = cylinder(0.13, 0.03, (x, 0, 0), pole, n=18) + rod([(x, 0, 0.02), (x, 0, height - 0.1)], 0.012, pole)
-    parts += lathe([(0, 0), (0.18, 0), (0.11, 0.25), (0, 0.25)], (x, 0, height - 0.25), shade, 20)
-    return turn(parts, **wall.pose(s))
-
-
-GAP = 0.06  # metres between two footprints
 
 
 @dataclass
@@ -232,30 +201,34 @@ def _papers(rng: Generator) -> list[Surface]:
     return papers
 
 
-def _small_things(rng: Generator, wall: Wall) -> tuple[list[TexturedMesh], np.ndarray]:
+def _small_things(rng: Generator, wall: Wall) -> tuple[Meshes, np.ndarray]:
     """One carton, bin or standing lamp by the wall, and the rectangle it stands on."""
     s = float(rng.uniform(0.35, wall.length - 0.35))
     kind = rng.integers(3)
     if kind == 0:
-        size = rng.uniform((0.2, 0.25, 0.15), (0.4, 0.5, 0.45))
+        d, w, h = size = rng.uniform((0.2, 0.25, 0.15), (0.4, 0.5, 0.45))
         brown = textures.cloth(rng, random_colour(rng, (15, 60), (40, 85)), "blotches", size=0.5, pixels=128)
-        meshes = carton(wall, s, size, brown, prints.label(rng, 0.2, 0.15))
+        parts, face = box(size, (d / 2 + 0.02, 0, h / 2), brown), textures.label(rng, 0.2, 0.15)
+        parts.append(panel((d + 0.02 + LIFT, -0.3 * w, 0.25 * h), (0, 0.6 * w, 0), (0, 0, 0.5 * h), face, fit=True))
+        meshes = turn(parts, **wall.pose(s))
     elif kind == 1:
         side = textures.ceramic(rng, random_colour(rng, (0, 80), (20, 95)), pixels=128)
         meshes = waste_bin(wall, s, float(rng.uniform(0.11, 0.17)), float(rng.uniform(0.22, 0.4)), side)
     else:
         pole = textures.metal(rng, random_colour(rng, (0, 30), (10, 80)), 0.3, 64)
         shade = Surface(textures.cloth(rng, colour(40, 25, 95), size=0.4, pixels=128).image, (0.4, 0.4), 0.75)
-        meshes = floor_lamp(wall, s, float(rng.uniform(1.2, 1.7)), pole, shade)
-    pose = wall.pose(s, out=0.22)
-    return meshes, rectangle(pose["x"], pose["y"], pose["yaw"], 0.45, 0.52)
+        x, height = 0.22, float(rng.uniform(1.2, 1.7))
+        parts = cylinder(0.13, 0.03, (x, 0, 0), pole, n=18) + rod([(x, 0, 0.02), (x, 0, height - 0.1)], 0.012, pole)
+        parts += lathe([(0, 0), (0.18, 0), (0.11, 0.25), (0, 0.25)], (x, 0, height - 0.25), shade, 20)
+        meshes = turn(parts, **wall.pose(s))
+    return meshes, wall.rectangle(s, 0.22, 0.45, 0.52)
 
 
 def _add_window(rng: Generator, plan: Plan, index: int, trim: Surface) -> None:
     """A window, its daylight, and in six of ten cases curtains."""
     wall, width, tall = plan.walls[index], float(rng.uniform(0.9, 1.9)), float(rng.uniform(0.9, 1.3))
     s, sill = float(rng.uniform(1.5, wall.length - 1.5)), float(rng.uniform(0.75, 1.0))
-    plan.meshes += window(wall, s, width, tall, sill, prints.window_view(rng, width, tall), trim)
+    plan.meshes += window(wall, s, width, tall, sill, textures.window_view(rng, width, tall), trim)
     reach = width / 2 + 0.1
     if rng.random() < 0.6:
         pattern = str(rng.choice(textures.CLOTH_PATTERNS))
@@ -269,28 +242,6 @@ def _add_window(rng: Generator, plan: Plan, index: int, trim: Surface) -> None:
     plan.lamps.append(Lamp((pose["x"], pose["y"], pose["z"]), day, float(rng.uniform(0.6, 1.6))))
 
 
-def _add_door(rng: Generator, plan: Plan, index: int, trim: Surface) -> None:
-    """A door, and the floor before it kept free."""
-    wall = plan.walls[index]
-    s = float(rng.uniform(0.7, wall.length - 0.7))
-    leaf = textures.wood(rng, random_colour(rng, (0, 60), (35, 97)), 1.0)
-    knob = textures.metal(rng, (0.75, 0.72, 0.6), 0.3, 64)
-    plan.meshes += door(wall, s, leaf.turned(), trim, knob)
-    plan.spans[index].append((s - 0.55, s + 0.55))
-    pose = wall.pose(s, out=0.35)
-    plan.taken.append(rectangle(pose["x"], pose["y"], pose["yaw"], 0.7, 0.9))
-
-
-def _add_pictures(rng: Generator, plan: Plan, trim: Surface) -> None:
-    """One to five pictures beside windows and door."""
-    for index in rng.integers(0, 4, int(rng.integers(1, 6))):
-        wall, width = plan.walls[int(index)], float(rng.uniform(0.3, 0.9))
-        s = free_stretch(rng, wall, plan.spans[int(index)], width + 0.06)
-        if s is not None:
-            print_ = prints.picture(rng, width, float(width * rng.uniform(0.6, 1.4)), pixels=160)
-            plan.meshes += framed_picture(wall, s, float(rng.uniform(1.4, 1.65)), print_, trim)
-
-
 def _add_ceiling_lamps(rng: Generator, plan: Plan) -> None:
     """One, two or four lamps that share the light between them."""
     tint = colour(rng.uniform(25, 60), rng.uniform(0, 22), 100)
@@ -298,19 +249,10 @@ def _add_ceiling_lamps(rng: Generator, plan: Plan) -> None:
     columns, rows = ((1, 1), (1, 1), (2, 1), (1, 2), (2, 2))[int(rng.integers(5))]
     radius, drop = float(rng.uniform(0.12, 0.28)), float(rng.uniform(0.12, 0.4))
     strength = float(rng.uniform(1.6, 3.2) / np.sqrt(columns * rows))
-    for i in range(columns):
-        for j in range(rows):
-            x, y = (float(v) for v in plan.low + (plan.high - plan.low) * ((i + 0.5) / columns, (j + 0.5) / rows))
-            plan.meshes += ceiling_lamp(x, y, plan.height, radius, glow, drop)
-            plan.lamps.append(Lamp((x, y, plan.height - drop - 0.15), tint, strength))
-
-
-def _add_rug(rng: Generator, plan: Plan) -> None:
-    x, y = (float(v) for v in rng.uniform(plan.low + 1.2, plan.high - 1.2))
-    pattern = str(rng.choice(("stripes", "checks", "dots", "blotches")))
-    cover = textures.cloth(rng, random_colour(rng), pattern, random_colour(rng), 1.2, 512)
-    length, width = (float(v) for v in rng.uniform((1.0, 0.7), (2.0, 1.4)))
-    plan.meshes += rug(x, y, float(rng.integers(2) * np.pi / 2), length, width, cover)
+    for i, j in itertools.product(range(columns), range(rows)):
+        x, y = (float(v) for v in plan.low + (plan.high - plan.low) * ((i + 0.5) / columns, (j + 0.5) / rows))
+        plan.meshes += ceiling_lamp(x, y, plan.height, radius, glow, drop)
+        plan.lamps.append(Lamp((x, y, plan.height - drop - 0.15), tint, strength))
 
 
 def random_shell(rng: Generator, low: np.ndarray, high: np.ndarray, height: float) -> Plan:
@@ -322,11 +264,25 @@ def random_shell(rng: Generator, low: np.ndarray, high: np.ndarray, height: floa
     order = [int(index) for index in rng.permutation(4)]
     for index in order[: int(rng.integers(1, 3))]:
         _add_window(rng, plan, index, trim)
-    _add_door(rng, plan, order[2], trim)
-    _add_pictures(rng, plan, trim)
+    wall = plan.walls[order[2]]
+    s = float(rng.uniform(0.7, wall.length - 0.7))
+    leaf = textures.wood(rng, random_colour(rng, (0, 60), (35, 97)), 1.0)
+    plan.meshes += door(wall, s, leaf.turned(), trim, textures.metal(rng, (0.75, 0.72, 0.6), 0.3, 64))
+    plan.spans[order[2]].append((s - 0.55, s + 0.55))
+    plan.taken.append(wall.rectangle(s, 0.35, 0.7, 0.9))  # the floor before the door stays free
+    for index in rng.integers(0, 4, int(rng.integers(1, 6))):
+        width = float(rng.uniform(0.3, 0.9))
+        s = free_stretch(rng, plan.walls[index], plan.spans[index], width + 0.06)
+        if s is not None:
+            print_ = textures.picture(rng, width, float(width * rng.uniform(0.6, 1.4)), pixels=160)
+            plan.meshes += framed_picture(plan.walls[index], s, float(rng.uniform(1.4, 1.65)), print_, trim)
     _add_ceiling_lamps(rng, plan)
     if rng.random() < 0.6:
-        _add_rug(rng, plan)
+        x, y = (float(v) for v in rng.uniform(plan.low + 1.2, plan.high - 1.2))
+        pattern = str(rng.choice(("stripes", "checks", "dots", "blotches")))
+        cover = textures.cloth(rng, random_colour(rng), pattern, random_colour(rng), 1.2, 512)
+        length, width = (float(v) for v in rng.uniform((1.0, 0.7), (2.0, 1.4)))
+        plan.meshes += rug(x, y, float(rng.integers(2) * np.pi / 2), length, width, cover)
     for index in rng.integers(0, 4, int(rng.integers(0, 4))):
         things, corners = _small_things(rng, plan.walls[int(index)])
         if not any(overlap(corners, other) for other in plan.taken):

@@ -8,26 +8,21 @@ from pathlib import Path
 import numpy as np
 from numpy.random import Generator
 
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph, write_photograph
 from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import RigPose
+from course_lib.simulation.sensors.panorama_rig import PanoramaCameraModel, RigPose, write_photograph
 from course_lib.spherical_stereo.recording import POSES_FILE, VERSION, TrueObject
 
 Box = tuple[float, float, float, float]
 
 
 def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[TrueObject]:
-    """The boxes of all objects of which at least one pixel is seen from `state` `(6,)`, in the order of `room.objects`.
-
-    visible_box is around the pixels that show an object, unoccluded_box around those that would show it alone;
-    visible_fraction: the first pixels' number over the second's. u_max passes the width at the seam.
-    """
+    """The boxes of all objects that show in the picture from `state` `(6,)`, in the order of `room.objects`."""
     numbers = renderer.render_objects(state)
     scale = numbers.shape[1] / renderer.width
     boxes = []
     for number in np.flatnonzero(np.bincount(numbers.ravel(), minlength=BACKGROUND + 1)[:BACKGROUND]):
         visible = numbers == number
-        whole = renderer.render_alone(state, int(number)) | visible
+        whole = renderer.render_alone(state, int(number)) | visible  # as if nothing stood before it
         label, share = renderer.room.objects[number].label, float(visible.sum() / whole.sum())
         boxes.append(TrueObject(int(number), label, box_around(visible, scale), box_around(whole, scale), share))
     return boxes
@@ -67,7 +62,7 @@ def photograph_pair(
     entry = {"name": name, "rig": rig.as_dict()}
     for side, state in zip(("upper", "lower"), rig.camera_states(), strict=True):
         file = f"{name}_{side}.jpg"
-        write_photograph(folder / file, photograph(renderer.render(state), camera, rng), camera, rng)
+        write_photograph(folder / file, renderer.render(state), camera, rng)
         entry[side] = {"file": file, "objects": box_entries(renderer, state)}
     return entry
 

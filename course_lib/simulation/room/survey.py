@@ -8,10 +8,9 @@ import numpy as np
 from numpy.random import Generator
 
 from course_lib.geometry import circular_mean
-from course_lib.simulation.room.footprints import free_places
-from course_lib.simulation.room.scene import Lamp, Room
-from course_lib.simulation.sensors.panorama_camera import PanoramaCameraModel, photograph
+from course_lib.simulation.room.scene import Lamp, Room, free_places
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
+from course_lib.simulation.sensors.panorama_rig import PanoramaCameraModel, photograph
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
@@ -34,13 +33,20 @@ class UnseenObject(ValueError):
 
 
 def survey_room(room: Room, model: RoomSurveyModel, rng: Generator) -> SemanticMap:
-    """The semantic map of a room; colours are means over an object's pixels, and over the places that see it well.
-
-    Raises `UnseenObject` for an object that no place sees.
-    """
+    """The semantic map of a room, its colours the means over what several places see. Raises `UnseenObject`."""
     colour = np.asarray(model.lamp_colour)
     lamps = tuple(Lamp(one.position, tuple(colour * one.colour), one.strength * model.lamp_gain) for one in room.lamps)
-    colours = _photographed_colours(replace(room, lamps=lamps, ambient=tuple(colour * room.ambient)), model, rng)
+    colours: list[list] = [[] for _ in room.objects]  # of each object, its (hue, saturation) from each place
+    lit = replace(room, lamps=lamps, ambient=tuple(colour * room.ambient))
+    with PanoramaRenderer(lit, model.width, number_scale=1) as renderer:
+        for x, y in free_places(room, model.places, rng):
+            state = np.array([x, y, model.camera_height, 0.0, 0.0, rng.uniform(-np.pi, np.pi)])
+            image = photograph(renderer.render(state), PanoramaCameraModel(), rng)
+            numbers = renderer.render_objects(state)
+            for number, seen in enumerate(colours):
+                mask = numbers == number
+                if mask.sum() >= model.fewest_pixels:
+                    seen.append(mean_hue_saturation(image, mask=mask))
     landmarks = []
     for number, thing in enumerate(room.objects):
         if not colours[number]:
@@ -49,21 +55,6 @@ def survey_room(room: Room, model: RoomSurveyModel, rng: Generator) -> SemanticM
         x, y = np.array([thing.x, thing.y]) + model.position_error * rng.standard_normal(2)
         landmarks.append(Landmark(thing.label, round(float(x), 3), round(float(y), 3), hue, saturation))
     return SemanticMap(tuple(landmarks), walls=np.asarray(room.walls, float))
-
-
-def _photographed_colours(room: Room, model: RoomSurveyModel, rng: Generator) -> list[list]:
-    """For every object its (hue, saturation) from each place that sees it well."""
-    colours: list[list] = [[] for _ in room.objects]
-    with PanoramaRenderer(room, model.width, number_scale=1) as renderer:
-        for x, y in free_places(room, model.places, rng):
-            state = np.array([x, y, model.camera_height, 0.0, 0.0, rng.uniform(-np.pi, np.pi)])
-            image = photograph(renderer.render(state), PanoramaCameraModel(), rng)
-            numbers = renderer.render_objects(state)
-            for number in range(len(room.objects)):
-                mask = numbers == number
-                if mask.sum() >= model.fewest_pixels:
-                    colours[number].append(mean_hue_saturation(image, mask=mask))
-    return colours
 
 
 def _mean_colour(colours: list[tuple[float, float]]) -> tuple[float, float]:

@@ -1,7 +1,4 @@
-"""A terrestrial laser survey: stations, scans with their errors, and how well they are registered.
-
-A scan knows where the scanner stood, and where registration believes it stood; only the second reaches the map.
-"""
+"""A terrestrial laser survey: stations, scans with their errors, and how well the stations are registered."""
 
 from __future__ import annotations
 
@@ -54,12 +51,9 @@ class RegisteredScan:
     azimuths: np.ndarray  # `(A,)` radians
     registered_pose: np.ndarray  # `(4, 4)` scanner-to-world, where registration believes that the scanner stood
 
-    def points(self) -> np.ndarray:
-        """Measured points `(n, 3)` in the world by the registered pose."""
-        return self._points(self.registered_pose)
-
-    def _points(self, pose: np.ndarray) -> np.ndarray:
-        measured = np.isfinite(self.ranges)
+    def points(self, pose: np.ndarray | None = None) -> np.ndarray:
+        """Measured points `(n, 3)` in the world, by the registered pose if no other is given."""
+        pose, measured = self.registered_pose if pose is None else pose, np.isfinite(self.ranges)
         local = _directions(self.elevations, self.azimuths)[measured] * self.ranges[measured][:, None]
         return local @ pose[:3, :3].T + pose[:3, 3]
 
@@ -69,10 +63,6 @@ class Scan(RegisteredScan):
     """One station as the simulation knows it. true_pose `(4, 4)` scanner-to-world: where it really stood."""
 
     true_pose: np.ndarray
-
-    def points(self, registered: bool = True) -> np.ndarray:
-        """Measured points `(n, 3)` in the world by the registered or by the true pose."""
-        return self._points(self.registered_pose if registered else self.true_pose)
 
     def as_registered(self) -> RegisteredScan:
         """What leaves the simulation: the scan without its true pose."""
@@ -98,9 +88,7 @@ def survey(caster: WorldCaster, model: ScannerModel, rng: Generator, stations: t
 def scan(
     caster: WorldCaster, model: ScannerModel, true_pose: np.ndarray, registered_pose: np.ndarray, rng: Generator
 ) -> Scan:
-    """One station's scan, with noise, drop-outs, and mixed pixels: where a second ray within the beam's footprint meets
-    another surface, the instrument reports a weighted mean of both ranges, a point in mid-air.
-    """
+    """One station's scan, with noise, drop-outs and mixed pixels."""
     step = np.deg2rad(model.step_deg)
     elevations = np.arange(np.deg2rad(model.lowest_deg), np.pi / 2 - step, step)
     azimuths = np.arange(round(2 * np.pi / step)) * step - np.pi
@@ -123,6 +111,7 @@ def _ranges(
     angle = rng.uniform(0, 2 * np.pi, shape)
     beside = directions + (offset * np.cos(angle))[..., None] * _tangent(directions)
     beside += (offset * np.sin(angle))[..., None] * np.cross(directions, _tangent(directions))
+    # Where a second ray within the beam's footprint meets another surface, the range is a weighted mean of both.
     other = caster.cast(pose[:3, 3], beside).distance
     share = rng.uniform(0.0, 0.5, shape)
     both = np.isfinite(other) & np.isfinite(ranges)
@@ -137,18 +126,14 @@ def _ranges(
 
 
 def registration_error(scans: list[Scan], rng: Generator, n_points: int = 20_000) -> dict[str, float]:
-    """How far apart neighbouring stations' points lie, m: the paper's "mean point distance after registration".
-
-    Mean distance from points of one, seen by both, to the nearest of the other, over the pairs. Spacing and noise are
-    in it: the same number with the true poses stands beside it, and the stations' position errors.
-    """
+    """How far apart neighbouring stations' points lie, m: the paper's "mean point distance after registration"."""
+    # Spacing and noise are in it, so the same number with the true poses stands beside it.
     result = {}
-    for key, registered in (("mean_point_distance_m", True), ("mean_point_distance_true_poses_m", False)):
+    for key, name in (("mean_point_distance_m", "registered_pose"), ("mean_point_distance_true_poses_m", "true_pose")):
         means = []
         for first, second in pairwise(scans):
-            target = second.points(registered)
+            source, target = (one.points(getattr(one, name)) for one in (first, second))
             near = target[np.linalg.norm(target - second.true_pose[:3, 3], axis=1) < _DENSE_RANGE]
-            source = first.points(registered)
             source = source[np.linalg.norm(source - second.true_pose[:3, 3], axis=1) < _DENSE_RANGE - 0.1]
             source = source[rng.choice(len(source), min(n_points, len(source)), replace=False)]
             distance = cKDTree(near).query(source, distance_upper_bound=0.05)[0]

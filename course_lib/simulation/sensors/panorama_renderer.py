@@ -1,9 +1,8 @@
-"""Equirectangular pictures of a room from any place, and which object each pixel shows.
-
-VTK bends the six faces of a cube into one panorama. Two scenes: one lit, one with each object painted in its number.
-"""
+"""Equirectangular pictures of a room from any place, and which object each pixel shows, both drawn by VTK."""
 
 from __future__ import annotations
+
+from contextlib import AbstractContextManager
 
 import cv2
 import numpy as np
@@ -24,7 +23,7 @@ BACKGROUND = 255  # the number that stands for walls, floor and everything the m
 OVERSAMPLING = 2  # pictures are drawn twice as large and averaged down, against jagged edges
 
 
-class PanoramaRenderer:
+class PanoramaRenderer(AbstractContextManager):
     """Draws one room of fewer than 255 objects. A context manager: the windows live until `close`.
 
     width: of the panoramas, pixels, even. number_scale: pictures of object numbers are so many times as large.
@@ -39,9 +38,8 @@ class PanoramaRenderer:
         self._alone = _Scene(alone_scale * width, interpolate=False) if self._repeats > 1 else self._numbers
         for lamp in room.lamps:
             self._picture.add_lamp(lamp)
-        numbered = [(mesh, BACKGROUND) for mesh in room.shell]
-        numbered += [(mesh, number) for number, thing in enumerate(room.objects) for mesh in thing.meshes]
-        for mesh, number in numbered:
+        objects = [(mesh, number) for number, thing in enumerate(room.objects) for mesh in thing.meshes]
+        for mesh, number in [*((mesh, BACKGROUND) for mesh in room.shell), *objects]:
             data = _poly_data(mesh)
             self._picture.add(data, mesh, room.ambient)
             for scene in {self._numbers, self._alone}:
@@ -68,9 +66,6 @@ class PanoramaRenderer:
         for scene in {self._picture, self._numbers, self._alone}:
             scene.close()
 
-    def __enter__(self) -> PanoramaRenderer:
-        return self
-
     def __exit__(self, *exception) -> None:
         self.close()
 
@@ -88,15 +83,14 @@ class _Scene:
         self._renderer.SetTwoSidedLighting(True)
         # The culler knows the front camera's view only and would throw away what is behind and beside it.
         self._renderer.GetCullers().RemoveAllItems()
-        panoramic = vtkPanoramicProjectionPass()
-        panoramic.SetProjectionTypeToEquirectangular()
-        panoramic.SetAngle(360.0)
+        self._pass = vtkPanoramicProjectionPass()
+        self._pass.SetProjectionTypeToEquirectangular()
+        self._pass.SetAngle(360.0)
         # A cube face covers a quarter of the panorama's width; its middle is the coarsest part, 4 / pi times as fine.
-        panoramic.SetCubeResolution(int(np.ceil(width / np.pi)))
-        panoramic.SetInterpolate(interpolate)
-        panoramic.SetDelegatePass(vtkRenderStepsPass())
-        self._renderer.SetPass(panoramic)
-        self._pass = panoramic
+        self._pass.SetCubeResolution(int(np.ceil(width / np.pi)))
+        self._pass.SetInterpolate(interpolate)
+        self._pass.SetDelegatePass(vtkRenderStepsPass())
+        self._renderer.SetPass(self._pass)
         self._window = off_screen_window()
         self._window.SetSize(width, width // 2)
         self._window.AddRenderer(self._renderer)
@@ -152,8 +146,7 @@ class _Scene:
         camera.SetClippingRange(NEAR, FAR)
         self._window.Render()
         self._window.GetPixelData(0, 0, self._width - 1, self._width // 2 - 1, 1, self._pixels, 0)
-        image = vtk_to_numpy(self._pixels).reshape(self._width // 2, self._width, 3)
-        return image[::-1]
+        return vtk_to_numpy(self._pixels).reshape(self._width // 2, self._width, 3)[::-1]
 
     def close(self) -> None:
         self._pass.ReleaseGraphicsResources(self._window)

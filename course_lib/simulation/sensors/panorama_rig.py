@@ -1,13 +1,50 @@
-"""Where the two cameras of a rig really are: a place, a heading, the small tilts and faults that nobody measured."""
+"""The two 360-degree cameras of a rig: where they really are, and what happens from light to the file they write."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.random import Generator
 
+from course_lib.files import atomic_write
 from course_lib.geometry import pose_matrix, state_from_matrix
+
+
+@dataclass(frozen=True)
+class PanoramaCameraModel:
+    """What one photograph does to the light; each range is drawn anew for every photograph."""
+
+    exposure_stops: float = 0.25  # standard deviation of the exposure, powers of two; chosen
+    white_balance: float = 0.04  # standard deviation of each channel's gain, a share of one; chosen
+    blur: tuple[float, float] = (0.3, 0.8)  # pixels at 1280, standard deviation of lens and stitching; chosen
+    shot_noise: float = 0.15  # variance per brightness level, grey levels; chosen
+    read_noise: float = 1.2  # standard deviation, grey levels; chosen
+    jpeg_quality: tuple[int, int] = (78, 86)  # 0 to 100, OpenCV's scale; chosen
+
+
+def photograph(light: np.ndarray, model: PanoramaCameraModel, rng: Generator) -> np.ndarray:
+    """One photograph `(H, W, 3)` uint8 of light `(H, W, 3)` float32, both BGR; 255 = full scale at exposure 1."""
+    gain = 2.0 ** rng.normal(0.0, model.exposure_stops) * rng.normal(1.0, model.white_balance, 3)
+    image = light * gain.astype(np.float32)
+    sigma = rng.uniform(*model.blur) * light.shape[1] / 1280
+    # A panorama has no left and right end: blur it with a margin from its other side.
+    margin = 8
+    image = np.concatenate([image[:, -margin:], image, image[:, :margin]], axis=1)
+    image = cv2.GaussianBlur(image, (0, 0), max(sigma, 0.1))[:, margin:-margin]
+    spread = np.sqrt(model.shot_noise * np.clip(image, 0, 255) + model.read_noise**2, dtype=np.float32)
+    image = image + spread * rng.standard_normal(image.shape, dtype=np.float32)
+    return np.clip(np.rint(image), 0, 255).astype(np.uint8)
+
+
+def write_photograph(path: str | Path, light: np.ndarray, model: PanoramaCameraModel, rng: Generator) -> None:
+    """Write one photograph of the light as JPEG with a quality of its own."""
+    image = photograph(light, model, rng)
+    quality = int(rng.integers(model.jpeg_quality[0], model.jpeg_quality[1] + 1))
+    atomic_write(path, cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes())
 
 
 @dataclass(frozen=True)
@@ -28,7 +65,7 @@ class RigModel:
 
 # The rig of data/room, which was photographed before these faults had parameters: kinder than a real one.
 NEARLY_PERFECT_RIG = RigModel(
-    relative_tilt_deg=0.05, relative_yaw_deg=0.0, baseline_error=0.0, height_error=0.0, assembled_anew=True
+    1.0, 0.05, relative_yaw_deg=0.0, baseline_error=0.0, height_error=0.0, assembled_anew=True
 )
 
 
@@ -68,10 +105,7 @@ class RigPose:
 
     def as_dict(self) -> dict:
         """For JSON. A yaw of exactly 0 is left out: data/room's files were written before rigs had one."""
-        fields = asdict(self)
-        if self.relative_yaw == 0.0:
-            del fields["relative_yaw"]
-        return fields
+        return {name: value for name, value in asdict(self).items() if name != "relative_yaw" or value != 0.0}
 
 
 def assemble(model: RigModel, rng: Generator) -> Mount:
@@ -80,29 +114,23 @@ def assemble(model: RigModel, rng: Generator) -> Mount:
     # A generator of its own: the numbers that rng gives next do not depend on how many faults a mount has.
     (faults,) = rng.spawn(1)
     yaw = np.deg2rad(model.relative_yaw_deg)
-    return Mount(
-        relative_tilt,
-        float(faults.uniform(-yaw, yaw)),
-        float(model.baseline_error * faults.standard_normal()),
-        float(model.height_error * faults.standard_normal()),
-    )
+    turn, errors = float(faults.uniform(-yaw, yaw)), faults.standard_normal(2)
+    return Mount(relative_tilt, turn, float(model.baseline_error * errors[0]), float(model.height_error * errors[1]))
 
 
 def stand_up(
-    x: float,
-    y: float,
-    heading: float,
+    pose: Sequence[float],
     upper_height: float,
     baseline: float,
     model: RigModel,
     rng: Generator,
     mount: Mount | None = None,
 ) -> RigPose:
-    """A rig set up at a place, tilted as a whole; lengths as told to the method, metres. No mount: assembled anew."""
+    """A rig set up at [x, y, heading], tilted as a whole; lengths as told to the method. No mount: assembled anew."""
     tilt = _from_disk(np.deg2rad(model.tilt_deg), rng)
     mount = mount or assemble(model, rng)
     heights = upper_height + mount.height_error, baseline + mount.baseline_error
-    return RigPose(x, y, heading, *heights, tilt, mount.relative_tilt, mount.relative_yaw)
+    return RigPose(*map(float, pose), *heights, tilt, mount.relative_tilt, mount.relative_yaw)
 
 
 def _from_disk(radius: float, rng: Generator) -> tuple[float, float]:

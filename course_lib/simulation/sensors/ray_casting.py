@@ -23,10 +23,7 @@ class Hits:
 
 
 class WorldCaster:
-    """Casts rays at triangles. vertices `(V, 3)` metres, faces `(F, 3)`; reflectivity `(F,)` or one number.
-
-    Raises `ImportError` where embreex is missing: a survey is 30 million rays, too many for anything slower.
-    """
+    """Casts rays at triangles: vertices `(V, 3)` metres, faces `(F, 3)`; reflectivity `(F,)` or one number."""
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray, reflectivity: np.ndarray | float = 1.0) -> None:
         self._caster = EmbreeCaster(vertices[faces])

@@ -1,4 +1,4 @@
-"""Making the room's data and training pictures, at a reduced size: same seed, same bytes; stopped runs harm nothing."""
+"""Making data of rooms at a reduced size: same seed, same bytes; stopped runs harm nothing."""
 
 from __future__ import annotations
 
@@ -6,12 +6,19 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import wrap_angle
+from course_lib.rendering.scene_map import SceneMap
+from course_lib.simulation.corridor.surface_fusion import FusionModel
 from course_lib.simulation.data_folder import checksums
+from course_lib.simulation.room import finale_data
 from course_lib.simulation.room.data import PRODUCTS, RoomModels, make_room_data
+from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh
 from course_lib.simulation.room.experiment_room import make_experiment_room
+from course_lib.simulation.room.furnishing import make_look_alike_room
+from course_lib.simulation.room.look_alike_recording import RecordingModels
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.survey import RoomSurveyModel
 from course_lib.simulation.room.training_images import make_room_images, read_image_list
+from course_lib.simulation.sensors.laser_survey import ScannerModel
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -65,12 +72,37 @@ def test_training_pictures_go_on_where_they_stopped(tmp_path):
     again = make_room_images(tmp_path / "at_once", 5, 2, 1)
     assert images == again == read_image_list(tmp_path / "at_once")
     for image in images:
-        assert (tmp_path / "stopped" / image["file"]).read_bytes() == (
-            tmp_path / "at_once" / image["file"]
-        ).read_bytes()
+        one, other = (tmp_path / name / image["file"] for name in ("stopped", "at_once"))
+        assert one.read_bytes() == other.read_bytes()
         assert len(image["objects"]) >= 3
         for thing in image["objects"]:
             u_min, v_min, u_max, v_max = thing["visible_box"]
             assert 0 <= u_min < 1280
             assert u_min < u_max <= u_min + 1280
             assert 0 <= v_min < v_max <= 640
+
+
+FINALE_SEED = 10_001
+MESH = DepthSurveyModel(
+    stations=2,
+    scanner=ScannerModel(step_deg=2.0),
+    fusion=FusionModel(voxel=0.1, truncation=0.3, triangles=3_000),
+)
+SMALL_FINALE = finale_data.FinaleModels(
+    recording=RecordingModels(survey=RoomSurveyModel(width=320, fewest_pixels=5)), mesh=MESH
+)
+
+
+@pytest.mark.slow
+def test_the_finales_maps_are_those_of_the_demos_own_room(tmp_path):
+    (tmp_path / "README.md").write_text("written by hand")
+    told = finale_data.make_finale_data(tmp_path, FINALE_SEED, SMALL_FINALE)
+    finale_data.make_finale_data(tmp_path / "again", FINALE_SEED, SMALL_FINALE)
+    assert checksums(tmp_path / "again", finale_data.PRODUCTS) == (tmp_path / "SHA256SUMS").read_text()
+    assert (tmp_path / "README.md").read_text() == "written by hand"
+    assert told["objects"] == len(SemanticMap.load(tmp_path / "semantic_map.json"))
+    # The mesh is the one that `demo finale` makes of this seed.
+    rng = np.random.default_rng([STREAM, FINALE_SEED, MAP])
+    vertices, _ = surveyed_mesh(make_look_alike_room(FINALE_SEED), MESH, rng)
+    assert SceneMap.load(tmp_path / "map.ply").vertices == pytest.approx(vertices, abs=1e-6)
+    assert "| `step_deg` | 2.0 |" in (tmp_path / "PARAMETERS.md").read_text()

@@ -8,9 +8,9 @@ from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.recorded_runs import steps_and_turns
 from course_lib.simulation.corridor.surface_fusion import FusionModel
-from course_lib.simulation.room.depth_world import DepthSurveyModel, WalkModel, WalkModels, record_walk, walk_states
-from course_lib.simulation.room.footprints import NoFreePlace, distance_to, footprint
-from course_lib.simulation.room.look_alike_room import make_look_alike_room
+from course_lib.simulation.room.depth_world import DepthSurveyModel, WalkModel, record_walk, walk_states
+from course_lib.simulation.room.furnishing import make_look_alike_room
+from course_lib.simulation.room.scene import NoFreePlace, distance_to, footprint
 from course_lib.simulation.sensors.laser_survey import ScannerModel
 
 SEEDS = (10_050, 10_051, 10_052)
@@ -55,9 +55,8 @@ def test_a_recording_is_what_a_user_would_have_and_its_seed_decides_every_byte(t
     coarse = DepthSurveyModel(
         scanner=ScannerModel(step_deg=1.5), fusion=FusionModel(voxel=0.08, truncation=0.24, triangles=4000)
     )
-    models = WalkModels(mesh=coarse, walk=WalkModel(frames=3))
     for name, seed in (("one", SEEDS[0]), ("two", SEEDS[0]), ("other", SEEDS[1])):
-        record_walk(tmp_path / name, seed, models)
+        record_walk(tmp_path / name, seed, coarse, WalkModel(frames=3))
     assert (tmp_path / "one" / "map.ply").read_bytes() != (tmp_path / "other" / "map.ply").read_bytes()
     files = sorted(path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*") if path.is_file())
     assert {"map.ply", "poses.txt", "intrinsics.txt", "up.txt"} <= {path.name for path in files}

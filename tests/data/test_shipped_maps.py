@@ -1,0 +1,61 @@
+"""The finale's two maps are of the room that its seed makes; the projects' rooms are of the seeds that they name."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course_lib.experiments.room_evaluation import NO_OBJECT
+from course_lib.lessons.project_2.rooms import POSES, SEEDS, project_rooms
+from course_lib.rendering.scene_map import SceneMap
+from course_lib.simulation.room.depth_world import depth_caster
+from course_lib.simulation.room.finale_data import SEED
+from course_lib.simulation.room.furnishing import make_look_alike_room
+from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+
+DATA = Path(__file__).resolve().parents[2] / "data"
+
+
+@pytest.fixture(scope="module")
+def room():
+    return make_look_alike_room(SEED)
+
+
+def test_the_semantic_map_is_of_the_seeds_room(room):
+    semantic_map = SemanticMap.load(DATA / "finale" / "semantic_map.json")
+    assert [item.label for item in room.objects] == list(semantic_map.labels)
+    away = semantic_map.positions - [(item.x, item.y) for item in room.objects]
+    assert 0.003 < np.sqrt(np.mean(away**2)) < 0.02, "surveyed with an error of a centimetre"
+
+
+def test_the_mesh_map_is_a_survey_of_the_same_room(room):
+    scene_map = SceneMap.load(DATA / "finale" / "map.ply")
+    assert len(scene_map) == 60_000
+    eye = np.append(room.walls.mean(axis=0), 1.5)
+    directions = np.random.default_rng(0).standard_normal((400, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    ends = eye + depth_caster(room).cast(eye, directions).distance[:, None] * directions
+    nearest = [np.linalg.norm(scene_map.vertices - end, axis=1).min() for end in ends]
+    assert 0.001 < np.median(nearest) < 0.05, "noise of a survey: the map is not the room"
+
+
+@pytest.mark.parametrize("name", SEEDS)
+def test_projects_hold_the_rooms_of_their_seeds(name):
+    rooms = project_rooms(DATA / "projects" / f"rooms_{name}.json")
+    assert tuple(room.seed for room in rooms) == SEEDS[name]
+    assert all(len(room.views) == 2 * POSES for room in rooms)
+    assert all(room.semantic_map.labels.count(room.look_alike) >= 3 for room in rooms)
+
+
+def test_the_truth_belongs_to_the_views():
+    """Observations laid on the map by the true pose lie where the landmarks are that they show."""
+    off = []
+    for room in project_rooms(DATA / "projects" / "rooms_practice.json"):
+        for view in room.views:
+            c, s = np.cos(view.pose[2]), np.sin(view.pose[2])
+            for one, landmark in zip(view.observations, view.shows, strict=True):
+                if landmark != NO_OBJECT:
+                    there = np.array([[c, -s], [s, c]]) @ [one.x, one.y] + view.pose[:2]
+                    off.append(np.linalg.norm(there - room.semantic_map.positions[landmark]))
+    assert len(off) > 150
+    assert np.median(off) < 0.2
