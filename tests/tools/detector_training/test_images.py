@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 
 from tests.tools.detector_training.toy_panoramas import CLASSES, write_toy_folder
-from tools.detector_training.augmentation import augmented_sample, panorama_window
-from tools.detector_training.images import LabelledPanorama, TrainingDataError, labelled_panorama, read_panoramas
+from tools.detector_training.images import (
+    LabelledPanorama,
+    TrainingDataError,
+    augmented_sample,
+    labelled_panorama,
+    panorama_window,
+    read_panoramas,
+)
 
 NAMES = list(CLASSES)
 WIDTH, HEIGHT = 256, 128
