@@ -90,7 +90,7 @@ def _corridor(parser: argparse.ArgumentParser) -> None:
 def _room(parser: argparse.ArgumentParser) -> None:
     _number(parser, "--seed", "of the photographs; another than 4 takes them anew (default: 4, the shipped ones)")
     _number(parser, "--poses", "only the first N poses of each experiment (default: all)")
-    _folder(parser, "--data", "made by tools.make_room (default: data/room)")
+    _folder(parser, "--data", "made by tools.make_data room (default: data/room)")
     add_detector_arguments(parser)
     told = "how objects are matched to the map: greedy (the paper's), hungarian, consistent (default: greedy)"
     _text(parser, "--association", "NAME", told, "greedy")

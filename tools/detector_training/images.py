@@ -1,4 +1,4 @@
-"""Folders of panoramas with boxes (`tools.make_training_rooms`), and samples: turned, mirrored, scaled, recoloured.
+"""Folders of panoramas with boxes, decoded once, and samples of them: turned, mirrored, scaled, recoloured.
 
 A window wider than the panorama has its left part appended on the right, as in the detector (paper 2, section 2.2).
 """
