@@ -9,13 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.detection_scores import (
-    Boxes,
-    DetectionScoreError,
-    Matching,
-    match_detections,
-    match_image,
-)
+from course_lib.experiments.detection_scores import Boxes, DetectionScoreError, Matching, match_detections, match_image
 from course_lib.spherical_stereo.detection.darknet import read_names
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.recording import StereoRecording, TrueObject

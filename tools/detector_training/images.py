@@ -38,10 +38,7 @@ class LabelledPanorama:
 def read_panoramas(
     folders: list[Path], names: list[str], width: int = STORED_WIDTH, part: tuple[int, int] = (0, 1)
 ) -> list[LabelledPanorama]:
-    """Every panorama of folders, scaled to `width` columns. Raises `TrainingDataError` when there is no image.
-
-    part: (k, n) reads every n-th image only, from the k-th on: each of n processes then holds its share.
-    """
+    """Panoramas of folders, scaled to `width` columns; part: (k, n) reads every n-th alone. Or `TrainingDataError`."""
     found = []
     for folder in folders:
         for entry in read_image_list(folder)[part[0] :: part[1]]:
@@ -91,15 +88,9 @@ class Sample:
 
 
 def augmented_sample(
-    panorama: LabelledPanorama,
-    window: tuple[int, int],
-    rng: np.random.Generator,
-    ranges: AugmentationRanges | None = None,
+    panorama: LabelledPanorama, window: tuple[int, int], rng, ranges: AugmentationRanges | None = None
 ) -> Sample:
-    """A random sample of a panorama in a window (width, height) of pixels; the same generator state, the same sample.
-
-    A window lower than the panorama is cut from it at a random height.
-    """
+    """A random sample of a panorama in a window (width, height) of pixels; a lower one is cut at a random height."""
     ranges = ranges or AugmentationRanges()
     height, width = panorama.image.shape[:2]
     scale = float(np.exp(rng.uniform(*np.log(ranges.scale))))
@@ -112,18 +103,12 @@ def augmented_sample(
 
 
 def panorama_window(
-    panorama: LabelledPanorama,
-    window: tuple[int, int],
-    roll: int = 0,
-    mirror: bool = False,
-    scale: float = 1.0,
-    top: float = 0.0,
+    panorama: LabelledPanorama, window: tuple[int, int], roll: int = 0, mirror: bool = False, scale=1.0, top=0.0
 ) -> Sample:
     """The window (width, height) of a panorama rolled by `roll` columns, mirrored, and scaled.
 
-    Column u of the panorama comes to (u + roll) scale, modulo the turn, row v to v scale - top. With the values left
-    out it is what the detector sees. Boxes that cross the window's border are cut there; those cut to less than
-    `MIN_SHARE_INSIDE` of their width become ignored.
+    Column u of the panorama comes to (u + roll) scale, modulo the turn, row v to v scale - top. By default it is what
+    the detector sees. Boxes are cut at the window's border; of which too little is left, they become ignored.
     """
     width = panorama.image.shape[1]
     image, boxes = panorama.image, panorama.boxes.astype(np.float64)

@@ -7,8 +7,7 @@ The objectness of an assigned box is taught to be its CIoU, so that of two boxes
 higher and non-maximum suppression keeps it.
 
 As in YOLOv4, every anchor whose shape is near enough to the object's answers for it, on every map; as scale_x_y lets a
-box centre reach over the border of its cell, the nearest neighbour in each direction answers too. More answers to each
-object make a short training possible.
+box centre reach over its cell's border, the nearest neighbour in each direction answers too: a short training suffices.
 """
 
 from __future__ import annotations
@@ -70,8 +69,8 @@ def shape_iou(sizes: torch.Tensor, anchors: torch.Tensor) -> torch.Tensor:
 def assign(targets: Targets, heads: list[YoloHead], grids: list[tuple[int, int, float]]) -> list[Assignment]:
     """The assignment on each map; `grids` gives its (rows, columns, stride in pixels).
 
-    An anchor answers when its shape IoU exceeds the head's threshold, or when it is the best of all maps. Where two
-    objects ask for the same box, the smaller one gets it: it has fewer boxes to choose from.
+    An anchor answers when its shape IoU exceeds the head's threshold, or is the best of all maps. Where two objects
+    ask for the same box, the smaller one gets it.
     """
     shapes = [shape_iou(targets.boxes[:, 2:], head.anchors) for head in heads]
     everything = torch.cat(shapes, dim=1)
@@ -103,28 +102,15 @@ def assign(targets: Targets, heads: list[YoloHead], grids: list[tuple[int, int, 
         target, anchor, row, column = target[inside], anchor[inside], row[inside], column[inside]
         image = targets.image[target]
         key = ((image * len(head.anchors) + anchor) * rows + row) * columns + column
-        last = _last_of_each(key)
+        last = len(key) - 1 - np.unique(key.flip(0).numpy(), return_index=True)[1]  # of each key
         result.append(Assignment(image[last], anchor[last], row[last], column[last], target[last]))
     return result
 
 
-def _last_of_each(key: torch.Tensor) -> torch.Tensor:
-    """Positions of the last occurrence of each value."""
-    if len(key) == 0:
-        return key
-    sorted_key, position = torch.sort(key, stable=True)
-    is_last = torch.ones(len(key), dtype=torch.bool)
-    is_last[:-1] = sorted_key[1:] != sorted_key[:-1]
-    return position[is_last]
-
-
-def not_background(
-    boxes: torch.Tensor, image: int, targets: Targets, ignore_threshold: float, ignored_share: float = 0.5
-) -> torch.Tensor:
+def not_background(boxes: torch.Tensor, image: int, targets: Targets, ignore_threshold: float) -> torch.Tensor:
     """Which of one image's boxes (k, 4) [centre, size] must not be taught to be background, (k,) boolean.
 
-    Those that overlap an object by an IoU above `ignore_threshold`, and those of whose area more than `ignored_share`
-    lies in an ignored object.
+    Those that overlap an object by an IoU above `ignore_threshold`, and those that lie by half in an ignored object.
     """
     keep = torch.zeros(len(boxes), dtype=torch.bool)
     objects = targets.boxes[targets.image == image]
@@ -134,7 +120,7 @@ def not_background(
         keep |= (shared / union).amax(dim=1) > ignore_threshold
     ignored = targets.ignored_boxes[targets.ignored_image == image]
     if len(ignored):
-        keep |= (intersection(boxes, ignored) / boxes[:, 2:].prod(-1)[:, None]).amax(dim=1) > ignored_share
+        keep |= (intersection(boxes, ignored) / boxes[:, 2:].prod(-1)[:, None]).amax(dim=1) > 0.5
     return keep
 
 
@@ -190,7 +176,9 @@ def yolo_loss(outputs: list[torch.Tensor], heads: list[YoloHead], targets: Targe
         raw = raw.float()
         decoded = decode_boxes(raw, head, grid[2])
         wanted = torch.zeros_like(raw[:, :, 4])
-        counts = _counts_as_background(decoded, head, targets)
+        boxes = decoded.detach().flatten(1, 3)
+        kept = [not_background(one, k, targets, head.ignore_threshold) for k, one in enumerate(boxes)]
+        counts = ~torch.stack(kept).view(decoded.shape[:-1])  # boxes that the objectness term sees
         if len(found.target):
             where = (found.image, found.anchor, found.row, found.column)
             overlap = complete_iou(decoded[where], targets.boxes[found.target])
@@ -207,11 +195,3 @@ def yolo_loss(outputs: list[torch.Tensor], heads: list[YoloHead], targets: Targe
     n = max(n_assigned, 1)
     box, objectness, classes = BOX_WEIGHT * box_sum / n, objectness_sum / n, class_sum / n
     return Loss(box + objectness + classes, box.item(), objectness.item(), classes.item())
-
-
-@torch.no_grad()
-def _counts_as_background(decoded: torch.Tensor, head: YoloHead, targets: Targets) -> torch.Tensor:
-    """Boxes (b, a, rows, columns), boolean, that the objectness term sees."""
-    flat = decoded.flatten(1, 3)
-    kept = [not_background(flat[image], image, targets, head.ignore_threshold) for image in range(len(flat))]
-    return ~torch.stack(kept).view(decoded.shape[:-1])

@@ -10,13 +10,8 @@ import torch
 from torch import nn
 
 from course_lib.files import atomic_write
-from course_lib.spherical_stereo.detection.darknet import (
-    DetectorError,
-    Section,
-    check_weights,
-    header_bytes,
-    layer_channels,
-)
+from course_lib.spherical_stereo.detection import darknet
+from course_lib.spherical_stereo.detection.darknet import DetectorError, Section
 
 BATCH_NORM_EPSILON = 1e-6  # as Darknet and OpenCV: PyTorch's own 1e-5 moves the outputs by 2e-3
 BATCH_NORM_MOMENTUM = 0.03  # share that a step gives to the running statistics; trainings are a few thousand steps
@@ -38,10 +33,7 @@ class YoloHead:
 
 
 class TrainableNetwork(nn.Module):
-    """The layers of a cfg in order; `forward` gives the raw map of every `[yolo]` section.
-
-    Raises `DetectorError` for a section or an option that the training cannot build.
-    """
+    """The layers of a cfg in order; `DetectorError` for a section or an option that the training cannot build."""
 
     def __init__(self, sections: list[Section], generator: torch.Generator | None = None):
         super().__init__()
@@ -49,7 +41,7 @@ class TrainableNetwork(nn.Module):
         self.sections = sections
         self.heads: list[YoloHead] = []
         layers: list[nn.Module] = []
-        for section, (incoming, _) in zip(sections[1:], layer_channels(sections), strict=True):
+        for section, (incoming, _) in zip(sections[1:], darknet.layer_channels(sections), strict=True):
             layers.append(_build(section, incoming, generator))
             if section.kind == "yolo":
                 self.heads.append(yolo_head(section))
@@ -111,9 +103,8 @@ def decode_boxes(raw: torch.Tensor, head: YoloHead, stride: float) -> torch.Tens
     rows, columns = raw.shape[-2:]
     t = raw[:, :, :4].float()
     shift = (head.scale_xy - 1.0) / 2.0
-    column = torch.arange(columns, device=raw.device)
-    row = torch.arange(rows, device=raw.device)[:, None]
-    anchors = head.anchors.to(raw.device).view(1, -1, 2, 1, 1)
+    column, row = torch.arange(columns), torch.arange(rows)[:, None]
+    anchors = head.anchors.view(1, -1, 2, 1, 1)
     u = stride * (column + head.scale_xy * torch.sigmoid(t[:, :, 0]) - shift)
     v = stride * (row + head.scale_xy * torch.sigmoid(t[:, :, 1]) - shift)
     size = anchors * torch.exp(t[:, :, 2:4].clamp(max=MAX_LOG_SCALE))
@@ -132,10 +123,7 @@ def _build(section: Section, incoming: int, generator: torch.Generator) -> nn.Mo
         return nn.Upsample(scale_factor=section.integer("stride", 2), mode="nearest")
     if section.kind in ("route", "yolo"):  # `forward` does what they say
         return nn.Identity()
-    raise DetectorError(
-        f"the training cannot build [{section.kind}] (line {section.line}); it knows convolutional, maxpool, upsample, "
-        "route and yolo"
-    )
+    raise DetectorError(f"the training cannot build [{section.kind}] (line {section.line})")
 
 
 def _start_from_prior(convolution: nn.Conv2d, head: YoloHead, generator: torch.Generator) -> None:
@@ -161,9 +149,7 @@ def _convolution(section: Section, incoming: int, generator: torch.Generator) ->
     if activation == "leaky":
         parts.append(nn.LeakyReLU(LEAKY_SLOPE, inplace=True))
     elif activation != "linear":
-        raise DetectorError(
-            f"[convolutional] at line {section.line}: activation={activation} is not known; use leaky or linear"
-        )
+        raise DetectorError(f"line {section.line}: activation={activation} is not known; use leaky or linear")
     return nn.Sequential(*parts)
 
 
@@ -187,9 +173,9 @@ def write_weights(network: TrainableNetwork, path: str | Path, images_seen: int 
 @torch.no_grad()
 def read_weights(network: TrainableNetwork, path: str | Path) -> int:
     """Put the weights of a Darknet file into the network; return the images it has seen. Raises `DetectorError`."""
-    check_weights(network.sections, path)
+    darknet.check_weights(network.sections, path)
     data = Path(path).read_bytes()
-    start = header_bytes(data[:12])
+    start = darknet.header_bytes(data[:12])
     images_seen = int(np.frombuffer(data[12:start], "<i8" if start == 20 else "<i4")[0])
     values = torch.from_numpy(np.frombuffer(data[start:], "<f4").copy())
     for tensor in _tensors_in_file_order(network):
