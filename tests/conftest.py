@@ -23,6 +23,9 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 matplotlib.use("Agg")  # not by MPLBACKEND, which the lessons' kernels would inherit
 
+# nbformat's validator imports this grammar of web addresses if it is there: over a second, for what no test checks.
+sys.modules["rfc3987_syntax"] = None
+
 ROOT = Path(__file__).parents[1]
 
 # The one walk through JupyterLab in a browser that every run takes: the panel with the most controls.

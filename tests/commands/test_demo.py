@@ -27,6 +27,7 @@ def printed(capsys, *words):
     return json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_the_corridor_has_table_1_a_row_a_frame_figures_and_a_scene(tmp_path, capsys):
     summary = printed(capsys, "corridor", *THREE_FRAMES, "--out", tmp_path)
     assert (summary["frames"], summary["n_particles"], summary["seed"]) == (3, 15, 6)

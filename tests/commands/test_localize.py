@@ -39,6 +39,7 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, capsys)
     assert "<title>Path of wagon in map.ply</title>" in page
 
 
+@pytest.mark.slow
 def test_frames_at_fault_are_named_and_not_used(corridor_folder, tmp_path, capsys):
     """A frame that came twice, one at its stop and a dark one; the frames before them are localized as ever."""
     wagon = read_sequence(corridor_folder / "wagon")
@@ -119,6 +120,7 @@ def blind(corridor_folder, tmp_path):
     return tmp_path, [f"{v:.9f}" for v in (*state[:3], *np.rad2deg(state[3:]))]
 
 
+@pytest.mark.slow
 def test_a_recording_without_truth_is_localized_from_a_pose_that_is_given(corridor_folder, blind, capsys):
     """As numbers, from a file, and as with the truth: the same trajectory; without the truth no errors."""
     folder, numbers = blind

@@ -82,6 +82,7 @@ def test_the_table_and_the_files_say_the_same(pair, tmp_path, capsys):
     assert "<title>On the map</title>" in (out / "locate.html").read_text()
 
 
+@pytest.mark.slow
 def test_no_pose_is_an_answer_and_is_drawn_too(pair, tmp_path, capsys):
     out = tmp_path / "out"
     assert main(words(pair, "--out", str(out), baseline=1.0)) == 0

@@ -91,6 +91,7 @@ def test_a_failing_test_and_a_wrong_stored_output_fail_the_run(course, capfd):
     ("content", "code", "said"),
     [("def test_one():\n    pass\n", 0, "all tests passed."), ("", 5, "FAILED, because no test was found.")],
 )
+@pytest.mark.slow
 def test_only_a_run_with_tests_and_without_failures_passes(course, capfd, content, code, said):
     (course / "tests" / "test_one.py").write_text(content)
     assert main(["test", "tests"]) == code

@@ -57,6 +57,7 @@ def test_poses_from_exact_boxes_come_out_as_stored(experiment, from_exact_boxes)
     assert [one.pair.name for one in from_exact_boxes[experiment] if far_from(one, rows[one.pair.name])] == []
 
 
+@pytest.mark.slow
 def test_poses_from_images_come_out_as_stored(recordings, semantic_map):
     recording, rows = recordings["experiment_2"], rows_of("experiment_2", "images")
     localizer = SemanticLocalizer(

@@ -49,6 +49,7 @@ def test_the_network_is_small_and_whole(detector):
     assert sorted(detector.labels) == sorted(CANONICAL_LABELS)
 
 
+@pytest.mark.slow
 def test_the_experiments_room_scores_as_stored(detector, recording, scores):
     score = score_detector(detector, list(labelled_panoramas(recording))[::2])
     assert score.precision == pytest.approx(scores["experiment_room"]["precision"], abs=0.04)

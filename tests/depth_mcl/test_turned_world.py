@@ -46,11 +46,13 @@ def unturned(stretch):
 
 
 @pytest.mark.parametrize("turn", [np.pi / 4, np.pi / 2, np.random.default_rng(10_003).uniform(-np.pi, np.pi)])
+@pytest.mark.slow
 def test_errors_stay_within_their_spread_over_seeds_however_the_world_is_turned(stretch, unturned, turn):
     found = errors(stretch, turn, seed=10_004)
     assert found.max() < LOST
     assert np.median(found) < 1.5 * max(unturned) < 0.15
 
 
+@pytest.mark.slow
 def test_noise_along_the_worlds_axes_loses_the_wagon_in_a_corridor_that_runs_askew(stretch):
     assert errors(stretch, np.pi / 4, seed=10_005, motion=WORLD_AXES).max() > LOST

@@ -65,6 +65,7 @@ def recordings(corridor_folder, tmp_path_factory):
     return own_recordings(corridor_folder, tmp_path_factory.mktemp("seed"), 10_030, frames=8)
 
 
+@pytest.mark.slow
 def test_the_papers_method_follows_a_seeds_recording_in_the_shipped_map(shipped_maps, recordings):
     """Eight frames are 0.7 m: a filter that stays where it was put is that much off at the end."""
     path = recordings[0].camera_to_world[:, :3, 3]

@@ -67,6 +67,7 @@ def judged_run(folder, tmp_path, way, seed, frames):
     return (metres > LOST_POSITION) | (radians > LOST_ROTATION) | way.mirrored, np.array(run.statuses)
 
 
+@pytest.mark.slow
 def test_a_run_that_holds_the_track_is_called_tracked(corridor_folder, tmp_path):
     lost, statuses = judged_run(corridor_folder, tmp_path, Way(noise=1.0, n_particles=200), seed=10301, frames=20)
     assert not lost.any()
@@ -74,6 +75,7 @@ def test_a_run_that_holds_the_track_is_called_tracked(corridor_folder, tmp_path)
 
 
 @pytest.mark.parametrize("name", WAYS)
+@pytest.mark.slow
 def test_a_run_that_is_lost_is_never_called_tracked(corridor_folder, tmp_path, name):
     lost, statuses = judged_run(corridor_folder, tmp_path, WAYS[name], seed=10302, frames=40)
     assert lost.sum() >= 15

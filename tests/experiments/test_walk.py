@@ -23,6 +23,7 @@ def recorded(corridor_folder, monkeypatch):
     return seeds
 
 
+@pytest.mark.slow
 def test_each_offset_of_each_thinning_is_run_and_the_floor_once(recorded):
     rows = walk.room_walk(10_001, ["annealed", "floor"], [1, 2])
     assert recorded == [10_001]

@@ -38,6 +38,7 @@ def watched(program: str) -> Cost:
 
 
 @pytest.mark.parametrize("taken", PROGRAMS)
+@pytest.mark.slow
 def test_what_a_process_and_its_children_take_is_seen(taken, monkeypatch):
     monkeypatch.setattr(lesson_costs, "EVERY_S", 0.1)
     cost = watched(PROGRAMS[taken])
@@ -47,6 +48,7 @@ def test_what_a_process_and_its_children_take_is_seen(taken, monkeypatch):
         assert HELD_MB <= cost.own_mb < cost.peak_mb - 2, "the files of interpreters are not their own"
 
 
+@pytest.mark.slow
 def test_a_notebook_is_measured_and_nothing_is_stored(tmp_path):
     sources = [f"held = bytearray(b'x') * {HELD_MB}_000_000", "open('left behind.txt', 'w').write('x');"]
     path = tmp_path / "99_test.ipynb"

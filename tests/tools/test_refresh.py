@@ -63,6 +63,7 @@ def refreshed(tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_outputs_are_stored_without_views_state_or_a_progress_bar(refreshed):
     notebook = nbformat.read(refreshed, as_version=4)
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
@@ -76,6 +77,7 @@ def test_outputs_are_stored_without_views_state_or_a_progress_bar(refreshed):
     assert [path.name for path in (refreshed.parent / "scenes").iterdir()] == ["99_axes.html"]
 
 
+@pytest.mark.slow
 def test_a_second_refresh_changes_no_byte(refreshed):
     before = refreshed.read_bytes()
     refresh.refresh(refreshed)
@@ -90,6 +92,7 @@ CHANGES = [
 ]
 
 
+@pytest.mark.slow
 def test_nbval_agrees_with_what_was_stored_and_notices_each_changed_output(refreshed):
     """A copy elsewhere writes its scene's page anew: only its address may differ. A number may within its 5 %."""
     elsewhere = refreshed.parent / "elsewhere"
@@ -123,6 +126,7 @@ def test_nbval_agrees_with_what_was_stored_and_notices_each_changed_output(refre
     ],
     ids=["error", "time-out", "dead kernel", "network", "too large"],
 )
+@pytest.mark.slow
 def test_what_fails_leaves_the_file_as_it_was(tmp_path, sources, timeout, words):
     path = written(tmp_path, *sources)
     before = path.read_bytes()

@@ -34,6 +34,7 @@ def test_three_to_five_pieces_of_one_class_are_one_piece_in_several_places(rooms
                 np.testing.assert_allclose(np.ptp(first.vertices[:, 2]), np.ptp(second.vertices[:, 2]))
 
 
+@pytest.mark.slow
 def test_one_seed_gives_one_room_another_draw_another_and_none_is_the_training_generators(rooms):
     def places(room):
         return [(thing.label, thing.x, thing.y) for thing in room.objects]

@@ -32,6 +32,7 @@ def bytes_of(room) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.slow
 def test_the_same_seed_makes_the_same_bytes(rooms):
     assert bytes_of(make_room(SEEDS[0])) == bytes_of(rooms[0])
     assert bytes_of(rooms[0]) != bytes_of(rooms[1])
