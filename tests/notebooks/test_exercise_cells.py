@@ -11,6 +11,8 @@ import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises, lesson_numbers
 
+pytestmark = pytest.mark.usefixtures("values_once")
+
 # Seeds other than that of `check`: what is right or wrong must not hang on one set of inputs.
 SEEDS = (0, 1, 2)
 EXERCISES = [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]
