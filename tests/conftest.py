@@ -46,9 +46,9 @@ def pytest_collection_modifyitems(items):
         walk = item.get_closest_marker("browser") and EVERYDAY_WALK not in item.nodeid
         if walk or (item.path.name == "test_nbgrader.py" and item.get_closest_marker("slow")):
             item.add_marker("release")
-    long = {item.path for item in items if item.path.suffix == ".ipynb"}
-    long |= {item.path for item in items if any(item.get_closest_marker(name) for name in ("browser", "slow"))}
-    items.sort(key=lambda item: (item.path not in long, item.path.suffix != ".ipynb"))
+    long = {item.path for item in items if any(item.get_closest_marker(name) for name in ("browser", "slow"))}
+    long |= {item.path for item in items if "values_once" in getattr(item, "fixturenames", ())}
+    items.sort(key=lambda item: 0 if item.path in long else 1 if item.path.suffix == ".ipynb" else 2)
 
 
 @pytest.fixture
