@@ -5,8 +5,14 @@ from __future__ import annotations
 import pytest
 
 from course_lib.paths import notebook_paths
-from tests.notebooks.accessibility import serious_findings
-from tests.notebooks.driven_lab import STATES, first_panel, open_lesson, run_cells, wait_for_a_picture
+from tests.notebooks.driven_lab import (
+    STATES,
+    first_panel,
+    open_lesson,
+    run_cells,
+    serious_findings,
+    wait_for_a_picture,
+)
 
 # The first lesson and widgets of each paper that are used most: filter stepper (07), penalty weights (15). That other
 # panels draw, and draw anew, is tested without a browser (tests/lessons/kit/test_panels.py), their cells by nbval.
