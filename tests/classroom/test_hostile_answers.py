@@ -384,7 +384,7 @@ def test_a_function_of_the_graders_is_called_over_the_line(sandbox, tmp_path):
         assert (found.status, found.refused) == ("right", ()), found
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_a_projects_last_function_runs_in_the_sandbox(sandbox, tmp_path):
     untouched = grade(Task("bob", "P3", assignment_of("P3").path, "P3", "match"), sandbox, 1)
     assert (untouched.status, untouched.points, untouched.most) == ("not attempted", 0, 12)

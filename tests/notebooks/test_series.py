@@ -48,6 +48,7 @@ def test_the_times_of_the_paths_add_up():
     assert set(rows[0][1].split(", ") + rows[1][1].split(", ")) < set(rows[2][1].split(", "))
 
 
+@pytest.mark.release
 def test_the_command_makes_the_pictures(tmp_path):
     written = write_pictures(tmp_path / "pictures")
     assert {path.stem for path in written} >= set(CHOSEN)
