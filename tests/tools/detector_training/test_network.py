@@ -8,11 +8,7 @@ torch = pytest.importorskip("torch", reason="PyTorch, which only the training of
 
 from course_lib.spherical_stereo.detection.darknet import DetectorError, parse_cfg, read_cfg  # noqa: E402
 from tests.tools.detector_training.toy_panoramas import ROOM_CFG, TINY_CFG  # noqa: E402
-from tools.detector_training.network import (  # noqa: E402
-    TrainableNetwork,
-    decode_boxes,
-    write_weights,
-)
+from tools.detector_training.network import TrainableNetwork, decode_boxes, write_weights  # noqa: E402
 
 
 def decode(raw, head, input_width):

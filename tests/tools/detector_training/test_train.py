@@ -7,11 +7,7 @@ torch = pytest.importorskip("torch", reason="PyTorch, which only the training of
 from course_lib.spherical_stereo.detection.darknet import check_weights  # noqa: E402
 from tests.tools.detector_training.toy_panoramas import CLASSES, ROOM_NAMES, TINY_CFG, write_toy_folder  # noqa: E402
 from tools.detector_evaluation import measure_detector  # noqa: E402
-from tools.detector_training.images import (  # noqa: E402
-    AugmentationRanges,
-    TrainingDataError,
-    read_panoramas,
-)
+from tools.detector_training.images import AugmentationRanges, TrainingDataError, read_panoramas  # noqa: E402
 from tools.detector_training.state import CheckpointError  # noqa: E402
 from tools.detector_training.train import TrainingPlan, train  # noqa: E402
 
