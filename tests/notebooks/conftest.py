@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import nbformat
@@ -68,6 +69,7 @@ class Lesson:
         return "\n".join(ast.unparse(node) for node in nodes if isinstance(node, ast.Import | ast.ImportFrom))
 
 
+@cache
 def read(path: Path) -> Lesson:
     return Lesson(path, nbformat.read(path, as_version=4))
 
