@@ -62,6 +62,7 @@ def children(sandbox: Sandbox) -> list[int]:
     return [int(word) for task in tasks for word in (task / "children").read_text("ascii").split()]
 
 
+@pytest.mark.slow
 def test_this_machines_walls_hold_and_the_trial_finds_so(sandbox, tmp_path):
     assert missing_protections(tmp_path / "trial", Limits()) == ()
 

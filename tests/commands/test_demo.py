@@ -64,6 +64,7 @@ def test_another_process_without_opengl_writes_the_same_bytes_to_the_last_figure
     assert "no corridor.html (OpenGL cannot start" in done[1].stdout
 
 
+@pytest.mark.slow
 def test_the_shipped_recordings_table_holds_the_papers_rows_beside_ours(tmp_path, corridor_folder, capsys):
     words = ["demo", "corridor", "--recording", "shipped", "--frames", "3", "--particles", "20", "--out", str(tmp_path)]
     assert main(words) == 0

@@ -67,6 +67,7 @@ def test_the_consistent_matcher_says_how_sure_it_is_and_which_poses_there_are(pa
     assert answer(capsys, *words(pair))["confidence"] is None
 
 
+@pytest.mark.slow
 def test_the_table_and_the_files_say_the_same(pair, tmp_path, capsys):
     out = tmp_path / "out"
     assert main(words(pair, "--out", str(out))) == 0

@@ -49,6 +49,7 @@ def arguments(folder, boxes="boxes.json", baseline="0.3", upper="upper.png", low
     return words + (["--boxes", str(folder / boxes)] if boxes else [])
 
 
+@pytest.mark.slow
 def test_every_object_is_listed_with_both_distances(pair, tmp_path, capsys):
     assert main([*arguments(pair), "--json", "--out", str(tmp_path / "out")]) == 0
     summary = json.loads(capsys.readouterr().out)

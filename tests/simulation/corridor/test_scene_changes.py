@@ -24,6 +24,7 @@ def surveyed():
     return make_corridor(np.random.default_rng(4)).survey_day
 
 
+@pytest.mark.slow
 def test_doors_and_things_differ_from_day_to_day_and_from_the_survey(days, surveyed):
     meshes = [surveyed, *(day.mesh for day in days)]
     leaves = [np.array([mesh.part_bounds(f"door {number} leaf") for number in range(7)]) for mesh in meshes]
