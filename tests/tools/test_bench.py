@@ -68,15 +68,15 @@ def test_images_that_differ_are_counted_and_what_nobody_hits_is_alike():
 @pytest.mark.slow
 @pytest.mark.parametrize("backend", ["raster", "vtk", "ray"])
 def test_memory_is_flat_and_images_stay_over_hundreds_of_renders(backend, run_tool, capsys):
-    """10,000 of them are for the command; if each render kept its images, that would be 39 MB.
+    """10,000 of them are for the command; if each of these kept its images, or one of them, that would be 20 MB.
 
-    30 of the 50 renderers count: 9 MB from their first quarter to their last if each kept the images of its one
+    80 of the 100 renderers count: 24 MB from their first quarter to their last if each kept the images of its one
     render, far more if it kept its map.
     """
-    assert run_tool("bench", "--renders", "150", "--renderers", "50", "--backends", backend, "--json") == 0
+    assert run_tool("bench", "--renders", "300", "--renderers", "100", "--backends", backend, "--json") == 0
     (told,) = json.loads(capsys.readouterr().out).values()
     assert "missing" not in told
-    for what, calls in (("renders", 150), ("renderers", 50)):
+    for what, calls in (("renders", 300), ("renderers", 100)):
         assert told[what]["calls"] == calls
         assert told[what]["other_images"] == 0
         assert not told[what]["grew_mb"] > 8.0, told[what]
