@@ -16,6 +16,8 @@ from course_lib.paths import REPOSITORY
 from tests.classroom.handed_in import assignment_of, handed_in, solved
 from tests.classroom.walls import require_walls
 
+pytestmark = pytest.mark.slow
+
 SHORT = Limits(call_seconds=0.5, seconds=2.0)
 """For what never ends, however fast the machine is; answers that end have the usual limits."""
 REFERENCES = REPOSITORY / "course_lib" / "lessons" / "lesson_06" / "exercises.py"
@@ -62,7 +64,6 @@ def children(sandbox: Sandbox) -> list[int]:
     return [int(word) for task in tasks for word in (task / "children").read_text("ascii").split()]
 
 
-@pytest.mark.slow
 def test_this_machines_walls_hold_and_the_trial_finds_so(sandbox, tmp_path):
     assert missing_protections(tmp_path / "trial", Limits()) == ()
 
@@ -385,7 +386,6 @@ def test_a_function_of_the_graders_is_called_over_the_line(sandbox, tmp_path):
         assert (found.status, found.refused) == ("right", ()), found
 
 
-@pytest.mark.release
 def test_a_projects_last_function_runs_in_the_sandbox(sandbox, tmp_path):
     untouched = grade(Task("bob", "P3", assignment_of("P3").path, "P3", "match"), sandbox, 1)
     assert (untouched.status, untouched.points, untouched.most) == ("not attempted", 0, 12)
