@@ -106,8 +106,7 @@ def what_instead(words: list[str]) -> str:
     """Return how to go on where the words name no command: the tool it has become, a similar name, or all names."""
     for old in TOOLS:
         if words[: len(old.split())] == old.split():
-            module = old.replace("make-data ", "make_").replace("-", "_")
-            return f" any more; it is a tool now: .venv/bin/python -m tools.{module} --help"
+            return f" any more; it is a tool now: .venv/bin/python -m tools.{old.replace('-', '_', 1)} --help"
     longer = [name for name in COMMANDS if name.split()[0] == words[0]]
     # A higher bar for two words: the first alone makes demo corridor and demo room alike.
     like = meant(" ".join(words[:2]), COMMANDS, 0.8) if len(words) > 1 else ""

@@ -1,6 +1,9 @@
 """Fixtures of all tests."""
 
+import functools
+import hashlib
 import os
+import pickle
 import signal
 import sys
 from pathlib import Path
@@ -23,6 +26,9 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 matplotlib.use("Agg")  # not by MPLBACKEND, which the lessons' kernels would inherit
 
+# nbformat's validator imports this grammar of web addresses if it is there: over a second, for what no test checks.
+sys.modules["rfc3987_syntax"] = None
+
 ROOT = Path(__file__).parents[1]
 
 # The one walk through JupyterLab in a browser that every run takes: the panel with the most controls.
@@ -40,9 +46,9 @@ def pytest_collection_modifyitems(items):
         walk = item.get_closest_marker("browser") and EVERYDAY_WALK not in item.nodeid
         if walk or (item.path.name == "test_nbgrader.py" and item.get_closest_marker("slow")):
             item.add_marker("release")
-    long = {item.path for item in items if item.path.suffix == ".ipynb"}
-    long |= {item.path for item in items if any(item.get_closest_marker(name) for name in ("browser", "slow"))}
-    items.sort(key=lambda item: (item.path not in long, item.path.suffix != ".ipynb"))
+    long = {item.path for item in items if any(item.get_closest_marker(name) for name in ("browser", "slow"))}
+    long |= {item.path for item in items if "values_once" in getattr(item, "fixturenames", ())}
+    items.sort(key=lambda item: 0 if item.path in long else 1 if item.path.suffix == ".ipynb" else 2)
 
 
 @pytest.fixture
@@ -64,3 +70,30 @@ def kitchen_folder():
     if not folder.is_dir():
         pytest.skip(f"the real recording is not here ({folder}); it is not part of the repository")
     return folder
+
+
+@pytest.fixture(scope="module")
+def values_once():
+    """All exercises, with references and known mistakes that compute each value once: a module judges many answers."""
+    from course_lib.lessons.kit.exercises import Exercise, lesson_exercises, lesson_numbers
+
+    def once(function, key):
+        kept = {}
+
+        @functools.wraps(function)
+        def kept_or_computed(*arguments):
+            name = hashlib.sha256(pickle.dumps(key(*arguments))).digest()
+            if name not in kept:
+                kept[name] = function(*arguments)
+            return kept[name]
+
+        return kept_or_computed
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Exercise, "draw", once(Exercise.draw, lambda self, rng: (self.number, rng.bit_generator.state)))
+        for exercise in [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]:
+            patch.setitem(vars(exercise), "reference", once(exercise.reference, lambda *given: given))
+            for mistake in exercise.mistakes:
+                patch.setitem(vars(mistake), "function", once(mistake.function, lambda *given: given))
+                patch.setitem(vars(mistake), "others", tuple(once(one, lambda *given: given) for one in mistake.others))
+        yield

@@ -139,7 +139,7 @@ def test_what_course_py_did_not_make_is_refused_and_left_as_it_is(copy, kind):
     assert sorted((path, path.lstat().st_mtime_ns) for path in copy.parent.rglob("*")) == before
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_two_at_once_wait_for_each_other(copy):
     command = [sys.executable, str(copy / "course.py"), "x"]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": environment()}

@@ -60,6 +60,7 @@ def method_files():
         yield from [path] if path.is_file() else sorted(path.rglob("*.py"))
 
 
+@pytest.mark.slow
 def test_the_methods_import_and_run_without_what_only_the_lessons_have():
     done = subprocess.run(
         [sys.executable, "-c", USE_THE_METHODS, *LESSONS_ONLY], capture_output=True, text=True, cwd=ROOT

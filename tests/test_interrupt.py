@@ -23,7 +23,8 @@ ROOT = Path(__file__).parents[1]
 NAMES = ("a.json", "b.csv", "pictures/c.png")
 COMMANDS = {
     "localize": "localize --map data/corridor/planar_map.ply --sequence data/corridor/wagon --dof xyyaw --frames 3",
-    "demo room": "demo room --poses 1",
+    "locate": "locate --upper data/room/experiment_2/03_a_upper.jpg --lower data/room/experiment_2/03_a_lower.jpg "
+    "--baseline 0.3 --map data/room/semantic_map.json",
 }
 ENDS = {".json": b"}\n", ".csv": b"\n", ".txt": b"\n", ".html": b"", ".png": b"IEND\xaeB`\x82"}
 

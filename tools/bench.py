@@ -105,18 +105,13 @@ def run_lessons(arguments: argparse.Namespace) -> int:
 def measured(program: str, *words: str) -> dict:
     """What a program of tools/benchmarks finds, in a process of its own. Raises `RuntimeError` if it fails."""
     command = [sys.executable, "-P", "-m", f"tools.benchmarks.{program}", *words]
-    done = subprocess.run(command, env=os.environ | tools_environment(), stdout=subprocess.PIPE, text=True, check=False)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(TOOLS)])}
+    if sys.platform.startswith("linux"):
+        environment["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
+    done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"the measurement ended with code {done.returncode}; what it said stands above")
     return json.loads(done.stdout.splitlines()[-1])
-
-
-def tools_environment() -> dict[str, str]:
-    """What the environment of a process that finds tools.benchmarks and the tools in `.bench` has besides."""
-    environment = {"PYTHONPATH": os.pathsep.join([str(ROOT), str(TOOLS)])}
-    if sys.platform.startswith("linux"):
-        environment["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
-    return environment
 
 
 def install_tools() -> str | None:

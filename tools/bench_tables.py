@@ -20,13 +20,11 @@ def bench_table(result: dict) -> str:
         lines += [_row(name, row) for name, row in scene["rows"].items()]
     particles, maps, true = result["particles"], result["maps"], result["against_the_true_world"]
     waiting, memory, pictures = result["waiting"], result["memory"], result["picture_ms"]
-    if "missing" in pictures:
-        keys = f"from a key to its picture: not measured ({pictures['missing'][:80]})"
-    else:
-        milliseconds = sorted(pictures.values())
+    keys = f"from a key to its picture: not measured ({str(pictures.get('missing'))[:80]})"
+    if "missing" not in pictures:
         keys = (
-            f"from a key on a panel to its picture: {milliseconds[0]:.0f} to {milliseconds[-1]:.0f} ms, the medians of "
-            f"{len(milliseconds)} lessons' first panels (wanted: 150 ms)"
+            f"from a key on a panel to its picture: {min(pictures.values()):.0f} to {max(pictures.values()):.0f} ms, "
+            f"the medians of {len(pictures)} lessons' first panels (wanted: 150 ms)"
         )
     lines += [
         "",
@@ -102,10 +100,7 @@ def lessons_rows(result: dict) -> list[str]:
 
 
 def capacity(result: dict, memory_gib: float, processors: float) -> tuple[int, int]:
-    """Students that fit on one server, by memory and by processors.
-
-    Of memory nothing is shared but the files of libraries, once; what else is assumed `capacity_sentence` tells.
-    """
+    """Students that fit on one server, by memory and by processors, as `capacity_sentence` assumes."""
     lessons, server = result["lessons"], result["server"]
 
     def own(row: dict) -> float:

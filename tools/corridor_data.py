@@ -64,17 +64,18 @@ def make_corridor_data(
     progress(items, text) wraps the loops, for progress bars. A run that is stopped leaves the old data as they were.
     """
     models = models or CorridorModels()
-    generators = np.random.default_rng(seed).spawn(7)
-    world_rng, survey_rng, planar_rng, camera_rng, wagon_rng, hand_rng, measure_rng = generators
+    spawned = np.random.default_rng(seed).spawn(7)
+    world_rng, survey_rng, planar_rng, camera_rng, wagon_rng, hand_rng, measure_rng = spawned
     with staging_dir(out, PRODUCTS) as folder:
         world = make_corridor(world_rng)
         write_world_ply(folder / "true_world.ply", world.run_day, "corridor, true world of the run day; CC BY 4.0")
-        measured = {"map": _make_map(folder, world.survey_day, models, survey_rng, planar_rng, measure_rng, progress)}
+        generators = [survey_rng, planar_rng, measure_rng]
+        measured = {"map": _make_map(folder, world.survey_day, models, generators, progress)}
         camera = TimeOfFlightCamera(DepthCamera.sr4000(), models.camera, camera_rng)
         wagon = wagon_run(models.wagon, world.clutter_boxes, wagon_rng)
         hand = hand_run(models.hand, world.clutter_boxes, hand_rng)
         for name, run, rng in (("wagon", wagon, wagon_rng), ("hand", hand, hand_rng)):
-            measured[name] = _record(folder / name, world.run_day, camera, run, models, rng, progress)
+            measured[name] = _record(folder / name, world.run_day, camera, run, models.floor_survey, rng, progress)
         measured["noise_on_a_wall_m"] = {
             f"{distance} m": noise_on_a_wall(models.camera, distance, measure_rng) for distance in (2, 5, 8)
         }
@@ -85,16 +86,9 @@ def make_corridor_data(
     return summary
 
 
-def _make_map(
-    folder: Path,
-    surveyed: WorldMesh,
-    models: CorridorModels,
-    rng: Generator,
-    planar_rng: Generator,
-    measure_rng: Generator,
-    progress: Progress,
-) -> dict:
+def _make_map(folder: Path, surveyed: WorldMesh, models: CorridorModels, generators: list, progress: Progress) -> dict:
     """Survey the world as it is given, write map.ply and planar_map.ply, and return what was measured on them."""
+    rng, planar_rng, measure_rng = generators
     caster = WorldCaster.of(surveyed)
     scans = survey(caster, models.scanner, rng, progress(models.stations, "surveying from the stations"))
     registered = [scan.as_registered() for scan in scans]
@@ -115,18 +109,10 @@ def _make_map(
     }
 
 
-def _record(
-    folder: Path,
-    world: WorldMesh,
-    camera: TimeOfFlightCamera,
-    run: tuple[np.ndarray, np.ndarray],
-    models: CorridorModels,
-    rng: Generator,
-    progress: Progress,
-) -> dict:
+def _record(folder: Path, world: WorldMesh, camera, run: tuple, floor_survey, rng: Generator, progress) -> dict:
     """Record one run; return rates over its pixels and the sizes of its steps."""
     text = f"recording the {folder.name} run"
-    total = record(folder, world, camera, run, models.floor_survey, rng, lambda items: progress(items, text))
+    total = record(folder, world, camera, run, floor_survey, rng, lambda items: progress(items, text))
     # The images again as smaller PNGs: in a noisy image nothing repeats, so Huffman coding alone wins.
     options = [cv2.IMWRITE_PNG_COMPRESSION, 9, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY]
     for path in sorted((folder / "depth").glob("*.png")):
@@ -165,12 +151,8 @@ def map_error(
     u, v = np.sort(rng.random((2, n_points)), axis=0)
     points = np.einsum("nk,nkd->nd", np.stack([u, v - u, 1 - v], axis=1), corners[face])
     distance = _distance(points, world.vertices, world.faces)
-    return {
-        "median_m": float(np.median(distance)),
-        "p90_m": float(np.percentile(distance, 90)),
-        "mean_m": float(distance.mean()),
-        "area_m2": float(areas.sum()),
-    }
+    median, p90 = np.percentile(distance, (50, 90)).tolist()
+    return {"median_m": median, "p90_m": p90, "mean_m": float(distance.mean()), "area_m2": float(areas.sum())}
 
 
 def hole_share(

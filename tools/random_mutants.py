@@ -3,8 +3,8 @@
 A fault is an operator exchanged, a comparison made strict or not, an absolute value or a minus dropped, a number raised
 by a tenth or by one, an index exchanged, a condition negated, a line dropped, or the first argument returned at once.
 Each is made alone, in a copy of the tracked files. First the module's own test file runs (test_MODULE.py of the room),
-then those that import the module; where a module has no file of its own, those of its folder too. Slow tests and
-browsers are left out. What survives is to be read: some faults change nothing that matters.
+then those that import the module; where a module has no file of its own, those of its folder too. Of other rooms'
+tests the slow ones are left out. What survives is to be read: some faults change nothing that matters.
 """
 
 from __future__ import annotations
@@ -100,15 +100,16 @@ def choose(root: Path, package: str, number: int, seed: int) -> tuple[list[Fault
     return sorted(chosen), total
 
 
-def tests_of(root: Path, module: Path) -> tuple[list[Path], list[Path], list[Path]]:
-    """The module's own test files, those anywhere that import it, and without its own those of its folder."""
+def tests_of(root: Path, module: Path) -> tuple[list[Path], ...]:
+    """The module's own test files; those of its room, then of others, that import it; without its own its folder's."""
     folder = root / "tests" / module.parts[1]
     every = sorted((root / "tests").rglob("test_*.py"), key=lambda test: (folder not in test.parents, test))
     own = [t for t in every if t.stem == f"test_{module.stem}" and (folder in t.parents or not folder.is_dir())]
     dotted = re.escape(".".join(module.with_suffix("").parts)) + r"\b"
     importing = [t for t in every if t not in own and re.search(dotted, t.read_text(encoding="utf-8"))]
     beside = [t for t in every if t.parent == folder.joinpath(*module.parts[2:-1]) and t not in importing]
-    return own, importing, [] if own else beside
+    here = [t for t in importing if folder in t.parents]
+    return own, here, [t for t in importing if t not in here], [] if own else beside
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -134,10 +135,10 @@ def run(arguments: argparse.Namespace) -> int:
                 continue
             begun, outcome = time.monotonic(), "survived"
             with broken(root / path, source):
-                for tests in tests_of(root, path):
+                for tests, speed in zip(tests_of(root, path), ("release", "release", "slow", "release"), strict=True):
                     if tests and outcome == "survived":
                         left = max(arguments.seconds - (time.monotonic() - begun), 5.0)
-                        outcome = tests_say(root, tests, left, "-m", "not slow and not browser")
+                        outcome = tests_say(root, tests, left, "-m", f"not {speed} and not browser")
             counts[outcome] += 1
             print(f"{outcome:8} {told}", flush=True)
     if not arguments.list:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from course_lib.commands.arguments import add_detector_arguments, chosen_detector
 from course_lib.files import temporary_folder
-from tools.make_training_rooms import FIRST_TEST_ROOM, IMAGES_PER_ROOM, N_TEST_ROOMS
+from tools.make_data import FIRST_TEST_ROOM, IMAGES_PER_ROOM, N_TEST_ROOMS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

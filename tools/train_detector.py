@@ -55,9 +55,9 @@ def run(arguments: argparse.Namespace) -> int:
     import torch
 
     from course_lib.spherical_stereo.detection.darknet import read_names
+    from tools.detector_evaluation import measure_detector
     from tools.detector_training.images import read_panoramas
     from tools.detector_training.train import TrainingPlan, train
-    from tools.detector_training.validation import measure_detector
 
     if arguments.threads:
         torch.set_num_threads(arguments.threads)

@@ -60,7 +60,7 @@ def _room(parser: argparse.ArgumentParser) -> None:
         parser, "--seed", "of the photographs; another than 4 takes them anew (default: 4, the shipped ones)"
     )
     options.add_number(parser, "--poses", "only the first N poses of each experiment (default: all)")
-    options.add_folder(parser, "--data", "made by tools.make_room (default: data/room)")
+    options.add_folder(parser, "--data", "made by tools.make_data room (default: data/room)")
     options.add_detector_arguments(parser)
     told = "how objects are matched to the map: greedy (the paper's), hungarian, consistent (default: greedy)"
     options.add_text(parser, "--association", "NAME", told, "greedy")

@@ -31,6 +31,9 @@ SEED = 20_001
 WILD = "=cmd|'calc', \"x\""
 
 
+pytestmark = pytest.mark.slow
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Seven students of lesson 06, and what else lies in such a folder."""

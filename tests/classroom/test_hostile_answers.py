@@ -16,6 +16,8 @@ from course_lib.paths import REPOSITORY
 from tests.classroom.handed_in import assignment_of, handed_in, solved
 from tests.classroom.walls import require_walls
 
+pytestmark = pytest.mark.slow
+
 SHORT = Limits(call_seconds=0.5, seconds=2.0)
 """For what never ends, however fast the machine is; answers that end have the usual limits."""
 REFERENCES = REPOSITORY / "course_lib" / "lessons" / "lesson_06" / "exercises.py"

@@ -82,6 +82,7 @@ def test_the_feedback_of_a_score_tells_its_median_and_the_lines():
     assert "it failed in 1 of 3 worlds" in lost.sentence
 
 
+@pytest.mark.slow
 def test_the_model_solution_has_all_points_and_the_paper_fewer():
     project = find_project("P2")
     assert grade("P2", model_functions("P2")["locate"], 4).points == MAX_POINTS

@@ -19,6 +19,7 @@ THREE_FRAMES = ["--seed", "6", "--frames", "3", "--particles", "15"]
 TWO_SEEDS = ["--seeds", "10040-10041", "--frames", "2", "--particles", "6", "--methods", "proposed,fallon"]
 
 
+@pytest.mark.slow
 def test_the_corridor_has_table_1_a_row_a_frame_figures_and_a_scene(tmp_path, told):
     summary = told("demo", "corridor", *THREE_FRAMES, "--out", tmp_path)
     assert (summary["frames"], summary["n_particles"], summary["seed"]) == (3, 15, 6)
@@ -51,6 +52,7 @@ def test_another_process_without_opengl_writes_the_same_bytes_to_the_last_figure
     assert "no corridor.html (OpenGL cannot start" in done[1].stdout
 
 
+@pytest.mark.slow
 def test_the_shipped_recordings_table_holds_the_papers_rows_beside_ours(tmp_path, corridor_folder, printed):
     words = ["demo", "corridor", "--recording", "shipped", "--frames", "3", "--particles", "20", "--out", tmp_path]
     table = printed(*words)

@@ -51,6 +51,7 @@ def page_config(address, token):
     return json.loads(page.split('id="jupyter-config-data"', 1)[1].split(">", 1)[1].split("</script>", 1)[0])
 
 
+@pytest.mark.slow
 def test_the_token_is_needed(server):
     address, token, _ = server
     assert [refused(f"{address}/api/{path}") for path in ("status", "contents", "kernels")] == [403] * 3
@@ -58,6 +59,7 @@ def test_the_token_is_needed(server):
 
 
 @pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="reads Linux's list of sockets")
+@pytest.mark.slow
 def test_it_listens_on_this_computer_only(server):
     port = int(server[0].rsplit(":", 1)[1])
     sockets = "".join(Path(f"/proc/net/{name}").read_text() for name in ("tcp", "tcp6"))
@@ -65,6 +67,7 @@ def test_it_listens_on_this_computer_only(server):
     assert listening == ["0100007F"]  # 127.0.0.1, its bytes reversed
 
 
+@pytest.mark.slow
 def test_news_updates_builds_and_needless_extensions_are_off_and_nothing_is_written_to_the_home(server):
     address, token, home = server
     config = page_config(address, token)
@@ -77,6 +80,7 @@ def test_news_updates_builds_and_needless_extensions_are_off_and_nothing_is_writ
     assert list(home.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_our_settings_are_the_defaults_and_our_extension_is_served(server):
     address, token, _ = server
     for plugin, settings in lab.SETTINGS.items():

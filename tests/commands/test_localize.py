@@ -37,6 +37,7 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, told):
     assert "<title>Path of wagon in map.ply</title>" in (tmp_path / "track.html").read_text()
 
 
+@pytest.mark.slow
 def test_frames_at_fault_are_named_and_not_used(corridor_folder, tmp_path, recorded, printed):
     """A frame that came twice, one at its stop and a dark one; the frames before them are localized as ever."""
 
@@ -90,6 +91,7 @@ def test_from_an_unknown_start_through_a_kidnapping(corridor_folder, recorded, t
     assert off[-1] < 0.05
 
 
+@pytest.mark.slow
 def test_a_recording_without_truth_is_localized_from_a_pose_that_is_given(corridor_folder, recorded, printed, capsys):
     """As numbers, from a file, and as with the truth: the same trajectory; without the truth no errors."""
     folder = recorded("wagon", range(4), "blind")

@@ -58,6 +58,7 @@ def test_the_consistent_matcher_says_how_sure_it_is_and_which_poses_there_are(pa
     assert told(*words(pair))["confidence"] is None
 
 
+@pytest.mark.slow
 def test_the_table_and_the_files_say_the_same(pair, tmp_path, printed):
     out = tmp_path / "out"
     text = printed(*words(pair, "--out", out))
@@ -72,6 +73,7 @@ def test_the_table_and_the_files_say_the_same(pair, tmp_path, printed):
     assert "<title>On the map</title>" in (out / "locate.html").read_text()
 
 
+@pytest.mark.slow
 def test_no_pose_is_an_answer_and_is_drawn_too(pair, tmp_path, told, printed):
     out = tmp_path / "out"
     text = printed(*words(pair, "--out", out, baseline=1.0))

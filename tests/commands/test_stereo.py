@@ -37,6 +37,7 @@ def arguments(folder, boxes="boxes.json", baseline=0.3):
     return words + (["--boxes", folder / boxes] if boxes else [])
 
 
+@pytest.mark.slow
 def test_every_object_is_listed_with_both_distances(pair, tmp_path, told):
     summary = told(*arguments(pair), "--out", tmp_path / "out")
     assert summary["matches"] > 100

@@ -35,6 +35,7 @@ def test_the_filter_compiles_nothing_that_the_set_up_did_not():
     assert compiled_forms() == before
 
 
+@pytest.mark.slow
 def test_the_corridors_map_is_not_simplified_again(tmp_path, monkeypatch, corridor_folder):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     simplification.simplified.cache_clear()

@@ -43,6 +43,7 @@ def test_poses_from_exact_boxes_come_out_as_stored(experiment, from_exact_boxes)
     assert [one.pair.name for one in from_exact_boxes[experiment] if far_from(one, rows[one.pair.name])] == []
 
 
+@pytest.mark.slow
 def test_poses_from_images_come_out_as_stored(recordings, semantic_map, detector):
     recording, rows = recordings[2], rows_of(2, "images")
     localizer = SemanticLocalizer(recording.rig, semantic_map, detector, reject_implausible=False)

@@ -31,6 +31,7 @@ def test_the_network_is_small_and_whole(detector):
     assert sorted(detector.labels) == sorted(CANONICAL_LABELS)
 
 
+@pytest.mark.slow
 def test_the_experiments_room_scores_as_stored(detector, recording):
     stored = json.loads((FOLDER / "scores.json").read_text())["experiment_room"]
     score = score_detector(detector, list(labelled_panoramas(recording))[::2])

@@ -100,6 +100,7 @@ def troubled_wagon(corridor_folder, tmp_path_factory):
     return recording_trouble(read_sequence(folder), scene_map, SEED, [0.1], "xyyaw", lengths)
 
 
+@pytest.mark.slow
 def test_the_depth_filter_names_every_frame_and_recovers(troubled_wagon):
     told = summary([troubled_wagon], GATE)
     assert told["undisturbed"]["false_alarms"] == told["undisturbed"]["confident_wrong"] == 0

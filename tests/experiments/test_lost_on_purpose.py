@@ -70,6 +70,7 @@ def judged_run(
     return (metres > LOST_POSITION) | (radians > LOST_ROTATION) | mirrored, np.array(run.statuses)
 
 
+@pytest.mark.slow
 def test_a_run_that_holds_the_track_is_called_tracked(corridor_folder, tmp_path):
     lost, statuses = judged_run(corridor_folder, tmp_path, 10301, 20, noise=1.0, n_particles=200)
     assert not lost.any()
@@ -77,6 +78,7 @@ def test_a_run_that_holds_the_track_is_called_tracked(corridor_folder, tmp_path)
 
 
 @pytest.mark.parametrize("name", WAYS)
+@pytest.mark.slow
 def test_a_run_that_is_lost_is_never_called_tracked(corridor_folder, tmp_path, name):
     lost, statuses = judged_run(corridor_folder, tmp_path, 10302, 40, **WAYS[name])
     assert lost.sum() >= 15

@@ -28,6 +28,7 @@ def test_a_thinned_recording_keeps_what_belongs_together(corridor_folder):
             whole.thinned(every, offset)
 
 
+@pytest.mark.slow
 def test_what_is_switched_off_is_off(corridor):
     """From frame to frame two metres: what is searched for, and how often, tells each idea's absence."""
     scene_map, sequence = corridor

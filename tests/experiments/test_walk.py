@@ -1,11 +1,13 @@
 """Walks through generated rooms: every thinning from every offset, the floor once."""
 
 import numpy as np
+import pytest
 
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.experiments import walk
 
 
+@pytest.mark.slow
 def test_each_offset_of_each_thinning_is_run_and_the_floor_once(corridor_folder, monkeypatch):
     """Every recording is five frames of the shipped one."""
 

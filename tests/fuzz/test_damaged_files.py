@@ -55,6 +55,7 @@ def look_at_damaged(name, samples, examples):
 
 
 @pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.slow
 def test_a_damaged_file_is_read_or_refused_by_name(name, samples):
     assert is_read(FORMATS[name], samples / FORMATS[name].file)
     look_at_damaged(name, samples, 1)

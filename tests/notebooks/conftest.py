@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import nbformat
@@ -15,7 +16,6 @@ from tests.notebooks.driven_lab import require_chromium, served_lab
 
 # Tests of what every notebook must keep: projects have the rules of the lessons, but a shape of their own.
 OF_PROJECTS_TOO = ("test_rules",)
-OPT_OUTS = ("NBVAL_IGNORE_OUTPUT", "NBVAL_SKIP", "NBVAL_RAISES_EXCEPTION", "PYTEST_VALIDATE_IGNORE_OUTPUT")
 
 
 @dataclass(frozen=True)
@@ -42,16 +42,6 @@ class Lesson:
         return [cell for cell in self.code_cells if not cell.metadata.get("jupyter", {}).get("source_hidden")]
 
     @property
-    def opted_out_cells(self) -> list:
-        """Code cells whose output nbval does not compare, by a comment or a tag."""
-        tags = {name.lower().replace("_", "-") for name in OPT_OUTS} | {"raises-exception"}
-        return [
-            cell
-            for cell in self.code_cells
-            if tags & {tag.lower() for tag in cell.metadata.get("tags", [])} or any(n in cell.source for n in OPT_OUTS)
-        ]
-
-    @property
     def outputs(self) -> list:
         return [output for cell in self.code_cells for output in cell.outputs]
 
@@ -66,11 +56,8 @@ class Lesson:
 
     def exercise_cells(self, number: str, tag: str) -> list:
         """Cells of one exercise that bear `tag`."""
-        return [
-            cell
-            for cell in self.cells
-            if cell.metadata.get("exercise") == number and tag in cell.metadata.get("tags", [])
-        ]
+        cells = [cell for cell in self.cells if cell.metadata.get("exercise") == number]
+        return [cell for cell in cells if tag in cell.metadata.get("tags", [])]
 
     def exercise_numbers(self) -> list[str]:
         """Numbers of the exercises in the order in which they appear."""
@@ -82,6 +69,7 @@ class Lesson:
         return "\n".join(ast.unparse(node) for node in nodes if isinstance(node, ast.Import | ast.ImportFrom))
 
 
+@cache
 def read(path: Path) -> Lesson:
     return Lesson(path, nbformat.read(path, as_version=4))
 

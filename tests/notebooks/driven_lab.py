@@ -21,6 +21,7 @@ from course_lib.paths import REPOSITORY
 TOKEN = "for-this-test-only"
 HANGS_S = 1800  # only what hangs takes so long
 
+OUTPUTS = ".jp-OutputArea-output"
 SESSION_IS_IDLE = """() => {
     const kernel = window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel;
     return kernel?.connectionStatus === 'connected' && kernel.status === 'idle';
@@ -39,6 +40,8 @@ RUN = """wholly => {
 STATES = """() => window.jupyterapp.shell.currentWidget.content.widgets
     .filter(cell => cell.model.type === 'code')
     .map(cell => [cell.model.executionCount, cell.model.outputs.toJSON().some(o => o.output_type === 'error')])"""
+AXE = """where => axe.run({include: [[where]]}, {resultTypes: ['violations']}).then(result => result.violations.flatMap(
+    rule => rule.nodes.map(node => [rule.id, rule.impact, node.target.flat().join(' '), node.html.slice(0, 300)])))"""
 # Milliseconds from the next event of a kind (a key, a click) to the first new picture in the panel, ready to paint.
 EVENT_TO_PICTURE = """([panel, event]) => new Promise((resolve, reject) => {
     const old = panel.querySelector('img').src;
@@ -91,10 +94,7 @@ def served_lab(folder: Path) -> Iterator[str]:
         yield f"http://127.0.0.1:{port}"
     finally:
         server.terminate()
-        try:
-            server.wait(300)
-        except subprocess.TimeoutExpired:
-            server.kill()
+        server.wait(HANGS_S)
         log.close()
 
 
@@ -138,3 +138,15 @@ def wait_for_a_picture(page, panel, event: str, act: Callable[[], None]) -> floa
     page.wait_for_function("() => window.courseIsWatching")
     act()
     return page.evaluate("() => window.courseWaits")
+
+
+def serious_findings(page) -> list[list[str]]:
+    """What axe-core finds inside the outputs, serious or critical: rule, impact, CSS selector of the element, its HTML.
+
+    axe-core (https://github.com/dequelabs/axe-core) is one script in the package axe-playwright-python; it is put into
+    the page as text, so that nothing is loaded from anywhere.
+    """
+    base = pytest.importorskip("axe_playwright_python.base")
+    page.evaluate(base.AXE_SCRIPT)
+    assert page.locator(OUTPUTS).count() > 0
+    return [found for found in page.evaluate(AXE, OUTPUTS) if found[1] in ("serious", "critical")]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from course_lib.paths import notebook_paths
-from tests.notebooks.accessibility import serious_findings
-from tests.notebooks.driven_lab import STATES, first_panel, open_lesson, run_cells, wait_for_a_picture
+from tests.notebooks import driven_lab
+from tests.notebooks.driven_lab import STATES, open_lesson, wait_for_a_picture
 
 # The first lesson and widgets of each paper that are used most: filter stepper (07), penalty weights (15). That other
 # panels draw, and draw anew, is tested without a browser (tests/lessons/kit/test_panels.py), their cells by nbval.
@@ -28,7 +28,7 @@ def test_a_lesson_runs_and_its_first_panel_answers(browser, lab, path):
     assert pictures.count() > 0, "stored pictures, with their alternative text, are there before anything runs"
 
     wholly = path.name[:2] in RUN_WHOLLY
-    run_cells(page, wholly)
+    driven_lab.run_cells(page, wholly)
     states = page.evaluate(STATES)
     counts = [count for count, _ in states if wholly or count]
     assert counts == list(range(1, len(counts) + 1))
@@ -36,13 +36,13 @@ def test_a_lesson_runs_and_its_first_panel_answers(browser, lab, path):
     assert not any(failed for _, failed in states)
     assert page.locator(".jp-OutputArea-output img:not([alt])").count() == 0
 
-    panel = first_panel(page)
+    panel = driven_lab.first_panel(page)
     for key in ("ArrowRight", "ArrowLeft"):
         wait_for_a_picture(page, panel, "keydown", lambda key=key: page.keyboard.press(key))
     for label in BUTTONS.get(path.name[:2], ()):
         button = panel.get_by_role("button", name=label, exact=True)
         wait_for_a_picture(page, panel, "click", button.click)
     assert "This panel failed" not in panel.inner_text()
-    assert serious_findings(page) == []
+    assert driven_lab.serious_findings(page) == []
     assert errors == []
     page.close()

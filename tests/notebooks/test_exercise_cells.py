@@ -11,6 +11,8 @@ import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises, lesson_numbers
 
+pytestmark = pytest.mark.usefixtures("values_once")
+
 # Seeds other than that of `check`: what is right or wrong must not hang on one set of inputs.
 SEEDS = (0, 1, 2)
 EXERCISES = [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]
@@ -41,51 +43,41 @@ def test_a_lesson_has_three_to_six_exercises_and_the_library_knows_them(lesson):
 
 
 def test_a_lesson_has_a_warm_up_a_core_exercise_and_a_challenge_and_says_so(lesson):
-    exercises = {exercise.number: exercise for exercise in lesson_exercises(lesson.number)}
-    assert {exercise.level for exercise in exercises.values()} == {"warm-up", "core", "challenge"}
-    for number, exercise in exercises.items():
-        heading = only(lesson.exercise_cells(number, "task")).source.splitlines()[0]
-        said = re.search(r" · (warm-up|challenge)$", heading)
-        assert (said[1] if said else "core") == exercise.level, heading
+    exercises = lesson_exercises(lesson.number)
+    assert {exercise.level for exercise in exercises} == {"warm-up", "core", "challenge"}
+    for exercise in exercises:
+        heading = only(lesson.exercise_cells(exercise.number, "task")).source.splitlines()[0]
+        assert (re.findall(r" · (warm-up|challenge)$", heading) or ["core"]) == [exercise.level], heading
 
 
-def test_the_first_hint_asks_and_no_hint_is_the_code(lesson):
-    for number in lesson.exercise_numbers():
-        text = "".join(cell.source for cell in lesson.exercise_cells(number, "hint"))
-        hints = re.findall(r"<details><summary>[^<]*</summary>(.*?)</details>", text, re.S)
-        assert "?" in hints[0], f"{number}: the first hint is a question"
-        assert not any("```" in hint or re.search(r"\breturn\b[^.?,;]*[(\[]", hint) for hint in hints), number
-
-
-def test_every_exercise_is_complete(lesson):
+def test_every_exercise_is_complete_and_its_first_hint_asks_and_none_is_the_code(lesson):
     for number in lesson.exercise_numbers():
         task = only(lesson.exercise_cells(number, "task"))
-        assert task.cell_type == "markdown"
-        assert number in task.source
         assert re.search(r"\d", task.source.replace(number, "")), "the task tells the expected number"
-        hints = lesson.exercise_cells(number, "hint")
-        assert all(cell.cell_type == "markdown" for cell in hints)
-        text = "".join(cell.source for cell in hints)
-        assert 2 <= len(re.findall(r"<details>", text)) <= 3
-        assert text.count("<details>") == text.count("</details>") == text.count("<summary>")
-        only(lesson.exercise_cells(number, "exercise"))
-        only(lesson.exercise_cells(number, "check"))
-        only(lesson.exercise_cells(number, "solution"))
+        cells = lesson.exercise_cells(number, "hint")
+        assert {cell.cell_type for cell in (task, *cells)} == {"markdown"}
+        text = "".join(cell.source for cell in cells)
+        hints = re.findall(r"<details><summary>[^<]*</summary>(.*?)</details>", text, re.S)
+        assert 2 <= len(hints) == text.count("<details>") == text.count("</details>") <= 3
+        assert "?" in hints[0], f"{number}: the first hint is a question"
+        assert not any("```" in hint or re.search(r"\breturn\b[^.?,;]*[(\[]", hint) for hint in hints), number
+        for tag in ("exercise", "check", "solution"):
+            only(lesson.exercise_cells(number, tag))
 
 
-def test_the_check_cell_calls_check_with_the_stubs_function(lesson):
+def require_unsolved_stub(notebook, number: str) -> None:
+    """The stub has a docstring, the cell below checks its function, and both say that nothing was tried."""
+    ((name, stub),) = stub_of(notebook, number).items()
+    assert stub.__doc__
+    assert judge(find_exercise(number), stub).status == "not attempted"
+    cell = only(notebook.exercise_cells(number, "check"))
+    assert ast.unparse(ast.parse(cell.source)) == f"check('{number}', {name})"
+    assert "".join(o.text for o in cell.outputs).startswith(f"{number}: not attempted")
+
+
+def test_the_check_cell_checks_the_stub_which_is_not_passed(lesson):
     for number in lesson.exercise_numbers():
-        (name,) = stub_of(lesson, number)
-        cell = only(lesson.exercise_cells(number, "check"))
-        assert ast.unparse(ast.parse(cell.source)) == f"check('{number}', {name})"
-        assert "".join(o.text for o in cell.outputs).startswith(f"{number}: not attempted")
-
-
-def test_the_stub_has_a_docstring_and_is_not_passed(lesson):
-    for number in lesson.exercise_numbers():
-        ((_, stub),) = stub_of(lesson, number).items()
-        assert stub.__doc__
-        assert judge(find_exercise(number), stub).status == "not attempted"
+        require_unsolved_stub(lesson, number)
 
 
 def test_the_solution_is_folded_with_nothing_but_its_number_to_be_seen_and_passes(lesson):
@@ -103,9 +95,10 @@ def test_the_solution_is_folded_with_nothing_but_its_number_to_be_seen_and_passe
 
 @pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
 def test_each_typical_mistake_fails_with_its_own_hint(exercise):
-    assert len(exercise.mistakes) >= 3
-    assert len({mistake.hint for mistake in exercise.mistakes}) == len(exercise.mistakes)
+    assert len({mistake.hint for mistake in exercise.mistakes}) == len(exercise.mistakes) >= 3
     for mistake in exercise.mistakes:
+        assert "return " not in mistake.hint, "a hint does not give the answer away as code"
+        assert len(mistake.hint) <= 140
         for function, seed in itertools.product(mistake.functions, SEEDS):
             verdict = judge(exercise, function, seed)
             assert verdict.status == "wrong"
@@ -115,10 +108,3 @@ def test_each_typical_mistake_fails_with_its_own_hint(exercise):
 @pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
 def test_the_reference_is_right_on_every_seed(exercise):
     assert all(judge(exercise, exercise.reference, seed).status == "right" for seed in SEEDS)
-
-
-@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
-def test_hints_do_not_give_the_answer_away_as_code(exercise):
-    for mistake in exercise.mistakes:
-        assert "return " not in mistake.hint
-        assert len(mistake.hint) <= 140

@@ -12,10 +12,9 @@ import pytest
 from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises
 from course_lib.lessons.kit.projects import find_project, is_better, one_outcome, project_names, stored_rivals
 from course_lib.paths import REPOSITORY, project_paths
-from tests.notebooks.test_exercise_cells import functions_of, only, stub_of
+from tests.notebooks.test_exercise_cells import SEEDS, functions_of, only, require_unsolved_stub, stub_of
 
 SOLUTIONS = REPOSITORY / "notebooks" / "projects" / "solutions"
-SEEDS = (0, 1, 2)
 
 
 def model_solution(project):
@@ -36,9 +35,7 @@ def test_every_project_has_a_notebook_and_a_model_solution():
 def test_the_title_promises_and_says_how_long_and_how_it_is_marked(project):
     title = project.cells[0].source
     assert re.match(rf"# {project.number} · \S", title)
-    hours = re.search(r"\*\*(\d(?:\.5)?) hours", title)
-    assert hours, "the title cell says how many **hours** the project takes"
-    assert 2 <= float(hours.group(1)) <= 4
+    assert 2 <= float(re.search(r"\*\*(\d(?:\.5)?) hours", title)[1]) <= 4
     rubric = project.markdown.split("## Rubric")[1]
     points = [int(p) for p in re.findall(r"\|\s*(\d+)\s*\|$", rubric, re.M)]
     assert len(points) >= 4
@@ -58,21 +55,12 @@ def test_the_stages_are_complete_and_the_library_knows_them(project):
         assert not project.exercise_cells(number, "solution"), "the model solution stands apart"
 
 
-def test_each_check_calls_the_stub_above_and_says_not_attempted(project):
+def test_each_check_calls_the_stub_above_and_says_not_attempted_and_so_does_the_score(project):
     for number in project.exercise_numbers():
-        ((name, stub),) = stub_of(project, number).items()
-        assert stub.__doc__
-        assert judge(find_exercise(number), stub).status == "not attempted"
-        cell = only(project.exercise_cells(number, "check"))
-        assert ast.unparse(ast.parse(cell.source)) == f"check('{number}', {name})"
-        assert "".join(o.text for o in cell.outputs).startswith(f"{number}: not attempted")
-
-
-def test_the_score_cell_says_not_attempted(project):
-    (cell,) = [cell for cell in project.code_cells if "score" in cell.metadata.get("tags", [])]
-    ((name, stub),) = functions_of(
-        project, only([cell for cell in project.code_cells if "submission" in cell.metadata.get("tags", [])])
-    ).items()
+        require_unsolved_stub(project, number)
+    tagged = {tag: cell for cell in project.code_cells for tag in cell.metadata.get("tags", [])}
+    cell = tagged["score"]
+    ((name, stub),) = functions_of(project, tagged["submission"]).items()
     assert name == find_project(project.number).function
     assert stub.__doc__
     assert ast.unparse(ast.parse(cell.source)) == f"score('{project.number}', {name})"
@@ -97,9 +85,8 @@ def test_the_package_hands_on_what_the_notebook_names(project):
 
 
 def test_no_hidden_seed_is_printed_in_the_notebook(project):
-    text = project.path.read_text(encoding="utf-8")
-    for seed in find_project(project.number).seeds:
-        assert not re.search(rf"(?<!\d){seed}(?!\d)", text)
+    numbers = set(re.findall(r"\d+", project.path.read_text(encoding="utf-8")))
+    assert not numbers & {str(seed) for seed in find_project(project.number).seeds}
 
 
 @pytest.mark.slow

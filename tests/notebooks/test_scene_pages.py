@@ -39,18 +39,6 @@ def browser():
         browser.close()
 
 
-def opened(browser, address: str):
-    """The page at an address with what went wrong (`page.errors`) and what it asked for (`page.requests`)."""
-    page = browser.new_page(viewport=SIZE)
-    page.set_default_timeout(HANGS_MS)
-    page.errors, page.requests = [], []
-    page.on("console", lambda message: page.errors.append(message.text) if message.type == "error" else None)
-    page.on("pageerror", lambda error: page.errors.append(str(error)))
-    page.on("request", lambda request: page.requests.append(request.url[:100]))
-    page.goto(address)
-    return page
-
-
 def settled_picture(page) -> np.ndarray:
     """What the page shows `(H, W, 3)`, once two pictures in a row are the same and not empty."""
     page.frames[-1].wait_for_function(DRAWN)
@@ -64,40 +52,38 @@ def settled_picture(page) -> np.ndarray:
         page.evaluate(TWENTY_FRAMES)
 
 
-def picture_after(page, act, changed) -> np.ndarray:
-    """The settled picture after `act(page)`, done again until it has `changed`: a busy page misses some."""
+def share_changed_by_a_turn(page) -> float:
+    """Share of the pixels that differ clearly once the mouse was dragged from the middle to the right.
+
+    It is dragged again until they do: a busy page misses some.
+    """
+    before = settled_picture(page)
     for _ in range(AGAIN):
-        act(page)
+        page.mouse.move(SIZE["width"] / 2, SIZE["height"] / 2)
+        page.mouse.down()
+        page.mouse.move(SIZE["width"] / 2 + 160, SIZE["height"] / 2 + 40, steps=8)
+        page.mouse.up()
         page.evaluate(TWENTY_FRAMES)
-        picture = settled_picture(page)
-        if changed(picture):
+        share = float((np.abs(settled_picture(page) - before).max(axis=2) > 30).mean())
+        if share > 0.02:
             break
-    return picture
-
-
-def turn(page) -> None:
-    """Drags the mouse from the middle to the right."""
-    page.mouse.move(SIZE["width"] / 2, SIZE["height"] / 2)
-    page.mouse.down()
-    page.mouse.move(SIZE["width"] / 2 + 160, SIZE["height"] / 2 + 40, steps=8)
-    page.mouse.up()
-
-
-def share_changed(a: np.ndarray, b: np.ndarray) -> float:
-    """Share of the pixels that differ clearly."""
-    return float((np.abs(a - b).max(axis=2) > 30).mean())
+    return share
 
 
 @pytest.mark.browser
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
 def test_a_page_opens_offline_draws_and_can_be_turned(browser, path):
-    page = opened(browser, path.as_uri())
-    before = settled_picture(page)
+    page, errors, requests = browser.new_page(viewport=SIZE), [], []
+    page.set_default_timeout(HANGS_MS)
+    page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("request", lambda request: requests.append(request.url[:100]))
+    page.goto(path.as_uri())
+    settled_picture(page)
     assert page.title()
     if path.stem not in MADE_BY_HAND:
         assert page.title() in page.locator("#help").inner_text()
-        after = picture_after(page, turn, lambda picture: share_changed(picture, before) > 0.02)
-        assert share_changed(after, before) > 0.02
-    assert page.errors == []
-    assert [url for url in page.requests if not url.startswith(("data:", "blob:"))] == [path.as_uri()]
+        assert share_changed_by_a_turn(page) > 0.02
+    assert errors == []
+    assert [url for url in requests if not url.startswith(("data:", "blob:"))] == [path.as_uri()]
     page.close()

@@ -1,4 +1,4 @@
-"""notebooks/README.md: every lesson with its time and its picture, and paths whose times add up."""
+"""notebooks/README.md: every lesson with its time and its picture, paths whose times add up; and the glossary."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from course_lib.lessons.kit.series_pictures import CHOSEN, MAX_BYTES, MAX_SIZE, 
 from course_lib.paths import REPOSITORY, notebook_paths
 
 FOLDER = REPOSITORY / "notebooks"
-README = (FOLDER / "README.md").read_text(encoding="utf-8")
+README, GLOSSARY = ((FOLDER / name).read_text(encoding="utf-8") for name in ("README.md", "GLOSSARY.md"))
+ENTRIES = dict(re.findall(r"^### (.+)\n((?:.+\n?)+)", GLOSSARY, re.M))
 
 
 def minutes_of(number: str) -> int:
@@ -48,6 +49,7 @@ def test_the_times_of_the_paths_add_up():
     assert set(rows[0][1].split(", ") + rows[1][1].split(", ")) < set(rows[2][1].split(", "))
 
 
+@pytest.mark.release
 def test_the_command_makes_the_pictures(tmp_path):
     written = write_pictures(tmp_path / "pictures")
     assert {path.stem for path in written} >= set(CHOSEN)
@@ -56,3 +58,23 @@ def test_the_command_makes_the_pictures(tmp_path):
         with Image.open(path) as picture:
             assert picture.width <= MAX_SIZE[0]
             assert picture.height <= MAX_SIZE[1]
+
+
+def test_terms_are_written_as_their_anchors():
+    assert len(ENTRIES) >= 50
+    assert [term for term in ENTRIES if not re.fullmatch(r"[a-z0-9 -]+", term)] == []
+
+
+@pytest.mark.parametrize("term", ENTRIES)
+def test_an_entry_is_short_and_names_a_lesson_that_exists(term):
+    assert len(ENTRIES[term].split()) <= 60
+    named = {number for group in re.findall(r"Lessons? ([\d and to,]+)\.", ENTRIES[term]) for number in group.split()}
+    numbers = {word for word in named if word.isdigit()}
+    assert numbers
+    assert numbers <= {path.name[:2] for path in notebook_paths()}
+
+
+def test_every_link_to_the_glossary_finds_its_term(lesson):
+    """GitHub and JupyterLab both make a heading's anchor of it: lower case already, spaces become dashes."""
+    links = set(re.findall(r"GLOSSARY\.md#([^)\s]+)\)", lesson.markdown))
+    assert links <= {term.replace(" ", "-") for term in ENTRIES}

@@ -1,8 +1,4 @@
-"""`bench`: its tools are installed once, into their own folder; its table says what was measured and what is missing.
-
-How fast anything is, is no test: the numbers here are made up, and what is measured is measured by the command alone.
-That the table of stored numbers stands in RESULTS.md is tested in tests/test_readme.py.
-"""
+"""`bench`: its tools are installed once, into their own folder; memory is flat. How fast anything is, is no test."""
 
 import json
 import subprocess
@@ -36,9 +32,7 @@ def fake(tmp_path, monkeypatch):
     return calls
 
 
-def test_tools_are_installed_once_into_their_own_folder_and_again_when_their_lock_changes(
-    fake, tmp_path, run_tool, capsys
-):
+def test_tools_are_installed_once_into_their_own_folder_and_anew_with_their_lock(fake, tmp_path, run_tool, capsys):
     words = ["bench", "--quick", "--out", tmp_path / "out"]
     assert run_tool(*words, "--json") == 0
     assert json.loads(capsys.readouterr().out) == json.loads(STORED.read_text())
@@ -54,9 +48,7 @@ def test_tools_are_installed_once_into_their_own_folder_and_again_when_their_loc
         assert "are left out: ERROR: no route to host" in capsys.readouterr().err
 
 
-def test_a_folder_that_is_not_ours_is_left_alone_and_a_recording_without_its_map_is_named(
-    fake, tmp_path, run_tool, capsys
-):
+def test_a_folder_that_is_not_ours_is_left_and_a_recording_without_map_named(fake, tmp_path, run_tool, capsys):
     (tmp_path / "tools").mkdir()
     (tmp_path / "tools" / "thesis.txt").write_text("mine")
     assert run_tool("bench", "--quick", "--out", tmp_path / "out") == 0

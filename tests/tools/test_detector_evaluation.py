@@ -6,12 +6,12 @@ import pytest
 from course_lib.experiments.room_evaluation import Matching
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.recording import TrueObject
+from tools import detector_evaluation
 from tools.detector_evaluation import (
     DetectionScoreError,
     average_precision,
     best_threshold,
     precision_recall_curve,
-    score_detector,
     scores_at,
 )
 
@@ -28,11 +28,11 @@ def test_hits_misses_and_false_alarms_are_counted_and_what_does_not_count_is_lef
     shares = (1.0, 1.0, 0.2)
     things = [TrueObject(k, "sofa", box, box, shares[k]) for k, box in enumerate(boxes)]
     image = np.zeros((640, 1280, 3), np.uint8)
-    found = score_detector(Sees(), [(image, things), (image, things[1:])])
+    found = detector_evaluation.score_detector(Sees(), [(image, things), (image, things[1:])])
     assert found == (2, 3, 1, 1)
     assert (found.precision, found.recall) == (0.5, pytest.approx(1 / 3))
     with pytest.raises(DetectionScoreError, match="no object"):
-        score_detector(Sees(), [(image, [])])
+        detector_evaluation.score_detector(Sees(), [(image, [])])
 
 
 def matching(scores, correct, n_objects):
@@ -48,21 +48,13 @@ def test_the_curve_counts_all_panoramas_together():
 
 def test_detections_of_equal_score_enter_the_curve_together():
     curve = precision_recall_curve([matching([0.7, 0.7], [True, False], 1)])
-    assert curve.threshold.tolist() == [0.7]
-    assert curve.precision.tolist() == [0.5]
+    assert (curve.threshold.tolist(), curve.precision.tolist()) == ([0.7], [0.5])
 
 
-def test_scores_at_a_threshold_keep_detections_of_that_score():
+def test_scores_at_a_threshold_keep_detections_of_that_score_and_above_all_nothing_is_found():
     curve = precision_recall_curve([matching([0.9, 0.6], [True, False], 2)])
-    assert scores_at(curve, 0.9) == (1.0, 0.5)
-    assert scores_at(curve, 0.61) == (1.0, 0.5)
-    assert scores_at(curve, 0.6) == (0.5, 0.5)
-
-
-def test_above_all_scores_nothing_is_found_and_precision_is_undefined():
-    precision, recall = scores_at(precision_recall_curve([matching([0.9], [True], 2)]), 0.95)
-    assert np.isnan(precision)
-    assert recall == 0.0
+    assert [scores_at(curve, limit) for limit in (0.9, 0.61, 0.6)] == [(1.0, 0.5), (1.0, 0.5), (0.5, 0.5)]
+    np.testing.assert_array_equal(scores_at(curve, 0.95), (np.nan, 0.0))
 
 
 def test_the_best_threshold_has_the_largest_f1():

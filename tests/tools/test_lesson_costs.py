@@ -1,7 +1,4 @@
-"""`bench --lessons`: what a kernel takes is seen, its children's too; nothing is stored; the server that it asks for.
-
-How much a lesson takes is no test: small programs that take a known amount are measured here.
-"""
+"""`bench --lessons`: what a kernel and its children take is seen, nothing is stored; the server that it asks for."""
 
 import json
 import subprocess
@@ -16,7 +13,6 @@ from tools import bench_tables, lesson_costs, refresh
 from tools.lesson_costs import Cost
 
 HELD_MB = 300
-LINUX = sys.platform.startswith("linux")
 BURN = "import time\nwhile time.process_time() < 0.5: pass\n"
 WAIT = "import sys\nprint('ready', flush=True)\nsys.stdin.read()\n"
 PROGRAMS = {
@@ -27,26 +23,22 @@ PROGRAMS = {
 PROGRAMS["its child"] = PROGRAMS["its child"].format(repr(PROGRAMS["itself"]))
 
 
-def watched(program: str) -> Cost:
-    """What `program` takes until it prints its first line."""
+@pytest.mark.parametrize("taken", PROGRAMS)
+@pytest.mark.slow
+def test_what_a_process_and_its_children_take_is_seen(taken):
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    with subprocess.Popen([sys.executable, "-c", program], **pipes) as process:
+    with subprocess.Popen([sys.executable, "-c", PROGRAMS[taken]], **pipes) as process:
         with lesson_costs.watched(process.pid, "", costs := []):
             assert process.stdout.readline().strip() == "ready"
         process.stdin.close()
-    return costs[0]
-
-
-@pytest.mark.parametrize("taken", PROGRAMS)
-def test_what_a_process_and_its_children_take_is_seen(taken, monkeypatch):
-    monkeypatch.setattr(lesson_costs, "EVERY_S", 0.1)
-    cost = watched(PROGRAMS[taken])
+    (cost,) = costs
     assert cost.processor_s >= 0.45
     assert cost.peak_mb >= HELD_MB
-    if LINUX:
+    if sys.platform.startswith("linux"):
         assert HELD_MB <= cost.own_mb < cost.peak_mb - 2, "the files of interpreters are not their own"
 
 
+@pytest.mark.slow
 def test_a_notebook_is_measured_and_nothing_is_stored(tmp_path):
     sources = [f"held = bytearray(b'x') * {HELD_MB}_000_000", "open('left behind.txt', 'w').write('x');"]
     path = tmp_path / "99_test.ipynb"

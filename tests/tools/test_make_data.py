@@ -1,19 +1,16 @@
-"""The tools that make data refuse, before any work, what would lose the shipped data or cannot be made."""
+"""`make_data` refuses, before any work, what would lose the shipped data or cannot be made."""
 
 import importlib
 
 import pytest
 
-# Tool -> what makes the data, the shipped seed, what it returns.
+from tools import make_data
+
+# What is made -> where, by what, and what that returns.
 MADE = {
-    "corridor": ("tools.corridor_data", "make_corridor_data", 4, {"measured": {}}),
-    "room": ("course_lib.simulation.room.data", "make_room_data", 4, {"pairs": 40, "objects": 14}),
-    "finale": (
-        "course_lib.simulation.room.finale_data",
-        "make_finale_data",
-        10_001,
-        {"objects": 13, "triangles": 60_000},
-    ),
+    "corridor": ("tools.corridor_data", "make_corridor_data", {"measured": {}}),
+    "room": ("course_lib.simulation.room.data", "make_room_data", {"pairs": 40, "objects": 14}),
+    "finale": ("course_lib.simulation.room.finale_data", "make_finale_data", {"objects": 13, "triangles": 60_000}),
 }
 
 
@@ -21,7 +18,7 @@ MADE = {
 def calls(monkeypatch):
     """The arguments of every call that would have worked for minutes; nothing is made."""
     noted = []
-    for module, function, _, summary in MADE.values():
+    for module, function, summary in MADE.values():
 
         def note(out, seed, summary=summary, **_):
             noted.append((out, seed))
@@ -35,23 +32,23 @@ def calls(monkeypatch):
 def test_another_seed_goes_where_out_says_and_never_in_the_place_of_the_shipped_data(
     name, calls, tmp_path, monkeypatch, run_tool, capsys
 ):
-    shipped = MADE[name][2]
-    assert run_tool(f"make_{name}", "--seed", "7") == 2
+    shipped = make_data.SHIPPED[name][0]
+    assert run_tool("make_data", name, "--seed", "7") == 2
     assert f"(seed {shipped}): give --out FOLDER, or data/{name} would be replaced" in capsys.readouterr().err
-    assert run_tool(f"make_{name}", "--seed", "-1", "--out", tmp_path / "out") == 2
+    assert run_tool("make_data", name, "--seed", "-1", "--out", tmp_path / "out") == 2
     assert calls == []
-    assert run_tool(f"make_{name}", "--seed", "7", "--out", tmp_path / "out") == 0
-    monkeypatch.setattr("tools.shipped_data.DATA", tmp_path)
-    assert run_tool(f"make_{name}") == 0
+    assert run_tool("make_data", name, "--seed", "7", "--out", tmp_path / "out") == 0
+    monkeypatch.setattr(make_data, "DATA", tmp_path)
+    assert run_tool("make_data", name) == 0
     assert calls == [(tmp_path / "out", 7), (tmp_path / name, shipped)]
 
 
-@pytest.mark.parametrize(
-    ("name", "option"),
-    [*((f"make_{name}", "--out") for name in MADE), ("make_training_rooms", "--out"), ("make_projects", "--work")],
-)
+OUT_OF = [*MADE, "training-rooms"]
+
+
+@pytest.mark.parametrize(("name", "option"), [*((name, "--out") for name in OUT_OF), ("projects", "--work")])
 def test_a_file_in_place_of_the_folder_is_named_with_its_option(name, option, calls, tmp_path, run_tool, capsys):
     (tmp_path / "file").write_text("")
-    assert run_tool(name, option, tmp_path / "file") == 2
+    assert run_tool("make_data", name, option, tmp_path / "file") == 2
     assert f"error: {option} {tmp_path / 'file'} is a file" in capsys.readouterr().err
     assert calls == []

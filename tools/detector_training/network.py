@@ -1,19 +1,24 @@
-"""A Darknet cfg as a PyTorch module: one file describes the network that is trained and the one that OpenCV runs."""
+"""A Darknet cfg as a PyTorch module, so that one file describes what is trained and what OpenCV runs; its weights."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
+import numpy as np
 import torch
 from torch import nn
 
-from course_lib.spherical_stereo.detection.darknet import DetectorError, Section, layer_channels
+from course_lib.files import atomic_write
+from course_lib.spherical_stereo.detection import darknet
+from course_lib.spherical_stereo.detection.darknet import DetectorError, Section
 
 BATCH_NORM_EPSILON = 1e-6  # as Darknet and OpenCV: PyTorch's own 1e-5 moves the outputs by 2e-3
 BATCH_NORM_MOMENTUM = 0.03  # share that a step gives to the running statistics; trainings are a few thousand steps
 LEAKY_SLOPE = 0.1
 PRIOR_OBJECTNESS = 0.01  # of an untrained box: else the first hundred steps learn that most boxes are background
 MAX_LOG_SCALE = 4.0  # more is no furniture, only overflow at the start of a training
+WEIGHTS_VERSION = (0, 2, 5)
 
 
 @dataclass(frozen=True)
@@ -28,10 +33,7 @@ class YoloHead:
 
 
 class TrainableNetwork(nn.Module):
-    """The layers of a cfg in order; `forward` gives the raw map of every `[yolo]` section.
-
-    Raises `DetectorError` for a section or an option that the training cannot build.
-    """
+    """The layers of a cfg in order; `DetectorError` for a section or an option that the training cannot build."""
 
     def __init__(self, sections: list[Section], generator: torch.Generator | None = None):
         super().__init__()
@@ -39,7 +41,7 @@ class TrainableNetwork(nn.Module):
         self.sections = sections
         self.heads: list[YoloHead] = []
         layers: list[nn.Module] = []
-        for section, (incoming, _) in zip(sections[1:], layer_channels(sections), strict=True):
+        for section, (incoming, _) in zip(sections[1:], darknet.layer_channels(sections), strict=True):
             layers.append(_build(section, incoming, generator))
             if section.kind == "yolo":
                 self.heads.append(yolo_head(section))
@@ -101,9 +103,8 @@ def decode_boxes(raw: torch.Tensor, head: YoloHead, stride: float) -> torch.Tens
     rows, columns = raw.shape[-2:]
     t = raw[:, :, :4].float()
     shift = (head.scale_xy - 1.0) / 2.0
-    column = torch.arange(columns, device=raw.device)
-    row = torch.arange(rows, device=raw.device)[:, None]
-    anchors = head.anchors.to(raw.device).view(1, -1, 2, 1, 1)
+    column, row = torch.arange(columns), torch.arange(rows)[:, None]
+    anchors = head.anchors.view(1, -1, 2, 1, 1)
     u = stride * (column + head.scale_xy * torch.sigmoid(t[:, :, 0]) - shift)
     v = stride * (row + head.scale_xy * torch.sigmoid(t[:, :, 1]) - shift)
     size = anchors * torch.exp(t[:, :, 2:4].clamp(max=MAX_LOG_SCALE))
@@ -122,10 +123,7 @@ def _build(section: Section, incoming: int, generator: torch.Generator) -> nn.Mo
         return nn.Upsample(scale_factor=section.integer("stride", 2), mode="nearest")
     if section.kind in ("route", "yolo"):  # `forward` does what they say
         return nn.Identity()
-    raise DetectorError(
-        f"the training cannot build [{section.kind}] (line {section.line}); it knows convolutional, maxpool, upsample, "
-        "route and yolo"
-    )
+    raise DetectorError(f"the training cannot build [{section.kind}] (line {section.line})")
 
 
 def _start_from_prior(convolution: nn.Conv2d, head: YoloHead, generator: torch.Generator) -> None:
@@ -151,11 +149,50 @@ def _convolution(section: Section, incoming: int, generator: torch.Generator) ->
     if activation == "leaky":
         parts.append(nn.LeakyReLU(LEAKY_SLOPE, inplace=True))
     elif activation != "linear":
-        raise DetectorError(
-            f"[convolutional] at line {section.line}: activation={activation} is not known; use leaky or linear"
-        )
+        raise DetectorError(f"line {section.line}: activation={activation} is not known; use leaky or linear")
     return nn.Sequential(*parts)
 
 
 def _sources(section: Section, index: int) -> list[int]:
     return [source if source >= 0 else index + source for source in section.integers("layers")]
+
+
+def write_weights(network: TrainableNetwork, path: str | Path, images_seen: int = 0) -> Path:
+    """Write the network's weights as a Darknet file that OpenCV reads; return its path.
+
+    The file: major, minor, revision (int32) = 0, 2, 5; images seen (int64); then for each convolution, in order, as
+    float32: with batch normalization beta, gamma, running mean, running variance, without it the bias; then the kernel.
+    """
+    path = Path(path)
+    tensors = [tensor.detach().numpy().astype("<f4") for tensor in _tensors_in_file_order(network)]
+    parts = [np.array(WEIGHTS_VERSION, "<i4"), np.array([images_seen], "<i8"), *tensors]
+    atomic_write(path, b"".join(part.tobytes() for part in parts))
+    return path
+
+
+@torch.no_grad()
+def read_weights(network: TrainableNetwork, path: str | Path) -> int:
+    """Put the weights of a Darknet file into the network; return the images it has seen. Raises `DetectorError`."""
+    darknet.check_weights(network.sections, path)
+    data = Path(path).read_bytes()
+    start = darknet.header_bytes(data[:12])
+    images_seen = int(np.frombuffer(data[12:start], "<i8" if start == 20 else "<i4")[0])
+    values = torch.from_numpy(np.frombuffer(data[start:], "<f4").copy())
+    for tensor in _tensors_in_file_order(network):
+        count = tensor.numel()
+        tensor.copy_(values[:count].view(tensor.shape))
+        values = values[count:]
+    return images_seen
+
+
+def _tensors_in_file_order(network: TrainableNetwork):
+    for layer in network.layers:
+        if not (isinstance(layer, nn.Sequential) and isinstance(layer[0], nn.Conv2d)):
+            continue
+        convolution = layer[0]
+        if convolution.bias is None:
+            normalization = layer[1]
+            yield from (normalization.bias, normalization.weight, normalization.running_mean, normalization.running_var)
+        else:
+            yield convolution.bias
+        yield convolution.weight

@@ -67,7 +67,7 @@ class Position:
 
 @dataclass
 class TrainingState:
-    """Everything that a training needs to go on."""
+    """All that a training needs to go on."""
 
     network: nn.Module
     average: AveragedNetwork
@@ -88,19 +88,14 @@ class TrainingState:
         atomic_write(folder / FILE, packed.getvalue())
 
     def load(self, folder: Path) -> None:
-        """Go on from the checkpoint of `folder`.
-
-        Raises `CheckpointError` if there is none, or if it is of another cfg or of a training with another seed.
-        """
+        """Go on from the checkpoint of `folder`. Raises `CheckpointError` for none, another cfg's, another seed's."""
         path = folder / FILE
         if not path.is_file():
             raise CheckpointError(f"{path} is missing, so there is nothing to go on from: leave --resume out")
         content = torch.load(path, map_location="cpu", weights_only=True)
-        position = Position(**content["position"])
-        if position.seed != self.position.seed:
-            raise CheckpointError(
-                f"{path} is of a training with seed {position.seed}, not {self.position.seed}: give that --seed"
-            )
+        position, seed = Position(**content["position"]), self.position.seed
+        if position.seed != seed:
+            raise CheckpointError(f"{path} is of a training with seed {position.seed}, not {seed}: give that --seed")
         try:
             self.network.load_state_dict(content["network"])
             self.average.network.load_state_dict(content["average"])

@@ -1,30 +1,32 @@
-"""The training loop: steps, schedule, checkpoints, validation between epochs, and the Darknet weights at the end."""
+"""The training loop: batches, steps, schedule, checkpoints, validation between epochs, and the Darknet weights.
+
+Every sample has a generator of its own, seeded by (seed, epoch, place in the epoch): a stopped training goes on alike.
+"""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import torch
 
 from course_lib.files import temporary_folder
 from course_lib.simulation.room.training_images import read_image_list
 from course_lib.spherical_stereo.detection.darknet import check_names, class_count, read_cfg, read_names
-from tools.detector_evaluation import DetectionScoreError
+from tools.detector_evaluation import DetectionScoreError, Validation, measure_detector
 from tools.detector_training import workers
-from tools.detector_training.augmentation import AugmentationRanges
-from tools.detector_training.batches import Batch, epoch_batches
-from tools.detector_training.export import read_weights, write_weights
-from tools.detector_training.images import TrainingDataError, read_panoramas
-from tools.detector_training.loss import Loss, yolo_loss
-from tools.detector_training.network import TrainableNetwork
+from tools.detector_training.images import AugmentationRanges, TrainingDataError, augmented_sample, read_panoramas
+from tools.detector_training.loss import Loss, Targets, make_targets, yolo_loss
+from tools.detector_training.network import TrainableNetwork, read_weights, write_weights
 from tools.detector_training.state import AveragedNetwork, Position, TrainingState, learning_rate
-from tools.detector_training.validation import Validation, every_nth, measure_detector
 
-# Gradients longer than this are shortened: one odd batch must not undo the ones before.
-MAX_GRADIENT = 10.0
+MAX_GRADIENT = 10.0  # longer ones are shortened: one odd batch must not undo the ones before
+BATCHES_AHEAD = 4  # made while the training works: enough to bridge a slow one, little memory
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,13 @@ def train(
     """
     plan = plan or TrainingPlan()
     check_names(class_count(read_cfg(cfg)), read_names(names_file), names_file)
-    check_plan(plan)
+    if len(plan.window) != 2 or any(size < 32 or size % 32 for size in plan.window):  # 32: the largest stride
+        raise TrainingDataError(f"the window must be two multiples of 32 pixels (width, height); got {plan.window}")
+    if plan.processes < 1 or plan.batch_size < 2 * plan.processes:
+        raise TrainingDataError(
+            f"batches of {plan.batch_size} for {plan.processes} processes: batch normalization needs at least two "
+            "images in each process"
+        )
     output.mkdir(parents=True, exist_ok=True)
     given = (cfg, names_file, images, validation_images, output, plan, resume, initial_weights, ranges)
     if plan.processes == 1:
@@ -94,17 +102,6 @@ def train(
             for process in others:
                 process.join(timeout=10)
                 process.terminate()
-
-
-def check_plan(plan: TrainingPlan) -> None:
-    """Raises `TrainingDataError` for a window that is not multiples of 32 (the largest stride) or too small a batch."""
-    if len(plan.window) != 2 or any(size < 32 or size % 32 for size in plan.window):
-        raise TrainingDataError(f"the window must be two multiples of 32 pixels (width, height); got {plan.window}")
-    if plan.processes < 1 or plan.batch_size < 2 * plan.processes:
-        raise TrainingDataError(
-            f"batches of {plan.batch_size} for {plan.processes} processes: batch normalization needs at least two "
-            "images in each process"
-        )
 
 
 def _silent(text: str) -> None:
@@ -124,7 +121,8 @@ def _train(
     names = read_names(names_file)
     training = read_panoramas(images, names, plan.panorama_width, (rank, count))
     validating = read_panoramas(validation_images, names, plan.panorama_width) if rank == 0 else []
-    validating = every_nth(validating, plan.validation_images)
+    spread = np.linspace(0, len(validating) - 1, min(plan.validation_images, len(validating)))  # the same every time
+    validating = [validating[index] for index in np.unique(spread.round().astype(int))]
     network = TrainableNetwork(read_cfg(cfg), torch.Generator().manual_seed(plan.seed))
     if initial_weights is not None:
         read_weights(network, initial_weights)
@@ -133,8 +131,7 @@ def _train(
     if resume:
         state.load(output)
         log(f"going on after epoch {state.position.epoch}, {state.position.seconds / 60:.1f} minutes")
-    average, position = state.average.network, state.position
-    path = output / (Path(cfg).stem + ".weights")
+    average, position, path = state.average.network, state.position, output / (Path(cfg).stem + ".weights")
     last_validation, validated_at, saved_at, rate = None, position.seconds, position.seconds, 0.0
     started = time.monotonic() - position.seconds
     while not _finished(plan, position):
@@ -148,8 +145,13 @@ def _train(
             saved_at = position.seconds
         if rank == 0 and (over or position.seconds - validated_at > 60 * plan.minutes_between_validations):
             write_weights(average, path, position.images_seen)
-            last_validation = _validation(cfg, path, names_file, validating, log)
             validated_at = position.seconds
+            try:
+                last_validation = measure_detector(cfg, path, names_file, validating)
+                log(f"validation: {last_validation.line()}")
+            except DetectionScoreError as error:
+                last_validation = None
+                log(f"validation: {error}")
     return TrainingResult(path, position, last_validation, rate)
 
 
@@ -159,20 +161,21 @@ def _run_epoch(state, started, training, plan, ranges, progress) -> tuple[float,
     position, size = state.position, plan.batch_size // count
     n_steps = workers.least(max(1, len(training) // size))
     # Each process draws its own samples, as if it trained with a seed of its own.
-    batches = epoch_batches(training, size, plan.window, plan.seed + 1_000_003 * rank, position.epoch, n_steps, ranges)
+    seed = plan.seed + 1_000_003 * rank
+    batches = epoch_batches(training, size, plan, seed, position.epoch, n_steps, ranges)
     losses, begun = [], time.monotonic()
-    for batch in progress(batches, n_steps):
+    for images, targets in progress(batches, n_steps):
         position.seconds = workers.agree(time.monotonic() - started)
         if plan.minutes is not None and position.seconds >= 60 * plan.minutes:
             break
         share = _share_done(plan, position, n_steps)
         for group in state.optimiser.param_groups:
             group["lr"] = learning_rate(plan.learning_rate, position.step, plan.warm_up_steps, share)
-        loss = _training_step(state.network, state.optimiser, batch, plan.bfloat16)
+        loss = _training_step(state, images, targets, plan.bfloat16)
         state.average.update(state.network)
         losses.append((loss.total.item(), loss.box, loss.objectness, loss.classes))
         position.step += 1
-        position.images_seen += len(batch.images) * count
+        position.images_seen += len(images) * count
     position.epoch += 1
     if not losses:
         return 0.0, "out of time"
@@ -182,17 +185,46 @@ def _run_epoch(state, started, training, plan, ranges, progress) -> tuple[float,
     return rate, text + f"loss {total:.3f} (box {box:.3f}, objectness {objectness:.3f}, class {classes:.3f})"
 
 
-def _training_step(network: TrainableNetwork, optimiser: torch.optim.Optimizer, batch: Batch, bfloat16: bool) -> Loss:
+def epoch_batches(
+    panoramas: list, size: int, plan: TrainingPlan, seed: int, epoch: int, n_batches: int, ranges
+) -> Iterator[tuple[torch.Tensor, Targets]]:
+    """The first batches of one epoch, made in a thread beside the training: images (b, 3, h, w), and their objects.
+
+    Images are RGB in [0, 1], channels last in memory. What is left over of the panoramas is left out.
+    """
+    order = np.random.default_rng([seed, epoch]).permutation(len(panoramas))
+
+    def batch(number: int) -> tuple[torch.Tensor, Targets]:
+        samples = [
+            augmented_sample(panoramas[int(order[k])], plan.window, np.random.default_rng([seed, epoch, k]), ranges)
+            for k in range(number * size, min((number + 1) * size, len(order)))
+        ]
+        targets = make_targets([(sample.labels, sample.boxes, sample.ignored) for sample in samples])
+        images = torch.from_numpy(np.stack([sample.image for sample in samples])[..., ::-1].copy())
+        return images.permute(0, 3, 1, 2).to(torch.float32).div_(255.0), targets
+
+    maker = ThreadPoolExecutor(1)
+    waiting = deque(maker.submit(batch, number) for number in range(min(BATCHES_AHEAD, n_batches)))
+    try:
+        for following in range(BATCHES_AHEAD, BATCHES_AHEAD + n_batches):
+            made = waiting.popleft().result()
+            if following < n_batches:
+                waiting.append(maker.submit(batch, following))
+            yield made
+    finally:
+        maker.shutdown(cancel_futures=True)
+
+
+def _training_step(state: TrainingState, images: torch.Tensor, targets: Targets, bfloat16: bool) -> Loss:
     """One step of the optimiser on a batch, the gradients averaged with the other processes'; the loss before it."""
-    images = batch.images.contiguous(memory_format=torch.channels_last)
     with torch.autocast("cpu", torch.bfloat16, enabled=bfloat16):
-        outputs = network(images)
-    loss = yolo_loss(outputs, network.heads, batch.targets, images.shape[-1])
-    optimiser.zero_grad(set_to_none=True)
+        outputs = state.network(images.contiguous(memory_format=torch.channels_last))
+    loss = yolo_loss(outputs, state.network.heads, targets, images.shape[-1])
+    state.optimiser.zero_grad(set_to_none=True)
     loss.total.backward()
-    workers.average_gradients(network)
-    torch.nn.utils.clip_grad_norm_(network.parameters(), MAX_GRADIENT)
-    optimiser.step()
+    workers.average_gradients(state.network)
+    torch.nn.utils.clip_grad_norm_(state.network.parameters(), MAX_GRADIENT)
+    state.optimiser.step()
     return loss
 
 
@@ -214,13 +246,3 @@ def _optimiser(network: TrainableNetwork, plan: TrainingPlan) -> torch.optim.Opt
     others = [p for p in network.parameters() if p.ndim == 1]
     groups = [{"params": kernels, "weight_decay": plan.weight_decay}, {"params": others, "weight_decay": 0.0}]
     return torch.optim.AdamW(groups, lr=plan.learning_rate)
-
-
-def _validation(cfg, weights, names_file, panoramas, log) -> Validation | None:
-    try:
-        result = measure_detector(cfg, weights, names_file, panoramas)
-    except DetectionScoreError as error:
-        log(f"validation: {error}")
-        return None
-    log(f"validation: {result.line()}")
-    return result

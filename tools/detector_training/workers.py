@@ -35,10 +35,7 @@ def leave_others() -> None:
 
 
 def start_others(count: int, meeting_file: Path, work: Callable, arguments: tuple) -> list:
-    """Start processes 1 .. count - 1, each running work(*arguments) with the others; return them.
-
-    PyTorch lets them end with this process, however it ends (on Linux).
-    """
+    """Start processes 1 .. count - 1, each running work(*arguments) with the others, which end with this process."""
     given = (count, meeting_file, work, arguments)
     return torch.multiprocessing.start_processes(_work, given, count - 1, join=False, daemon=True).processes
 

@@ -62,7 +62,7 @@ def view_camera() -> DepthCamera:
 
 
 def shipped_numbers() -> dict:
-    """What was measured on the corridor's map when it was made (`.venv/bin/python -m tools.make_corridor`)."""
+    """What was measured on the corridor's map when it was made (`.venv/bin/python -m tools.make_data corridor`)."""
     return json.loads(data_path("corridor/summary.json").read_text(encoding="utf-8"))["measured"]["map"]
 
 

@@ -1,7 +1,7 @@
 """The rooms of projects P2 and P3: what two spherical cameras saw in each, once detected, and where they stood.
 
-`tools.make_projects` makes them once. P2 starts at the boxes of both images, P3 at the observations that sections 2.2
-to 2.4 make of them. Students work on the practice rooms; the hidden rooms are for the score alone.
+`tools.make_data projects` makes them once. P2 starts at the boxes of both images, P3 at the observations that sections
+2.2 to 2.4 make of them. Students work on the practice rooms; the hidden rooms are for the score alone.
 """
 
 from __future__ import annotations

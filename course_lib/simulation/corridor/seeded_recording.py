@@ -50,12 +50,12 @@ class SeedModels:
 
 
 def building_of_data(folder: str | Path) -> Building:
-    """The building whose map lies in a folder that `tools.make_corridor` made: its seed is in summary.json."""
+    """The building whose map lies in a folder that `tools.make_data corridor` made: its seed is in summary.json."""
     path = Path(folder) / "summary.json"
     if not path.is_file():
         raise FileNotFoundError(
             f"no summary.json in {folder}: a recording needs the seed of the building whose map is there. "
-            "Make the folder with python -m tools.make_corridor, or use --recording shipped"
+            "Make the folder with python -m tools.make_data corridor, or use --recording shipped"
         )
     # The first stream of the seed is the building's (tools/corridor_data.py).
     return draw_building(np.random.default_rng(json.loads(path.read_text(encoding="utf-8"))["seed"]).spawn(1)[0])

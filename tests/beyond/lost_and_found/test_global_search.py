@@ -29,6 +29,7 @@ def searched(search, renderer, states, gravity=down):
     return [search.step(renderer.render(state)[0], gravity(state)) for state in states]
 
 
+@pytest.mark.slow
 def test_the_camera_is_found_from_nowhere(renderer):
     states = walk(ELSEWHERE, 6)
     answers = searched(GlobalSearch(renderer, seed=1, least=200, most=1_500), renderer, states)

@@ -38,6 +38,7 @@ def images(sequence):
     return np.stack([sequence.depth(i) for i in range(len(sequence))])
 
 
+@pytest.mark.slow
 def test_the_building_is_the_shipped_one(building, corridor_folder):
     shipped = SceneMap.load(corridor_folder / "true_world.ply").vertices
     mine, _ = run_day(building, [0.0] * 7, [])
@@ -45,6 +46,7 @@ def test_the_building_is_the_shipped_one(building, corridor_folder):
     assert np.mean([tuple(vertex) in found for vertex in np.round(mine.vertices, 3).tolist()]) > 0.9
 
 
+@pytest.mark.slow
 def test_a_seed_gives_one_recording_and_another_seed_another(record, plain):
     again, other = record(10_010), record(10_011)
     assert np.array_equal(images(again), images(plain), equal_nan=True)
@@ -54,6 +56,7 @@ def test_a_seed_gives_one_recording_and_another_seed_another(record, plain):
 
 
 @pytest.mark.parametrize("hardship", [h for h in HARDSHIPS if h != "pushed by hand"])
+@pytest.mark.slow
 def test_an_error_of_the_camera_changes_the_images_and_not_what_is_told(hardship, record, plain):
     harder = record(10_010, (hardship,))
     assert not np.array_equal(images(harder), images(plain), equal_nan=True)

@@ -42,6 +42,7 @@ def test_the_seed_decides_the_world(world):
     assert not np.array_equal(world.run_day.vertices, other.run_day.vertices)
 
 
+@pytest.mark.slow
 def test_doors_and_things_differ_from_day_to_day_and_from_the_survey(world, building):
     days = [scene_change(building, DayModel(), np.random.default_rng(seed)) for seed in (10_000, 10_001, 10_002)]
     for (one, boxes), (other, others) in itertools.combinations([(world.survey_day, None), *days], 2):

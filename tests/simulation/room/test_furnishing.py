@@ -40,6 +40,7 @@ def bytes_of(room) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.slow
 def test_the_same_seed_makes_the_same_bytes(rooms, training_rooms, experiment):
     assert bytes_of(make_room(3)) == bytes_of(training_rooms[0]) != bytes_of(training_rooms[1])
     assert bytes_of(make_experiment_room()) == bytes_of(experiment)

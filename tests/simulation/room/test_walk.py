@@ -45,12 +45,14 @@ def test_all_six_degrees_of_freedom_move_and_none_jumps(walk):
     assert heading > 1.0
 
 
+@pytest.mark.slow
 def test_where_nobody_can_walk_it_says_so():
     room = make_look_alike_room(SEEDS[0])
     with pytest.raises(NoFreePlace, match="no walk of 120 frames"):
         walk_states(room, WalkModel(shortest_stretch=50.0), np.random.default_rng(1))
 
 
+@pytest.mark.slow
 def test_a_recording_is_what_a_user_would_have_and_its_seed_decides_every_byte(tmp_path):
     coarse = DepthSurveyModel(
         scanner=ScannerModel(step_deg=1.5), fusion=FusionModel(voxel=0.08, truncation=0.24, triangles=4000)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tests.tools.detector_training.toy_panoramas import CLASSES, write_toy_folder
-from tools.detector_training.augmentation import augmented_sample, panorama_window
-from tools.detector_training.images import LabelledPanorama, TrainingDataError, labelled_panorama, read_panoramas
+from tools.detector_training import images
+from tools.detector_training.images import LabelledPanorama, TrainingDataError, panorama_window, read_panoramas
 
 NAMES = list(CLASSES)
 WIDTH, HEIGHT = 256, 128
@@ -48,7 +48,8 @@ def test_an_object_cut_to_less_than_two_fifths_is_ignored(roll, ignored):
 
 def test_one_seed_gives_one_sample_and_another_seed_another():
     panorama = painted([30, 50, 70, 90])
-    first, second, third = (augmented_sample(panorama, (256, 96), np.random.default_rng(seed)) for seed in (1, 1, 2))
+    rngs = map(np.random.default_rng, (1, 1, 2))
+    first, second, third = (images.augmented_sample(panorama, (256, 96), rng) for rng in rngs)
     np.testing.assert_array_equal(first.image, second.image)
     np.testing.assert_array_equal(first.boxes, second.boxes)
     assert not np.array_equal(first.image, third.image)
@@ -65,22 +66,17 @@ def test_small_or_hidden_objects_are_ignored_unknown_labels_left_out_and_boxes_s
         thing([200, 100, 250, 180], fraction=0.49),
         thing([300, 100, 350, 180], label="lamp"),
     ]
-    panorama = labelled_panorama({"objects": objects}, np.zeros((640, 1280, 3), np.uint8), NAMES, 1024)
+    panorama = images.labelled_panorama({"objects": objects}, np.zeros((640, 1280, 3), np.uint8), NAMES, 1024)
     assert panorama.ignored.tolist() == [False, True, True]
     assert panorama.image.shape == (512, 1024, 3)
     np.testing.assert_allclose(panorama.boxes[0], [80, 160, 1040, 240])
 
 
-def test_the_parts_of_several_processes_make_up_the_folders(tmp_path):
+def test_the_parts_of_several_processes_make_up_the_folders_and_one_without_an_image_is_named(tmp_path):
     folders = [write_toy_folder(tmp_path / name, 5, width=64) for name in "ab"]
     parts = [read_panoramas(folders, NAMES, 64, (k, 2)) for k in (0, 1)]
     assert sorted(map(len, parts)) == [4, 6]
-    assert len({panorama.image.tobytes() for part in parts for panorama in part}) == 5, (
-        "both folders hold the same five"
-    )
-
-
-def test_a_folder_without_an_image_is_named(tmp_path):
+    assert len({panorama.image.tobytes() for part in parts for panorama in part}) == 5, "both hold the same five"
     (tmp_path / "boxes.json").write_text('{"version": 1, "images": []}')
     with pytest.raises(TrainingDataError, match="no image that is there"):
         read_panoramas([tmp_path], NAMES)

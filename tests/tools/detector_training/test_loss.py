@@ -5,8 +5,7 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="PyTorch, which only the training of the detector needs, is not installed")
 
-from tools.detector_training.assignment import assign, make_targets  # noqa: E402
-from tools.detector_training.loss import complete_iou, yolo_loss  # noqa: E402
+from tools.detector_training.loss import assign, complete_iou, make_targets, yolo_loss  # noqa: E402
 from tools.detector_training.network import YoloHead  # noqa: E402
 
 WIDTH, ROWS, COLUMNS, STRIDE, CLASSES = 160, 4, 10, 16.0, 7

@@ -8,20 +8,15 @@ torch = pytest.importorskip("torch", reason="PyTorch, which only the training of
 
 from course_lib.spherical_stereo.detection.darknet import DetectorError, parse_cfg, read_cfg  # noqa: E402
 from tests.tools.detector_training.toy_panoramas import ROOM_CFG, TINY_CFG  # noqa: E402
-from tools.detector_training.export import write_weights  # noqa: E402
-from tools.detector_training.network import TrainableNetwork, decode_boxes  # noqa: E402
+from tools.detector_training.network import TrainableNetwork, decode_boxes, write_weights  # noqa: E402
 
 
-def decode(outputs, heads, input_width):
-    """All boxes (n, 5 + classes) of the first image as OpenCV gives them: class scores include the objectness."""
-    parts = []
-    for raw, head in zip(outputs, heads, strict=True):
-        boxes = decode_boxes(raw, head, input_width / raw.shape[-1])
-        chance = torch.sigmoid(raw[:, :, 4:]).permute(0, 1, 3, 4, 2)
-        objectness = chance[..., :1]
-        table = torch.cat([boxes, objectness, objectness * chance[..., 1:]], dim=-1)
-        parts.append(table.permute(0, 2, 3, 1, 4).reshape(-1, table.shape[-1]))
-    return torch.cat(parts)
+def decode(raw, head, input_width):
+    """All boxes (n, 5 + classes) of a map's first image as OpenCV gives them: class scores include the objectness."""
+    boxes = decode_boxes(raw, head, input_width / raw.shape[-1])
+    objectness, classes = torch.sigmoid(raw[:, :, 4:]).permute(0, 1, 3, 4, 2).tensor_split([1], dim=-1)
+    table = torch.cat([boxes, objectness, objectness * classes], dim=-1)
+    return table.permute(0, 2, 3, 1, 4).reshape(-1, table.shape[-1])
 
 
 def randomized(network, seed=0):
@@ -36,16 +31,6 @@ def randomized(network, seed=0):
     return network.eval()
 
 
-def outputs_of_both(cfg, network, weights, images):
-    with torch.no_grad():
-        width = images.shape[-1]
-        ours = decode(network(torch.from_numpy(images)), network.heads, width).numpy()
-    net = cv2.dnn.readNetFromDarknet(str(cfg), str(weights))
-    net.setInput(images)
-    theirs = np.concatenate(net.forward(net.getUnconnectedOutLayersNames()))
-    return ours, theirs * np.array([width, images.shape[-2]] * 2 + [1] * (theirs.shape[1] - 4), np.float32)
-
-
 @pytest.mark.parametrize("which", ["room", "tiny"])
 def test_pytorch_and_opencv_compute_the_same_boxes_and_scores(which, tmp_path):
     cfg = tmp_path / "net.cfg"
@@ -55,17 +40,26 @@ def test_pytorch_and_opencv_compute_the_same_boxes_and_scores(which, tmp_path):
     weights = write_weights(network, tmp_path / "a.weights")
     shape = (1, 3, sections[0].integer("height"), sections[0].integer("width"))
     images = np.random.default_rng(1).random(shape, dtype=np.float32)
-    ours, theirs = outputs_of_both(cfg, network, weights, images)
+    with torch.no_grad():
+        raws = network(torch.from_numpy(images))
+    ours = torch.cat([decode(*one, shape[-1]) for one in zip(raws, network.heads, strict=True)]).numpy()
+    net = cv2.dnn.readNetFromDarknet(str(cfg), str(weights))
+    net.setInput(images)
+    theirs = np.concatenate(net.forward(net.getUnconnectedOutLayersNames()))
+    theirs[:, :4] *= np.array([shape[-1], shape[-2]] * 2, np.float32)
     assert ours[:, 4].std() > 1e-4, "a network that sees nothing would prove nothing"
     np.testing.assert_allclose(ours, theirs, atol=1e-3)
 
 
-def test_sections_that_cannot_be_trained_are_named():
-    with pytest.raises(DetectorError, match=r"cannot build \[reorg\]"):
-        TrainableNetwork(parse_cfg(TINY_CFG.replace("[yolo]", "[reorg]\nstride=2\n[yolo]")))
-    with pytest.raises(DetectorError, match="mish is not known"):
-        TrainableNetwork(parse_cfg(TINY_CFG.replace("leaky", "mish")))
-    with pytest.raises(DetectorError, match=r"no \[yolo\]"):
-        TrainableNetwork(parse_cfg(TINY_CFG.split("[yolo]")[0]))
-    with pytest.raises(DetectorError, match="does not choose from"):
-        TrainableNetwork(parse_cfg(TINY_CFG.replace("mask=0,1,2", "mask=0,1,3")))
+@pytest.mark.parametrize(
+    ("cfg", "said"),
+    [
+        (TINY_CFG.replace("[yolo]", "[reorg]\nstride=2\n[yolo]"), r"cannot build \[reorg\]"),
+        (TINY_CFG.replace("leaky", "mish"), "mish is not known"),
+        (TINY_CFG.split("[yolo]")[0], r"no \[yolo\]"),
+        (TINY_CFG.replace("mask=0,1,2", "mask=0,1,3"), "does not choose from"),
+    ],
+)
+def test_sections_that_cannot_be_trained_are_named(cfg, said):
+    with pytest.raises(DetectorError, match=said):
+        TrainableNetwork(parse_cfg(cfg))

@@ -10,48 +10,29 @@ ROOM_CFG = Path(__file__).parents[3] / "data" / "detector" / "room_yolo.cfg"
 ROOM_NAMES = ROOM_CFG.with_suffix(".names")
 
 
-def convolution(filters, stride, size=3, normalize=1, activation="leaky"):
-    return f"""
-[convolutional]
-batch_normalize={normalize}
-filters={filters}
-size={size}
-stride={stride}
-pad=1
-activation={activation}
-"""
+def cfg(*sections):
+    """A Darknet file of sections, each written as "kind option=value option=value"."""
+    return "".join(f"[{words[0]}]\n" + "\n".join(words[1:]) + "\n" for words in map(str.split, sections))
+
+
+def convolution(filters, stride):
+    return f"convolutional batch_normalize=1 filters={filters} size=3 stride={stride} pad=1 activation=leaky"
 
 
 # A network with every kind of section that the training knows, for panoramas 256 columns wide.
-TINY_CFG = f"""
-[net]
-width=320
-height=128
-channels=3
-{convolution(12, 2)}{convolution(24, 2)}{convolution(32, 2)}
-[route]
-layers=-1
-groups=2
-group_id=1
-{convolution(32, 2)}
-[maxpool]
-size=5
-stride=1
-[route]
-layers=-1,-2
-[upsample]
-stride=2
-[route]
-layers=-1,2
-{convolution(48, 1)}{convolution(36, 1, size=1, normalize=0, activation="linear")}
-[yolo]
-mask=0,1,2
-anchors=12,18, 24,16, 20,32
-classes=7
-num=3
-scale_x_y=2.0
-thresh=0.0001
-"""
+TINY_CFG = cfg(
+    "net width=320 height=128 channels=3",
+    *(convolution(filters, 2) for filters in (12, 24, 32)),
+    "route layers=-1 groups=2 group_id=1",
+    convolution(32, 2),
+    "maxpool size=5 stride=1",
+    "route layers=-1,-2",
+    "upsample stride=2",
+    "route layers=-1,2",
+    convolution(48, 1),
+    "convolutional batch_normalize=0 filters=36 size=1 stride=1 pad=1 activation=linear",
+    "yolo mask=0,1,2 anchors=12,18,24,16,20,32 classes=7 num=3 scale_x_y=2.0 thresh=0.0001",
+)
 
 # Blue, green, red of each class, and the size (width, height) of its boxes at a width of 1280.
 CLASSES = {
@@ -65,13 +46,12 @@ CLASSES = {
 }
 
 
-def write_toy_folder(folder, n_images, seed=0, width=1280, objects=6):
+def write_toy_folder(folder, n_images, width):
     """A folder with boxes.json and `n_images` JPEG panoramas; objects may cross the seam."""
     folder.mkdir(parents=True)
-    rng = np.random.default_rng(seed)
-    entries = []
+    rng, entries = np.random.default_rng(0), []
     for number in range(n_images):
-        image, boxes = toy_panorama(rng, width, objects)
+        image, boxes = toy_panorama(rng, width)
         name = f"{number:06d}.jpg"
         cv2.imwrite(str(folder / name), image, [cv2.IMWRITE_JPEG_QUALITY, 92])
         entries.append({"file": name, "room_seed": number, "width": width, "height": width // 2, "objects": boxes})
@@ -79,17 +59,17 @@ def write_toy_folder(folder, n_images, seed=0, width=1280, objects=6):
     return folder
 
 
-def toy_panorama(rng, width, objects):
+def toy_panorama(rng, width, objects=6):
     height, scale = width // 2, width / 1280
     image = np.full((height, width, 3), rng.integers(110, 200, 3), np.uint8)
     image[int(0.6 * height) :] = rng.integers(60, 140, 3)
-    entries = []
     # One object to each slot of the circle, so that none hides another.
     starts = (np.arange(objects) + rng.uniform(0, 0.15, objects)) * width / objects + rng.uniform(0, width)
+    entries = []
     for start in starts:
         label = list(CLASSES)[rng.integers(len(CLASSES))]
         colour, size = CLASSES[label]
-        factor = rng.uniform(0.6, 1.05) * scale * min(1.0, 6 / objects)
+        factor = rng.uniform(0.6, 1.05) * scale
         w, h = int(size[0] * factor), int(size[1] * factor)
         u, v = int(start) % width, int(rng.uniform(0.42, 0.6) * height)
         patch = np.full((h, w, 3), colour, np.int16) + rng.integers(-15, 16, (1, 1, 3))

@@ -1,0 +1,128 @@
+"""Make what the course ships under data/, and photographs to train its detector on.
+
+Old data are replaced at the end, all at once: a run that is stopped leaves them as they were. The rooms of the projects
+and for training are kept one by one: the same command given again goes on where it was stopped.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from course_lib.commands.arguments import require_output_folder, require_processes, require_seed
+from course_lib.commands.output import progress_bar
+from course_lib.files import staging_dir
+from course_lib.paths import data_path
+
+DATA = Path(__file__).resolve().parents[1] / "data"
+SHIPPED = {
+    "corridor": (4, "the true world, the surveyed map, the recorded runs"),
+    "room": (4, "stereo panoramas at the paper's places, exact boxes and poses, the semantic map"),
+    "finale": (10_001, "the semantic map and the mesh map of the room in which both methods meet"),
+}
+"""Folder of data/ that is made from one seed -> the shipped data's, and what it holds."""
+FIRST_TRAINING_ROOM, N_TRAINING_ROOMS = 1000, 400  # chosen; rooms 100 to 119 choose the threshold
+IMAGES_PER_ROOM = 3
+FIRST_TEST_ROOM, N_TEST_ROOMS = 200, 20
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what can be made, and the options of each."""
+    kinds = parser.add_subparsers(dest="kind", metavar="DATA", required=True)
+
+    def kind(name: str, what: str):
+        return kinds.add_parser(name, help=what, description=f"Make {what}.", allow_abbrev=False).add_argument
+
+    folder, number = {"type": Path, "metavar": "FOLDER"}, {"type": int, "metavar": "N"}
+    for name, (seed, what) in SHIPPED.items():
+        add = kind(name, what)
+        add("--seed", **number, default=seed, help=f"default {seed}, the shipped data's")
+        add("--out", **folder, help=f"where the data go; another seed needs it (default: data/{name})")
+    add, work = kind("projects", "what two spherical cameras saw in the rooms of P2 and P3"), "results/project_rooms"
+    add("--out", **folder, help="where the data go (default: data/projects)")
+    what = f"where finished rooms are kept, and looked for (default: {work})"
+    add("--work", **folder, default=Path(work), help=what)
+    add("--processes", **number, help="rooms made at a time (default: one for each core)")
+    add = kind("training-rooms", "photographs of generated rooms with their boxes, for a detector")
+    add("--out", **folder, required=True, help="where pictures and boxes.json go (no default)")
+    what = f"seed of the first room, the others count up from it (default: {FIRST_TRAINING_ROOM})"
+    add("--first-room", **number, default=FIRST_TRAINING_ROOM, help=what)
+    add("--rooms", **number, default=N_TRAINING_ROOMS, help=f"how many (default: {N_TRAINING_ROOMS})")
+    what = f"pictures of each; other numbers are other pictures of the same rooms (default: {IMAGES_PER_ROOM})"
+    add("--images-per-room", **number, default=IMAGES_PER_ROOM, help=what)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Make the data and say what was made; return the exit code."""
+    if arguments.kind in SHIPPED:
+        return make_shipped(arguments)
+    return make_projects(arguments) if arguments.kind == "projects" else make_training_rooms(arguments)
+
+
+def make_shipped(arguments: argparse.Namespace) -> int:
+    """Make a folder of data/ from its seed. Raises `ValueError` where it would replace the shipped one by another."""
+    name, seed, (shipped, _) = arguments.kind, arguments.seed, SHIPPED[arguments.kind]
+    require_seed(seed)
+    if arguments.out is None and seed != shipped:
+        raise ValueError(
+            f"--seed {seed} makes other data than the shipped ones (seed {shipped}): "
+            f"give --out FOLDER, or data/{name} would be replaced"
+        )
+    out = arguments.out or DATA / name
+    require_output_folder(out)
+    if name == "corridor":
+        from tools.corridor_data import make_corridor_data
+
+        made = make_corridor_data(out, seed, progress=lambda items, text: progress_bar(text, "part")(items))
+        told = json.dumps(made["measured"], indent=2)
+    elif name == "room":
+        from course_lib.simulation.room.data import make_room_data
+
+        made = make_room_data(out, seed, progress=progress_bar("photographs", "pair"))
+        told = f"{made['pairs']} pairs of a room with {made['objects']} objects"
+    else:
+        from course_lib.simulation.room.finale_data import make_finale_data
+
+        made = make_finale_data(out, seed)
+        told = f"the maps of a room with {made['objects']} objects, {made['triangles']} triangles"
+    print(f"{told}\nwritten to {out}")
+    return 0
+
+
+def make_projects(arguments: argparse.Namespace) -> int:
+    """Make data/projects from its seeds."""
+    out = arguments.out or DATA / "projects"
+    require_processes("--processes", arguments.processes)
+    require_output_folder(out)
+    require_output_folder(arguments.work, "--work")
+    from course_lib.lessons.project_2.rooms import make_project_rooms
+    from course_lib.simulation.data_folder import checksums
+
+    with staging_dir(out) as new:
+        bar = progress_bar("rooms", "room")
+        counts = make_project_rooms(new, data_path("detector"), arguments.work, arguments.processes, bar)
+        (new / "SHA256SUMS").write_text(checksums(new, [f"rooms_{name}.json" for name in counts]))
+    print(f"wrote {' and '.join(f'{n} views ({name})' for name, n in counts.items())} to {out}")
+    return 0
+
+
+def make_training_rooms(arguments: argparse.Namespace) -> int:
+    """Photograph generated rooms."""
+    asked = arguments.first_room, arguments.rooms, arguments.images_per_room
+    for option, value, least in zip(("--first-room", "--rooms", "--images-per-room"), asked, (0, 1, 1), strict=True):
+        if value < least:
+            raise ValueError(f"{option} must be at least {least}; got {value}")
+    require_output_folder(arguments.out)
+    from course_lib.simulation.room.training_images import make_room_images
+
+    images = make_room_images(arguments.out, *asked, progress_bar("rooms", "room"))
+    print(f"{arguments.out}: {len(images)} pictures of {len({image['room_seed'] for image in images})} rooms")
+    return 0
+
+
+if __name__ == "__main__":
+    from course_lib.cli import tool
+
+    sys.exit(tool("tools.make_data"))
