@@ -5,8 +5,6 @@ line is shown by `--help`. It may have `join_words(words)`, to mend what argpars
 `PASSES_ARGUMENTS_ON = True`, to get the words that its parser does not know as `arguments.passed_on`.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib
 import os

@@ -4,8 +4,6 @@ Each reader takes `what` the file is ("depth image"), for the message, and the `
 `missing`, if that is given.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import math

@@ -9,8 +9,6 @@ neighbouring poses have far-apart angles. Whoever perturbs or averages all three
 `rotation_exp` and `rotation_log`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.spatial.transform import Rotation
 

@@ -3,8 +3,6 @@
 The methods take paths from their callers and never look here.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]

@@ -1,8 +1,6 @@
 """TEACHING.md: plans whose minutes add up, an entry for every lesson and project, commands, links and hints that exist,
 a table of costs for every notebook, and an example exercise that really is one."""
 
-from __future__ import annotations
-
 import functools
 import re
 import types

@@ -4,8 +4,6 @@ The tools it is compared with (environment-bench.txt: Open3D with Embree) are in
 folder of their own. Times are of this machine at this hour; the ratios are what to compare. Other programs should rest.
 """
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import json

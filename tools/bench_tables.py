@@ -1,7 +1,5 @@
 """What `bench`, `bench --renders` and `bench --lessons` print: their JSON as tables."""
 
-from __future__ import annotations
-
 SYSTEM_BYTES = 2**30  # left to the operating system
 PATIENCE_S = 120.0  # that a class waits for its results when everybody runs all the cells at the same moment
 

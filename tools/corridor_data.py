@@ -1,7 +1,5 @@
 """Everything under data/corridor from one seed: true world, surveyed map, planar map, two recorded runs, checksums."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, field

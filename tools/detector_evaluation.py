@@ -1,7 +1,5 @@
 """Precision and recall of detectors on panoramas whose objects are known, and the choice of a threshold."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -3,8 +3,6 @@
 Neither number depends on how fast the machine is or on what else it does, so no time of the clock is told.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -4,8 +4,6 @@ Old data are replaced at the end, all at once: a run that is stopped leaves them
 and for training are kept one by one: the same command given again goes on where it was stopped.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

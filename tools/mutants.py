@@ -4,8 +4,6 @@ Each fault is made alone, in a copy of the tracked files; the tests named with i
 once with it. What survives is a hole in the tests: the exit code is 1 then.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import functools

@@ -7,8 +7,6 @@ then those that import the module; where a module has no file of its own, those 
 tests the slow ones are left out. What survives is to be read: some faults change nothing that matters.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import copy

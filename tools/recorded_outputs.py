@@ -7,8 +7,6 @@ For whoever changes the code and not its results: numbers must be equal to the l
 differ. A checkout of an earlier commit takes this environment's Python, or its own by `--python`. Some 15 minutes.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

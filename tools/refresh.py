@@ -4,8 +4,6 @@ Each notebook runs in a fresh kernel, without a network. It is written back only
 error, in one form, so that a difference in git is a difference in the lesson.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import os

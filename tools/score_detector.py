@@ -3,8 +3,6 @@
 Without --images the unseen rooms are photographed first, which takes some minutes.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -3,8 +3,6 @@
 Each seed makes a recording of its own and one that is pushed by hand; called again, the command runs what is missing.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import json

@@ -3,8 +3,6 @@
 It needs PyTorch, which the course does not install: nothing else uses it. Folders come from make-data training-rooms.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.util
 import json

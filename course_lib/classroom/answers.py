@@ -5,8 +5,6 @@ plain values of its own whatever is written. What is no such value arrives as an
 is no number and therefore wrong. Objects, classes and pickles are never sent this way.
 """
 
-from __future__ import annotations
-
 import base64
 import json
 import math

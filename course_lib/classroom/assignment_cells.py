@@ -1,7 +1,5 @@
 """A lesson or a project as whoever hands it out sees it: its exercises, each with its cells by their tags."""
 
-from __future__ import annotations
-
 import copy
 from dataclasses import dataclass
 from pathlib import Path

@@ -8,8 +8,6 @@ Sources: linux/landlock.h, linux/seccomp.h, linux/filter.h, linux/capability.h o
 system calls. Landlock knows no exceptions beneath a folder, so what may be read is a list of files and whole folders.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import platform

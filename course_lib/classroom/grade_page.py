@@ -1,7 +1,5 @@
 """The results as one page that needs nothing else: no script, no picture, no font from anywhere."""
 
-from __future__ import annotations
-
 import html
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """The results as CSV: a row for each student and exercise, and a table of totals."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Iterable, Sequence

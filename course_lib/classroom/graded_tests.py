@@ -6,8 +6,6 @@ message could carry the inputs out), or what it printed.
 Whatever the function writes, warns or logs goes nowhere: nbgrader takes one line on the error stream for a failure.
 """
 
-from __future__ import annotations
-
 import contextlib
 import copy
 import hashlib

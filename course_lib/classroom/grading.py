@@ -4,8 +4,6 @@ A worker is a process that draws inputs, runs answers in a sandbox of its own an
 takes too long or ends the worker (a value can be made for that), the worker is replaced and the answer says so.
 """
 
-from __future__ import annotations
-
 import contextlib
 import multiprocessing
 import os

@@ -11,8 +11,6 @@ It is made beside its place and put there when it is whole and nothing of the te
 The same seed makes the same folder, letter by letter.
 """
 
-from __future__ import annotations
-
 import ast
 import json
 from collections.abc import Callable, Iterable

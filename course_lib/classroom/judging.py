@@ -4,8 +4,6 @@ What decides is never in reach of the student's code: it gets arguments and give
 still do is take long, or much memory, while it is compared; so `grading` runs this in a process that it can end.
 """
 
-from __future__ import annotations
-
 import contextlib
 import copy
 import re

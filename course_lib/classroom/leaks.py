@@ -4,8 +4,6 @@ Spaces and line ends do not count, nor does how a page colours code: notebooks a
 their tags.
 """
 
-from __future__ import annotations
-
 import html
 import json
 import re

@@ -4,8 +4,6 @@ A lesson's solution is a function of another name, in a cell of its own. A proje
 which functions share constants and small helpers; each stub gets those that it needs, so that it stands alone.
 """
 
-from __future__ import annotations
-
 import ast
 import importlib.util
 import textwrap

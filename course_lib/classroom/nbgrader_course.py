@@ -5,8 +5,6 @@ the check stays as it is, visible and not graded; after it comes a locked cell w
 calls `points` of the module `course_grading`. That module holds the secret seed and stays in the teacher's folder.
 """
 
-from __future__ import annotations
-
 import hashlib
 import re
 import shutil

@@ -9,8 +9,6 @@ A submission still runs in one process with the graded tests, with the rights of
 cheat can. `course.py grade` runs every answer in a process of its own, walled in; compare its points.
 """
 
-from __future__ import annotations
-
 import ast
 import importlib.util
 import json

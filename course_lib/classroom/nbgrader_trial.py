@@ -6,8 +6,6 @@ a project's last function is the paper's method. The points must be all, none, a
 the same functions without nbgrader. Nothing of the teacher's may stand in what is released, graded or fed back.
 """
 
-from __future__ import annotations
-
 import time
 import warnings
 from collections.abc import Callable

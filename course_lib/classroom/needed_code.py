@@ -4,8 +4,6 @@ So one answer does not wait for the lesson's experiments, and a cell that fails 
 function. Statements that only do something, such as calls and checks, never run.
 """
 
-from __future__ import annotations
-
 import ast
 import symtable
 from collections.abc import Sequence

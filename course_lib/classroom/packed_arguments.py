@@ -3,8 +3,6 @@
 A function or an object of a lesson's may hold the answer: the score that a search climbs knows where the top is.
 """
 
-from __future__ import annotations
-
 import io
 import pickle
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """What an exercise is worth, and what an answer earns: the one rule of every way of grading."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from course_lib.lessons.kit.exercises import Exercise

@@ -4,8 +4,6 @@ So a wall that the kernel builds and that does not hold (an old Landlock, a cont
 too. What is tried does no harm where it succeeds.
 """
 
-from __future__ import annotations
-
 import os
 import pickle
 import shutil

@@ -4,8 +4,6 @@ The hook is no wall: code that calls the C library goes around it, and then meet
 the reason a name, so that the page can say what was refused, and it stops what the kernel would stop a moment later.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable, Iterable

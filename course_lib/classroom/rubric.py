@@ -1,7 +1,5 @@
 """The teacher's page for a lesson: what each exercise asks and is worth, typical mistakes, what to talk about."""
 
-from __future__ import annotations
-
 import re
 
 from course_lib.classroom.assignment_cells import Assignment, ExerciseCells

@@ -1,7 +1,5 @@
 """A project's last function in the sandbox, in the worlds of a secret seed: a process for each world."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.classroom.answers import AnswerFormatError, decode, printable

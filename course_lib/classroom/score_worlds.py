@@ -8,8 +8,6 @@ Points: all where the median is at least as good as the project's line, half whe
 method, a quarter where the function runs in every world. Source of the lines: the rubrics in notebooks/projects.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 from typing import Literal, NamedTuple

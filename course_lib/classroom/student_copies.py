@@ -4,8 +4,6 @@ The folder works by itself: links between lessons, the glossary, pictures and sc
 what the folder does not hold is no link. Nothing tells that a cell was there: counts go from 1 to n.
 """
 
-from __future__ import annotations
-
 import re
 import shutil
 from collections.abc import Callable

@@ -7,8 +7,6 @@
 Nothing here runs what it finds. Links are not followed, and nothing is read that is not a plain file of a bounded size.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -3,8 +3,6 @@
 At every place of a grid the command draws what the rig would see there, and a matcher says where it believes it is.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

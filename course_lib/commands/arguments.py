@@ -1,7 +1,5 @@
 """Options that several commands share, and checks of their values before any work is done."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import re

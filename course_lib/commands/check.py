@@ -3,8 +3,6 @@
 Every line reads OK, or FAIL with the cure. Imports and drivers can crash, so they run in a process of their own.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.metadata
 import json

@@ -4,8 +4,6 @@ Every `--every`-th frame, from every offset, is as if the camera had been moved 
 command runs what is missing.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -1,7 +1,5 @@
 """Run an experiment of either paper and print its table."""
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import importlib

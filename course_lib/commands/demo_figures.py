@@ -1,7 +1,5 @@
 """The figures and scenes that the demos write: each function draws into a folder, and returns what it wrote."""
 
-from __future__ import annotations
-
 from functools import partial
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Grade a folder of submissions: points and hints as CSV and as a page; students' code runs in a sandbox."""
 
-from __future__ import annotations
-
 import argparse
 import secrets
 import sys

@@ -3,8 +3,6 @@
 The teacher's part holds a course for nbgrader, too. Its tests draw their inputs from a secret seed.
 """
 
-from __future__ import annotations
-
 import argparse
 import secrets
 from pathlib import Path

@@ -4,8 +4,6 @@ The student's own copies open, from `work/` (working_copies.py). The server list
 settings live in `.venv/course-lab`, so that nothing in the user's home is read or changed.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import json

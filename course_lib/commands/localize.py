@@ -4,8 +4,6 @@ The recording is a folder with depth/*.png (16-bit) and intrinsics.txt, as in 7-
 errors are printed too; without it the start must be given.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 from collections import Counter

@@ -1,7 +1,5 @@
 """What `localize` prints and writes: the table, one line on the track, rows, trajectory, figure."""
 
-from __future__ import annotations
-
 from functools import partial
 from itertools import pairwise
 from pathlib import Path

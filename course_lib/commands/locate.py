@@ -3,8 +3,6 @@
 The objects come from a detector, or from boxes drawn by hand.
 """
 
-from __future__ import annotations
-
 import argparse
 from functools import partial
 from pathlib import Path

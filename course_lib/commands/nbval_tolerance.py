@@ -10,8 +10,6 @@ It holds for every number that the cell prints or writes under a picture: the ne
 the stored one, or by so much. The words between them stay. Loaded with `-p course_lib.commands.nbval_tolerance`.
 """
 
-from __future__ import annotations
-
 import copy
 import re
 from typing import NamedTuple

@@ -3,8 +3,6 @@
 A bar is drawn on standard error, so that the output of `--json` stays one object.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Callable, Iterable

@@ -1,7 +1,5 @@
 """Show how far you have come: predictions typed and checks right in every lesson, and the same as a page."""
 
-from __future__ import annotations
-
 import argparse
 import subprocess
 import sys

@@ -7,8 +7,6 @@ on a hub it is one line of the server's configuration:
     c.FileContentsManager.pre_save_hook = "course_lib.commands.saved_panels.keep_pictures"
 """
 
-from __future__ import annotations
-
 WIDGET_VIEW = "application/vnd.jupyter.widget-view+json"
 HOOK = f"{__name__}.keep_pictures"
 # For widgets of other makers: theirs have no picture of their own.

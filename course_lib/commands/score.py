@@ -1,7 +1,5 @@
 """Score what a student handed in for a project, a Python file or the notebook, on the hidden seeds."""
 
-from __future__ import annotations
-
 import argparse
 import subprocess
 import sys

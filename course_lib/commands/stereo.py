@@ -3,8 +3,6 @@
 Two distances an object: from the centres of its two boxes, and from the vertical disparities of the features in them.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from functools import partial

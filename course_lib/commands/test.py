@@ -4,8 +4,6 @@ Other arguments go on to pytest: `course.py test tests/test_geometry.py -k wrap`
 this one process; without a path everything does, on every processor.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import subprocess

@@ -3,8 +3,6 @@
 Compiled loops are kept beside their source (compiled.py), the simplified map in the user's cache (simplification.py).
 """
 
-from __future__ import annotations
-
 
 def compile_loops() -> None:
     """Renders one depth image, weighs it and refines by it, as every frame of the filters does."""

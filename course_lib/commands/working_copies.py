@@ -3,8 +3,6 @@
 A copy that nobody has changed follows the course; nothing here writes to a changed one.
 """
 
-from __future__ import annotations
-
 import datetime
 import hashlib
 import json

@@ -3,8 +3,6 @@
 At every place of a grid, what a rig would observe is drawn from the map, and a matcher says what it makes of it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

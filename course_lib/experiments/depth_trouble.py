@@ -10,8 +10,6 @@ and ranges are noisier, by
 and returns whose amplitude falls below the camera's threshold are lost: far ones first.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path

@@ -4,8 +4,6 @@ Where the panoramas leave several poses, the depth camera judges the best of the
 the pose open, the robot turns and looks again.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Sequence
 from itertools import islice

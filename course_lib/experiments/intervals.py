@@ -1,7 +1,5 @@
 """How sure a share or a median is that was measured on few seeds or poses."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -3,8 +3,6 @@
 Here a pose is judged by where it is. The paper's measure, all matches right, stands beside it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple

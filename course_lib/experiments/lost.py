@@ -4,8 +4,6 @@ A recording is played to some frame, then nothing is seen for a while, and it go
 a kidnapping. Gravity is what an accelerometer would say: the truth's, with a degree of noise.
 """
 
-from __future__ import annotations
-
 import time
 import warnings
 from collections.abc import Iterable, Iterator, Sequence

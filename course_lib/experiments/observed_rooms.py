@@ -4,8 +4,6 @@ Sections 2.2 to 2.4 take long: they are done once for each room and kept as a re
 are done anew from the records, by every variant.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product

@@ -1,7 +1,5 @@
 """Any recording through the filter, as plain functions of a recording, a map and a seed."""
 
-from __future__ import annotations
-
 import time
 import warnings
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """Results of commands and experiments: JSON and CSV, with seed and versions inside."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -3,8 +3,6 @@
 "exact boxes" starts after a perfect detector and a perfect stereo matching, to tell which error is the method's own.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from copy import copy

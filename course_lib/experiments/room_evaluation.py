@@ -1,7 +1,5 @@
 """How good is it: tables 2 to 5 of paper 2 (section 3), and the paper's own numbers to stand beside ours."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

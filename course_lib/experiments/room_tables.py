@@ -1,7 +1,5 @@
 """What `demo room` prints: tables 1 to 5 with the paper's numbers beside ours, and what sets the two apart."""
 
-from __future__ import annotations
-
 from course_lib.experiments.room_evaluation import ERRORS, KINDS, PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 

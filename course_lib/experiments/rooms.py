@@ -4,8 +4,6 @@ Poses of one room see the same look-alikes. So beside the 95 % interval of a sha
 stands one that draws whole rooms (bootstrap). Where it is wider, believe it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import groupby, product
 

@@ -4,8 +4,6 @@ An experiment is a module with a function of a seed and a few parameters, a tabl
 for the command `demo`. A file of rows holds one JSON object a line, {"point": parameters, "result": what came out}.
 """
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Callable, Iterable, Sequence

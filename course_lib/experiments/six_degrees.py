@@ -3,8 +3,6 @@
 A run gives plain lists, one entry a frame, so that runs of several seeds, recordings and offsets can be pooled.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path

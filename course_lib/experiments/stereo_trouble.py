@@ -3,8 +3,6 @@
 The method has no memory: a good pair has the very answer that it had undisturbed. So it has recovered with the first.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from types import SimpleNamespace
 

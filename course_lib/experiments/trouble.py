@@ -3,8 +3,6 @@
 Frames are dropped, repeated, black, half covered, out of order, panoramas dark or exchanged, at shares of the frames.
 """
 
-from __future__ import annotations
-
 from itertools import product
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Which frames of a recording are troubled, and what is counted of them: outcomes, recovery, confident wrong poses."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import product

@@ -3,8 +3,6 @@
 Every `--every`-th frame, from every offset, is as if the camera had been moved so much faster.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from course_lib.depth_mcl.sequence import read_sequence

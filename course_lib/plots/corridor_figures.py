@@ -1,7 +1,5 @@
 """Figures of the corridor: like the paper's 5 and 6, the whole idea in one picture, and cuts through the map."""
 
-from __future__ import annotations
-
 import numpy as np
 import trimesh
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """Figures of the experiments' tables: covariances that cover or not, sensor trouble, thresholds on a confidence."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

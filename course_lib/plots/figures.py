@@ -5,8 +5,6 @@ blindness; marker and line style change along with the colour. Depth is coloured
 PLOS ONE 13(7), 2018). Figures are drawn with Agg and never through matplotlib's global state.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Panoramas in figures: the picture with its angles, boxes in the colours of their classes, numbers that stay apart."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

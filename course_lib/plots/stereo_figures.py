@@ -1,7 +1,5 @@
 """Figures of a stereo pair of panoramas: matched features, boxes with their distances, the objects from above."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A localized recording: its path over the map's floor plan, and the score of every frame, lost stretches marked."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import groupby
 

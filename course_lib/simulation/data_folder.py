@@ -1,7 +1,5 @@
 """Checksums of generated data, and the models' parameters as Markdown tables, from the comments behind their fields."""
 
-from __future__ import annotations
-
 import dataclasses
 import hashlib
 import inspect

@@ -3,8 +3,6 @@
 Each step adds its part to the record. If the images give no pose, the record has status "unable" and a reason.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 

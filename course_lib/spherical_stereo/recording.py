@@ -11,8 +11,6 @@ Boxes are in edge coordinates of images of that size. u_max passes the width if 
 tables call the object, and may be left out.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple

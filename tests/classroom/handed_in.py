@@ -1,7 +1,5 @@
 """Submissions as students hand them in: a lesson's notebook with answers in place of its stubs."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import json

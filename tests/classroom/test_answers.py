@@ -1,7 +1,5 @@
 """Answers as text: what goes in comes out, and nothing else ever does."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

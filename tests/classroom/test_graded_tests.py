@@ -1,7 +1,5 @@
 """Graded tests: full, half and no points on a secret seed's inputs; feedback that gives nothing away; nothing heard."""
 
-from __future__ import annotations
-
 import io
 import logging
 import os

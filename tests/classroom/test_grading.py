@@ -1,7 +1,5 @@
 """A whole folder graded: tables and page, whatever is in it; the same bytes again; nothing left behind."""
 
-from __future__ import annotations
-
 import csv
 import io
 import os

@@ -1,7 +1,5 @@
 """A class's folder: made at once or not at all, only in a place of its own, the same for the same seed."""
 
-from __future__ import annotations
-
 import json
 import re
 

@@ -1,7 +1,5 @@
 """Hostile answers: each says what happened, earns nothing and harms nothing; the right answer beside it counts."""
 
-from __future__ import annotations
-
 import textwrap
 from pathlib import Path
 

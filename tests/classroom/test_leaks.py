@@ -1,7 +1,5 @@
 """What of the teacher's is found, however a file writes it."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

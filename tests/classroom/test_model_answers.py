@@ -1,7 +1,5 @@
 """Model answers in the student's stubs: the same signature and docstring, a body that stands alone, and back again."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

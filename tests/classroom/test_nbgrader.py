@@ -1,7 +1,5 @@
 """nbgrader itself on what we make: released, handed in solved, untouched, mistaken and forged, graded, fed back."""
 
-from __future__ import annotations
-
 import html
 import json
 import os

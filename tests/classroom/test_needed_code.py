@@ -1,7 +1,5 @@
 """Of a notebook's cells, the statements that one function needs."""
 
-from __future__ import annotations
-
 import ast
 
 from course_lib.classroom.needed_code import needed_code

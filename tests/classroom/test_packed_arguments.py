@@ -1,7 +1,5 @@
 """Arguments on their way into the sandbox: what can be called stays here, and tells no more than it is asked."""
 
-from __future__ import annotations
-
 import io
 import pickle
 

@@ -1,7 +1,5 @@
 """Worlds of a secret seed: as hard as the hidden ones, and no pose learned by heart fits; the points of a score."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

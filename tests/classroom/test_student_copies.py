@@ -1,7 +1,5 @@
 """Student copies: no solution and no trace of one, all else as stored, every link leads somewhere in the folder."""
 
-from __future__ import annotations
-
 import re
 from pathlib import PurePosixPath
 

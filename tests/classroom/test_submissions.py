@@ -1,7 +1,5 @@
 """Whose a file is and which lesson's, and what is not read and why."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path

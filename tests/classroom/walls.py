@@ -1,7 +1,5 @@
 """Whether this machine's kernel builds the walls about strangers' code: tests that run such code need them."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import sys

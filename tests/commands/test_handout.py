@@ -1,7 +1,5 @@
 """`course.py handout`: what it says, and that a trial that is not as it must be fails."""
 
-from __future__ import annotations
-
 import pytest
 
 from course_lib.classroom.nbgrader_trial import HEADER, Trial

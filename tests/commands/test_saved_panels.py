@@ -1,7 +1,5 @@
 """What is written of a notebook with widgets: their pictures, and a sentence where there is none."""
 
-from __future__ import annotations
-
 import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output

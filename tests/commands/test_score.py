@@ -1,7 +1,5 @@
 """`course.py score`: a file that was handed in, scored without its notebook; what does not fit is named."""
 
-from __future__ import annotations
-
 import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook

@@ -1,7 +1,5 @@
 """`work/`: copies that follow the course until a student changes them; `git pull` where a student has worked."""
 
-from __future__ import annotations
-
 import datetime
 import json
 import shutil

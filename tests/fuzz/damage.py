@@ -1,7 +1,5 @@
 """What happens to files: bytes change, lines and words change places, values are none or far too large."""
 
-from __future__ import annotations
-
 import json
 import re
 import struct

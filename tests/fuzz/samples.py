@@ -1,7 +1,5 @@
 """A small valid file of each format that a user hands over, with the files that belong to it, and its public reader."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from pathlib import Path

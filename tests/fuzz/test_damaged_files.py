@@ -4,8 +4,6 @@ Each format's small valid file is damaged at random (`damage`), and its public r
 time; `-m release` does more of it.
 """
 
-from __future__ import annotations
-
 import os
 
 import pytest

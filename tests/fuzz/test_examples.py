@@ -3,8 +3,6 @@
 Each is refused by name, or read as the valid file is, in little memory.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """A lesson's package hands on what its notebook asks for, and nothing else; a notebook imports what there is."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 import json

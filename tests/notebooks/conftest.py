@@ -1,8 +1,6 @@
 """The notebooks as the tests see them: every lesson notebooks/NN_title.ipynb and every project, so that a new one is
 covered at once."""
 
-from __future__ import annotations
-
 import ast
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """JupyterLab in a real browser, driven: what the browser tests and `tools.bench` have in common."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import socket

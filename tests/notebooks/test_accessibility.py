@@ -1,7 +1,5 @@
 """A lesson by keyboard alone and by ear: names, values with units, what is said after a change; and axe-core."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

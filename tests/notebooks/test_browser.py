@@ -1,7 +1,5 @@
 """Lessons in JupyterLab in a real browser: all cells run; a key on a slider, or a button, brings a new picture."""
 
-from __future__ import annotations
-
 import pytest
 
 from course_lib.paths import notebook_paths

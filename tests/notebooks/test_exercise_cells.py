@@ -1,7 +1,5 @@
 """Exercises in the notebooks: complete, foldable, and judged rightly by their own checks."""
 
-from __future__ import annotations
-
 import ast
 import itertools
 import re

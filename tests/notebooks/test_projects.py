@@ -1,7 +1,5 @@
 """Projects: stages that are exercises, a score at the end, a rubric, hours, and a model solution apart that does it."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 import importlib.util

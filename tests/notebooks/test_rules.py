@@ -1,7 +1,5 @@
 """Rules that every stored notebook keeps (nbval compares the outputs themselves)."""
 
-from __future__ import annotations
-
 import ast
 import re
 import statistics

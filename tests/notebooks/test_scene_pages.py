@@ -1,7 +1,5 @@
 """Every page of notebooks/scenes in a real browser, from the disk: no request, no error, and it can be turned."""
 
-from __future__ import annotations
-
 import io
 
 import numpy as np

@@ -1,7 +1,5 @@
 """notebooks/README.md: every lesson with its time and its picture, paths whose times add up; and the glossary."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

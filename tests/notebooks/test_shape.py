@@ -1,7 +1,5 @@
 """The shape of one lesson (nine parts in order) and what its text must have."""
 
-from __future__ import annotations
-
 import ast
 import itertools
 import re

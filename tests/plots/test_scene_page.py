@@ -1,7 +1,5 @@
 """The page of a scene: its words, the same bytes for the same scene, no network."""
 
-from __future__ import annotations
-
 import base64
 import re
 import subprocess

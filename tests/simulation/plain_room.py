@@ -1,7 +1,5 @@
 """A room of plain boxes whose corners are known: what closed forms can be compared with."""
 
-from __future__ import annotations
-
 import numpy as np
 import trimesh
 

@@ -1,7 +1,5 @@
 """How the time of a step grows with particles and triangles; what the simplified map costs and how true it is."""
 
-from __future__ import annotations
-
 import resource
 import time
 from collections.abc import Iterable

@@ -7,8 +7,6 @@ from the last one's pose, or from where the last motion would carry it on. Corre
 narrow. It is given its start, as the filters are, and it has no word for being lost.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -3,8 +3,6 @@
 The command runs it with the tools of environment-bench.txt on its path (tools/bench.py).
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -1,7 +1,5 @@
 """Is memory flat over many renders, and does the same pose give the same image to the last bit, every time?"""
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Callable

@@ -6,8 +6,6 @@ all. A tool is called with camera-to-world matrices `(N, 4, 4)`, optical convent
 plotter) is made outside the seconds that count.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """What a user waits for besides the filter: imports, `--help`, lesson 00, a pose of paper 2, a picture; and memory."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time

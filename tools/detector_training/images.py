@@ -3,8 +3,6 @@
 A window wider than the panorama has its left part appended on the right, as in the detector (paper 2, section 2.2).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -10,8 +10,6 @@ As in YOLOv4, every anchor whose shape is near enough to the object's answers fo
 box centre reach over its cell's border, the nearest neighbour in each direction answers too: a short training suffices.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """A Darknet cfg as a PyTorch module, so that one file describes what is trained and what OpenCV runs; its weights."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

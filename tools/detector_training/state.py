@@ -1,7 +1,5 @@
 """What changes from step to step of a training, and the checkpoint that keeps it; the learning rate."""
 
-from __future__ import annotations
-
 import copy
 import io
 import math

@@ -3,8 +3,6 @@
 Every sample has a generator of its own, seeded by (seed, epoch, place in the epoch): a stopped training goes on alike.
 """
 
-from __future__ import annotations
-
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator

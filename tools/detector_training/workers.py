@@ -4,8 +4,6 @@ After every step the gradients are averaged. All processes must make the same ca
 one process these functions return what they were given.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from datetime import timedelta
 from pathlib import Path

@@ -5,8 +5,6 @@ time limit works on every operating system and stops all Python code in the kern
 single call into a compiled library, so we wait until that call ends.
 """
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import io

@@ -4,8 +4,6 @@ The corridor's world needs a ray caster that can be installed on some processors
 so their worlds consist of boxes along the axes. `BoxWorld.cast` returns the same as `WorldCaster.cast`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Figures and pictures in few bytes, as a notebook stores them."""
 
-from __future__ import annotations
-
 import io
 
 import numpy as np

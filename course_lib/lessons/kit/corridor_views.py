@@ -1,7 +1,5 @@
 """Load the corridor's map and the wagon's run for the lessons, and draw its walls in plans and side views."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Show a lesson's figure as one compressed picture with alternative text. A figure without labels is refused."""
 
-from __future__ import annotations
-
 import base64
 import html
 import io

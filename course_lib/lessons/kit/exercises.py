@@ -6,8 +6,6 @@ reference's. If they differ, they are compared with the values of every known mi
 or the reference. The exercises of lesson NN are the list `EXERCISES` in `course_lib/lessons/lesson_NN/exercises.py`.
 """
 
-from __future__ import annotations
-
 import copy
 import dis
 import importlib

@@ -1,7 +1,5 @@
 """Medians and shares as lessons print them, each with its 95 % interval. Lesson 08 explains both intervals."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.experiments.intervals import wilson_percent

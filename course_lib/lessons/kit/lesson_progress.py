@@ -4,8 +4,6 @@ The notebooks say how many predictions and exercises there are. The student's re
 them are done. `progress_page` shows the counts as a page, and `show_progress` prints them.
 """
 
-from __future__ import annotations
-
 import ast
 import functools
 import json

@@ -1,7 +1,5 @@
 """Redraw a figure many times a second. The fixed parts are drawn once, and the moving parts are drawn on top."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 from matplotlib.artist import Artist

@@ -12,8 +12,6 @@ get the controls. The extension of `course.py lab` (course_lib/commands/lab_exte
 "course-...".
 """
 
-from __future__ import annotations
-
 import html
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Load pairs of panoramas of the room with exact boxes and features, for lessons 13 and 14."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -5,8 +5,6 @@
 kept in the student's record (`student_record`). Without a record, the boxes work, but nothing is kept.
 """
 
-from __future__ import annotations
-
 import html
 
 import ipywidgets as widgets

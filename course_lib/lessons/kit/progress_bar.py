@@ -5,8 +5,6 @@ Here one output shows tqdm's line and is updated in place. Its first and its las
 constant line of text. nbval compares the first state, and a stored notebook keeps the last state, so both agree.
 """
 
-from __future__ import annotations
-
 import html
 from collections.abc import Iterable, Iterator
 

@@ -1,7 +1,5 @@
 """Write the page of a student's progress, `work/progress.html`. `check` and `predict` update it."""
 
-from __future__ import annotations
-
 import contextlib
 import datetime
 import html

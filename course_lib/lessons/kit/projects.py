@@ -16,8 +16,6 @@ it prints the median beside the medians of the paper's method and ours, on the s
 `python -m course_lib.lessons.kit.score P1 --store` stores the rivals' results in data/projects/P1.json.
 """
 
-from __future__ import annotations
-
 import importlib
 import json
 import time

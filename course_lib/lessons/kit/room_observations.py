@@ -1,7 +1,5 @@
 """Load the matcher's input for the experiment's room, made from exact boxes. Lessons 15 to 18 use it."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Load the experiment's room: its map, its two recordings, and a pair of panoramas with a sofa across the seam."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether two pages of `plots.scene_page` show the same scene, up to what processors round otherwise."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

@@ -7,8 +7,6 @@
 In a notebook only imports, definitions and assignments run, so its checks, figures and scores do not.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import sys

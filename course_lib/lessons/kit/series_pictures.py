@@ -5,8 +5,6 @@
 writes notebooks/pictures/NN.png for every lesson. Run it again when a lesson's picture has changed.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import json

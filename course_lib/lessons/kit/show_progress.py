@@ -3,8 +3,6 @@
 python -m course_lib.lessons.kit.show_progress [--out PAGE]
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys

@@ -4,8 +4,6 @@ Each lesson has one file, such as `06.json`, in the folder that the environment 
 `course.py lab` sets the variable. Without it nothing is read or written, so tests and refreshes leave no trace.
 """
 
-from __future__ import annotations
-
 import itertools
 import json
 import os

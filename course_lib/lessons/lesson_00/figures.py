@@ -1,7 +1,5 @@
 """Figures of lesson 00: the idea, the hills of eq. (8), the filter at work, the second method on one pair."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """Lesson 00's panel: move a particle until eq. (8) is at its peak."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.depth_mcl.likelihood import ALPHA, likelihood, valid_pixels

@@ -1,7 +1,5 @@
 """What lesson 00 looks at: one frame of the corridor's recording, and what the map would show from other poses."""
 
-from __future__ import annotations
-
 import functools
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Exercises of lesson 01: points to the world, a state from an optical pose, a motion, another program's angles."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

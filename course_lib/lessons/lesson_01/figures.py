@@ -1,7 +1,5 @@
 """Figures of lesson 01: turns, frames, optical frame, means of angles, gimbal lock."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

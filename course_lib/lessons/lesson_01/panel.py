@@ -1,7 +1,5 @@
 """Lesson 01's panel: six sliders drive a camera through the corridor."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

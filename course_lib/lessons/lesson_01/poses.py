@@ -1,7 +1,5 @@
 """Poses as numbers: the matrix of a state as text, and how far a turn moves what is seen."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.geometry import pose_matrix, rotation_log

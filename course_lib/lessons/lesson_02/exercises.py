@@ -1,7 +1,5 @@
 """Exercises of lesson 02: where a scanner must look, a chain of stations, the share of holes, how a chain bends."""
 
-from __future__ import annotations
-
 from itertools import accumulate
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of lesson 02: the idea, registration, fusion, maps, views, the corridor."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection

@@ -1,7 +1,5 @@
 """Lesson 02's panel: plan a laser survey and see the map that it gives."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.lessons.kit.live_figure import LiveFigure

@@ -1,7 +1,5 @@
 """A small room and its laser survey, quick enough for a lesson: scans, fused maps, and how good they are."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """What a camera sees of a small room's maps, and how far the corridor's map is from the corridor."""
 
-from __future__ import annotations
-
 import functools
 import json
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Exercises of lesson 03: the depth buffer's scale, depth along an edge, what a pixel keeps, a triangle cut."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of lesson 03: the idea, depth images, one window of many tiles, the buffer, times."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

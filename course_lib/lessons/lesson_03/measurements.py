@@ -1,7 +1,5 @@
 """What lesson 03 measures on a z-buffer: its error and its step, seconds a view, thin things that are missed."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

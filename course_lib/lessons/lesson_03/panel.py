@@ -1,7 +1,5 @@
 """Lesson 03's panel: move the virtual camera and its near plane."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Small scenes of lesson 03: a corridor and its end, a pole, a wall with a hole, two surfaces from the side."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.lessons.kit.box_world import box_map

@@ -1,7 +1,5 @@
 """Exercises of lesson 04: range and depth, two frequencies, a pole in a pixel, and the nearest of n noisy points."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.stats import norm
 

@@ -1,7 +1,5 @@
 """Figures of lesson 04: points and depth image, phase, noise, a recorded frame, two surfaces in a pixel."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Lesson 04's panel: the sensor's faults one by one."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import Colormap

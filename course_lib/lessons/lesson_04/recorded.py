@@ -1,7 +1,5 @@
 """Recorded frames of the corridor beside their truth: how many pixels are how far off."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A scene of boxes before a time-of-flight camera whose faults are switched on one by one."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Clouds of particles that walk along the wagon's path, and an oracle that keeps the nearest."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Exercises of lesson 05: spread, noise along own axes, who is near, a step of the Bayes filter, the least noise."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.stats import norm
 

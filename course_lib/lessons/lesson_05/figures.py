@@ -1,7 +1,5 @@
 """Figures of lesson 05: clouds from above, their spread, the choice of sigma, a corner."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

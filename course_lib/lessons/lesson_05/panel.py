@@ -1,7 +1,5 @@
 """Lesson 05's panel: move a cloud by system noise, with or without the oracle."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.collections import LineCollection
 

@@ -1,7 +1,5 @@
 """Exercises of lesson 06: (8) read backwards, faults in given code, beta read backwards, an error bar of weights."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.stats import norm
 

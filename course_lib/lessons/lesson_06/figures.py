@@ -1,7 +1,5 @@
 """Figures of lesson 06: terms of eq. (8), the cost of a pixel, profiles along six axes, weights."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -3,8 +3,6 @@
 It stands here to be compared with paper 1's likelihood, which was chosen so as not to behave like this one.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.depth_mcl.likelihood import paired_pixels

@@ -1,7 +1,5 @@
 """Lesson 06's panel: alpha, beta and a person before the lens."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

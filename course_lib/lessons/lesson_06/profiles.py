@@ -1,7 +1,5 @@
 """Four likelihoods of cameras that stand in a row along one axis of the state, about a frame of the wagon run."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from typing import NamedTuple

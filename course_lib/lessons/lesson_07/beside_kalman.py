@@ -1,7 +1,5 @@
 """A corridor of one dimension, in which the exact answer is known: a Kalman filter, particles, and doors alike."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Exercises of lesson 07: a mean of angles, residual resampling mended, who survives, what stratified draws cost."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

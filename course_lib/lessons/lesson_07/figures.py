@@ -1,7 +1,5 @@
 """Figures of lesson 07: means on the circle, the comb, particles over rounds, copies."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

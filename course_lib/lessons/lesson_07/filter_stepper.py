@@ -5,8 +5,6 @@ noise. Everything that is shown follows from it and from the sliders: `look` pro
 with fixed draws for a seed and a frame, so that a slider changes the present frame at once, and a button moves on.
 """
 
-from __future__ import annotations
-
 import functools
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The filter stepper: buttons for the four steps of figure 1, the particles from above, weights, sample size."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

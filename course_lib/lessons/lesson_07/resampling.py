@@ -1,7 +1,5 @@
 """Copies that four resamplers make, a bug in one of them, and a stretch of the corridor that the filter follows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple

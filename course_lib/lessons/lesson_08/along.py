@@ -1,7 +1,5 @@
 """The filter along the corridor alone, on a table of agreement that was rendered once."""
 
-from __future__ import annotations
-
 import functools
 from typing import NamedTuple
 

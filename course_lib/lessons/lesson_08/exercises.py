@@ -1,7 +1,5 @@
 """Exercises of lesson 08: the paper's error, a row of its table 1, noticing a loss, what frames that are alike say."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.lessons.kit.exercises import Exercise, Mistake

@@ -1,7 +1,5 @@
 """Figures of lesson 08: the experiment, two errors, runs along the corridor, a lost filter, weights."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

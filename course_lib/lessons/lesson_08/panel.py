@@ -1,7 +1,5 @@
 """Lesson 08's panel: change a parameter of the filter and predict its row of the table."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.depth_mcl.evaluation import PAPER_SIGMA

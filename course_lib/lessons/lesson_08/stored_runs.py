@@ -3,8 +3,6 @@
 data/corridor/results/ holds seed_N.json (the summary) and seed_N.csv (one row a frame) of every reporting seed.
 """
 
-from __future__ import annotations
-
 import csv
 import json
 import re

@@ -1,7 +1,5 @@
 """A corridor that shows nothing along its axis, and a camera that slides through it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

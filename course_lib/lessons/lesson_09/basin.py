@@ -1,7 +1,5 @@
 """From how far off Gauss-Newton comes back to the true pose: its basin of convergence."""
 
-from __future__ import annotations
-
 import functools
 from typing import NamedTuple
 

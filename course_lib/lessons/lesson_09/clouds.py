@@ -1,7 +1,5 @@
 """How densely a cloud of particles fills its space, in one to six dimensions."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Exercises of lesson 09: how many particles, the mean of rotations, an honest covariance, a robust fit in 2D."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of lesson 09."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """The recording carried by hand, every fourth frame of it, and what filters make of it."""
 
-from __future__ import annotations
-
 import functools
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Lesson 09's panel: Gauss-Newton on one depth image, from any start, step by step."""
 
-from __future__ import annotations
-
 import functools
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Stored results in six degrees of freedom, read back: data/corridor/results says which command made each."""
 
-from __future__ import annotations
-
 import json
 
 from course_lib.experiments.intervals import wilson_percent

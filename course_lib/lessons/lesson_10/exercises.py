@@ -1,7 +1,5 @@
 """Exercises of lesson 10: draws from free cells, injected particles, sampling until it is enough, distinct places."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Figures of lesson 10: the hotel from above, scores and errors over time, free space, KLD-sampling, alarms."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ The filter is given the map. What the camera sees is drawn from the *world*: the
 map lacks, and noise.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """A plain particle filter that starts anywhere in the hotel and takes as many particles as KLD-sampling asks for."""
 
-from __future__ import annotations
-
 import functools
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The panels of lesson 10: the alarm on a recorded score, and particles that start anywhere, frame by frame."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.lessons.kit.live_figure import LiveFigure

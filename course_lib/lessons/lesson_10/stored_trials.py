@@ -1,7 +1,5 @@
 """The trials of `demo lost` that come with the course: data/corridor/results/lost_*.json."""
 
-from __future__ import annotations
-
 import json
 
 from course_lib.experiments.intervals import wilson_percent

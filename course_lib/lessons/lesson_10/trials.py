@@ -1,7 +1,5 @@
 """What lesson 10 measures in its hotel: kidnappings, a search where rooms look alike, the raw score over time."""
 
-from __future__ import annotations
-
 import functools
 import warnings
 from collections.abc import Iterator

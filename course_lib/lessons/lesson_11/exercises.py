@@ -1,7 +1,5 @@
 """Exercises of lesson 11: somebody else's pixels, the way to turn, a stretch across the seam, a knocked tripod."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

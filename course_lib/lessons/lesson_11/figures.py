@@ -1,7 +1,5 @@
 """Figures of lesson 11: panorama and sphere, views cut out, the seam, bearings."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

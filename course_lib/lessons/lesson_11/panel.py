@@ -1,7 +1,5 @@
 """Lesson 11's panel: a point on the panorama and on the sphere."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

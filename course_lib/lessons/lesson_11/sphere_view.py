@@ -4,8 +4,6 @@ The sphere is seen from afar (orthographic), with its near half taken away: you 
 the camera does, so nothing is mirrored. A screen pixel is a direction, and a direction is a pixel of the panorama.
 """
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Views out of a panorama, the object at its seam, and bearings of the objects against the map."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import cv2

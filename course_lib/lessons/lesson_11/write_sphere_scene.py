@@ -8,8 +8,6 @@ script is the course's own, and computes with the same two formulas as `panorama
 `panorama.direction_to_pixel`.
 """
 
-from __future__ import annotations
-
 import base64
 from pathlib import Path
 

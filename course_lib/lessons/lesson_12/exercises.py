@@ -1,7 +1,5 @@
 """Exercises of lesson 12: the range in which a box counts, overlap on the circle, suppression, a threshold."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

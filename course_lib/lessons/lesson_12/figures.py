@@ -1,7 +1,5 @@
 """Figures of lesson 12: boxes on an extended panorama, thresholds, crops and their hues."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import cv2

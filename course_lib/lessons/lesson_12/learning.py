@@ -3,8 +3,6 @@
 The training itself is `tools.detector_training`, which needs PyTorch; a lesson does not.
 """
 
-from __future__ import annotations
-
 import json
 from typing import NamedTuple
 

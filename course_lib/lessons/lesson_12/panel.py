@@ -1,7 +1,5 @@
 """Lesson 12's panels: slide the seam through the sofa; hue and saturation of a part of a box."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import cv2

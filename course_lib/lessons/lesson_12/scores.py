@@ -1,7 +1,5 @@
 """Precision and recall over thresholds, and how far measured colours are from the map's."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Exercises of lesson 13: the row in the lower image, a rig of any direction, pairs and ties, a turned camera."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of lesson 13: strips of both panoramas, and the table of counts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

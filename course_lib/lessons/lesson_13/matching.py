@@ -1,7 +1,5 @@
 """Three ways to match the features in two boxes, how they score, and a lower camera that is turned."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Lesson 13's panel: an object of the upper panorama, its band and its matches in the lower one."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

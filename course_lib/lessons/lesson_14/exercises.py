@@ -1,7 +1,5 @@
 """Exercises of lesson 14: a place from two boxes, the error of a range, a range from many matches, its mean error."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of lesson 14: the triangle of two cameras and a point, objects from above, the ellipse, errors over range."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

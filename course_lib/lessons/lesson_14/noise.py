@@ -1,7 +1,5 @@
 """Directions with noise, the places that they give, and the ellipse of their covariance."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.spherical_stereo.panorama import direction_from_angles

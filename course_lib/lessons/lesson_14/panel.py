@@ -1,7 +1,5 @@
 """Lesson 14's panel: the triangle from the side, and from above the ellipse of the error."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.patches import Polygon
 

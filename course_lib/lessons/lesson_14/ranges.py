@@ -1,7 +1,5 @@
 """Ranges of the room's objects, from the centres of boxes and from matched features."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Exercises of lesson 15: the hue term, the distance term, the repeated minimum with its margins, the centroid."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of lesson 15: the two centroids, the terms of eq. (1), the sofas."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """The panel of lesson 15: the four weights of eq. (1), the penalty table as a heat map, the matching as it is built."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How the greedy matcher does on the room: with other weights, and with objects hidden."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

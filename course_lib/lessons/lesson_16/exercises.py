@@ -1,7 +1,5 @@
 """Exercises of lesson 16: a pose with a compass, the scale, the pair that does not fit, weights, error bars."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

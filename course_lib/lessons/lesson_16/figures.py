@@ -1,7 +1,5 @@
 """Figures of lesson 16: centred points, the residual over the heading, the spread over the number of points."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

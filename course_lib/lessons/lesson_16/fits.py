@@ -1,7 +1,5 @@
 """Points with their landmarks, matched or made up, and how well a pose can be fitted to them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Lesson 16's panel: move, disturb and arrange the objects, and see the fit."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.collections import LineCollection
 

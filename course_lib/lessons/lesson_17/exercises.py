@@ -1,7 +1,5 @@
 """Exercises of lesson 17: table 2 as a rule, the row "All", how likely a pose is unable, and a flattering table."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

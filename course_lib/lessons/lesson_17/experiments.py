@@ -1,7 +1,5 @@
 """The poses of both experiments: those from exact boxes, and which of the stored ones fail."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Sequence
 

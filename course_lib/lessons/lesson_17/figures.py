@@ -1,7 +1,5 @@
 """Figures of lesson 17: the places, which poses fail, rates over the share of objects seen."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

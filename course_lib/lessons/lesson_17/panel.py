@@ -1,7 +1,5 @@
 """Lesson 17's panel: hide objects from the camera and judge the pose."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

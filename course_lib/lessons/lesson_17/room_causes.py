@@ -1,7 +1,5 @@
 """Why a pose of the room experiment fails: would it be right with true places, true colours, or a true centroid?"""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 data/room/results/ holds seed_N.json (the summary: tables 3 to 5) and seed_N.csv (one row a pose) of every seed.
 """
 
-from __future__ import annotations
-
 import csv
 import json
 import re

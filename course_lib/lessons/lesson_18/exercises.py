@@ -1,7 +1,5 @@
 """Exercises of lesson 18: what a colour costs, a pose of two matches, leaving things unmatched, risk and coverage."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of lesson 18: by colour or by geometry, every pose of two matches, ellipses, risk, where there is doubt."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What an anisotropic fit is worth: the right pairs of every photograph, fitted both ways."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.beyond.look_alikes.hypotheses import fit_poses, scene_of

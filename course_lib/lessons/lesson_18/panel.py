@@ -1,7 +1,5 @@
 """The panel of lesson 18: one pose after another, what each makes of the scene, and what its score is made of."""
 
-from __future__ import annotations
-
 import functools
 from typing import NamedTuple
 

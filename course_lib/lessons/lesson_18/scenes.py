@@ -1,7 +1,5 @@
 """What lesson 18 looks at: the room's observations thinned out, a map that is wrong, and a room with two equal ends."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 

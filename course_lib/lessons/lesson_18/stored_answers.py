@@ -1,7 +1,5 @@
 """What `demo rooms` measured on generated rooms, seeds 1 to 20, read back (RESULTS.md, section 2.5)."""
 
-from __future__ import annotations
-
 import functools
 import json
 

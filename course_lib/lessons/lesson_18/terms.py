@@ -1,7 +1,5 @@
 """The score of a pose, taken apart: what each kind of evidence adds to it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.beyond.look_alikes.confidence import TEMPER, score_of_nothing

@@ -1,7 +1,5 @@
 """How the matchers do on the room's 20 pairs of photographs when not everything is seen, and on a map that is wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

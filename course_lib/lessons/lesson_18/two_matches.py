@@ -1,7 +1,5 @@
 """One pose from a matching by colour, one from two matches alone, and how many of all such pairs are right."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.beyond.look_alikes.consistent import assign, match_costs

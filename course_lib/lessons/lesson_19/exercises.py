@@ -1,7 +1,5 @@
 """Exercises of lesson 19: the camera on the robot, what a start is worth, how many places prove 95 %, a lever arm."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of lesson 19: what the two sensors see, the error after each stage, how far off a start may be."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The panel of lesson 19: the reader puts the robot anywhere, and it finds out where it is."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 

@@ -1,7 +1,5 @@
 """The robot's way from "somewhere in this room" to millimetres, at one place: what each stage sees and says."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

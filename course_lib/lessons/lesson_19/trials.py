@@ -1,7 +1,5 @@
 """Measured in the lesson: how far off a start may be, and what a few places give; stored: the forty places."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

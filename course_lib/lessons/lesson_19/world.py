@@ -4,8 +4,6 @@ The room comes of its seed again; its two maps are stored in data/finale. What t
 Opened once a kernel: the windows that draw live as long.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Sequence
 

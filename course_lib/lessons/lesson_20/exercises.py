@@ -1,7 +1,5 @@
 """Exercises of lesson 20: raw depth to metres, K of a smaller image, a baseline measured, a baseline chosen."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.lessons.kit.exercises import Exercise, Mistake

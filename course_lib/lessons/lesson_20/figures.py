@@ -1,7 +1,5 @@
 """Figures of lesson 20: a frame beside its map, and a track."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

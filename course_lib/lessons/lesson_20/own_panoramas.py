@@ -1,7 +1,5 @@
 """A pair of panoramas for lesson 20: the reader's own folder, else one pair of the simulated room."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Lesson 20's panel: read a recording in one wrong way after the other."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.lessons.kit.live_figure import LiveFigure

@@ -1,7 +1,5 @@
 """A reader's recording or the course's, the ways to misread one, and how far each is from the map."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Sequence
 from pathlib import Path

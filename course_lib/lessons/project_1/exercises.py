@@ -1,7 +1,5 @@
 """Stages of project P1: the filter's steps one by one, then one round of figure 1 in the right order."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.geometry import wrap_angle

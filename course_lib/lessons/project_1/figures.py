@@ -1,7 +1,5 @@
 """Figures of project P1."""
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 
 from course_lib.lessons.project_1.recordings import Recording

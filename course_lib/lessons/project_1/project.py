@@ -1,7 +1,5 @@
 """Project P1: what a submission is given, how it is measured, and what stands beside it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.geometry import wrap_angle

@@ -1,7 +1,5 @@
 """What the filter of project P1 runs on: a seed's own recording in the corridor, and a renderer that counts."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """What stands beside a submission to project P1: the paper's filter as printed, and one of ours within its budget."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.beyond.six_dof.refinement import gauss_newton_step

@@ -1,7 +1,5 @@
 """Stages of project P2: a box's angles, which box is which, places, the penalty, the repeated minimum, the pose."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

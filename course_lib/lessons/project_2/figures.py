@@ -1,7 +1,5 @@
 """The figure of project P2: the boxes of both images, and the map on which they were seen."""
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 
 from course_lib.lessons.project_2.rooms import ProjectRoom, ProjectView

@@ -1,7 +1,5 @@
 """Project P2: from the boxes of two images to a pose; scored by how far the rig's poses are off in hidden rooms."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@
 2.2 to 2.4 make of them. Students work on the practice rooms; the hidden rooms are for the score alone.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache

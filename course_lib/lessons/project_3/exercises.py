@@ -1,7 +1,5 @@
 """Stages of project P3: distances under a pose, poses of two matches, an assignment, a weighted fit, how sure."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable
 

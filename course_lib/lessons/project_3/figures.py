@@ -1,7 +1,5 @@
 """The figure of project P3: what a view shows, in the body frame, and the map that it is to be found on."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

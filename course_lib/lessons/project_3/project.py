@@ -1,7 +1,5 @@
 """Project P3: a matcher that survives look-alikes; scored by right, wrong and withheld poses in hidden rooms."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Stages of project P4: from raw numbers of an unknown camera to depths, and how far to trust them."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Figures of project P4."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

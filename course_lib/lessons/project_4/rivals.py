@@ -1,7 +1,5 @@
 """What stands beside a submission to project P4: no correction, the paper's assumption, and a calibration of ours."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import least_squares
 

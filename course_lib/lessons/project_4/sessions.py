@@ -3,8 +3,6 @@
 Every seed is another camera: unit, code of "no measurement", focal length, range error, pattern and noise are its own.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from functools import cache
 from typing import NamedTuple

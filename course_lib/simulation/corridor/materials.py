@@ -1,7 +1,5 @@
 """Diffuse reflectivity at 850 nm and colour of what the corridor is made of; chosen in the usual ranges for indoors."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

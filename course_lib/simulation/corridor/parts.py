@@ -3,8 +3,6 @@
 Local axes of a wall: along, into (away from the corridor), up; what sticks out has negative `into`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.random import Generator
 

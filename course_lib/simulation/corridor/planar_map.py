@@ -4,8 +4,6 @@ Source: Fallon, Johannsson, Leonard, "Efficient Scene Simulation for Robust Mont
 Camera", ICRA 2012.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import trimesh
 from numpy.random import Generator

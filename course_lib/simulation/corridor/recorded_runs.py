@@ -1,7 +1,5 @@
 """The two recorded runs, exact states in metres and radians: a wagon pushed down the corridor, and a carried camera."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

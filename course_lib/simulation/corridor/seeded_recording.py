@@ -1,7 +1,5 @@
 """Recordings of a building: a seed gives the day, the run and the camera's errors, each from a stream of its own."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 from collections import Counter

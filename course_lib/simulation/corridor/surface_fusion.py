@@ -4,8 +4,6 @@ A voxel that no station saw stays empty, so what was hidden on the survey day re
 Source: Curless and Levoy, "A volumetric method for building complex models from range images", SIGGRAPH 1996.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

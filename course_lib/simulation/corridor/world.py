@@ -1,7 +1,5 @@
 """The true world: a fourth-floor corridor of 40 m along +x (z up, left is +y), on the survey day and on a run day."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The seven kinds of furniture that a semantic map lists: for each its shape, its parts, and a random piece."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Everything under data/room from one seed: the paper's stereo panoramas, exact boxes and poses, the semantic map."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A furnished room as paper 1 sees it: its laser-scanned mesh map, and what a carried depth camera measures in it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 

@@ -4,8 +4,6 @@ Only their distance from the centroid of all furniture tells three sofas apart. 
 of `make_room` were moved to just beside it (data/room/README.md). Source: paper 2, section 3 (table 1, figure 7)
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.random import Generator
 

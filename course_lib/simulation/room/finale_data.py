@@ -1,7 +1,5 @@
 """Everything under data/finale: the semantic map and the mesh map that `demo finale` would make of one seed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 

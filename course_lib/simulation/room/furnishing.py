@@ -3,8 +3,6 @@
 The limits for reporting were committed before any such room was drawn. No seed gives one room in both generators.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A room of look-alikes surveyed and photographed from a seed. Every random thing has a stream of its own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Where paper 2's rig stood: table 1 and section 3 of the paper. The simulated rig stands there too."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

@@ -1,7 +1,5 @@
 """What a furnished room is, and where things stand in it: footprints are rectangles on the floor."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A room apart from its listed furniture; small things by its walls let a detector meet what is not of its classes."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """A room photographed by a rig, as a recording, with the exact boxes of its objects."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The semantic map of a room as a surveyor makes it: another day, under warmer light, with a measuring error."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Photographs of many rooms (`make_room`) with their boxes: what a detector is trained and tested on."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator

@@ -1,7 +1,5 @@
 """A terrestrial laser survey: stations, scans with their errors, and how well the stations are registered."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 

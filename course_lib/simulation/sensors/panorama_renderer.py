@@ -1,7 +1,5 @@
 """Equirectangular pictures of a room from any place, and which object each pixel shows, both drawn by VTK."""
 
-from __future__ import annotations
-
 from contextlib import AbstractContextManager
 
 import cv2

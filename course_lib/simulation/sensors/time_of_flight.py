@@ -10,8 +10,6 @@ range = c phase / (4 pi f) lies in [0, c / 2f): what comes from farther away is 
 Not modelled: light that takes several paths in the room, motion blur within one exposure, warming up.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -8,8 +8,6 @@ as int32; images seen as int64, or int32 before version 0.2) and then float32, f
 with the bracket if `batch_normalize=1`. OpenCV takes a truncated file without an error, so the floats are counted here.
 """
 
-from __future__ import annotations
-
 import struct
 import threading
 from dataclasses import dataclass

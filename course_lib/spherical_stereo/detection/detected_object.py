@@ -2,8 +2,6 @@
 edge coordinates, pixels, 0 <= u_min < width. If the box crosses the seam, u_max passes the width.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass

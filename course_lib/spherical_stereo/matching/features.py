@@ -4,8 +4,6 @@ AKAZE is made for flat images, and an equirectangular one is stretched sideways 
 about 60 degrees up or down match less often. The descriptors are the upright ones, because both cameras stand upright.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

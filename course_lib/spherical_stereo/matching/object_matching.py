@@ -4,8 +4,6 @@ For every two boxes of one class the AKAZE features inside them are matched unde
 combination with most matches is one object, and so on until nothing is left.
 """
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Sequence
 from dataclasses import dataclass

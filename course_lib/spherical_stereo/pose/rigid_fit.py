@@ -4,8 +4,6 @@ source: points in the body frame; target: the same points in the world. A least-
 pairs are wrong; `residual_statistics` asks if the residuals can be those of a right pose. The paper does not ask.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

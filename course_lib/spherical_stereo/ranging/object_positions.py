@@ -6,8 +6,6 @@ matched to about a pixel. Some belong to something in front or behind, so the me
 The map's centroid lies behind that surface by about half the object's depth, which is not added here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 

@@ -5,8 +5,6 @@ lower camera pi/2 - e_l, so the law of sines gives d. The rays of two box centre
 from the elevations, the azimuth from the upper camera.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual

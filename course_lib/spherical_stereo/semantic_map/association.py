@@ -4,8 +4,6 @@ Eq. (1) measures distances to the centroid of the *observed* objects on one side
 other. They are one place only if everything on the map is seen, so the term needs no pose, but it is blunt.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

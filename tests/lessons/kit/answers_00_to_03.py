@@ -1,7 +1,5 @@
 """Answers that students may give to lessons 00 to 03, for test_exercise_answers.py."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """Answers that students may give to lessons 04 to 06, for test_exercise_answers.py."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.integrate import trapezoid
 from scipy.optimize import brentq

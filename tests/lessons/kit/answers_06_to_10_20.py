@@ -1,7 +1,5 @@
 """Answers of a student who tried lessons 06 to 10 and 20 from their texts alone, for test_exercise_answers.py."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import brentq
 from scipy.spatial import cKDTree

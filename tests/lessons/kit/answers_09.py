@@ -1,7 +1,5 @@
 """Answers that students may give to lesson 09, for test_exercise_answers.py."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation

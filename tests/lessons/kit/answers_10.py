@@ -1,7 +1,5 @@
 """Answers that students may give to lesson 10, for test_exercise_answers.py."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from course_lib.beyond.lost_and_found.adaptive_count import kld_count

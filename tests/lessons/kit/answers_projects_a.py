@@ -1,7 +1,5 @@
 """Answers to the stages of projects P1 and P4."""
 
-from __future__ import annotations
-
 import collections
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Answers that students may give to the stages of projects P2 and P3, for test_exercise_answers.py."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math

@@ -1,7 +1,5 @@
 """A student's function that exits, never ends, prints without end or breaks off is a verdict; the lesson goes on."""
 
-from __future__ import annotations
-
 import sys
 import threading
 import time

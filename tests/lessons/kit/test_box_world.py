@@ -1,7 +1,5 @@
 """The lessons' world of boxes: rays meet it where they should, as they meet the same boxes made of triangles."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What a lesson's figure must have to be shown, and what a stored picture carries."""
 
-from __future__ import annotations
-
 import io
 import re
 

@@ -1,7 +1,5 @@
 """Answers that students gave: what is wrong fails with a hint that fits, and what is right by another way passes."""
 
-from __future__ import annotations
-
 import importlib
 from pathlib import Path
 

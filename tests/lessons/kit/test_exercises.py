@@ -1,7 +1,5 @@
 """`check` on an exercise made for the test: what it says of every kind of answer, and what it never says."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

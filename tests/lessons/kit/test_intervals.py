@@ -1,7 +1,5 @@
 """The bootstrap of a median covers as often as it says; medians and shares are printed with their intervals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

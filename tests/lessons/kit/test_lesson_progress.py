@@ -1,7 +1,5 @@
 """Progress: counted from the lessons and the records, shown in words and as a page, brought up to date by a check."""
 
-from __future__ import annotations
-
 import datetime
 import json
 import os

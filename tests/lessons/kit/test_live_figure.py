@@ -1,7 +1,5 @@
 """A live figure shows what a figure drawn anew would show."""
 
-from __future__ import annotations
-
 from course_lib.lessons.kit.live_figure import LiveFigure
 from tests.lessons.kit.test_display import finished_figure
 

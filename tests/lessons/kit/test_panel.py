@@ -1,7 +1,5 @@
 """The panel itself: what its controls do, what it shows and stores, and that no error is lost."""
 
-from __future__ import annotations
-
 import base64
 import io
 import re

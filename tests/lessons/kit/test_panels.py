@@ -1,7 +1,5 @@
 """Every control of every panel at its least, default and greatest value, moved a little at a time, and its buttons."""
 
-from __future__ import annotations
-
 import importlib
 import pkgutil
 import re

@@ -1,7 +1,5 @@
 """`score` on a project made for the test: what it says of every kind of submission."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 

@@ -1,7 +1,5 @@
 """How a scene is shown: the frame and the picture, and which page a student's own lines are written to."""
 
-from __future__ import annotations
-
 import io
 import re
 

@@ -1,7 +1,5 @@
 """Lesson 00's plumbing: equation (8) peaks at the true pose of the recorded frame, and drawing can be checked."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What lesson 01 says about turns, gimbal lock and its panel holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

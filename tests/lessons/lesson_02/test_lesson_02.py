@@ -1,7 +1,5 @@
 """What lesson 02 says about its room's maps holds: holes, noise, registration, voxels, the door of another day."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

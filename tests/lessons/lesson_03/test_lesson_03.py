@@ -1,7 +1,5 @@
 """What lesson 03 says about its panel and its z-buffer holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What lesson 04 says about the time-of-flight camera's faults holds, one by one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

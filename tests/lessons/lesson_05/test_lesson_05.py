@@ -1,7 +1,5 @@
 """What lesson 05 says about clouds that walk holds: spread, drift, too small, too large, corners."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

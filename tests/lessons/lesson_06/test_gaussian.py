@@ -1,7 +1,5 @@
 """The Gaussian form: a sum of squares, and what that does to outliers and to holes of the map."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

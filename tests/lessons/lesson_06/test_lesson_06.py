@@ -1,7 +1,5 @@
 """What lesson 06 says of alpha, beta, outliers and the four likelihoods holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

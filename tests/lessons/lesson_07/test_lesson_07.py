@@ -1,7 +1,5 @@
 """What lesson 07 says of means, sample sizes and resamplers holds, and the filter stepper steps as figure 1 does."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from filterpy.kalman import predict, update

@@ -1,7 +1,5 @@
 """Lesson 08's filter along the corridor: it follows, it is lost, and its two errors tell different stories."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

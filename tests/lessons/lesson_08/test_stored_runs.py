@@ -1,7 +1,5 @@
 """Stored seeds of the corridor experiment: read back as written, told apart, and summed up in the paper's table."""
 
-from __future__ import annotations
-
 import csv
 import json
 

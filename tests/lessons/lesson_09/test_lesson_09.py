@@ -1,7 +1,5 @@
 """What lesson 09 says about clouds, basins, bare corridors and stored results holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.stats import chi2

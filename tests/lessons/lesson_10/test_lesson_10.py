@@ -1,7 +1,5 @@
 """What lesson 10 says of its hotel, its filters and its exercises holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

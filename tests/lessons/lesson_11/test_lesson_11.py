@@ -1,7 +1,5 @@
 """What lesson 11 says of panoramas and the sphere holds, and its scene computes as the library does."""
 
-from __future__ import annotations
-
 import os
 import shutil
 

@@ -1,7 +1,5 @@
 """What lesson 12 says of seams, thresholds and colours holds, whatever network is shipped."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What lesson 13 says of columns, look and place, turned cameras, plain objects and ties holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What lesson 14 says of errors over range and baseline, of the two distances, and of boxes' centres holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What lesson 15 says about the penalty, the repeated minimum and the sofas holds."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What lesson 16 says about the fit, its errors, wrong pairs and sets of points without a pose holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Lesson 17: stored results of any number of seeds, what fails and what would have saved it, hidden objects."""
 
-from __future__ import annotations
-
 import json
 import math
 

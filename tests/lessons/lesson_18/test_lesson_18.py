@@ -1,7 +1,5 @@
 """What lesson 18 says about poses of two matches, their scores, abstaining, and rooms with two equal ends holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

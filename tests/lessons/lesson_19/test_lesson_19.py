@@ -1,7 +1,5 @@
 """Lesson 19: the world, one robot's way through both methods, wrong starts, stored results, and the panel's buttons."""
 
-from __future__ import annotations
-
 import itertools
 import json
 

@@ -1,7 +1,5 @@
 """Lesson 20: a reader's folders are read, misreadings show, and the stand-in is the same with and without real data."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

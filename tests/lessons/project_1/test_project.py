@@ -1,7 +1,5 @@
 """Project P1: what a submission is given, the budget of renders, and what its answer is worth."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Project P4: an unknown camera's raw numbers, and what a calibrated depth is worth."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

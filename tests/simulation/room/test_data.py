@@ -1,7 +1,5 @@
 """Making data of rooms at a reduced size: same seed, same bytes; stopped runs harm nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

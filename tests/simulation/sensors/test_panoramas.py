@@ -1,7 +1,5 @@
 """Panoramas of rooms: where things appear on them, how large, in which colour, and what the camera does to them."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -4,8 +4,6 @@ The format is protocol buffers.
 A field is a key (number * 8 + wire type) and a value: type 0 a varint, type 2 a length and bytes, type 5 four bytes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from tests.spherical_stereo.detection.blob_networks import (
