@@ -75,7 +75,7 @@ WRONG = {
         ("corridor --dof 6 --idealizations --out {out}", "--idealizations does not go with --dof 6"),
         ("room --poses 0 --out {out}", "--poses must be at least 1"),
         ("room --data elsewhere --seed 7 --out {out}", "give one of the two"),
-        ("room --seed 7 --detector nowhere --out {out}", "no detector folder nowhere"),
+        ("room --seed 7 --detector nowhere --out {out}", "folder nowhere must hold exactly one .cfg file"),
         ("room --seed 7 --association psychic --out {out}", "association must be one of"),
         ("room --seed 7 --score-threshold 2 --out {out}", "--score-threshold"),
         ("rooms --views 0 --out {out}", "--views must be at least 1"),
