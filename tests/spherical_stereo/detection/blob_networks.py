@@ -54,7 +54,6 @@ def window_kernels() -> dict[str, np.ndarray]:
 
 
 def kernel(kernel: np.ndarray, red: float, green: float, blue: float) -> np.ndarray:
-    """The kernel (3, SIZE, SIZE) for an RGB input that looks at a mix of colours."""
     return np.array([red, green, blue])[:, None, None] * kernel
 
 
@@ -66,19 +65,16 @@ def averaging_kernels() -> np.ndarray:
 def darknet_weights() -> np.ndarray:
     """Biases and kernels of both convolutions, in the order of the file."""
     k = window_kernels()
-    coloured = (1, 1, -2)
     kernels = [
-        kernel(k["x"], *coloured) * 2 / STRIDE,  # 2 sigmoid(t) - 1/2 is about 1/2 + t/2 cells
-        kernel(k["y"], *coloured) * 2 / STRIDE,
-        np.zeros((3, SIZE, SIZE)),
-        np.zeros((3, SIZE, SIZE)),
-        kernel(k["match"], *coloured) * 40,
+        kernel(k["x"], 1, 1, -2) * 2 / STRIDE,  # 2 sigmoid(t) - 1/2 is about 1/2 + t/2 cells
+        kernel(k["y"], 1, 1, -2) * 2 / STRIDE,
+        *np.zeros((2, 3, SIZE, SIZE)),
+        kernel(k["match"], 1, 1, -2) * 40,
         kernel(k["sum"], 1, -1, 0) * 10,
         kernel(k["sum"], -1, 1, 0) * 10,
     ]
-    biases = [0, 0, 0, 0, -40 * 0.3, 0, 0]
-    parts = [np.zeros(3), averaging_kernels(), np.array(biases), np.array(kernels)]
-    return np.concatenate([part.ravel() for part in parts]).astype("<f4")
+    parts = [0, 0, 0], averaging_kernels(), [0, 0, 0, 0, -40 * 0.3, 0, 0], kernels
+    return np.concatenate([np.ravel(part) for part in parts]).astype("<f4")
 
 
 def write_darknet(folder) -> tuple:

@@ -1,7 +1,7 @@
 """The network of `blob_networks` as ONNX files, written by hand: the few fields of the format that it needs.
 
-The format is protocol buffers.
-A field is a key (number * 8 + wire type) and a value: type 0 a varint, type 2 a length and bytes, type 5 four bytes.
+The format is protocol buffers: a field is a key (number * 8 + wire type) and a value, type 0 a varint, type 2 a length
+and bytes.
 """
 
 import numpy as np
@@ -21,51 +21,40 @@ INTS_ATTRIBUTE, INT_ATTRIBUTE = 7, 2  # AttributeProto.AttributeType
 
 
 def varint(value: int) -> bytes:
+    return bytes([value]) if value < 128 else bytes([value & 127 | 128]) + varint(value >> 7)
+
+
+def message(*fields: tuple[int, int | bytes | str]) -> bytes:
+    """Return the bytes of fields (number, value)."""
     out = b""
-    while value > 127:
-        out, value = out + bytes([value & 127 | 128]), value >> 7
-    return out + bytes([value])
-
-
-def number(field: int, value: int) -> bytes:
-    return varint(field << 3) + varint(value)
-
-
-def block(field: int, value: bytes | str) -> bytes:
-    data = value.encode() if isinstance(value, str) else value
-    return varint(field << 3 | 2) + varint(len(data)) + data
+    for number, value in fields:
+        if isinstance(value, int):
+            out += varint(number << 3) + varint(value)
+        else:
+            data = value.encode() if isinstance(value, str) else value
+            out += varint(number << 3 | 2) + varint(len(data)) + data
+    return out
 
 
 def tensor(name: str, values: np.ndarray) -> bytes:
-    kind = INT64 if values.dtype == np.int64 else FLOAT
-    values = values if kind == INT64 else values.astype("<f4")
-    dims = b"".join(number(1, size) for size in values.shape)
-    return dims + number(2, kind) + block(8, name) + block(9, values.tobytes())
+    kind, data = (INT64, values) if values.dtype == np.int64 else (FLOAT, values.astype("<f4"))
+    return message(*((1, size) for size in values.shape), (2, kind), (8, name), (9, data.tobytes()))
 
 
 def attribute(name: str, value: int | list[int]) -> bytes:
     if isinstance(value, int):
-        return block(1, name) + number(3, value) + number(20, INT_ATTRIBUTE)
-    return block(1, name) + b"".join(number(8, item) for item in value) + number(20, INTS_ATTRIBUTE)
+        return message((1, name), (3, value), (20, INT_ATTRIBUTE))
+    return message((1, name), *((8, item) for item in value), (20, INTS_ATTRIBUTE))
 
 
 def node(operation: str, inputs: list[str], output: str, **attributes: int | list[int]) -> bytes:
-    data = b"".join(block(1, name) for name in inputs) + block(2, output) + block(3, output) + block(4, operation)
-    return data + b"".join(block(5, attribute(name, value)) for name, value in attributes.items())
+    options = ((5, attribute(name, value)) for name, value in attributes.items())
+    return message(*((1, name) for name in inputs), (2, output), (3, output), (4, operation), *options)
 
 
-def value_info(name: str, shape: tuple[int, ...]) -> bytes:
-    dims = b"".join(block(1, number(1, size)) for size in shape)
-    return block(1, name) + block(2, block(1, number(1, FLOAT) + block(2, dims)))
-
-
-def model(nodes: list[bytes], constants: dict[str, np.ndarray], inputs: dict, outputs: dict) -> bytes:
-    graph = b"".join(block(1, item) for item in nodes) + block(2, "blobs")
-    graph += b"".join(block(5, tensor(name, values)) for name, values in constants.items())
-    graph += b"".join(block(11, value_info(name, shape)) for name, shape in inputs.items())
-    graph += b"".join(block(12, value_info(name, shape)) for name, shape in outputs.items())
-    opset = block(1, "") + number(2, 11)
-    return number(1, 7) + block(8, opset) + block(7, graph)
+def value_info(name: str, *shape: int) -> bytes:
+    tensor_type = message((1, FLOAT), (2, message(*((1, message((1, size))) for size in shape))))
+    return message((1, name), (2, message((1, tensor_type))))
 
 
 def blob_onnx() -> bytes:
@@ -94,4 +83,7 @@ def blob_onnx() -> bytes:
         node("Reshape", ["probability_map", "score_shape"], "score_columns"),
         node("Concat", ["box_columns", "score_columns"], "output", axis=1),
     ]
-    return model(nodes, constants, {"image": (1, 3, height, width)}, {"output": (1, 6, columns * rows)})
+    tensors = ((5, tensor(name, values)) for name, values in constants.items())
+    ends = (11, value_info("image", 1, 3, height, width)), (12, value_info("output", 1, 6, columns * rows))
+    graph = message(*((1, item) for item in nodes), (2, "blobs"), *tensors, *ends)
+    return message((1, 7), (8, message((1, ""), (2, 11))), (7, graph))
