@@ -14,8 +14,7 @@ from course_lib.spherical_stereo.pose import localization as outcomes
 from course_lib.spherical_stereo.pose.rigid_fit import MIRRORED, rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
-from tests.spherical_stereo.stereo_scene import TRUE_POSE, KnowingDetector, mapped_scene
-from tests.spherical_stereo.vertical_pair import BASELINE, WIDTH, seen_turned
+from tests.spherical_stereo.stereo_scene import BASELINE, TRUE_POSE, WIDTH, KnowingDetector, mapped_scene, seen_turned
 
 UPPER, LOWER, MAP = mapped_scene()
 RIG = StereoRig(BASELINE)

@@ -162,7 +162,7 @@ def test_a_layer_that_nothing_takes_and_that_detects_nothing_is_named(copied):
 
 
 def test_threads_take_turns_and_no_run_writes_over_what_another_gave(detector, rng):
-    blobs = rng.random((8, 1, 3, *INPUT_SIZE[::-1]), dtype=np.float32)
+    blobs = rng.random((40, 1, 3, *INPUT_SIZE[::-1]), dtype=np.float32)
     alone = [[output.copy() for output in detector._network.infer(blob)] for blob in blobs]
     with ThreadPoolExecutor(4) as pool:
         together = list(pool.map(detector._network.infer, blobs))

@@ -7,8 +7,7 @@ from course_lib.spherical_stereo.matching.features import find_features
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_views
 from course_lib.spherical_stereo.panorama import StereoRig, View, direction_from_angles, direction_to_pixel, open_pair
 from course_lib.spherical_stereo.ranging.object_positions import disparity_distance, measure_objects
-from tests.spherical_stereo.stereo_scene import scene
-from tests.spherical_stereo.vertical_pair import BASELINE, Seen
+from tests.spherical_stereo.stereo_scene import BASELINE, Seen, scene
 
 SIZE = (1280, 640)
 
