@@ -3,19 +3,18 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.matching.features import find_features
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_views
 from course_lib.spherical_stereo.panorama import StereoRig, View, direction_from_angles, direction_to_pixel, open_pair
 from course_lib.spherical_stereo.ranging.object_positions import disparity_distance, measure_objects
 from tests.spherical_stereo.stereo_scene import BASELINE, Seen, scene
 
 SIZE = (1280, 640)
+RIG = StereoRig(BASELINE)
 
 
-def match_of(points, baseline=BASELINE, noise=0.0, rng=None):
+def match_of(points, noise=0.0, rng=None):
     """An `ObjectMatch` of exact keypoints of points `(k, 3)` in the upper camera's frame, with noise in rows."""
-    points = np.asarray(points, float)
-    upper, lower = direction_to_pixel(points, *SIZE), direction_to_pixel(np.add(points, [0, 0, baseline]), *SIZE)
+    upper, lower = direction_to_pixel(points, *SIZE), direction_to_pixel(np.add(points, [0, 0, BASELINE]), *SIZE)
     if noise:
         lower[:, 1] += rng.normal(0, noise, len(points))
     return ObjectMatch(0, 0, "chair", upper, lower)
@@ -54,11 +53,10 @@ def test_two_matches_are_too_few(rng):
 
 def test_both_distances_of_rendered_boards_are_right():
     """A board is flat and faces the rig, so here surface and centre are nearly one."""
-    boards, *images, upper_detections, lower_detections = scene()
-    rig = StereoRig(BASELINE)
+    boards, *images, upper_seen, lower_seen = scene()
     upper, lower = open_pair(*images)
-    upper, lower = upper.replace(detections=upper_detections), lower.replace(detections=lower_detections)
-    measured = measure_objects(match_views(find_features(upper), find_features(lower), rig).matches, upper, lower, rig)
+    views = upper.replace(detections=upper_seen), lower.replace(detections=lower_seen)
+    measured = measure_objects(match_views(*views, RIG).matches, *views, RIG)
     assert [m.upper for m in measured] == list(range(8))
     ranges = np.array([board.range for board in boards])
     from_features = np.array([m.disparity.horizontal_range_m for m in measured])
@@ -79,17 +77,14 @@ def boxed(elevation):
 
 
 def test_box_centres_without_a_distance_keep_the_name_of_their_outcome(rng):
-    rig, match = StereoRig(BASELINE), match_of(face(rng, 20, 2.5))
-    (measured,) = measure_objects([match], boxed(-0.3), boxed(-0.4), rig)
+    (measured,) = measure_objects([match_of(face(rng, 20, 2.5))], boxed(-0.3), boxed(-0.4), RIG)
     assert (measured.box_centre.outcome, measured.disparity.outcome) == ("diverging", "ok")
     assert np.isnan(measured.box_centre.distance_m)
 
 
 def test_the_sigma_of_a_range_is_that_of_the_pixels():
     """d rho = rho^2 sec^2 e / B per radian of either elevation: a pixel each, at 0.4 and 0.3 radians down."""
-    (measured,) = measure_objects(
-        [match_of(np.array([[2.0, 0, -1]] * 3))], boxed(-0.4), boxed(-0.3), StereoRig(BASELINE)
-    )
+    (measured,) = measure_objects([match_of(np.array([[2.0, 0, -1]] * 3))], boxed(-0.4), boxed(-0.3), RIG)
     rho = BASELINE / (np.tan(-0.3) - np.tan(-0.4))
     pixel = 2 * np.pi / 1280
     expected = rho**2 / BASELINE * pixel * np.hypot(1 / np.cos(0.4) ** 2, 1 / np.cos(0.3) ** 2)

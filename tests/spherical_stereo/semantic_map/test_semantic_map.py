@@ -13,10 +13,6 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, Sema
 WALLS = [[0.0, 0.0], [6.0, 0.0], [6.0, 5.5], [0.0, 5.5]]
 
 
-def a_map():
-    return SemanticMap([Landmark("sofa", 1.0, 0.5, 210.0, 55.0)], walls=WALLS, name="部屋")
-
-
 def same(first, second):
     return (
         first.labels == second.labels
@@ -27,13 +23,14 @@ def same(first, second):
 
 
 def test_json_keeps_name_and_walls_and_nothing_changes_them(tmp_path):
+    semantic_map = SemanticMap([Landmark("sofa", 1.0, 0.5, 210.0, 55.0)], walls=WALLS, name="部屋")
     with pytest.raises(ValueError, match="read-only"):
-        a_map().positions[0, 0] = 9.0
-    a_map().save(tmp_path / "map.json")
+        semantic_map.positions[0, 0] = 9.0
+    semantic_map.save(tmp_path / "map.json")
     read = SemanticMap.load(tmp_path / "map.json")
     assert (read.name, read.walls.tolist()) == ("部屋", WALLS)
     with pytest.raises(SemanticMapError, match=r"\.json or \.csv"):
-        a_map().save(tmp_path / "map.txt")
+        semantic_map.save(tmp_path / "map.txt")
 
 
 def test_csv_as_a_spreadsheet_saves_it_is_read(tmp_path):
@@ -95,7 +92,6 @@ def test_a_json_file_that_is_no_map_is_named(tmp_path, change, says):
     [
         ({"x": "1.5"}, "x of this sofa must be a number; got '1.5'"),
         ({"y": True}, "y of this sofa must be a number; got True"),
-        ({"saturation": None}, "saturation of this sofa must be a number; got None"),
         ({"saturation": 100.5}, r".*saturation in \[0, 100\]"),
         ({"saturation": -0.5}, r".*saturation in \[0, 100\]"),
         ({"hue": 360}, r".*hue in \[0, 360\)"),
@@ -113,7 +109,6 @@ HEAD = "# semantic map, version 1\nlabel,x,y,hue,saturation\n"
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        (HEAD, "the map is empty"),
         ("label,x,y,hue,saturation\nsofa,1,2,3,4\n", "first line must be '# semantic map, version 1'"),
         (HEAD.replace("version 1", "version 7") + "sofa,1,2,3,4\n", "version must be 1.*7"),
         ("# semantic map, version 1\nlabel,x,y\nsofa,1,2\n", "second line must name the columns"),
