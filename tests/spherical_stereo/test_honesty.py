@@ -66,13 +66,7 @@ def test_a_lower_camera_that_is_yawed_is_named(columns):
 
 
 @pytest.mark.parametrize(
-    ("turn_deg", "reason"),
-    [
-        ((3, 0, 0), outcomes.TURNED),
-        ((0, -3, 0), outcomes.TURNED),
-        ((1.2, 1.2, 0), outcomes.TURNED),
-        ((0.2, 0.2, 0.3), None),
-    ],
+    ("turn_deg", "is_named"), [((3, 0, 0), True), ((0, -3, 0), True), ((1.2, 1.2, 0), True), ((0.2, 0.2, 0.3), False)]
 )
 def test_a_lower_camera_that_is_tilted_by_more_than_a_little_is_named(turn_deg, is_named):
     tilted = seen_by(seen_turned(LOWER.image, np.radians(turn_deg)))
