@@ -35,6 +35,11 @@ def test_the_clean_twin_of_every_case_below_is_ok():
     assert np.linalg.norm(found.turn) < math.radians(0.3)
     assert found.rms_residual < 2 * found.statistics.expected_rms < 1.0
     assert found.statistics.degrees_of_freedom == 7
+    # Two images and a detector give the same pose.
+    detector = KnowingDetector((UPPER.image, LOWER.image, UPPER.detections, LOWER.detections))
+    detected = SemanticLocalizer(RIG, MAP, detector).localize(UPPER.image, LOWER.image)
+    assert (detected.pose, detected.unmatched) == (found.pose, ())
+    assert set(detected.used_pairs) == {(one.observation, one.upper) for one in detected.objects}
 
 
 def test_a_baseline_in_millimetres_is_named_and_one_in_other_units_is_implausible():
@@ -46,13 +51,6 @@ def test_a_baseline_in_millimetres_is_named_and_one_in_other_units_is_implausibl
         assert found.rejected_pose is not None
         assert f"{found.rms_residual:.2f} m" in found.explanation
         assert locate(rig=StereoRig(baseline), reject_implausible=False).status == "ok", "the paper's method is silent"
-
-
-def test_two_images_and_a_detector_give_the_same_pose():
-    detector = KnowingDetector((UPPER.image, LOWER.image, UPPER.detections, LOWER.detections))
-    found = SemanticLocalizer(RIG, MAP, detector).localize(UPPER.image, LOWER.image)
-    assert (found.pose, found.unmatched) == (locate().pose, ())
-    assert set(found.used_pairs) == {(one.observation, one.upper) for one in found.objects}
 
 
 @pytest.mark.parametrize("columns", [20, -20, 200])

@@ -32,7 +32,7 @@ def detector(files):
     return YoloDetector(*files)
 
 
-def test_one_object_slid_across_every_column_is_detected_exactly_once(detector, rng):
+def test_one_object_slid_across_every_column_is_detected_exactly_once(files, detector, rng):
     image = panorama(rng, (100, 50, RED))
     for column in range(256):
         found = detector.detect(np.roll(image, column, axis=1))
@@ -42,9 +42,7 @@ def test_one_object_slid_across_every_column_is_detected_exactly_once(detector, 
         assert abs((sofa.box[0] - 100 - column + 128) % 256 - 128) < 1
         assert sofa.size == pytest.approx((32, 24), abs=0.5)
         assert sofa.centre[1] == pytest.approx(50 + 24 / 2, abs=1)
-
-
-def test_without_the_appended_quarter_an_object_on_the_seam_is_found_twice(files, rng):
+    # Without the appended quarter an object on the seam is found twice.
     plain = YoloDetector(*files, use_seam_extension=False)
     assert [len(plain.detect(panorama(rng, (u, 50, RED)))) for u in (100, 240)] == [1, 2]
 
@@ -102,7 +100,9 @@ def test_a_view_and_a_detector_sent_elsewhere_give_the_same_and_an_image_is_chec
         detector.detect(image[:, :255])
 
 
-def test_truncated_weights_that_opencv_would_take_are_refused_and_names_of_another_network(copied):
+def test_files_that_do_not_belong_together_and_folders_that_lack_one_are_refused(copied):
+    with pytest.raises(DetectorError, match=r"exactly one \.cfg file; found none"):
+        YoloDetector.load(copied / "nowhere")
     (copied / "blobs.names").write_text("a\nb\nc\n")
     with pytest.raises(DetectorError, match=r"2 classes.* has 3"):
         YoloDetector.load(copied)
@@ -110,6 +110,9 @@ def test_truncated_weights_that_opencv_would_take_are_refused_and_names_of_anoth
     cut.write_bytes(cut.read_bytes()[:-4000])
     cv2.dnn.readNetFromDarknet(str(copied / "blobs.cfg"), str(cut))  # without an error
     with pytest.raises(DetectorError, match="Was the copy cut off"):
+        YoloDetector.load(copied)
+    (copied / "second.names").write_text("")
+    with pytest.raises(DetectorError, match=r"exactly one \.names file; found blobs\.names, second\.names"):
         YoloDetector.load(copied)
 
 
@@ -125,14 +128,6 @@ def test_the_threshold_that_training_chose_is_taken_unless_another_is_given(copi
         assert YoloDetector.load(copied, score_threshold=0.4).score_threshold == 0.4
     with pytest.raises(DetectorError, match="iou_threshold must be between 0 and 1"):
         YoloDetector.load(copied, score_threshold=0.4, iou_threshold=1.2)
-
-
-def test_a_folder_that_lacks_or_doubles_a_file_is_refused(copied):
-    with pytest.raises(DetectorError, match=r"exactly one \.cfg file; found none"):
-        YoloDetector.load(copied / "nowhere")
-    (copied / "second.names").write_text("")
-    with pytest.raises(DetectorError, match=r"exactly one \.names file; found blobs\.names, second\.names"):
-        YoloDetector.load(copied)
 
 
 @pytest.mark.parametrize(

@@ -56,34 +56,6 @@ def test_a_pair_of_weight_zero_counts_as_if_it_were_not_there():
     assert covariance == pytest.approx(fit_covariance(pose, TRIANGLE, target, noise=noise), abs=1e-12)
 
 
-def ranges_with_noise(rng):
-    """Points around the body of uncertain range, growing with its square as in stereo, and of certain azimuth."""
-    points = rng.uniform(1, 4, (8, 1)) * np.stack([np.cos(a := rng.uniform(-np.pi, np.pi, 8)), np.sin(a)], axis=1)
-    along = points / np.linalg.norm(points, axis=1)[:, None]
-    across = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
-    sigma = 0.03 * (points**2).sum(axis=1)[:, None]
-    covariances = (
-        sigma[:, :, None] ** 2 * along[:, :, None] * along[:, None] + 0.02**2 * across[:, :, None] * across[:, None]
-    )
-    observed = points + along * sigma * rng.standard_normal((8, 1)) + across * 0.02 * rng.standard_normal((8, 1))
-    return points, observed, covariances
-
-
-@pytest.mark.parametrize("weighted", [False, True])
-def test_the_covariance_is_the_spread_that_repeated_fits_show(weighted):
-    rng, pose, errors = np.random.default_rng(6), Pose2D(1.0, -1.0, 2.0), []
-    for _ in range(500):
-        points, observed, covariances = ranges_with_noise(rng)
-        target, used = pose.apply(points), covariances if weighted else None
-        fitted = fit_rigid_2d(observed, target, covariances=used)
-        claim = fit_covariance(fitted, observed, target, covariances=used, noise=covariances)
-        error = np.array(fitted) - pose
-        errors.append(error @ np.linalg.solve(claim, error))
-        assert np.linalg.eigvalsh(claim).min() > 0
-    # Squared errors in units of the claimed covariance have mean 3, one for each component.
-    assert np.mean(errors) == pytest.approx(3.0, rel=0.2)
-
-
 def test_without_covariances_the_residuals_say_how_uncertain_the_pose_is():
     rng, pose = np.random.default_rng(7), Pose2D(0.3, 0.4, -1.0)
     points, claimed, errors = rng.uniform(-3, 3, (10, 2)), [], []
@@ -153,9 +125,9 @@ def measured(rng):
 
 
 @pytest.mark.parametrize("weighted", [False, True])
-def test_over_repeated_noise_chi_square_and_rms_are_what_is_expected(rng, weighted):
-    target, covariances = POSE.apply(SOURCE), NOISE if weighted else None
-    squares, expected, chi = [], [], []
+def test_over_repeated_noise_residuals_and_errors_are_what_is_expected_and_a_wrong_pair_shows(rng, weighted):
+    target, wrong, covariances = POSE.apply(SOURCE), POSE.apply(SOURCE[[1, 0, 2, 3, 4]]), NOISE if weighted else None
+    squares, expected, chi, errors = [], [], [], []
     for _ in range(400):
         source = measured(rng)
         pose = fit_rigid_2d(source, target, covariances=covariances)
@@ -163,9 +135,16 @@ def test_over_repeated_noise_chi_square_and_rms_are_what_is_expected(rng, weight
         squares.append(((pose.apply(source) - target) ** 2).sum(axis=1).mean())
         expected.append(found.expected_rms**2)
         chi.append(found.chi_square)
+        assert not found.contradict_the_pose
+        assert residual_statistics(fit_rigid_2d(source, wrong), source, wrong, NOISE).contradict_the_pose
+        error = np.array(pose) - POSE
+        claim = fit_covariance(pose, source, target, covariances=covariances, noise=NOISE)
+        errors.append(error @ np.linalg.solve(claim, error))
     assert np.mean(squares) == pytest.approx(np.mean(expected), rel=0.1)
     assert np.mean(chi) == pytest.approx(7, rel=0.08)
     assert np.mean(np.array(chi) > chi2.isf(0.1, 7)) == pytest.approx(0.1, abs=0.05)
+    # Squared errors in units of the claimed covariance have mean 3, one for each component.
+    assert np.mean(errors) == pytest.approx(3.0, rel=0.2)
 
 
 def test_exact_points_leave_nothing_and_two_pairs_leave_one_number():
@@ -184,14 +163,3 @@ def test_the_limit_is_two_and_a_quarter_times_the_quantile_of_a_thousandth(n, li
     above, below = (rigid_fit.Residuals(0.1, chi_square, n) for chi_square in (limit + 0.5, limit - 0.5))
     assert (above.contradict_the_pose, below.contradict_the_pose) == (True, False)
     assert below.normalized == pytest.approx(np.sqrt((limit - 0.5) / n))
-
-
-def test_right_pairs_pass_and_one_wrong_pair_of_five_does_not(rng):
-    target, wrong = POSE.apply(SOURCE), POSE.apply(SOURCE[[1, 0, 2, 3, 4]])
-    passed = caught = 0
-    for _ in range(100):
-        source = measured(rng)
-        right = residual_statistics(fit_rigid_2d(source, target), source, target, NOISE)
-        passed += not right.contradict_the_pose
-        caught += residual_statistics(fit_rigid_2d(source, wrong), source, wrong, NOISE).contradict_the_pose
-    assert (passed, caught) == (100, 100)
