@@ -6,6 +6,7 @@ is the upper camera's: origin at its centre, x forward, y left, z up. Two scenes
 """
 
 import math
+from collections import namedtuple
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -39,12 +40,7 @@ class Board:
         return [middle + s * across + [0, 0, z] for s in (-1, 1) for z in (self.bottom, self.top)]
 
 
-@dataclass(frozen=True)
-class Seen:
-    """A detection as `match_objects` needs it."""
-
-    label: str
-    box: tuple[float, float, float, float]
+Seen = namedtuple("Seen", "label box")  # a detection as `match_objects` needs it
 
 
 def blotches(rng, size=24, contrast=70):
@@ -138,6 +134,15 @@ def scene():
     return boards, upper, lower, detections(boards), detections(boards, -BASELINE)[::-1]
 
 
+ROOM = SemanticMap(
+    [
+        Landmark("sofa", 0.5, 0.5, 210, 55),
+        Landmark("sofa", 5.5, 1.0, 30, 54),
+        Landmark("chair", 3.0, 4.0, 30, 60),
+        Landmark("television", 1.0, 5.5, math.nan, 3),
+        Landmark("potted plant", 5.0, 5.5, 110, 65),
+    ]
+)
 MAPPED = [  # label, azimuth, horizontal range, width, bottom, top; the upper camera is the origin
     ("sofa", 0.2, 1.6, 1.2, -0.9, -0.2),
     ("sofa", 2.6, 2.2, 1.3, -0.9, -0.2),

@@ -132,11 +132,9 @@ def test_a_far_outlier_is_implausible_and_a_small_one_is_not(weighted_fit):
     assert localizer.localize_observations(observations((0.3, 0.0))).status == "ok"
     found = localizer.localize_observations(observations((0.0, 3.0)))
     assert (found.status, found.reason, found.covariance) == ("unable", outcomes.IMPLAUSIBLE, None)
-
-
-def test_two_look_alikes_that_were_exchanged_are_implausible():
+    # Two look-alikes that were exchanged are implausible too.
     swapped = MAP.hues[[1, 0, 2, 3, 4]]
-    found = SemanticLocalizer(RIG, MAP).localize_observations(observations(hues=swapped))
+    found = localizer.localize_observations(observations(hues=swapped))
     assert set(found.used_pairs) == {(0, 1), (1, 0), (2, 2), (3, 3), (4, 4)}
     assert found.reason == outcomes.IMPLAUSIBLE
 

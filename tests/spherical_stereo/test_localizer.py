@@ -18,19 +18,11 @@ from course_lib.spherical_stereo.pose import localization as outcomes
 from course_lib.spherical_stereo.pose.rigid_fit import COINCIDENT, MIRRORED, TOO_FEW_PAIRS, Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import AssociationError, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+from tests.spherical_stereo.stereo_scene import ROOM
 
 WIDTH, HEIGHT = 1280, 640
 RIG = StereoRig(0.3, 1.32)
 CAMERAS = (1.32, 1.02)  # heights, metres
-ROOM = SemanticMap(
-    [
-        Landmark("sofa", 0.5, 0.5, 210, 55),
-        Landmark("sofa", 5.5, 1.0, 30, 54),
-        Landmark("chair", 3.0, 4.0, 30, 60),
-        Landmark("television", 1.0, 5.5, math.nan, 3),
-        Landmark("potted plant", 5.0, 5.5, 110, 65),
-    ]
-)
 HEIGHTS = [0.4, 0.4, 0.45, 1.0, 0.6]
 POSE = Pose2D(2.2, 2.6, 0.8)
 

@@ -80,7 +80,7 @@ def darknet_weights() -> np.ndarray:
 def write_darknet(folder) -> tuple:
     """Paths of the cfg, the weights and the names."""
     folder.mkdir(exist_ok=True)
-    cfg, weights, names = folder / "blobs.cfg", folder / "blobs.weights", folder / "blobs.names"
+    cfg, weights, names = (folder / f"blobs.{ending}" for ending in ("cfg", "weights", "names"))
     cfg.write_text(CFG)
     weights.write_bytes(struct.pack("<3iq", 0, 2, 5, 0) + darknet_weights().tobytes())
     names.write_text("\n".join(NAMES) + "\n")

@@ -127,9 +127,7 @@ def test_exact_features_give_the_turn_and_strangers_do_not_matter(rng):
     found = camera_alignment(upper, lower)
     assert found.turn == pytest.approx(turn, abs=5e-4)
     assert found.agreeing == pytest.approx(0.75, abs=0.02)
-
-
-def test_images_with_nothing_in_common_tell_no_turn(rng):
+    # Images with nothing in common tell no turn.
     first, second = (features_at(rng.normal(size=(400, 3)), rng) for _ in range(2))
     assert camera_alignment(first, second).turn is None
     assert camera_alignment(first, features_of(np.zeros((0, 2)), rng)).turn is None

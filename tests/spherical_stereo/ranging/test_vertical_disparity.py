@@ -25,10 +25,13 @@ def face(rng, n, distance, width=1.0):
     return np.column_stack([np.full(n, distance), rng.uniform(-width / 2, width / 2, n), rng.uniform(-1, 0, n)])
 
 
-def test_exact_features_give_the_range_of_their_points(rng):
+def test_three_exact_features_or_more_give_the_range_of_their_points(rng):
     points = rng.uniform([1, -3, -1.2], [4, 3, 0.5], (41, 3))
     found = disparity_distance(match_of(points), *SIZE, BASELINE)
     assert found.horizontal_range == pytest.approx(np.median(np.hypot(points[:, 0], points[:, 1])), rel=1e-9)
+    for n, outcome in ((0, "too few matches"), (2, "too few matches"), (3, "ok")):
+        found = disparity_distance(match_of(points[:n]), *SIZE, BASELINE)
+        assert (found.outcome, np.isnan(found.horizontal_range), np.isnan(found.sigma)) == (outcome, n < 3, n < 3)
 
 
 def test_a_third_of_strangers_from_the_wall_behind_moves_the_range_little(rng):
@@ -41,14 +44,6 @@ def test_sigma_is_the_deviation_of_the_range_over_repeated_noise(rng):
     points = face(rng, 30, 3.0, 0.2)
     found = [disparity_distance(match_of(points, noise=1.0, rng=rng), *SIZE, BASELINE) for _ in range(300)]
     assert np.std([f.horizontal_range for f in found]) == pytest.approx(np.mean([f.sigma for f in found]), rel=0.2)
-
-
-def test_two_matches_are_too_few(rng):
-    for n in (0, 2):
-        found = disparity_distance(match_of(face(rng, n, 2.0)), *SIZE, BASELINE)
-        assert found.outcome == "too few matches"
-        assert np.isnan([found.horizontal_range, found.sigma]).all()
-    assert disparity_distance(match_of(face(rng, 3, 2.0)), *SIZE, BASELINE).outcome == "ok"
 
 
 def test_both_distances_of_rendered_boards_are_right():

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.semantic_map import association
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+from tests.spherical_stereo.stereo_scene import ROOM
 
 WEIGHTS = association.PenaltyWeights(p_obj=7.0, p_h=2.0, p_s=3.0, p_d=4.0)
 ORIGIN = np.zeros(2)
@@ -34,12 +35,14 @@ def test_every_term_of_equation_1_by_hand():
     assert terms.saturation == pytest.approx(3.0 * 30 / 100)
     assert terms.distance == pytest.approx(4.0 * (5 - 4) / 4)
     assert terms.total == pytest.approx(sum(terms[:4]))
-
-
-def test_two_names_of_one_class_cost_nothing():
+    # Two names of one class cost nothing, and grey on either side has no hue term.
     several = association.Observation(np.array([["couch"], ["TV"]]), 3.0, 4.0, 20.0, 50.0)
     landmarks = association.Observation(np.array([["sofa", "television"]]), 0.0, 4.0, 20.0, 50.0)
     assert cost(several, landmarks).object.tolist() == [[0.0, 7.0], [7.0, 0.0]]
+    for hue_seen, hue_mapped in ((math.nan, 200), (200, math.nan), (math.nan, math.nan)):
+        terms = cost(seen(hue=hue_seen), mapped(hue=hue_mapped))
+        assert terms.hue == 0.0
+        assert math.isfinite(terms.total)
 
 
 @given(st.floats(0, 359.999), st.floats(0, 359.999), st.floats(0, 359.999))
@@ -51,30 +54,12 @@ def test_the_hue_difference_is_symmetric_and_turns_with_the_circle(a, b, turn):
     assert association.hue_difference((a + turn) % 360, (b + turn) % 360) == pytest.approx(apart, abs=1e-9)
 
 
-@pytest.mark.parametrize(("hue_seen", "hue_mapped"), [(math.nan, 200), (200, math.nan), (math.nan, math.nan)])
-def test_grey_on_either_side_has_no_hue_term(hue_seen, hue_mapped):
-    terms = cost(seen(hue=hue_seen), mapped(hue=hue_mapped))
-    assert terms.hue == 0.0
-    assert math.isfinite(terms.total)
-
-
 def test_the_distance_term_as_printed_rewards_objects_that_look_too_near():
     too_near = seen(x=0.0, y=1.0)
     assert cost(too_near, mapped(), distance_term="as_printed").total == pytest.approx(4.0 * (1 - 4) / 4)
     assert cost(too_near, mapped()).total == pytest.approx(4.0 * 3 / 4)
     # An object at the centroid of the map costs a finite amount.
     assert cost(seen(x=0.3, y=0.4), mapped(x=0.0, y=0.0)).distance == pytest.approx(4.0 * 0.5 / 0.1)
-
-
-ROOM = SemanticMap(
-    [
-        Landmark("sofa", 0.5, 0.5, 210, 55),
-        Landmark("sofa", 5.5, 1.0, 212, 54),
-        Landmark("chair", 3.0, 4.0, 30, 60),
-        Landmark("television", 1.0, 5.5, math.nan, 3),
-        Landmark("potted plant", 5.0, 5.5, 110, 65),
-    ]
-)
 
 
 def observed_from(semantic_map, chosen, x=2.0, y=3.0, theta=0.6):

@@ -3,7 +3,6 @@
 import json
 import math
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,15 +10,6 @@ from hypothesis import strategies as st
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap, SemanticMapError
 
 WALLS = [[0.0, 0.0], [6.0, 0.0], [6.0, 5.5], [0.0, 5.5]]
-
-
-def same(first, second):
-    return (
-        first.labels == second.labels
-        and np.array_equal(first.positions, second.positions)
-        and np.array_equal(first.hues, second.hues, equal_nan=True)
-        and np.array_equal(first.saturations, second.saturations)
-    )
 
 
 def test_json_keeps_name_and_walls_and_nothing_changes_them(tmp_path):
@@ -36,7 +26,7 @@ def test_json_keeps_name_and_walls_and_nothing_changes_them(tmp_path):
 def test_csv_as_a_spreadsheet_saves_it_is_read(tmp_path):
     text = '\ufeff"# semantic map, version 1",,,,\r\nlabel,x,y,hue,saturation\r\nsofa,1,0.5,210,55\r\n'
     (tmp_path / "map.csv").write_bytes(text.encode())
-    assert same(SemanticMap.load(tmp_path / "map.csv"), SemanticMap([Landmark("sofa", 1, 0.5, 210, 55)]))
+    assert SemanticMap.load(tmp_path / "map.csv").landmarks == (Landmark("sofa", 1, 0.5, 210, 55),)
 
 
 values = st.floats(-1e6, 1e6)
@@ -49,7 +39,7 @@ def test_both_formats_keep_every_bit(tmp_path_factory, rows):
     semantic_map = SemanticMap([Landmark(f"class {i}", *row) for i, row in enumerate(rows)])
     for name in ("map.json", "map.csv"):
         semantic_map.save(folder / name)
-        assert same(SemanticMap.load(folder / name), semantic_map)
+        assert repr(SemanticMap.load(folder / name).landmarks) == repr(semantic_map.landmarks)  # of floats, every bit
 
 
 @pytest.mark.parametrize("ending", [".csv", ".json"])
