@@ -26,8 +26,6 @@ CAMERAS = (1.32, 1.02)  # heights, metres
 HEIGHTS = [0.4, 0.4, 0.45, 1.0, 0.6]
 POSE = Pose2D(2.2, 2.6, 0.8)
 
-poses = st.builds(Pose2D, st.floats(1.5, 4.5), st.floats(1.5, 3.4), st.floats(-3.1, 3.1))
-
 
 def seen_around(landmark, direction):
     """A detection of the landmark whose box has its centre exactly in the direction."""
@@ -54,7 +52,7 @@ def localize(upper, lower, matches, semantic_map=ROOM, **options):
     return SemanticLocalizer(RIG, semantic_map, **options).localize_detections(upper, lower, matches, (WIDTH, HEIGHT))
 
 
-@examples(poses)
+@examples(st.builds(Pose2D, st.floats(1.5, 4.5), st.floats(1.5, 3.4), st.floats(-3.1, 3.1)))
 @settings(max_examples=50)
 def test_exact_directions_give_the_exact_pose(pose):
     found = localize(*views(pose))
@@ -145,8 +143,7 @@ def test_images_exchanged_or_given_twice_and_two_objects_at_one_place_are_reason
     assert localize(*views(POSE, STACKED, [0.4, 0.9]), semantic_map=STACKED).reason == COINCIDENT
     found = localize(UPPER, UPPER, ALL)
     assert {one.outcome for one in found.objects} == {"parallel"}
-    assert found.reason == outcomes.TOO_FEW_PLACED
-    assert "sofa: parallel" in found.explanation
+    assert (found.reason, "sofa: parallel" in found.explanation) == (outcomes.TOO_FEW_PLACED, True)
 
 
 PLAIN = SemanticLocalizer(RIG, ROOM)

@@ -32,8 +32,7 @@ def test_pixels_look_where_the_conventions_say(uv, direction):
 def test_a_pixel_comes_back_from_its_direction(u, v):
     back = panorama.direction_to_pixel(panorama.pixel_to_direction(np.array([u, v]), WIDTH, HEIGHT), WIDTH, HEIGHT)
     assert 0 <= back[0] < WIDTH
-    gap = abs(back[0] - u)
-    assert min(gap, WIDTH - gap) < 1e-6
+    assert abs((back[0] - u + WIDTH / 2) % WIDTH - WIDTH / 2) < 1e-6
     assert back[1] == pytest.approx(v, abs=1e-9)
 
 
@@ -70,11 +69,11 @@ def test_an_image_that_is_no_panorama_is_named(image, says):
         panorama.open_view(image, "left image")
 
 
-@pytest.mark.parametrize(("brightest", "blank"), [(0, True), (12, True), (13, False)])
-def test_a_black_frame_is_let_in_and_known_as_one(brightest, blank):
+def test_a_black_frame_is_let_in_and_known_as_one():
     image = np.zeros((8, 16, 3), np.uint8)
-    image[3, 5, 1] = brightest
-    assert panorama.open_view(image).is_blank is blank
+    for brightest, blank in ((0, True), (12, True), (13, False)):
+        image[3, 5, 1] = brightest
+        assert panorama.open_view(image).is_blank is blank
 
 
 def test_a_panorama_file_is_read_without_its_alpha_and_another_one_named(tmp_path, rng):

@@ -79,9 +79,8 @@ GOOD = {
 
 
 def read_boxes(folder, content):
-    path = folder / "boxes.json"
-    path.write_text(json.dumps(content))
-    return read_stereo_boxes(path)
+    (folder / "boxes.json").write_text(json.dumps(content))
+    return read_stereo_boxes(folder / "boxes.json")
 
 
 def test_boxes_become_detections_with_the_colours_of_their_images(tmp_path):

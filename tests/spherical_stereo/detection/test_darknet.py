@@ -53,9 +53,7 @@ def yolov4_tiny():
 def test_a_cfg_implies_the_number_of_floats():
     assert 20 + 4 * darknet.expected_weight_floats(darknet.parse_cfg(yolov4_tiny())) == 24_251_276  # as published
     assert darknet.expected_weight_floats(darknet.parse_cfg(SMALL)) == SMALL_FLOATS
-
-
-def test_channels_follow_routes_groups_and_reorganisation():
+    # Channels follow routes, groups and reorganisation.
     text = section("net", channels=1) + section("convolutional", filters=6)
     text += section("route", layers=-1, groups=2, group_id=1) + section("reorg", stride=2)
     text += section("route", layers="-1,0") + section("shortcut", **{"from": -1})

@@ -7,8 +7,7 @@ from course_lib.spherical_stereo.detection import onnx_network
 from course_lib.spherical_stereo.detection.darknet import DetectorError
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.onnx_network import LAYOUTS, decode_onnx
-from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, panorama, write_darknet
-from tests.spherical_stereo.detection.onnx_files import blob_onnx
+from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, blob_onnx, panorama, write_darknet
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import pytest
 
 from course_lib.spherical_stereo.detection import seam
 
-WIDTH, HEIGHT, IOU = 640, 320, 0.45
+WIDTH, IOU = 640, 0.45
 
 
 def ideal_detections(u_min, object_width):
@@ -45,19 +45,17 @@ def test_a_surer_copy_that_the_seam_cuts_gives_way_to_the_whole_one_even_when_bo
     cut, whole = [0, 100, 165, 180], [WIDTH - 28, 100, WIDTH + 149, 180]
     assert seam.centres_in_range(np.array([cut, whole]), WIDTH).all()
     boxes, scores, _ = seam.select_on_circle(np.array([cut, whole]), np.array([0.9, 0.6]), np.zeros(2, int), WIDTH, IOU)
-    assert boxes.tolist() == [whole]
-    assert scores.tolist() == [0.9]
+    assert (boxes.tolist(), scores.tolist()) == ([whole], [0.9])
 
 
-def copies_at_the_border(inside_score, margin_score):
-    """An object at the range's end: one copy just inside it, one just before its start, a turn apart."""
+def copies_at_the_border():
+    """An object at the range's end: a faint copy just inside it, a clear one just before its start, a turn apart."""
     start, stop = seam.valid_range(WIDTH)
-    boxes = np.array([[stop - 22, 100, stop + 18, 180], [start - 22, 100, start + 18, 180]])
-    return boxes, np.array([inside_score, margin_score])
+    return np.array([[stop - 22, 100, stop + 18, 180], [start - 22, 100, start + 18, 180]]), np.array([0.06, 0.95])
 
 
 def test_a_faint_copy_in_the_range_does_not_hide_a_clear_one_in_the_margin():
-    boxes, scores = copies_at_the_border(0.06, 0.95)
+    boxes, scores = copies_at_the_border()
     boxes[1] += 1
     found, found_scores, _ = seam.select_on_circle(boxes, scores, np.zeros(2, int), WIDTH, IOU)
     assert found.tolist() == [[boxes[0, 0] - WIDTH, 100, boxes[0, 2] - WIDTH, 180]]
@@ -73,12 +71,11 @@ def test_a_suppressed_box_gives_its_score_to_the_one_that_replaced_it_only():
     boxes, found_scores, _ = seam.select_on_circle(
         np.array([left, right, middle]), scores, np.zeros(3, int), WIDTH, IOU
     )
-    assert boxes[:, 0].tolist() == [start - 30, start - 10]
-    assert found_scores.tolist() == [0.9, 0.4]
+    assert (boxes[:, 0].tolist(), found_scores.tolist()) == ([start - 30, start - 10], [0.9, 0.4])
 
 
 def test_a_low_threshold_holds_the_result_of_a_higher_one():
-    boxes, scores = copies_at_the_border(0.06, 0.95)
+    boxes, scores = copies_at_the_border()
     elsewhere = [[300.0, 100, 360, 180], [305.0, 100, 362, 180], [200.0, 100, 240, 180]]
     boxes, scores = np.concatenate([boxes, elsewhere]), np.concatenate([scores, [0.8, 0.3, 0.2]])
     for threshold in (0.1, 0.25, 0.5, 0.9):

@@ -12,12 +12,10 @@ SIZE = (1280, 640)
 RIG = StereoRig(BASELINE)
 
 
-def match_of(points, noise=0.0, rng=None):
-    """An `ObjectMatch` of exact keypoints of points `(k, 3)` in the upper camera's frame, with noise in rows."""
+def match_of(points, noise=0.0):
+    """An `ObjectMatch` of keypoints of points `(k, 3)` in the upper camera's frame, with noise `(k,)` in rows."""
     upper, lower = direction_to_pixel(points, *SIZE), direction_to_pixel(np.add(points, [0, 0, BASELINE]), *SIZE)
-    if noise:
-        lower[:, 1] += rng.normal(0, noise, len(points))
-    return ObjectMatch(0, 0, "chair", upper, lower)
+    return ObjectMatch(0, 0, "chair", upper, lower + np.multiply.outer(noise, [0, 1]))
 
 
 def face(rng, n, distance, width=1.0):
@@ -36,13 +34,13 @@ def test_three_exact_features_or_more_give_the_range_of_their_points(rng):
 
 def test_a_third_of_strangers_from_the_wall_behind_moves_the_range_little(rng):
     points = np.concatenate([face(rng, 40, 2.0, 0.3), face(rng, 20, 5.0, 0.3)])
-    found = disparity_distance(match_of(points, noise=0.3, rng=rng), *SIZE, BASELINE)
+    found = disparity_distance(match_of(points, rng.normal(0, 0.3, 60)), *SIZE, BASELINE)
     assert found.horizontal_range == pytest.approx(2.0, rel=0.08)
 
 
 def test_sigma_is_the_deviation_of_the_range_over_repeated_noise(rng):
     points = face(rng, 30, 3.0, 0.2)
-    found = [disparity_distance(match_of(points, noise=1.0, rng=rng), *SIZE, BASELINE) for _ in range(300)]
+    found = [disparity_distance(match_of(points, rng.normal(0, 1.0, 30)), *SIZE, BASELINE) for _ in range(300)]
     assert np.std([f.horizontal_range for f in found]) == pytest.approx(np.mean([f.sigma for f in found]), rel=0.2)
 
 
