@@ -41,8 +41,7 @@ def test_every_object_finds_itself_by_features_in_its_boxes_that_obey_the_epipol
     matches = match_objects(UPPER, UPPER_SEEN, LOWER, LOWER_SEEN, RIG)
     assert partners(matches) == {(i, LAST - i) for i in range(8)}
     assert [m.label for m in matches] == [UPPER_SEEN[m.upper].label for m in matches]
-    counts = [m.n_matches for m in matches]
-    assert counts == sorted(counts, reverse=True)
+    assert matches == sorted(matches, key=lambda m: m.n_matches, reverse=True)
     for match in matches:
         assert match.keypoints_upper.shape == match.keypoints_lower.shape == (match.n_matches, 2)
         assert feature_matching.inside_box(match.keypoints_upper, UPPER_SEEN[match.upper].box, WIDTH).all()
