@@ -82,7 +82,6 @@ def test_a_black_frame_is_unable_and_no_exception(dark):
 
 
 def test_an_object_at_200_metres_is_too_far_and_moves_nothing():
-    """Its boxes differ by a hundredth of a row."""
     before = locate()
     parallax = BASELINE / 200 / math.pi * UPPER.height
     far = Detection("chair", 0.9, (300.0, 128.0, 340.0, 150.0), 60.0, 50.0)

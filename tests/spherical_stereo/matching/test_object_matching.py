@@ -37,7 +37,6 @@ def partners(matches):
 
 
 def test_every_object_finds_itself_by_features_in_its_boxes_that_obey_the_epipolar_constraint():
-    """Look-alikes, a repeated texture, a half-hidden chair and a table across the seam among them."""
     matches = match_objects(UPPER, UPPER_SEEN, LOWER, LOWER_SEEN, RIG)
     assert partners(matches) == {(i, LAST - i) for i in range(8)}
     assert [m.label for m in matches] == [UPPER_SEEN[m.upper].label for m in matches]

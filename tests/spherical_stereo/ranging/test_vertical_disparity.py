@@ -5,7 +5,7 @@ import pytest
 
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_views
 from course_lib.spherical_stereo.panorama import StereoRig, View, direction_from_angles, direction_to_pixel, open_pair
-from course_lib.spherical_stereo.ranging.object_positions import disparity_distance, measure_objects
+from course_lib.spherical_stereo.ranging.object_positions import disparity_distance, max_range, measure_objects
 from tests.spherical_stereo.stereo_scene import BASELINE, Seen, scene
 
 SIZE = (1280, 640)
@@ -83,3 +83,4 @@ def test_the_sigma_of_a_range_is_that_of_the_pixels():
     expected = rho**2 / BASELINE * pixel * np.hypot(1 / np.cos(0.4) ** 2, 1 / np.cos(0.3) ** 2)
     assert measured.box_centre.horizontal_range_m == pytest.approx(rho)
     assert measured.box_centre.horizontal_sigma_m == pytest.approx(expected)
+    assert max_range(0.3) == pytest.approx(28.28, abs=0.01)

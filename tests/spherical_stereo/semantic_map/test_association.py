@@ -127,7 +127,8 @@ def test_values_that_cannot_be_are_refused_on_either_side(field, values):
             cost(seen(), bad)
 
 
-def test_options_that_do_not_exist_are_named():
+def test_each_comparison_weighs_one_and_options_that_do_not_exist_are_named():
+    assert association.PenaltyWeights() == (100, 1, 1, 1)
     with pytest.raises(association.AssociationError, match=r"distance_term must be one of.*'squared'"):
         association.associate_greedy([seen()], ROOM, distance_term="squared")
     with pytest.raises(association.AssociationError, match="weights must be finite and not negative"):
