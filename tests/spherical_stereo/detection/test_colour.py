@@ -11,7 +11,6 @@ from course_lib.spherical_stereo.detection.detected_object import DetectionError
 
 
 def bgr(hue, saturation_percent, value=0.8):
-    """A BGR colour of 8 bits."""
     hsv = np.array([[[hue, saturation_percent / 100, value]]], dtype=np.float32)
     return np.rint(255 * cv2.cvtColor(hsv, cv2.COLOR_HSV2BGR)[0, 0]).astype(np.uint8)
 
@@ -48,6 +47,7 @@ def test_only_the_central_half_of_the_box_counts_or_the_mask():
     image = plain(bgr(0, 80))
     image[10:30, 20:60] = bgr(240, 80)
     assert mean_hue_saturation(image, box=(0, 0, 80, 40))[0] == pytest.approx(240, abs=1)
+    assert mean_hue_saturation(image, box=(20.0, 10.0, 20.5, 10.5))[0] == pytest.approx(240, abs=1)  # within one pixel
     assert mean_hue_saturation(image, mask=(image == bgr(240, 80)).all(axis=-1))[0] == pytest.approx(240, abs=1)
 
 
