@@ -147,10 +147,7 @@ class View:
 
 
 def open_view(image: np.ndarray | View, name: str = "image") -> View:
-    """Check that an image is a panorama, uint8 BGR `(H, W, 3)` with W = 2 H, and return it as a `View`.
-
-    A `View` was checked already. A black frame is let in. Raises `PanoramaError`, beginning with `name`.
-    """
+    """Return an image as a `View` if it is a panorama, uint8 BGR `(H, W, 3)`, W = 2 H, black or not, or a `View`."""
     if isinstance(image, View):
         return image
     image = np.asarray(image)

@@ -18,13 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.files import is_file, read_json
+from course_lib.spherical_stereo.detection import detected_object
 from course_lib.spherical_stereo.detection.colour import Box, mean_hue_saturation
-from course_lib.spherical_stereo.detection.detected_object import (
-    Detection,
-    DetectionError,
-    canonical_label,
-    wrapped_box,
-)
+from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, open_pair, read_panorama
 
 VERSION = 1
@@ -174,12 +170,14 @@ def read_stereo_boxes(path: str | Path) -> StereoBoxes:
             where, sides[side] = side, []
             for number, item in enumerate(content[side]):
                 where = f"{side}[{number}]"
-                box, name = wrapped_box(_box(item["box"]), size[0]), item.get("name")
+                box, name = detected_object.wrapped_box(_box(item["box"]), size[0]), item.get("name")
                 if box[1] < 0 or box[3] > size[1]:
                     raise DetectionError(f"the box leaves the image at the top or bottom; got {item['box']}")
                 if name is not None and not (isinstance(name, str) and name.strip()):
                     raise DetectionError(f"the name must be a text that is not empty; got {name!r}")
-                sides[side].append(LabelledBox(canonical_label(item["label"]), tuple(box.tolist()), name))
+                sides[side].append(
+                    LabelledBox(detected_object.canonical_label(item["label"]), tuple(box.tolist()), name)
+                )
     except (TypeError, ValueError, KeyError, AttributeError) as error:
         raise DetectionError(f"{path}: {where} does not have the format of a boxes file: {error!r}") from None
     return StereoBoxes(size, **sides)

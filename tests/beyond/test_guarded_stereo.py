@@ -7,8 +7,7 @@ from course_lib.beyond.guarded_stereo import GuardedRig
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose import localization as outcomes
-from tests.spherical_stereo.stereo_scene import KnowingDetector, mapped_scene, pair_from
-from tests.spherical_stereo.vertical_pair import BASELINE
+from tests.spherical_stereo.stereo_scene import BASELINE, KnowingDetector, mapped_scene, pair_from
 
 MAP = mapped_scene()[2]
 HERE, THERE = pair_from(0.0, 0.0), pair_from(0.35, 0.1)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.spherical_stereo.detection.detector import YoloDetector
-from tests.spherical_stereo.stereo_scene import TRUE_POSE, mapped_scene
-from tests.spherical_stereo.vertical_pair import BASELINE
+from tests.spherical_stereo.stereo_scene import BASELINE, TRUE_POSE, mapped_scene
 
 
 @pytest.fixture(scope="module")

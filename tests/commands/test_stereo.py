@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from course_lib.spherical_stereo.recording import read_stereo_boxes
-from tests.spherical_stereo.stereo_scene import scene
-from tests.spherical_stereo.vertical_pair import HEIGHT, WIDTH
+from tests.spherical_stereo.stereo_scene import HEIGHT, WIDTH, scene
 
 REAL_PAIR = Path(__file__).parents[3] / "shared" / "real" / "panorama_room"
 REAL_BOXES = Path(__file__).parents[1] / "spherical_stereo" / "panorama_room_boxes.json"

@@ -8,8 +8,7 @@ from course_lib.experiments.stereo_trouble import GATE, LENGTHS, PERIOD, SPOILS,
 from course_lib.experiments.troubled_frames import summary, troubled_frames, troubled_recording
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from tests.spherical_stereo.stereo_scene import TRUE_POSE, KnowingDetector, mapped_scene, pair_from
-from tests.spherical_stereo.vertical_pair import BASELINE
+from tests.spherical_stereo.stereo_scene import BASELINE, TRUE_POSE, KnowingDetector, mapped_scene, pair_from
 
 SEED = 10_008  # for tuning: the tests' own
 N = 40

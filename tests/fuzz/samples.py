@@ -16,8 +16,7 @@ from course_lib.spherical_stereo import SemanticMap, YoloDetector
 from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.recording import read_stereo_boxes, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark
-from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, panorama, write_darknet
-from tests.spherical_stereo.detection.onnx_files import blob_onnx
+from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, blob_onnx, panorama, write_darknet
 
 PICTURE = panorama(np.random.default_rng(3), (100, 50, RED), (245, 20, GREEN))
 WIDTH, HEIGHT = 256, 128

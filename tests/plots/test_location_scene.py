@@ -11,8 +11,7 @@ from course_lib.plots.scene_page import page_html
 from course_lib.spherical_stereo import SemanticLocalizer, StereoRig
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from tests.plots.test_track_scene import of_colour
-from tests.spherical_stereo.stereo_scene import mapped_scene
-from tests.spherical_stereo.vertical_pair import BASELINE
+from tests.spherical_stereo.stereo_scene import BASELINE, mapped_scene
 
 
 @pytest.fixture(scope="module")

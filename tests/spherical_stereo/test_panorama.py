@@ -6,20 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from course_lib.spherical_stereo.panorama import (
-    PanoramaError,
-    StereoRig,
-    azimuth_difference,
-    azimuth_elevation,
-    azimuth_elevation_of_pixel,
-    direction_to_pixel,
-    open_view,
-    pixel_to_direction,
-    read_panorama,
-)
+from course_lib.spherical_stereo import panorama
 
 WIDTH, HEIGHT = 1280, 640
-QUICK = settings(max_examples=60, deadline=None)
 
 
 @pytest.mark.parametrize(
@@ -35,32 +24,22 @@ QUICK = settings(max_examples=60, deadline=None)
     ],
 )
 def test_pixels_look_where_the_conventions_say(uv, direction):
-    np.testing.assert_allclose(pixel_to_direction(np.array(uv), WIDTH, HEIGHT), direction, atol=1e-15)
+    np.testing.assert_allclose(panorama.pixel_to_direction(np.array(uv), WIDTH, HEIGHT), direction, atol=1e-15)
 
 
-@QUICK
+@settings(max_examples=60, deadline=None)
 @given(u=st.floats(0, WIDTH, exclude_max=True), v=st.floats(0.01, HEIGHT - 0.01))
 def test_a_pixel_comes_back_from_its_direction(u, v):
-    back = direction_to_pixel(pixel_to_direction(np.array([u, v]), WIDTH, HEIGHT), WIDTH, HEIGHT)
+    back = panorama.direction_to_pixel(panorama.pixel_to_direction(np.array([u, v]), WIDTH, HEIGHT), WIDTH, HEIGHT)
     assert 0 <= back[0] < WIDTH
-    gap = abs(back[0] - u)
-    assert min(gap, WIDTH - gap) < 1e-6
+    assert abs((back[0] - u + WIDTH / 2) % WIDTH - WIDTH / 2) < 1e-6
     assert back[1] == pytest.approx(v, abs=1e-9)
-
-
-@QUICK
-@given(k=st.integers(-3 * WIDTH, 3 * WIDTH), u=st.floats(0, WIDTH), v=st.floats(1, HEIGHT - 1))
-def test_rolling_the_image_right_turns_what_it_shows_to_the_right(k, u, v):
-    """np.roll(image, +k) moves a point k columns right: its azimuth falls by 2 pi k / W, the heading rises."""
-    before, _ = azimuth_elevation(pixel_to_direction(np.array([u, v]), WIDTH, HEIGHT))
-    after, _ = azimuth_elevation(pixel_to_direction(np.array([u + k, v]), WIDTH, HEIGHT))
-    assert abs(azimuth_difference(before - after, 2 * np.pi * k / WIDTH)) < 1e-9
 
 
 @pytest.mark.parametrize("uv", [[1.0], [1.0, 2.0, 3.0], [np.nan, 1.0], [5.0, -0.1], [5.0, HEIGHT + 0.1]])
 def test_a_place_that_is_not_on_the_image_is_refused(uv):
-    with pytest.raises(PanoramaError):
-        azimuth_elevation_of_pixel(np.array(uv), WIDTH, HEIGHT)
+    with pytest.raises(panorama.PanoramaError):
+        panorama.azimuth_elevation_of_pixel(np.array(uv), WIDTH, HEIGHT)
 
 
 @pytest.mark.parametrize(
@@ -69,8 +48,8 @@ def test_a_place_that_is_not_on_the_image_is_refused(uv):
      (300, 1.3, "in millimetres"), (0.3, 0.2, "upper_height"), (0.3, np.inf, "upper_height")],
 )  # fmt: skip
 def test_a_rig_that_cannot_be_is_named(baseline, height, says):
-    with pytest.raises(PanoramaError, match=says):
-        StereoRig(baseline, height)
+    with pytest.raises(panorama.PanoramaError, match=says):
+        panorama.StereoRig(baseline, height)
 
 
 @pytest.mark.parametrize(
@@ -86,25 +65,22 @@ def test_a_rig_that_cannot_be_is_named(baseline, height, says):
     ],
 )
 def test_an_image_that_is_no_panorama_is_named(image, says):
-    with pytest.raises(PanoramaError, match=f"^left image.*{says}"):
-        open_view(image, "left image")
+    with pytest.raises(panorama.PanoramaError, match=f"^left image.*{says}"):
+        panorama.open_view(image, "left image")
 
 
-@pytest.mark.parametrize(("brightest", "blank"), [(0, True), (12, True), (13, False)])
-def test_a_black_frame_is_let_in_and_known_as_one(brightest, blank):
+def test_a_black_frame_is_let_in_and_known_as_one():
     image = np.zeros((8, 16, 3), np.uint8)
-    image[3, 5, 1] = brightest
-    assert open_view(image).is_blank is blank
+    for brightest, blank in ((0, True), (12, True), (13, False)):
+        image[3, 5, 1] = brightest
+        assert panorama.open_view(image).is_blank is blank
 
 
-def test_a_file_that_holds_no_panorama_is_named(tmp_path, rng):
-    cv2.imwrite(str(tmp_path / "square.png"), rng.integers(0, 255, (8, 8, 3), dtype=np.uint8))
-    for name, says in (("missing", "is missing"), ("square", "twice as wide")):
-        with pytest.raises(PanoramaError, match=rf"{name}\.png.*{says}"):
-            read_panorama(tmp_path / f"{name}.png")
-
-
-def test_a_panorama_file_is_read_and_its_alpha_left_out(tmp_path, rng):
+def test_a_panorama_file_is_read_without_its_alpha_and_another_one_named(tmp_path, rng):
     image = rng.integers(0, 255, (8, 16, 4), dtype=np.uint8)
     cv2.imwrite(str(tmp_path / "a.png"), image)
-    np.testing.assert_array_equal(read_panorama(tmp_path / "a.png"), image[..., :3])
+    cv2.imwrite(str(tmp_path / "square.png"), image[:, :8])
+    for name, says in (("missing", "is missing"), ("square", "twice as wide")):
+        with pytest.raises(panorama.PanoramaError, match=rf"{name}\.png.*{says}"):
+            panorama.read_panorama(tmp_path / f"{name}.png")
+    np.testing.assert_array_equal(panorama.read_panorama(tmp_path / "a.png"), image[..., :3])

@@ -30,11 +30,15 @@ def read(folder, content):
     return read_stereo_recording(folder)
 
 
-def test_what_is_written_is_read(tmp_path, content):
+def test_what_is_written_is_read_and_images_of_another_size_are_named(tmp_path, content):
     found = read(tmp_path, content)
     assert (found.width, found.height, found.seed, found.rig.baseline) == (128, 64, 3, 0.3)
     assert found.pairs[0].pose.tolist() == [0.5, 0.25, 0.1]
     assert found.pairs[0].upper_objects[0].visible_box == tuple(BOX)
+    assert [image.shape for image in found.pairs[0].images()] == [(64, 128, 3)] * 2
+    content |= {"width": 256, "height": 128}
+    with pytest.raises(PanoramaError, match=r"upper\.png .*poses\.json"):
+        read(tmp_path, content).pairs[0].images()
 
 
 @pytest.mark.parametrize(
@@ -58,14 +62,6 @@ def test_what_is_of_another_kind_is_named_with_the_file(tmp_path, content, place
         read(tmp_path, content)
 
 
-def test_a_panorama_of_another_size_than_the_list_says_is_named(tmp_path, content):
-    upper, lower = read(tmp_path, content).pairs[0].images()
-    assert upper.shape == lower.shape == (64, 128, 3)
-    content |= {"width": 256, "height": 128}
-    with pytest.raises(PanoramaError, match=r"upper\.png .*poses\.json"):
-        read(tmp_path, content).pairs[0].images()
-
-
 GOOD = {
     "version": 1,
     "width": 256,
@@ -83,22 +79,16 @@ GOOD = {
 
 
 def read_boxes(folder, content):
-    path = folder / "boxes.json"
-    path.write_text(json.dumps(content))
-    return read_stereo_boxes(path)
-
-
-def images():
-    upper = np.full((128, 256, 3), 128, dtype=np.uint8)
-    upper[20:60, 30:70] = (0, 0, 200)
-    lower = np.full((128, 256, 3), 128, dtype=np.uint8)
-    lower[20:40, 241:] = lower[20:40, :25] = (0, 200, 0)
-    return upper, lower
+    (folder / "boxes.json").write_text(json.dumps(content))
+    return read_stereo_boxes(folder / "boxes.json")
 
 
 def test_boxes_become_detections_with_the_colours_of_their_images(tmp_path):
+    images = np.full((2, 128, 256, 3), 128, dtype=np.uint8)
+    images[0, 20:60, 30:70] = (0, 0, 200)
+    images[1, 20:40, 241:] = images[1, 20:40, :25] = (0, 200, 0)
     boxes = read_boxes(tmp_path, GOOD)
-    upper, lower = (view.detections for view in boxes.on(*images()))
+    upper, lower = (view.detections for view in boxes.on(*images))
     assert [d.label for d in upper] == ["chair", "television", "chair"]
     assert [d.label for d in lower] == ["television", "chair"]
     assert upper[1].box == (240, 30, 280, 50), "a turn too far is moved back"
@@ -107,12 +97,8 @@ def test_boxes_become_detections_with_the_colours_of_their_images(tmp_path):
     assert lower[0].hue == pytest.approx(120, abs=1e-3)
     assert {d.score for d in upper + lower} == {1.0}
     assert [one.name for one in boxes.upper] == ["left chair", "screen", None]
-
-
-def test_images_of_another_size_are_refused(tmp_path):
-    small = images()[0][:64, :128]
     with pytest.raises(DetectionError, match="scale the images"):
-        read_boxes(tmp_path, GOOD).on(small, small)
+        boxes.on(*images[:, :64, :128])
 
 
 def side(**change):

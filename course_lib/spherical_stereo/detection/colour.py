@@ -28,10 +28,8 @@ def mean_hue_saturation(
 ) -> tuple[float, float]:
     """Return mean hue (degrees in [0, 360), NaN for grey) and mean saturation (percent) of part of an image.
 
-    hue = direction of sum_i s_i (cos h_i, sin h_i), saturation = mean of s_i
-
-    over the pixels i of the central half of `box`, or of `mask` (bool, (H, W)), or of the whole image.
-    The paper takes plain means of H. Source: paper 2, section 2.2.
+    hue = direction of sum_i s_i (cos h_i, sin h_i), saturation = mean of s_i  over the pixels i of the central half of
+    `box`, or of `mask` (bool, (H, W)), or of the whole image. The paper takes plain means of H. Source: paper 2, 2.2.
     """
     if box is not None:
         image_bgr = _crop(image_bgr, central_half(box))

@@ -194,10 +194,7 @@ class Network:
         return type(self), self._arguments
 
     def infer(self, blob: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return boxes `(n, 4)` in edge coordinates of the input and scores `(n, classes)`, nothing suppressed.
-
-        blob: `(1, 3, H, W)`, RGB, 0 to 1.
-        """
+        """Return boxes `(n, 4)` in edge coordinates of the blob `(1, 3, H, W)`, RGB, 0 to 1; scores `(n, classes)`."""
         try:
             with self._turn:
                 self._net.setInput(blob)
@@ -245,8 +242,9 @@ class DarknetNetwork(Network):
         """Rows are cx, cy, w, h as shares of the input, objectness, and class scores times objectness."""
         for output in outputs:
             if output.shape[1:] != (5 + self.n_classes,):  # OpenCV makes an output of what no later layer takes
+                shape = output.shape
                 raise DetectorError(
-                    f"the network {self._told} has an output of shape {output.shape} that no [yolo] layer gives"
+                    f"the network {self._told} has an output of shape {shape} that no [yolo] layer gives"
                 )
         rows = np.concatenate(outputs)
         return corners(rows) * np.tile(self.input_size, 2), rows[:, 5:]

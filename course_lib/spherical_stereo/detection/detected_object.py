@@ -97,7 +97,8 @@ def checked_boxes(boxes: np.ndarray, width: float, name: str = "boxes") -> np.nd
     if array.ndim == 0 or array.shape[-1] != 4:
         raise DetectionError(f"{name} must have shape (..., 4) [u_min, v_min, u_max, v_max]; got {array.shape}")
     across, down = array[..., 2] - array[..., 0], array[..., 3] - array[..., 1]
-    good = np.isfinite(array).all(axis=-1) & (across > 0) & (across <= width) & (down > 0)
+    # A millionth of a pixel, because boxes come from sums and remainders, which round.
+    good = np.isfinite(array).all(axis=-1) & (across > 0) & (across <= width + 1e-6) & (down > 0)
     if not good.all():
         raise DetectionError(
             f"{name} must be finite, with v_min < v_max and u_min < u_max <= u_min + {width:g}, the width; a box "
@@ -109,7 +110,6 @@ def checked_boxes(boxes: np.ndarray, width: float, name: str = "boxes") -> np.nd
 def boxes_on(view: View, name: str) -> np.ndarray:
     """Return the boxes `(n, 4)` of a panorama's detections."""
     boxes = checked_boxes([one.box for one in view.detections], view.width, f"boxes of the {name} image")
-    # A millionth of a pixel, because boxes come from sums and remainders, which round.
     low, right, bottom = -1e-6, view.width + 1e-6, view.height + 1e-6
     outside = (boxes[:, 0] < low) | (boxes[:, 0] >= right) | (boxes[:, 1] < low) | (boxes[:, 3] > bottom)
     if outside.any():

@@ -9,23 +9,11 @@ import cv2
 import numpy as np
 
 from course_lib.files import is_given, read_json
+from course_lib.spherical_stereo.detection import seam
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
-from course_lib.spherical_stereo.detection.darknet import (
-    DarknetNetwork,
-    DetectorError,
-    Network,
-    check_names,
-    read_names,
-)
+from course_lib.spherical_stereo.detection.darknet import DarknetNetwork, DetectorError, check_names, read_names
 from course_lib.spherical_stereo.detection.detected_object import Detection, canonical_label
 from course_lib.spherical_stereo.detection.onnx_network import OnnxNetwork
-from course_lib.spherical_stereo.detection.seam import (
-    VOTE_SCORE,
-    extend_seam,
-    select_on_circle,
-    suppress_in_image,
-    vote_on_boxes,
-)
 from course_lib.spherical_stereo.panorama import View, open_view
 
 MAX_CANDIDATES = 1000  # Boxes kept before suppression, the best by score: a bound on time if the threshold is very low.
@@ -98,12 +86,7 @@ class YoloDetector:
         return cls(*paths, **options)
 
     def _set_up(
-        self,
-        network: Network,
-        class_names: list[str],
-        score_threshold: float = 0.5,
-        iou_threshold: float = 0.45,
-        use_seam_extension: bool = True,
+        self, network, class_names, score_threshold: float = 0.5, iou_threshold: float = 0.45, use_seam_extension=True
     ) -> None:
         for name, value in (("score_threshold", score_threshold), ("iou_threshold", iou_threshold)):
             if not 0 <= value <= 1:
@@ -127,8 +110,8 @@ class YoloDetector:
         """
         view = open_view(image_bgr)
         if self.use_seam_extension:
-            found = self.detect_in_plane(extend_seam(view.image))
-            boxes, scores, classes = select_on_circle(*found, view.width, self.iou_threshold)
+            found = self.detect_in_plane(seam.extend_seam(view.image))
+            boxes, scores, classes = seam.select_on_circle(*found, view.width, self.iou_threshold)
         else:
             boxes, scores, classes = self.detect_in_plane(view.image)
         colours = [mean_hue_saturation(view.image, tuple(box)) for box in boxes.tolist()]
@@ -138,16 +121,13 @@ class YoloDetector:
         ]
 
     def detect_in_plane(self, image_bgr: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what the network sees in an image `(H, W, 3)` taken as flat, repeated boxes suppressed.
-
-        Boxes (n, 4) in edge coordinates, scores (n,), and indices (n,) into `labels`, the greatest score first.
-        """
+        """Return boxes (n, 4), scores and indices (n,) into `labels` in a flat image `(H, W, 3)`, the surest first."""
         padded, letterbox = letterbox_image(image_bgr, self._network.input_size)
         boxes, scores = self._network.infer(cv2.dnn.blobFromImage(padded, 1 / 255, swapRB=True))
         classes = scores.argmax(axis=1)
         scores = scores[np.arange(len(scores)), classes].astype(np.float64)
         # Boxes below the threshold are no detections of their own, but they vote on where the others are.
-        best = np.flatnonzero(scores >= min(self.score_threshold, VOTE_SCORE))
+        best = np.flatnonzero(scores >= min(self.score_threshold, seam.VOTE_SCORE))
         best = best[np.argsort(-scores[best], kind="stable")][:MAX_CANDIDATES]
         limits = (image_bgr.shape[1], image_bgr.shape[0])
         boxes = np.clip(boxes_to_image(boxes[best], letterbox), 0, np.tile(limits, 2))
@@ -155,8 +135,8 @@ class YoloDetector:
         whole = (boxes[:, 2] - boxes[:, 0] >= 1) & (boxes[:, 3] - boxes[:, 1] >= 1)  # under a pixel: all in the padding
         boxes, scores, classes = boxes[whole], scores[whole], classes[whole]
         sure = np.flatnonzero(scores >= self.score_threshold)
-        kept = sure[suppress_in_image(boxes[sure], scores[sure], classes[sure], self.iou_threshold)]
-        return vote_on_boxes(boxes, scores, classes, kept), scores[kept], classes[kept]
+        kept = sure[seam.suppress_in_image(boxes[sure], scores[sure], classes[sure], self.iou_threshold)]
+        return seam.vote_on_boxes(boxes, scores, classes, kept), scores[kept], classes[kept]
 
 
 class Letterbox(NamedTuple):
@@ -167,10 +147,7 @@ class Letterbox(NamedTuple):
 
 
 def letterbox_image(image: np.ndarray, input_size: tuple[int, int]) -> tuple[np.ndarray, Letterbox]:
-    """Return the image (H, W, 3) uint8 scaled and padded to `input_size` (width, height), and where it lies.
-
-    scale = min(input width / image width, input height / image height), down by area averaging, up linearly.
-    """
+    """Return the image (H, W, 3) uint8 scaled and padded to `input_size` (width, height), and where it lies."""
     size = (image.shape[1], image.shape[0])
     scale = min(input_size[0] / size[0], input_size[1] / size[1])
     inner = tuple(max(1, min(round(pixels * scale), limit)) for pixels, limit in zip(size, input_size, strict=True))

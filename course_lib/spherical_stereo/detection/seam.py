@@ -79,9 +79,8 @@ def select_on_circle(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return one detection per object, 0 <= u_min < W, the greatest score first, from those on the extended image.
 
-    Of boxes of one class that overlap on the circle by more than `iou_threshold` one stays: a whole one before a cut
-    one, one with its centre inside the range before one in the margin, then the greater score. It takes the greatest
-    score, with its class, of those that it replaces. boxes (n, 4), scores (n,), classes (n,) integers.
+    Of boxes of one class that overlap beyond `iou_threshold` one stays: a whole one before a cut one, one with its
+    centre inside the range before one in the margin, then the surer one. It takes the greatest score that it replaces.
     """
     tolerance = EDGE_TOLERANCE * width
     boxes, scores, classes = join_cut_pairs(boxes, scores, classes, width)

@@ -46,10 +46,7 @@ class EpipolarPairs:
 
 
 def epipolar_residual(azimuth_upper, elevation_upper, azimuth_lower, elevation_lower) -> np.ndarray:
-    """Return how far two directions are from obeying the epipolar constraint, radians on the sphere, in [0, pi/2].
-
-    asin(max cos e |sin da|), the larger distance to the other's meridian; to the pole beyond a right angle.
-    """
+    """Return asin(max cos e |sin da|), how far two directions miss the epipolar constraint, radians in [0, pi/2]."""
     gap = np.abs(azimuth_difference(azimuth_lower, azimuth_upper))
     cosine = np.maximum(np.cos(elevation_upper), np.cos(elevation_lower))
     return np.arcsin(np.clip(cosine * np.where(gap > np.pi / 2, 1.0, np.sin(gap)), 0.0, 1.0))

@@ -12,13 +12,7 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE, RATIO, epipolar_residual
-from course_lib.spherical_stereo.panorama import (
-    PanoramaError,
-    View,
-    azimuth_difference,
-    azimuth_elevation_of_pixel,
-    open_view,
-)
+from course_lib.spherical_stereo.panorama import PanoramaError, View, azimuth_elevation_of_pixel, open_view
 
 # Smallest determinant of the Hessian that counts as a feature. On eight pairs of generated rooms OpenCV's default of
 # 1e-3 left 6 of 94 objects without a match, 5e-4 left one and 2e-4 none.
@@ -28,8 +22,6 @@ AKAZE_OCTAVES = 3  # Octaves of scale. A fourth adds nothing on panoramas about 
 # 10 sqrt(2) x 1.6 x 2^2.75 = 152 pixels, and must not leave the image.
 SEAM_MARGIN = 160
 MIN_DISPARITY = 0.0025  # radians, half a row at a height of 640: a smaller one does not tell which camera is higher
-
-
 MAX_TURN = EPIPOLAR_TOLERANCE  # radians: if the lower camera is turned further, true matches miss the tolerance
 MAX_FEATURES = 800  # Upper features that are matched, every k-th of all: enough for a hundredth of a degree.
 MIN_AGREEING = 30  # Matches that must agree on the turn; fewer tell nothing.
@@ -66,10 +58,7 @@ def detect_features(image: np.ndarray) -> PanoramaFeatures:
 
 
 def find_features(view: View) -> View:
-    """Return the panorama with its AKAZE features. If it has some already, they stay.
-
-    The image is extended by its own other end on both sides, so that a feature on the seam is found whole.
-    """
+    """Return the panorama with its AKAZE features, those on the seam too. If it has some already, they stay."""
     if view.features is not None:
         return view
     image, height, width = view.image, view.height, view.width
@@ -117,10 +106,7 @@ class FeatureMatches:
 
 
 def match_features(upper: PanoramaFeatures, lower: PanoramaFeatures, may_be_swapped: bool = False) -> FeatureMatches:
-    """Match the features of two whole panoramas without the epipolar constraint, and then test them by it.
-
-    The share that obeys it tells how well the images are aligned. Raises `SwappedImagesError` unless `may_be_swapped`.
-    """
+    """Match whole panoramas without the epipolar constraint. Raises `SwappedImagesError` unless `may_be_swapped`."""
     first, second = _mutual_matches(upper.descriptors, lower.descriptors)
     (azimuth_u, elevation_u), (azimuth_l, elevation_l) = (
         (angles[0][chosen], angles[1][chosen]) for angles, chosen in ((upper.angles(), first), (lower.angles(), second))
@@ -129,7 +115,7 @@ def match_features(upper: PanoramaFeatures, lower: PanoramaFeatures, may_be_swap
     epipolar = epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l) <= EPIPOLAR_TOLERANCE
     if not may_be_swapped:
         check_not_swapped(disparity[epipolar])
-    gap = np.atleast_1d(azimuth_difference(azimuth_l, azimuth_u))
+    gap = np.atleast_1d(wrap_angle(azimuth_l - azimuth_u))
     return FeatureMatches(upper.keypoints[first], lower.keypoints[second], gap, disparity, epipolar)
 
 
@@ -149,10 +135,7 @@ def _mutual_matches(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, 
 
 
 def check_not_swapped(disparity: np.ndarray) -> None:
-    """Raise `SwappedImagesError` if vertical disparities (radians, `(n,)`) say that upper and lower are swapped.
-
-    That is, if negative signs lead by more than 3 sqrt(n), three standard deviations of a coin.
-    """
+    """Raise `SwappedImagesError` if negative disparities `(n,)` lead by 3 sqrt(n), three sigmas of a coin."""
     told = disparity[np.abs(disparity) > MIN_DISPARITY]
     negative = int((told < 0).sum())
     if 2 * negative - len(told) > 3 * np.sqrt(len(told)):
@@ -182,9 +165,7 @@ class Alignment(NamedTuple):
 def camera_alignment(upper: PanoramaFeatures, lower: PanoramaFeatures) -> Alignment:
     """Return the turn w of the lower camera against the upper one, and how many matches agree on it.
 
-    A lower camera turned by small angles w = (w_x, w_y, w_z) about x, y and z sees a point at another azimuth:
-
-    a_l - a_u = -w_z + tan e_l (w_x cos a_l + w_y sin a_l)
+    a_l - a_u = -w_z + tan e_l (w_x cos a_l + w_y sin a_l)  for small angles w about x, y and z
 
     Least squares of the matches within 0.1 radian of the commonest azimuth difference, weighted by Cauchy's function.
     The paper takes the cameras as aligned. A tilt is added to every parallax: at 3 m a degree is a sixth of it.

@@ -12,14 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, boxes_on, canonical_label
+from course_lib.spherical_stereo.matching import features
 from course_lib.spherical_stereo.matching.epipolar import EpipolarPairs, allowed_by_rig, best_pairs, epipolar_pairs
-from course_lib.spherical_stereo.matching.features import (
-    Alignment,
-    camera_alignment,
-    check_not_swapped,
-    find_features,
-    inside_box,
-)
+from course_lib.spherical_stereo.matching.features import Alignment, check_not_swapped, find_features
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 
 MIN_FEATURES = 3  # matched features that make one object; one alone may be an accident (the paper has no number)
@@ -98,13 +93,13 @@ def match_views(
     if counts.size:  # finding features takes a quarter of a second, and without two objects nobody uses them
         upper, lower = find_features(upper), find_features(lower)
         if check_alignment:
-            alignment = camera_alignment(upper.features, lower.features)
+            alignment = features.camera_alignment(upper.features, lower.features)
             if not (alignment.of_one_moment and alignment.is_upright):
                 return StereoMatching([], [], alignment)
         pairs = epipolar_pairs(upper.features, lower.features)
         check_not_swapped(best_pairs(pairs).disparity)
         in_upper, in_lower = (
-            [inside_box(view.features.keypoints, box, view.width)[index] for box in of_view]
+            [features.inside_box(view.features.keypoints, box, view.width)[index] for box in of_view]
             for view, of_view, index in ((upper, boxes[0], pairs.upper), (lower, boxes[1], pairs.lower))
         )
         for i, j in np.ndindex(counts.shape):
@@ -151,8 +146,7 @@ def matched_indices(matches: Sequence, upper: View, lower: View) -> list[tuple[i
 def pair_by_most_matches(counts: np.ndarray) -> tuple[list[tuple[int, int]], set[int], set[int]]:
     """Return one-to-one pairs by repeated maximum of the counts `(n, m)`, and the rows and columns left out by a tie.
 
-    Where the largest count stands twice in one row or column, all that it joins are left out, because any choice would
-    be a guess. Source: paper 2, section 2.3.
+    A tie is the largest count twice in one row or column, where any choice is a guess. Source: paper 2, section 2.3.
     """
     counts = np.array(counts, dtype=int)
     pairs, tied_rows, tied_columns = [], set(), set()

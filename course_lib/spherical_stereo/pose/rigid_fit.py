@@ -124,9 +124,7 @@ def _closed_form(source: np.ndarray, target: np.ndarray, w: np.ndarray) -> Pose2
     return Pose2D(float(x), float(y), wrap_angle(np.arctan2(rotation[1, 0], rotation[0, 0])))
 
 
-def _gauss_newton(
-    pose: Pose2D, source: np.ndarray, target: np.ndarray, w: np.ndarray, covariances: np.ndarray
-) -> Pose2D:
+def _gauss_newton(pose: Pose2D, source, target, w, covariances) -> Pose2D:
     for _ in range(GAUSS_NEWTON_STEPS):
         residuals, jacobians, information = _linearized(pose, source, target, w, covariances)
         normal = np.einsum("nki,nkl,nlj->ij", jacobians, information, jacobians)
@@ -138,9 +136,7 @@ def _gauss_newton(
     return pose
 
 
-def _linearized(
-    pose: Pose2D, source: np.ndarray, target: np.ndarray, w: np.ndarray, covariances: np.ndarray | None
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _linearized(pose: Pose2D, source, target, w, covariances) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return residuals `(n, 2)`, their derivatives by [x, y, theta] `(n, 2, 3)`, and weight matrices `(n, 2, 2)`."""
     rotation = rotation_2d(pose.theta)
     residuals = pose.apply(source) - target
@@ -208,7 +204,7 @@ def residual_statistics(
 
 
 def _checked_pairs(
-    source: np.ndarray, target: np.ndarray, weights: np.ndarray | None, covariances: np.ndarray | None
+    source, target, weights, covariances
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
     """Return the arguments of `fit_rigid_2d` as arrays, without pairs of weight 0."""
     source, target = (np.asarray(points, dtype=np.float64) for points in (source, target))

@@ -20,14 +20,8 @@ from course_lib.spherical_stereo.panorama import (
     direction_from_angles,
     pixel_to_direction,
 )
-from course_lib.spherical_stereo.ranging.triangulation import (
-    OK,
-    PARALLEL,
-    PARALLEL_TOLERANCE,
-    triangulate,
-    triangulation_covariance,
-    triangulation_outcome,
-)
+from course_lib.spherical_stereo.ranging import triangulation
+from course_lib.spherical_stereo.ranging.triangulation import OK, PARALLEL, triangulate
 
 Distance = Literal["box_centre", "disparity"]
 DISTANCES: tuple[Distance, ...] = ("box_centre", "disparity")
@@ -37,10 +31,8 @@ CENTROID_SIGMA = 0.1  # metres, of the object's centroid about the point that it
 SURFACE_SIGMA = 0.15  # metres, from the centroid to the surface that the features lie on: a quarter of a sofa's depth
 TOO_FAR, TOO_FEW_MATCHES = "too far", "too few matches"  # Outcomes beside those of the triangulation.
 MIN_MATCHES = 3  # With fewer matches a median says nothing about its own spread.
-# Standard deviation of a normal distribution over its median absolute deviation.
-_NORMAL_OVER_MAD = 1.4826
-# Standard deviation of the median over that of the mean, of normally distributed numbers: sqrt(pi / 2).
-_MEDIAN_OVER_MEAN = 1.2533
+_NORMAL_OVER_MAD = 1.4826  # standard deviation of a normal distribution over its median absolute deviation
+_MEDIAN_OVER_MEAN = 1.2533  # standard deviation of the median over that of the mean, of normal numbers: sqrt(pi / 2)
 
 
 class Noise(NamedTuple):
@@ -96,10 +88,7 @@ class MeasuredObject(NamedTuple):
 
 
 def max_range(baseline: float) -> float:
-    """Return the horizontal range in metres at which one standard deviation of the parallax is all of it.
-
-    rho = baseline / (sqrt(2) s), s = `BOX_CENTRE_SIGMA`; 28 m at a baseline of 0.3 m. The paper draws no line.
-    """
+    """Return the horizontal range (m) at which the parallax is its own sigma: baseline / (sqrt(2) BOX_CENTRE_SIGMA)."""
     return baseline / (2**0.5 * BOX_CENTRE_SIGMA)
 
 
@@ -114,7 +103,7 @@ def disparity_distance(match, width: int, height: int, baseline: float) -> Dispa
     if len(slope) < MIN_MATCHES:
         return DisparityDistance(TOO_FEW_MATCHES)
     middle = float(np.median(slope))
-    if middle <= PARALLEL_TOLERANCE:
+    if middle <= triangulation.PARALLEL_TOLERANCE:
         return DisparityDistance(PARALLEL)
     deviation = _NORMAL_OVER_MAD * float(np.median(np.abs(slope - middle)))
     # d rho = rho^2 / baseline d slope, as in the covariance of the triangulation.
@@ -132,10 +121,9 @@ def position_objects(
     noise: Noise = Noise(),  # noqa: B008 (it cannot change)
     furthest: float = np.inf,
 ) -> list[ObjectPosition]:
-    """Return the position of every match: X = d x_hat, x_hat the direction of the box centre in the upper image.
+    """Return X = d x_hat of every match, x_hat the direction of the box centre in the upper image.
 
-    pairs: indices (upper, lower) of the matches' detections. furthest: metres, horizontal; beyond it an object is "too
-    far".
+    pairs: indices (upper, lower) of the matches' detections. furthest: metres, horizontal, before "too far".
     """
     if not pairs:
         return []
@@ -154,10 +142,7 @@ def position_objects(
 def measure_objects(
     matches: Sequence, upper: View, lower: View, rig: StereoRig, sigma_pixels: float = 1.0
 ) -> list[MeasuredObject]:
-    """Return every matched object with both its distances, in the order of the upper detections.
-
-    sigma_pixels: standard deviation of a box centre's u and v, pixels.
-    """
+    """Return every matched object with both its distances, in the order of the upper detections."""
     matches = sorted(matches, key=lambda m: m.upper)
     pairs = [(match.upper, match.lower) for match in matches]
     noise = Noise(2 * np.pi / upper.width * sigma_pixels, 0.0, 0.0)
@@ -171,24 +156,21 @@ def measure_objects(
     return measured
 
 
-def _from_box_centres(
-    from_upper: np.ndarray, from_lower: np.ndarray, baseline: float, noise: Noise
-) -> list[ObjectPosition]:
+def _from_box_centres(from_upper, from_lower, baseline: float, noise: Noise) -> list[ObjectPosition]:
     """Return the positions of directions `(n, 3)`, all that have one at once."""
-    outcomes = triangulation_outcome(from_upper, from_lower)
+    outcomes = triangulation.triangulation_outcome(from_upper, from_lower)
     found = [ObjectPosition(str(outcome)) for outcome in outcomes]
     ok = np.flatnonzero(outcomes == OK)
     directions = from_upper[ok], from_lower[ok]
     positions = triangulate(*directions, baseline)[:, None] * directions[0]
-    of_angles = triangulation_covariance(*directions, baseline, noise.box_centre, noise.box_centre)
+    sigmas = noise.box_centre, noise.box_centre
+    of_angles = triangulation.triangulation_covariance(*directions, baseline, *sigmas)
     for i, position, covariance in zip(ok, positions, of_angles, strict=True):
         found[i] = ObjectPosition(OK, position, covariance[:2, :2] + noise.centroid**2 * np.eye(2))
     return found
 
 
-def _from_features(
-    match, from_upper: np.ndarray, baseline: float, size: tuple[int, int], noise: Noise
-) -> ObjectPosition:
+def _from_features(match, from_upper: np.ndarray, baseline: float, size, noise: Noise) -> ObjectPosition:
     """Return X = rho (cos a, sin a, tan e) in the direction of the box centre, upper camera."""
     if not hasattr(match, "keypoints_upper"):
         raise DetectionError('distance="disparity" needs ObjectMatch with its features, not a pair of indices')

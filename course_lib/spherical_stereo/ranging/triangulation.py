@@ -27,10 +27,7 @@ class TriangulationError(ValueError):
 
 
 def triangulation_outcome(direction_upper: np.ndarray, direction_lower: np.ndarray) -> np.ndarray:
-    """Return the outcomes `(...)` of two directions `(..., 3)`: "ok", "parallel", "diverging" or "azimuth gap".
-
-    A direction straight up or down counts as parallel. Source: paper 2, section 2.4.
-    """
+    """Return the outcomes `(...)` of two directions `(..., 3)`. One straight up or down counts as parallel."""
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
     parallax = lower - upper
     upright = np.pi / 2 - np.maximum(np.abs(upper), np.abs(lower)) <= PARALLEL_TOLERANCE

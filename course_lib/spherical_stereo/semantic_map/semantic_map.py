@@ -114,9 +114,7 @@ class SemanticMap:
 
     @classmethod
     def load(cls, path: str | Path) -> SemanticMap:
-        """Read the map in a `.json` or `.csv` file (format: see the module). Raises `SemanticMapError` with the file's
-        name.
-        """
+        """Read a `.json` or `.csv` file (format: see the module). Raises `SemanticMapError` with the file's name."""
         readers = {".json": (read_json, _from_json), ".csv": (read_text, _from_csv)}
         if Path(path).suffix.lower() not in readers:
             raise SemanticMapError(f"{path}: a semantic map is a .json or a .csv file")
@@ -169,9 +167,8 @@ def _from_json(content: object) -> SemanticMap:
         missing = [name for name in _FIELDS if not isinstance(row, dict) or row.get(name, "") == ""]
         try:
             if missing or row["hue"] != row["hue"]:
-                raise SemanticMapError(
-                    f"lacks {', '.join(missing) or 'a hue'} (grey has the hue null, or empty in CSV)"
-                )
+                lacks = ", ".join(missing) or "a hue"
+                raise SemanticMapError(f"lacks {lacks} (grey has the hue null, or empty in CSV)")
             hue = math.nan if row["hue"] is None else row["hue"]
             landmarks.append(Landmark(row["label"], row["x"], row["y"], hue, row["saturation"]))
         except SemanticMapError as error:
@@ -192,9 +189,8 @@ def _from_csv(text: str) -> SemanticMap:
     rows = []
     for row in reader:
         if None in row or None in row.values():  # the reader's mark for too many values, and for too few
-            raise SemanticMapError(
-                f"line {reader.line_num + 1} must have {len(reader.fieldnames)} values, one a column"
-            )
+            expected = len(reader.fieldnames)
+            raise SemanticMapError(f"line {reader.line_num + 1} must have {expected} values, one a column")
         rows.append({name: _csv_value(name, row[name]) for name in _FIELDS})
     if found[2] is not None and (len(rows) != int(found[2]) or not text.endswith("\n")):
         raise SemanticMapError(

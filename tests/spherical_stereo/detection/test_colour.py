@@ -11,15 +11,14 @@ from course_lib.spherical_stereo.detection.detected_object import DetectionError
 
 
 def bgr(hue, saturation_percent, value=0.8):
-    """A BGR colour of 8 bits."""
     hsv = np.array([[[hue, saturation_percent / 100, value]]], dtype=np.float32)
     return np.rint(255 * cv2.cvtColor(hsv, cv2.COLOR_HSV2BGR)[0, 0]).astype(np.uint8)
 
 
-def plain(*colours, height=40, width=80):
+def plain(*colours):
     """An image of vertical bands of equal width."""
-    bands = np.array(colours)[np.arange(width) * len(colours) // width]
-    return np.repeat(bands[None], height, axis=0).astype(np.uint8)
+    bands = np.array(colours)[np.arange(80) * len(colours) // 80]
+    return np.repeat(bands[None], 40, axis=0).astype(np.uint8)
 
 
 @pytest.mark.parametrize("hue", [0, 45, 123, 210, 359])
@@ -36,23 +35,20 @@ def test_grey_has_no_hue(colour):
     assert 0 <= saturation < 10
 
 
-def test_hues_of_all_directions_have_no_mean():
+def test_hues_of_all_directions_have_no_mean_and_noise_in_the_dark_has_no_say():
     hue, saturation = mean_hue_saturation(plain(*(bgr(h, 70) for h in range(0, 360, 45))))
     assert math.isnan(hue)
     assert saturation == pytest.approx(70, abs=1)
+    # The saturation of (3, 0, 0) is 100 %: weighted by it alone, near-black pixels would decide.
+    assert mean_hue_saturation(plain(bgr(120, 60), (3, 0, 0), (9, 0, 0)))[0] == pytest.approx(120, abs=1)
 
 
-def test_noise_in_the_dark_has_no_say_in_the_hue():
-    """The saturation of (3, 0, 0) is 100 %: weighted by it alone, near-black pixels would decide."""
-    hue, _ = mean_hue_saturation(plain(bgr(120, 60), (3, 0, 0), (9, 0, 0)))
-    assert hue == pytest.approx(120, abs=1)
-
-
-def test_only_the_central_half_of_the_box_counts():
+def test_only_the_central_half_of_the_box_counts_or_the_mask():
     image = plain(bgr(0, 80))
     image[10:30, 20:60] = bgr(240, 80)
-    hue, _ = mean_hue_saturation(image, box=(0, 0, 80, 40))
-    assert hue == pytest.approx(240, abs=1)
+    assert mean_hue_saturation(image, box=(0, 0, 80, 40))[0] == pytest.approx(240, abs=1)
+    assert mean_hue_saturation(image, box=(20.0, 10.0, 20.5, 10.5))[0] == pytest.approx(240, abs=1)  # within one pixel
+    assert mean_hue_saturation(image, mask=(image == bgr(240, 80)).all(axis=-1))[0] == pytest.approx(240, abs=1)
 
 
 def test_a_box_across_the_seam_is_measured_as_if_the_panorama_were_turned(rng):
@@ -61,13 +57,6 @@ def test_a_box_across_the_seam_is_measured_as_if_the_panorama_were_turned(rng):
     expected = mean_hue_saturation(image, box=(30, 5, 70, 35))
     turned = np.roll(image, 40, axis=1)
     assert mean_hue_saturation(turned, box=(70, 5, 110, 35)) == pytest.approx(expected, abs=1e-9)
-
-
-def test_a_mask_selects_pixels():
-    image = plain(bgr(0, 80), bgr(120, 80), bgr(240, 80), bgr(60, 80))
-    mask = np.zeros((40, 80), dtype=bool)
-    mask[:, 20:40] = True
-    assert mean_hue_saturation(image, mask=mask)[0] == pytest.approx(120, abs=1)
 
 
 def test_no_colour_is_made_up_where_there_is_none():

@@ -4,13 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from course_lib.spherical_stereo.matching.epipolar import (
-    EpipolarPairs,
-    allowed_by_rig,
-    best_pairs,
-    epipolar_pairs,
-    epipolar_residual,
-)
+from course_lib.spherical_stereo.matching import epipolar
+from course_lib.spherical_stereo.matching.epipolar import best_pairs, epipolar_pairs
 from course_lib.spherical_stereo.matching.features import (
     PanoramaFeatures,
     camera_alignment,
@@ -18,23 +13,19 @@ from course_lib.spherical_stereo.matching.features import (
     inside_box,
 )
 from course_lib.spherical_stereo.panorama import direction_to_pixel
-from tests.spherical_stereo.stereo_scene import scene
-from tests.spherical_stereo.vertical_pair import BASELINE, HEIGHT, WIDTH
+from tests.spherical_stereo.stereo_scene import BASELINE, HEIGHT, WIDTH, scene
+
+IMAGE = scene()[1]
 
 
 @pytest.fixture(scope="module")
-def image():
-    return scene()[1]
+def features():
+    return detect_features(IMAGE)
 
 
-@pytest.fixture(scope="module")
-def features(image):
-    return detect_features(image)
-
-
-def test_features_on_the_seam_are_found_as_well_as_elsewhere(image, features):
+def test_features_on_the_seam_are_found_as_well_as_elsewhere(features):
     """Half the image away, what was at the seam is in the middle: as many features, at the same places."""
-    turned = detect_features(np.roll(image, WIDTH // 2, axis=1))
+    turned = detect_features(np.roll(IMAGE, WIDTH // 2, axis=1))
     near_seam = features.keypoints[(features.keypoints[:, 0] < 20) | (features.keypoints[:, 0] > WIDTH - 20)]
     in_the_middle = turned.keypoints[np.abs(turned.keypoints[:, 0] - WIDTH / 2) < 20]
     assert len(near_seam) > 10
@@ -59,16 +50,14 @@ def test_a_box_across_the_seam_holds_points_on_both_sides_of_it():
     assert inside_box(points, box, WIDTH).tolist() == [True, True, False, False, False, False]
 
 
-def random_features(rng, n):
-    return PanoramaFeatures(
-        rng.uniform(0, [WIDTH, HEIGHT], (n, 2)), rng.integers(0, 256, (n, 61), dtype=np.uint8), WIDTH, HEIGHT
-    )
+def features_of(places, rng):
+    """Features at places `(n, 2)` with random descriptors."""
+    return PanoramaFeatures(places, rng.integers(0, 256, (len(places), 61), dtype=np.uint8), WIDTH, HEIGHT)
 
 
 def test_epipolar_pairs_are_all_that_looking_at_every_pair_finds(rng):
-    upper, lower = random_features(rng, 150), random_features(rng, 170)
-    (azimuth_u, elevation_u), (azimuth_l, elevation_l) = upper.angles(), lower.angles()
-    residual = epipolar_residual(azimuth_u[:, None], elevation_u[:, None], azimuth_l, elevation_l)
+    upper, lower = (features_of(rng.uniform(0, [WIDTH, HEIGHT], (n, 2)), rng) for n in (150, 170))
+    residual = epipolar.epipolar_residual(*(angle[:, None] for angle in upper.angles()), *lower.angles())
     bits_u, bits_l = np.unpackbits(upper.descriptors, axis=1), np.unpackbits(lower.descriptors, axis=1)
     distance = (bits_u[:, None] != bits_l[None]).sum(axis=-1)
     expected = {(int(i), int(j)) for i, j in np.argwhere((residual <= 0.05) & (distance <= 245))}
@@ -80,7 +69,7 @@ def test_epipolar_pairs_are_all_that_looking_at_every_pair_finds(rng):
 
 def pairs_of(*triples):
     upper, lower, distance = np.array(triples).T
-    return EpipolarPairs(upper, lower, distance, distance * 0.0, distance * 0.0)
+    return epipolar.EpipolarPairs(upper, lower, distance, distance * 0.0, distance * 0.0)
 
 
 def test_best_pairs_are_mutual_and_clear():
@@ -91,13 +80,12 @@ def test_best_pairs_are_mutual_and_clear():
     assert len(best_pairs(pairs_of((2, 2, 20), (2, 3, 22)), ratio=1.0)) == 1
 
 
-def test_nothing_is_turned_between_two_upright_cameras_and_so_descriptors_are_upright(image, features):
+def test_nothing_is_turned_between_two_upright_cameras_and_so_descriptors_are_upright(features):
     """The image upside down has the same features; descriptors that turn along would find most of them again."""
-    turned = detect_features(np.ascontiguousarray(image[::-1, ::-1]))
+    turned = detect_features(np.ascontiguousarray(IMAGE[::-1, ::-1]))
     assert len(turned) == pytest.approx(len(features), rel=0.05)
     back = PanoramaFeatures([WIDTH, HEIGHT] - turned.keypoints, turned.descriptors, WIDTH, HEIGHT)
-    same = epipolar_pairs(features, back, 0.005).upper
-    assert len(np.unique(same)) < 0.2 * len(features)
+    assert len(np.unique(epipolar_pairs(features, back, 0.005).upper)) < 0.2 * len(features)
     assert len(np.unique(epipolar_pairs(features, features, 0.005).upper)) == len(features)
 
 
@@ -116,14 +104,12 @@ def test_unless_told_otherwise_a_pair_is_within_three_columns_of_1280_and_120_bi
 @pytest.mark.parametrize(("horizontal_range", "allowed"), [(0.25, False), (0.35, True), (20.0, True), (-2.0, False)])
 def test_no_object_is_nearer_than_30_centimetres_or_behind_infinity(horizontal_range, allowed):
     pairs = epipolar_pairs(one_feature(0.0, 0.0), one_feature(0.0, np.arctan(0.3 / horizontal_range)))
-    assert allowed_by_rig(pairs, 0.3).tolist() == [allowed]
+    assert epipolar.allowed_by_rig(pairs, 0.3).tolist() == [allowed]
 
 
 def features_at(points, rng, turn=(0.0, 0.0, 0.0)):
     """Features at the directions of points `(n, 3)`, as a camera turned by a vector sees them; random descriptors."""
-    seen = Rotation.from_rotvec(turn).inv().apply(points)
-    places = direction_to_pixel(seen, WIDTH, HEIGHT)
-    return PanoramaFeatures(places, rng.integers(0, 256, (len(points), 61), dtype=np.uint8), WIDTH, HEIGHT)
+    return features_of(direction_to_pixel(Rotation.from_rotvec(turn).inv().apply(points), WIDTH, HEIGHT), rng)
 
 
 def test_exact_features_give_the_turn_and_strangers_do_not_matter(rng):
@@ -140,12 +126,7 @@ def test_exact_features_give_the_turn_and_strangers_do_not_matter(rng):
     found = camera_alignment(upper, lower)
     assert found.turn == pytest.approx(turn, abs=5e-4)
     assert found.agreeing == pytest.approx(0.75, abs=0.02)
-
-
-def test_images_with_nothing_in_common_tell_no_turn(rng):
+    # Images with nothing in common tell no turn.
     first, second = (features_at(rng.normal(size=(400, 3)), rng) for _ in range(2))
     assert camera_alignment(first, second).turn is None
-    assert (
-        camera_alignment(first, PanoramaFeatures(np.zeros((0, 2)), np.zeros((0, 61), np.uint8), WIDTH, HEIGHT)).turn
-        is None
-    )
+    assert camera_alignment(first, features_of(np.zeros((0, 2)), rng)).turn is None

@@ -3,42 +3,28 @@
 import numpy as np
 import pytest
 
+from course_lib.spherical_stereo.matching import features as feature_matching
+from course_lib.spherical_stereo.matching import object_matching as reasons
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
-from course_lib.spherical_stereo.matching.features import (
-    PanoramaFeatures,
-    SwappedImagesError,
-    check_not_swapped,
-    detect_features,
-    find_features,
-    inside_box,
-    match_features,
-)
-from course_lib.spherical_stereo.matching.object_matching import (
-    CLASS_NOT_IN_OTHER,
-    NO_MATCHES,
-    PARTNER_TAKEN,
-    TIE,
-    TOO_FEW,
-    match_objects,
-    match_views,
-    pair_by_most_matches,
-)
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures, SwappedImagesError, check_not_swapped
+from course_lib.spherical_stereo.matching.object_matching import match_objects, match_views, pair_by_most_matches
 from course_lib.spherical_stereo.panorama import StereoRig, View, azimuth_elevation_of_pixel, open_view
-from tests.spherical_stereo.stereo_scene import scene
-from tests.spherical_stereo.vertical_pair import BASELINE, HEIGHT, WIDTH, Seen
+from tests.spherical_stereo.stereo_scene import BASELINE, HEIGHT, WIDTH, Seen, scene
 
 RIG = StereoRig(BASELINE, 1.32)
 LAST = 7  # the lower detections are in reverse order: partner of i is LAST - i
-IN_THE_AIR = Seen("chair", (200.0, 10.0, 230.0, 30.0))  # where the scene has nothing at all
-
-
 BOARDS, UPPER, LOWER, UPPER_SEEN, LOWER_SEEN = scene()
+IN_THE_AIR = Seen("chair", (200.0, 10.0, 230.0, 30.0))  # where the scene has nothing at all
+CABINET = UPPER_SEEN[7].box
+UPPER_HALF = Seen("cabinet", (*CABINET[:3], (CABINET[1] + CABINET[3]) / 2))
+WITHOUT_CABINET = [d for d in LOWER_SEEN if d.label != "cabinet"]
+TIED = [("upper", 7), ("lower", 0), ("lower", 8)]
 
 
 @pytest.fixture(scope="module")
 def features():
     """Both views of the scene, with their features."""
-    return [find_features(open_view(image)) for image in (UPPER, LOWER)]
+    return [feature_matching.find_features(open_view(image)) for image in (UPPER, LOWER)]
 
 
 def match_scene(features, upper=UPPER_SEEN, lower=LOWER_SEEN, **options):
@@ -50,40 +36,31 @@ def partners(matches):
     return {(m.upper, m.lower) for m in matches}
 
 
-def test_every_object_finds_itself_in_the_other_image():
-    """Look-alikes, a repeated texture, a half-hidden chair and a table across the seam among them."""
+def test_every_object_finds_itself_by_features_in_its_boxes_that_obey_the_epipolar_constraint():
     matches = match_objects(UPPER, UPPER_SEEN, LOWER, LOWER_SEEN, RIG)
     assert partners(matches) == {(i, LAST - i) for i in range(8)}
     assert [m.label for m in matches] == [UPPER_SEEN[m.upper].label for m in matches]
-    counts = [m.n_matches for m in matches]
-    assert counts == sorted(counts, reverse=True)
-
-
-def test_matched_features_lie_in_their_boxes_and_obey_the_epipolar_constraint(features):
-    for match in match_scene(features).matches:
+    assert matches == sorted(matches, key=lambda m: m.n_matches, reverse=True)
+    for match in matches:
         assert match.keypoints_upper.shape == match.keypoints_lower.shape == (match.n_matches, 2)
-        assert inside_box(match.keypoints_upper, UPPER_SEEN[match.upper].box, WIDTH).all()
-        assert inside_box(match.keypoints_lower, LOWER_SEEN[match.lower].box, WIDTH).all()
-        azimuth_u, elevation_u = azimuth_elevation_of_pixel(match.keypoints_upper, WIDTH, HEIGHT)
-        azimuth_l, elevation_l = azimuth_elevation_of_pixel(match.keypoints_lower, WIDTH, HEIGHT)
-        assert epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l).max() <= 0.0151
-        assert (elevation_l > elevation_u).all(), "the lower camera sees every point higher"
+        assert feature_matching.inside_box(match.keypoints_upper, UPPER_SEEN[match.upper].box, WIDTH).all()
+        assert feature_matching.inside_box(match.keypoints_lower, LOWER_SEEN[match.lower].box, WIDTH).all()
+        upper, lower = (
+            azimuth_elevation_of_pixel(one, WIDTH, HEIGHT) for one in (match.keypoints_upper, match.keypoints_lower)
+        )
+        assert epipolar_residual(*upper, *lower).max() <= 0.0151
+        assert (lower[1] > upper[1]).all(), "the lower camera sees every point higher"
         assert len(np.unique(match.keypoints_lower, axis=0)) == match.n_matches, "features are matched one-to-one"
-
-
-CABINET = UPPER_SEEN[7].box
-UPPER_HALF = Seen("cabinet", (*CABINET[:3], (CABINET[1] + CABINET[3]) / 2))
-WITHOUT_CABINET = [d for d in LOWER_SEEN if d.label != "cabinet"]
 
 
 @pytest.mark.parametrize(
     ("upper", "lower", "n_matches", "unmatched"),
     [
         (UPPER_SEEN, LOWER_SEEN, 8, []),
-        (UPPER_SEEN, [*LOWER_SEEN, LOWER_SEEN[0]], 7, [("upper", 7, TIE), ("lower", 0, TIE), ("lower", 8, TIE)]),
-        ([*UPPER_SEEN, IN_THE_AIR], LOWER_SEEN, 8, [("upper", 8, NO_MATCHES)]),
-        ([*UPPER_SEEN, UPPER_HALF], LOWER_SEEN, 8, [("upper", 8, PARTNER_TAKEN)]),
-        (UPPER_SEEN, WITHOUT_CABINET, 7, [("upper", 7, CLASS_NOT_IN_OTHER)]),
+        (UPPER_SEEN, [*LOWER_SEEN, LOWER_SEEN[0]], 7, [(*one, reasons.TIE) for one in TIED]),
+        ([*UPPER_SEEN, IN_THE_AIR], LOWER_SEEN, 8, [("upper", 8, reasons.NO_MATCHES)]),
+        ([*UPPER_SEEN, UPPER_HALF], LOWER_SEEN, 8, [("upper", 8, reasons.PARTNER_TAKEN)]),
+        (UPPER_SEEN, WITHOUT_CABINET, 7, [("upper", 7, reasons.CLASS_NOT_IN_OTHER)]),
     ],
 )
 def test_a_detection_without_partner_says_why(features, upper, lower, n_matches, unmatched):
@@ -92,14 +69,12 @@ def test_a_detection_without_partner_says_why(features, upper, lower, n_matches,
     assert (len(matching.matches), matching.unmatched) == (n_matches, unmatched)
 
 
-def test_swapped_images_are_told_from_the_sign_of_the_disparity(features):
+def test_swapped_images_are_told_from_the_sign_of_the_disparity(features, rng):
     with pytest.raises(SwappedImagesError, match="swapped"):
         match_objects(LOWER, LOWER_SEEN, UPPER, UPPER_SEEN, RIG)
     with pytest.raises(SwappedImagesError, match="Swap the two images"):
-        match_features(features[1].features, features[0].features)
-
-
-def test_disparities_of_either_sign_do_not_count_as_swapped(rng):
+        feature_matching.match_features(features[1].features, features[0].features)
+    # Disparities of either sign are no exchange.
     check_not_swapped(rng.normal(0, 0.05, 1000))
     check_not_swapped(np.zeros(0))
     check_not_swapped(np.full(4, -0.1))  # four coins may well all show tails
@@ -112,34 +87,32 @@ def test_an_object_needs_as_many_features_as_are_asked_for(features):
     fewest = min(counts.values()) + 1
     matching = match_scene(features, min_features=fewest)
     assert {m.upper for m in matching.matches} == {i for i, n in counts.items() if n >= fewest}
-    assert {item.reason for item in matching.unmatched} == {TOO_FEW}
+    assert {item.reason for item in matching.unmatched} == {reasons.TOO_FEW}
 
 
 def test_whole_panoramas_match_mostly_at_equal_azimuth(features):
     """The search knows nothing of the constraint, so the share that obeys it is a finding."""
     upper, lower = (view.features for view in features)
-    matches = match_features(upper, lower)
+    matches = feature_matching.match_features(upper, lower)
     assert len(matches) > 100
     assert matches.epipolar_share > 0.9
     assert np.median(matches.vertical_disparity[matches.epipolar]) > 0.03
     assert np.median(np.abs(matches.azimuth_difference)) < 0.5 * 2 * np.pi / WIDTH
-    assert not match_features(upper, detect_features(np.roll(LOWER, 100, axis=1))).epipolar_share > 0.1
+    rolled = feature_matching.detect_features(np.roll(LOWER, 100, axis=1))
+    assert not feature_matching.match_features(upper, rolled).epipolar_share > 0.1
 
 
-COUNTS = [
-    ([[5, 2], [3, 4]], [(0, 0), (1, 1)], set(), set()),
-    ([[5, 9], [3, 4]], [(0, 1), (1, 0)], set(), set()),
-    ([[4, 0], [0, 4]], [(0, 0), (1, 1)], set(), set()),  # equal, but no row or column in common
-    ([[4, 4]], [], {0}, {0, 1}),
-    ([[4], [4]], [], {0, 1}, {0}),
-    ([[4, 4, 0], [0, 3, 1]], [(1, 2)], {0}, {0, 1}),
-    ([[6, 4, 4], [7, 0, 0]], [(1, 0)], {0}, {1, 2}),
-    ([[0, 0], [0, 0]], [], set(), set()),
-    (np.zeros((0, 3)), [], set(), set()),
-]
-
-
-@pytest.mark.parametrize(("counts", "pairs", "rows", "columns"), COUNTS)
+@pytest.mark.parametrize(
+    ("counts", "pairs", "rows", "columns"),
+    [
+        ([[5, 9], [3, 4]], [(0, 1), (1, 0)], set(), set()),
+        ([[4, 0], [0, 4]], [(0, 0), (1, 1)], set(), set()),  # equal, but no row or column in common
+        ([[4], [4]], [], {0, 1}, {0}),
+        ([[4, 4, 0], [0, 3, 1]], [(1, 2)], {0}, {0, 1}),
+        ([[6, 4, 4], [7, 0, 0]], [(1, 0)], {0}, {1, 2}),
+        (np.zeros((0, 3)), [], set(), set()),
+    ],
+)
 def test_the_largest_count_makes_a_pair_and_equal_ones_a_tie(counts, pairs, rows, columns):
     found = pair_by_most_matches(np.array(counts))
     assert (sorted(found[0]), found[1], found[2]) == (pairs, rows, columns)

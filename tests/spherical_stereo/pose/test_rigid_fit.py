@@ -1,7 +1,5 @@
 """The rigid fit: agrees with scikit-image, turns with its points, names what has no answer, and measures residuals."""
 
-from contextlib import contextmanager
-
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -11,37 +9,13 @@ from scipy.stats import chi2
 from skimage.transform import EuclideanTransform
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.pose.rigid_fit import (
-    COINCIDENT,
-    MIRRORED,
-    TOO_FEW_PAIRS,
-    Pose2D,
-    Residuals,
-    RigidFitError,
-    fit_covariance,
-    fit_rigid_2d,
-    residual_statistics,
-    rotation_2d,
-)
-
-
-@contextmanager
-def refused(reason, match=None):
-    """A `RigidFitError` of that reason."""
-    with pytest.raises(RigidFitError, match=match) as caught:
-        yield
-    assert caught.value.reason == reason
-
+from course_lib.spherical_stereo.pose import rigid_fit
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, fit_covariance, fit_rigid_2d, residual_statistics
 
 TRIANGLE = np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]])
 
 angles = st.floats(-np.pi, np.pi - 1e-9)
-metres = st.floats(-20, 20)
 points = st.integers(2, 12).flatmap(lambda n: arrays(np.float64, (n, 2), elements=st.floats(-5, 5)))
-
-
-def spread(array):
-    return np.sqrt(((array - array.mean(axis=0)) ** 2).sum(axis=1).mean())
 
 
 def noisy(source, pose, sigma, seed=0):
@@ -50,7 +24,7 @@ def noisy(source, pose, sigma, seed=0):
 
 @given(points, angles, st.integers(0, 10_000))
 def test_noisy_points_give_the_pose_that_scikit_image_gives(source, theta, seed):
-    assume(spread(source) > 1.0)
+    assume(source.var(axis=0).sum() > 1.0)
     target = noisy(source, Pose2D(1.0, -2.0, theta), 0.05, seed)
     reference = EuclideanTransform.from_estimate(source, target)
     fitted = fit_rigid_2d(source, target)
@@ -65,7 +39,7 @@ def test_turning_body_and_covariances_together_keeps_the_weighted_position(turn,
     target = noisy(source, Pose2D(1.0, 2.0, 0.3), 0.1, seed)
     factors = rng.standard_normal((6, 2, 2)) * 0.2
     covariances = factors @ np.swapaxes(factors, 1, 2) + 0.01 * np.eye(2)
-    rotation = rotation_2d(turn)
+    rotation = rigid_fit.rotation_2d(turn)
     before = fit_rigid_2d(source, target, covariances=covariances)
     after = fit_rigid_2d(source @ rotation.T, target, covariances=rotation @ covariances @ rotation.T)
     assert after[:2] == pytest.approx(before[:2], abs=1e-8)
@@ -82,35 +56,6 @@ def test_a_pair_of_weight_zero_counts_as_if_it_were_not_there():
     assert covariance == pytest.approx(fit_covariance(pose, TRIANGLE, target, noise=noise), abs=1e-12)
 
 
-def ranges_with_noise(rng):
-    """Points around the body of uncertain range, growing with its square as in stereo, and of certain azimuth."""
-    points = rng.uniform(1, 4, (8, 1)) * np.stack([np.cos(a := rng.uniform(-np.pi, np.pi, 8)), np.sin(a)], axis=1)
-    along = points / np.linalg.norm(points, axis=1)[:, None]
-    across = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
-    sigma = 0.03 * (points**2).sum(axis=1)[:, None]
-    covariances = (
-        sigma[:, :, None] ** 2 * along[:, :, None] * along[:, None] + 0.02**2 * across[:, :, None] * across[:, None]
-    )
-    observed = points + along * sigma * rng.standard_normal((8, 1)) + across * 0.02 * rng.standard_normal((8, 1))
-    return points, observed, covariances
-
-
-@pytest.mark.parametrize("weighted", [False, True])
-def test_the_covariance_is_the_spread_that_repeated_fits_show(weighted):
-    rng, pose, errors, claimed = np.random.default_rng(6), Pose2D(1.0, -1.0, 2.0), [], []
-    for _ in range(500):
-        points, observed, covariances = ranges_with_noise(rng)
-        target, used = pose.apply(points), covariances if weighted else None
-        fitted = fit_rigid_2d(observed, target, covariances=used)
-        claim = fit_covariance(fitted, observed, target, covariances=used, noise=covariances)
-        error = np.array(fitted) - pose
-        errors.append(error @ np.linalg.solve(claim, error))
-        claimed.append(claim)
-    # Squared errors in units of the claimed covariance have mean 3, one for each component.
-    assert np.mean(errors) == pytest.approx(3.0, rel=0.2)
-    assert np.linalg.eigvalsh(claimed).min() > 0
-
-
 def test_without_covariances_the_residuals_say_how_uncertain_the_pose_is():
     rng, pose = np.random.default_rng(7), Pose2D(0.3, 0.4, -1.0)
     points, claimed, errors = rng.uniform(-3, 3, (10, 2)), [], []
@@ -123,23 +68,23 @@ def test_without_covariances_the_residuals_say_how_uncertain_the_pose_is():
     assert ratio == pytest.approx([1, 1, 1], rel=0.2)
 
 
-@pytest.mark.parametrize("n", [0, 1])
-def test_fewer_than_two_pairs_are_too_few(n):
-    with refused(TOO_FEW_PAIRS, match=f"at least two pairs of points; got {n}"):
-        fit_rigid_2d(np.zeros((n, 2)), np.zeros((n, 2)))
+ONE_PLACE = np.tile([2.0, 1.0], (3, 1))
 
 
-@pytest.mark.parametrize("side", ["source", "target"])
-def test_points_at_one_place_have_no_heading(side):
-    one_place = np.tile([2.0, 1.0], (3, 1))
-    with refused(COINCIDENT, match=f"3 {side} points"):
-        fit_rigid_2d(*((one_place, TRIANGLE) if side == "source" else (TRIANGLE, one_place)))
-
-
-@given(angles, metres, metres)
-def test_a_mirror_image_is_named(theta, x, y):
-    with refused(MIRRORED, match="mirror image"):
-        fit_rigid_2d(TRIANGLE * [1, -1], Pose2D(x, y, theta).apply(TRIANGLE))
+@pytest.mark.parametrize(
+    ("source", "target", "reason", "says"),
+    [
+        (np.zeros((0, 2)), np.zeros((0, 2)), rigid_fit.TOO_FEW_PAIRS, "at least two pairs of points; got 0"),
+        (np.zeros((1, 2)), np.zeros((1, 2)), rigid_fit.TOO_FEW_PAIRS, "at least two pairs of points; got 1"),
+        (ONE_PLACE, TRIANGLE, rigid_fit.COINCIDENT, "3 source points"),
+        (TRIANGLE, ONE_PLACE, rigid_fit.COINCIDENT, "3 target points"),
+        *((TRIANGLE * [1, -1], Pose2D(-9, 4, turn).apply(TRIANGLE), rigid_fit.MIRRORED, "mirror") for turn in range(6)),
+    ],
+)
+def test_points_without_a_pose_have_a_reason(source, target, reason, says):
+    with pytest.raises(rigid_fit.RigidFitError, match=says) as caught:
+        fit_rigid_2d(source, target)
+    assert caught.value.reason == reason
 
 
 @given(st.integers(2, 8), angles, st.integers(0, 1000))
@@ -164,7 +109,7 @@ def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
     ],
 )
 def test_arguments_that_do_not_fit_are_named(changes, says):
-    with pytest.raises(RigidFitError, match=says):
+    with pytest.raises(rigid_fit.RigidFitError, match=says):
         fit_rigid_2d(**{"source": TRIANGLE, "target": TRIANGLE, **changes})
 
 
@@ -180,9 +125,9 @@ def measured(rng):
 
 
 @pytest.mark.parametrize("weighted", [False, True])
-def test_over_repeated_noise_chi_square_and_rms_are_what_is_expected(rng, weighted):
-    target, covariances = POSE.apply(SOURCE), NOISE if weighted else None
-    squares, expected, chi = [], [], []
+def test_over_repeated_noise_residuals_and_errors_are_what_is_expected_and_a_wrong_pair_shows(rng, weighted):
+    target, wrong, covariances = POSE.apply(SOURCE), POSE.apply(SOURCE[[1, 0, 2, 3, 4]]), NOISE if weighted else None
+    squares, expected, chi, errors = [], [], [], []
     for _ in range(400):
         source = measured(rng)
         pose = fit_rigid_2d(source, target, covariances=covariances)
@@ -190,9 +135,16 @@ def test_over_repeated_noise_chi_square_and_rms_are_what_is_expected(rng, weight
         squares.append(((pose.apply(source) - target) ** 2).sum(axis=1).mean())
         expected.append(found.expected_rms**2)
         chi.append(found.chi_square)
+        assert not found.contradict_the_pose
+        assert residual_statistics(fit_rigid_2d(source, wrong), source, wrong, NOISE).contradict_the_pose
+        error = np.array(pose) - POSE
+        claim = fit_covariance(pose, source, target, covariances=covariances, noise=NOISE)
+        errors.append(error @ np.linalg.solve(claim, error))
     assert np.mean(squares) == pytest.approx(np.mean(expected), rel=0.1)
     assert np.mean(chi) == pytest.approx(7, rel=0.08)
     assert np.mean(np.array(chi) > chi2.isf(0.1, 7)) == pytest.approx(0.1, abs=0.05)
+    # Squared errors in units of the claimed covariance have mean 3, one for each component.
+    assert np.mean(errors) == pytest.approx(3.0, rel=0.2)
 
 
 def test_exact_points_leave_nothing_and_two_pairs_leave_one_number():
@@ -208,17 +160,6 @@ def test_exact_points_leave_nothing_and_two_pairs_leave_one_number():
 
 @pytest.mark.parametrize(("n", "limit"), [(1, 24.4), (7, 54.7), (17, 91.8)])
 def test_the_limit_is_two_and_a_quarter_times_the_quantile_of_a_thousandth(n, limit):
-    assert Residuals(0.1, limit + 0.5, n).contradict_the_pose
-    assert not Residuals(0.1, limit - 0.5, n).contradict_the_pose
-    assert Residuals(0.1, 4.0 * n, n).normalized == pytest.approx(2)
-
-
-def test_right_pairs_pass_and_one_wrong_pair_of_five_does_not(rng):
-    target, wrong = POSE.apply(SOURCE), POSE.apply(SOURCE[[1, 0, 2, 3, 4]])
-    passed = caught = 0
-    for _ in range(100):
-        source = measured(rng)
-        right = residual_statistics(fit_rigid_2d(source, target), source, target, NOISE)
-        passed += not right.contradict_the_pose
-        caught += residual_statistics(fit_rigid_2d(source, wrong), source, wrong, NOISE).contradict_the_pose
-    assert (passed, caught) == (100, 100)
+    above, below = (rigid_fit.Residuals(0.1, chi_square, n) for chi_square in (limit + 0.5, limit - 0.5))
+    assert (above.contradict_the_pose, below.contradict_the_pose) == (True, False)
+    assert below.normalized == pytest.approx(np.sqrt((limit - 0.5) / n))

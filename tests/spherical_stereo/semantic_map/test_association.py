@@ -8,23 +8,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
-from course_lib.spherical_stereo.semantic_map.association import (
-    AssociationError,
-    Observation,
-    PenaltyWeights,
-    associate_greedy,
-    hue_difference,
-    penalty,
-    penalty_table,
-)
+from course_lib.spherical_stereo.semantic_map import association
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+from tests.spherical_stereo.stereo_scene import ROOM
 
-WEIGHTS = PenaltyWeights(p_obj=7.0, p_h=2.0, p_s=3.0, p_d=4.0)
+WEIGHTS = association.PenaltyWeights(p_obj=7.0, p_h=2.0, p_s=3.0, p_d=4.0)
 ORIGIN = np.zeros(2)
 
 
 def seen(label="sofa", x=3.0, y=4.0, hue=20.0, saturation=50.0):
-    return Observation(label, x, y, hue, saturation)
+    return association.Observation(label, x, y, hue, saturation)
 
 
 def mapped(label="sofa", x=0.0, y=4.0, hue=20.0, saturation=50.0):
@@ -32,7 +25,7 @@ def mapped(label="sofa", x=0.0, y=4.0, hue=20.0, saturation=50.0):
 
 
 def cost(observation, landmark, **options):
-    return penalty(observation, landmark, ORIGIN, ORIGIN, WEIGHTS, **options)
+    return association.penalty(observation, landmark, ORIGIN, ORIGIN, WEIGHTS, **options)
 
 
 def test_every_term_of_equation_1_by_hand():
@@ -42,84 +35,61 @@ def test_every_term_of_equation_1_by_hand():
     assert terms.saturation == pytest.approx(3.0 * 30 / 100)
     assert terms.distance == pytest.approx(4.0 * (5 - 4) / 4)
     assert terms.total == pytest.approx(sum(terms[:4]))
-
-
-def test_two_names_of_one_class_cost_nothing():
-    assert cost(seen("couch"), mapped("sofa")).object == 0.0
-    several = Observation(np.array([["couch"], ["TV"]]), 3.0, 4.0, 20.0, 50.0)
-    landmarks = Observation(np.array([["sofa", "television"]]), 0.0, 4.0, 20.0, 50.0)
+    # Two names of one class cost nothing, and grey on either side has no hue term.
+    several = association.Observation(np.array([["couch"], ["TV"]]), 3.0, 4.0, 20.0, 50.0)
+    landmarks = association.Observation(np.array([["sofa", "television"]]), 0.0, 4.0, 20.0, 50.0)
     assert cost(several, landmarks).object.tolist() == [[0.0, 7.0], [7.0, 0.0]]
+    for hue_seen, hue_mapped in ((math.nan, 200), (200, math.nan), (math.nan, math.nan)):
+        terms = cost(seen(hue=hue_seen), mapped(hue=hue_mapped))
+        assert terms.hue == 0.0
+        assert math.isfinite(terms.total)
 
 
 @given(st.floats(0, 359.999), st.floats(0, 359.999), st.floats(0, 359.999))
 def test_the_hue_difference_is_symmetric_and_turns_with_the_circle(a, b, turn):
-    apart = hue_difference(a, b)
+    apart = association.hue_difference(a, b)
     assert 0 <= apart <= 180
-    assert hue_difference(350, 10) == pytest.approx(20)
-    assert hue_difference(b, a) == pytest.approx(apart)
-    assert hue_difference((a + turn) % 360, (b + turn) % 360) == pytest.approx(apart, abs=1e-9)
-
-
-@pytest.mark.parametrize(("hue_seen", "hue_mapped"), [(math.nan, 200), (200, math.nan), (math.nan, math.nan)])
-def test_grey_on_either_side_has_no_hue_term(hue_seen, hue_mapped):
-    terms = cost(seen(hue=hue_seen), mapped(hue=hue_mapped))
-    assert terms.hue == 0.0
-    assert math.isfinite(terms.total)
+    assert association.hue_difference(350, 10) == pytest.approx(20)
+    assert association.hue_difference(b, a) == pytest.approx(apart)
+    assert association.hue_difference((a + turn) % 360, (b + turn) % 360) == pytest.approx(apart, abs=1e-9)
 
 
 def test_the_distance_term_as_printed_rewards_objects_that_look_too_near():
-    right, too_near = seen(x=0.0, y=4.0), seen(x=0.0, y=1.0)
-    printed = [cost(one, mapped(), distance_term="as_printed").total for one in (right, too_near)]
-    absolute = [cost(one, mapped()).total for one in (right, too_near)]
-    assert printed[1] < printed[0] == 0.0
-    assert absolute[1] > absolute[0] == 0.0
-
-
-def test_an_object_at_the_centroid_of_the_map_costs_a_finite_amount():
+    too_near = seen(x=0.0, y=1.0)
+    assert cost(too_near, mapped(), distance_term="as_printed").total == pytest.approx(4.0 * (1 - 4) / 4)
+    assert cost(too_near, mapped()).total == pytest.approx(4.0 * 3 / 4)
+    # An object at the centroid of the map costs a finite amount.
     assert cost(seen(x=0.3, y=0.4), mapped(x=0.0, y=0.0)).distance == pytest.approx(4.0 * 0.5 / 0.1)
 
 
-ROOM = SemanticMap(
-    [
-        Landmark("sofa", 0.5, 0.5, 210, 55),
-        Landmark("sofa", 5.5, 1.0, 212, 54),
-        Landmark("chair", 3.0, 4.0, 30, 60),
-        Landmark("television", 1.0, 5.5, math.nan, 3),
-        Landmark("potted plant", 5.0, 5.5, 110, 65),
-    ]
-)
-
-
 def observed_from(semantic_map, chosen, x=2.0, y=3.0, theta=0.6):
-    """Exact observations of the chosen landmarks from a pose."""
     body = (semantic_map.positions[list(chosen)] - [x, y]) @ rotation_2d(theta)
     return [
-        Observation(semantic_map.labels[j], *place, semantic_map.hues[j], semantic_map.saturations[j])
+        association.Observation(semantic_map.labels[j], *place, semantic_map.hues[j], semantic_map.saturations[j])
         for j, place in zip(chosen, body, strict=True)
     ]
 
 
 def test_the_table_holds_the_penalty_of_every_combination():
     observations = observed_from(ROOM, [3, 0, 2])
-    table = penalty_table(observations, ROOM, WEIGHTS)
+    table = association.penalty_table(observations, ROOM, WEIGHTS)
     centroid = np.mean([one[1:3] for one in observations], axis=0)
     for i, one in enumerate(observations):
         for j, landmark in enumerate(ROOM.landmarks):
-            alone = penalty(one, landmark, centroid, ROOM.centroid, WEIGHTS)
+            alone = association.penalty(one, landmark, centroid, ROOM.centroid, WEIGHTS)
             assert [float(term[i, j]) for term in table] == pytest.approx(list(alone))
 
 
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(-7, 7), st.permutations(range(5)))
 @settings(max_examples=50)
 def test_a_fully_seen_room_is_matched_from_every_pose(x, y, theta, order):
-    found = associate_greedy(observed_from(ROOM, order, x, y, theta), ROOM)
+    found = association.associate_greedy(observed_from(ROOM, order, x, y, theta), ROOM)
     assert sorted(found.pairs) == [(i, j) for i, j in enumerate(order)]
-    assert found.unassigned == ()
-    assert all(found.same_class)
+    assert (found.unassigned, found.usable_pairs) == ((), found.pairs)
 
 
 def test_pairs_come_in_the_order_of_choice_cheapest_open_combination_first():
-    found = associate_greedy(observed_from(ROOM, [4, 2, 0], x=1.0), ROOM)
+    found = association.associate_greedy(observed_from(ROOM, [4, 2, 0], x=1.0), ROOM)
     free_rows, free_columns = {0, 1, 2}, set(range(5))
     for (i, j), cost_of_pair in zip(found.pairs, found.penalties, strict=True):
         cheapest = min(found.table.total[a, b] for a in free_rows for b in free_columns)
@@ -132,48 +102,36 @@ def test_pairs_come_in_the_order_of_choice_cheapest_open_combination_first():
 def test_rounding_does_not_choose_between_objects_that_are_alike(theta):
     corners = [(1, 1), (1, -1), (-1, -1), (-1, 1)]
     semantic_map = SemanticMap([Landmark("chair", *corner, 10, 50) for corner in corners])
-    found = associate_greedy(observed_from(semantic_map, [2, 0, 3, 1], theta=theta), semantic_map)
+    found = association.associate_greedy(observed_from(semantic_map, [2, 0, 3, 1], theta=theta), semantic_map)
     assert found.pairs == ((0, 0), (1, 1), (2, 2), (3, 3))
 
 
 def test_a_pair_of_unlike_classes_is_made_at_the_end_but_never_usable():
     semantic_map = SemanticMap([Landmark("sofa", 0, 0, 10, 50), Landmark("chair", 2, 0, 10, 50)])
-    found = associate_greedy([seen("sofa"), seen("sofa", x=1.0)], semantic_map)
+    found = association.associate_greedy([seen("sofa"), seen("sofa", x=1.0)], semantic_map)
     assert sorted(found.same_class) == [False, True]
-    assert len(found.pairs) == 2
     assert found.usable_pairs == (found.pairs[0],)
+    nothing = association.associate_greedy([], ROOM)
+    assert (nothing.pairs, nothing.unassigned, nothing.table.total.shape) == ((), (), (0, 5))
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"x": math.inf},
-        {"y": math.nan},
-        {"hue": 360.0},
-        {"hue": -1.0},
-        {"saturation": 101.0},
-        {"saturation": -1.0},
-        {"hue": np.array([10.0, 400.0])},
-    ],
-)
-def test_values_that_cannot_be_are_refused_on_either_side(change):
-    bad = seen()._replace(**change)
-    with pytest.raises(AssociationError, match="observation: x and y"):
-        cost(bad, mapped())
-    with pytest.raises(AssociationError, match="landmark: x and y"):
-        cost(seen(), bad)
+BAD = {"x": [math.inf], "y": [math.nan], "hue": [360.0, -1.0, np.array([10.0, 400.0])], "saturation": [101.0, -1.0]}
 
 
-def test_options_that_do_not_exist_are_named():
-    with pytest.raises(AssociationError, match=r"distance_term must be one of.*'squared'"):
-        associate_greedy([seen()], ROOM, distance_term="squared")
-    with pytest.raises(AssociationError, match="weights must be finite and not negative"):
-        associate_greedy([seen()], ROOM, PenaltyWeights(p_h=-1))
-    with pytest.raises(AssociationError, match="map centroid"):
-        penalty(seen(), mapped(), [0, 0], [0, 0, 0])
+@pytest.mark.parametrize(("field", "values"), BAD.items())
+def test_values_that_cannot_be_are_refused_on_either_side(field, values):
+    for bad in (seen()._replace(**{field: value}) for value in values):
+        with pytest.raises(association.AssociationError, match="observation: x and y"):
+            cost(bad, mapped())
+        with pytest.raises(association.AssociationError, match="landmark: x and y"):
+            cost(seen(), bad)
 
 
-def test_no_observations_give_no_pairs():
-    found = associate_greedy([], ROOM)
-    assert found.pairs == found.unassigned == ()
-    assert found.table.total.shape == (0, 5)
+def test_each_comparison_weighs_one_and_options_that_do_not_exist_are_named():
+    assert association.PenaltyWeights() == (100, 1, 1, 1)
+    with pytest.raises(association.AssociationError, match=r"distance_term must be one of.*'squared'"):
+        association.associate_greedy([seen()], ROOM, distance_term="squared")
+    with pytest.raises(association.AssociationError, match="weights must be finite and not negative"):
+        association.associate_greedy([seen()], ROOM, association.PenaltyWeights(p_h=-1))
+    with pytest.raises(association.AssociationError, match="map centroid"):
+        association.penalty(seen(), mapped(), [0, 0], [0, 0, 0])

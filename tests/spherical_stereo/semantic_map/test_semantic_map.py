@@ -3,7 +3,6 @@
 import json
 import math
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -13,33 +12,21 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, Sema
 WALLS = [[0.0, 0.0], [6.0, 0.0], [6.0, 5.5], [0.0, 5.5]]
 
 
-def a_map():
-    return SemanticMap([Landmark("sofa", 1.0, 0.5, 210.0, 55.0)], walls=WALLS, name="部屋")
-
-
-def same(first, second):
-    return (
-        first.labels == second.labels
-        and np.array_equal(first.positions, second.positions)
-        and np.array_equal(first.hues, second.hues, equal_nan=True)
-        and np.array_equal(first.saturations, second.saturations)
-    )
-
-
 def test_json_keeps_name_and_walls_and_nothing_changes_them(tmp_path):
+    semantic_map = SemanticMap([Landmark("sofa", 1.0, 0.5, 210.0, 55.0)], walls=WALLS, name="部屋")
     with pytest.raises(ValueError, match="read-only"):
-        a_map().positions[0, 0] = 9.0
-    a_map().save(tmp_path / "map.json")
+        semantic_map.positions[0, 0] = 9.0
+    semantic_map.save(tmp_path / "map.json")
     read = SemanticMap.load(tmp_path / "map.json")
     assert (read.name, read.walls.tolist()) == ("部屋", WALLS)
     with pytest.raises(SemanticMapError, match=r"\.json or \.csv"):
-        a_map().save(tmp_path / "map.txt")
+        semantic_map.save(tmp_path / "map.txt")
 
 
 def test_csv_as_a_spreadsheet_saves_it_is_read(tmp_path):
     text = '\ufeff"# semantic map, version 1",,,,\r\nlabel,x,y,hue,saturation\r\nsofa,1,0.5,210,55\r\n'
     (tmp_path / "map.csv").write_bytes(text.encode())
-    assert same(SemanticMap.load(tmp_path / "map.csv"), SemanticMap([Landmark("sofa", 1, 0.5, 210, 55)]))
+    assert repr(SemanticMap.load(tmp_path / "map.csv").landmarks) == repr((Landmark("sofa", 1, 0.5, 210, 55),))
 
 
 values = st.floats(-1e6, 1e6)
@@ -52,7 +39,7 @@ def test_both_formats_keep_every_bit(tmp_path_factory, rows):
     semantic_map = SemanticMap([Landmark(f"class {i}", *row) for i, row in enumerate(rows)])
     for name in ("map.json", "map.csv"):
         semantic_map.save(folder / name)
-        assert same(SemanticMap.load(folder / name), semantic_map)
+        assert repr(SemanticMap.load(folder / name).landmarks) == repr(semantic_map.landmarks)  # of floats, every bit
 
 
 @pytest.mark.parametrize("ending", [".csv", ".json"])
@@ -95,7 +82,6 @@ def test_a_json_file_that_is_no_map_is_named(tmp_path, change, says):
     [
         ({"x": "1.5"}, "x of this sofa must be a number; got '1.5'"),
         ({"y": True}, "y of this sofa must be a number; got True"),
-        ({"saturation": None}, "saturation of this sofa must be a number; got None"),
         ({"saturation": 100.5}, r".*saturation in \[0, 100\]"),
         ({"saturation": -0.5}, r".*saturation in \[0, 100\]"),
         ({"hue": 360}, r".*hue in \[0, 360\)"),
@@ -113,7 +99,6 @@ HEAD = "# semantic map, version 1\nlabel,x,y,hue,saturation\n"
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        (HEAD, "the map is empty"),
         ("label,x,y,hue,saturation\nsofa,1,2,3,4\n", "first line must be '# semantic map, version 1'"),
         (HEAD.replace("version 1", "version 7") + "sofa,1,2,3,4\n", "version must be 1.*7"),
         ("# semantic map, version 1\nlabel,x,y\nsofa,1,2\n", "second line must name the columns"),
