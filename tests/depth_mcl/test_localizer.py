@@ -172,14 +172,11 @@ def test_the_score_falls_when_the_filter_is_lost_though_the_best_weight_does_not
     assert estimates[1].ess < 20
 
 
-def test_bad_settings_are_named_before_the_first_frame(renderer):
+def test_what_cannot_be_a_setting_a_start_or_a_frame_is_named(renderer):
     bad = {"n_particles": 0, "sigma": [0.1] * 5, "alpha": 0.0, "beta": -1.0, "motion": "tangent", "seed": -1}
     for name, value in (*bad.items(), ("resampling", "lottery")):
         with pytest.raises(ValueError, match=rf"{name} must|sigma needs|scheme must"):
             MonteCarloLocalizer(renderer, **{name: value})
-
-
-def test_what_cannot_be_a_start_or_a_frame_is_named(renderer):
     localizer = MonteCarloLocalizer(renderer, 10, SIGMA)
     with pytest.raises(RuntimeError, match="initialize"):
         localizer.step(np.ones(SMALL.shape))
@@ -199,9 +196,6 @@ def test_the_nearest_path_error_hides_error_along_the_path_and_the_timed_error_d
     assert nearest.median == pytest.approx(0.05, abs=1e-6)
     assert timed.median == pytest.approx(np.hypot(0.4, 0.05))
     assert (nearest.within_3sigma, timed.within_3sigma) == (1.0, 0.0)
-
-
-def test_sigma_is_the_root_mean_square_about_zero():
     errors = nearest_path_error(np.array([[0, 0.3], [0, -0.4]]), np.zeros((1, 2)))
     assert errors.sigma == pytest.approx(np.sqrt((0.09 + 0.16) / 2))
     assert errors.within_3sigma == 0.5

@@ -42,7 +42,7 @@ def test_what_is_written_is_read(folder):
     assert np.array_equal(sequence.thinned(2, 1).camera_to_world, sequence.camera_to_world[1::2])
 
 
-def test_depth_survives_to_half_a_millimetre_and_nan_stays_nan(tmp_path, rng):
+def test_depth_survives_to_half_a_millimetre_and_nan_stays_nan_and_trajectories_survive(tmp_path, rng):
     depth = rng.uniform(0.01, 60, (20, 30))
     depth[3, 4] = np.nan
     depth[5, 6] = 70.0  # more than 16 bits of millimetres hold
@@ -51,9 +51,6 @@ def test_depth_survives_to_half_a_millimetre_and_nan_stays_nan(tmp_path, rng):
     assert np.isnan(again[[3, 5], [4, 6]]).all()
     assert np.isnan(again).sum() == 2
     assert np.nanmax(np.abs(again - depth)[np.isfinite(again)]) <= 0.000505  # and the last digit of float32
-
-
-def test_tum_trajectories_survive(tmp_path, rng):
     poses, times = optical_pose(random_states(9, rng)), np.sort(rng.random(9))
     write_tum(tmp_path / "t.txt", times, poses)
     read_times, read_poses = read_tum(tmp_path / "t.txt")
@@ -113,7 +110,12 @@ def test_a_damaged_recording_is_named(folder, damage, said):
         list(read_sequence(folder))
 
 
-def test_a_recording_without_truth_is_read_and_says_so_where_the_truth_is_asked_for(folder):
+def test_depth_is_in_the_units_told_and_a_recording_without_truth_is_read_and_says_so_where_truth_is_asked_for(folder):
+    millimetres, fifths = read_sequence(folder), read_sequence(folder, units_per_metre=5000)
+    assert np.allclose(fifths.depth(1), millimetres.depth(1) / 5, equal_nan=True)
+    for bad in (0, -1000, np.nan, np.inf):
+        with pytest.raises(ValueError, match="units"):
+            read_sequence(folder, units_per_metre=bad)
     (folder / "poses.txt").unlink()
     sequence = read_sequence(folder)
     assert not sequence.has_poses
@@ -122,14 +124,6 @@ def test_a_recording_without_truth_is_read_and_says_so_where_the_truth_is_asked_
     assert sequence.times is None  # the truth file's; it does not stand alone
     with pytest.raises(SequenceError, match=r"no poses\.txt.*--start"):
         _ = sequence.camera_to_world
-
-
-def test_depth_counts_in_the_units_that_are_told(folder):
-    millimetres, fifths = read_sequence(folder), read_sequence(folder, units_per_metre=5000)
-    assert np.allclose(fifths.depth(1), millimetres.depth(1) / 5, equal_nan=True)
-    for bad in (0, -1000, np.nan, np.inf):
-        with pytest.raises(ValueError, match="units"):
-            read_sequence(folder, units_per_metre=bad)
 
 
 @pytest.fixture
@@ -171,7 +165,9 @@ def test_a_damaged_tum_folder_is_named(tum_folder, damage, said):
         read_sequence(tum_folder[0])
 
 
-def test_a_pose_is_read_from_a_matrix_from_poses_and_from_a_trajectory(folder, tmp_path):
+def test_a_pose_is_read_from_a_matrix_from_poses_and_from_a_trajectory_and_with_few_digits_is_a_rotation_again(
+    folder, tmp_path
+):
     first = read_sequence(folder).camera_to_world[0]
     np.savetxt(tmp_path / "matrix.txt", first, fmt="%.6f")
     for path in (tmp_path / "matrix.txt", folder / "poses.txt", folder / "groundtruth.txt"):
@@ -180,9 +176,6 @@ def test_a_pose_is_read_from_a_matrix_from_poses_and_from_a_trajectory(folder, t
         np.savetxt(tmp_path / "matrix.txt", matrix)
         with pytest.raises(SequenceError, match="must hold a pose"):
             read_pose(tmp_path / "matrix.txt")
-
-
-def test_poses_written_with_few_digits_are_rotations_again(folder):
     rows = np.loadtxt(folder / "poses.txt")
     np.savetxt(folder / "poses.txt", rows, fmt=["%d"] + ["%.4f"] * 16)
     (folder / "groundtruth.txt").unlink()

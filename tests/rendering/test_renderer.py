@@ -126,9 +126,13 @@ def test_a_surface_before_near_does_not_hide_the_one_on_far(backend):
         assert np.abs(renderer.render(STATE) - 4.0).max() < 1e-3
 
 
-def test_where_nothing_is_hit_depth_is_infinite(backend):
+def test_where_nothing_is_hit_depth_is_infinite_and_a_closed_renderer_says_so(backend):
     with DepthRenderer(room(), SMALL, backend) as renderer:
         assert np.isinf(renderer.render([[9.0, 0, 0, 0, 0, 0], [1e30, 0, 0, 0, 0, 0]])).all()
+    renderer.close()
+    for use in (lambda: renderer.render(np.zeros(6)), lambda: renderer.render_points(np.zeros((1, 3)))):
+        with pytest.raises(RendererClosedError, match="closed"):
+            use()
 
 
 @pytest.mark.parametrize("distance", [1e4, 1.9e7], ids=["10 km", "19,000 km"])
@@ -228,15 +232,6 @@ def test_the_cameras_points_through_the_z_buffer_agree_with_numpy(backend, camer
     both = np.isfinite(drawn) & np.isfinite(reference)
     assert both.sum() > 300
     assert np.mean(np.abs(drawn - reference)[both] < HALF_MILLIMETRE) > 0.995
-
-
-def test_a_closed_renderer_says_so(backend):
-    renderer = DepthRenderer(room(), SMALL, backend)
-    renderer.close()
-    renderer.close()
-    for use in (lambda: renderer.render(np.zeros(6)), lambda: renderer.render_points(np.zeros((1, 3)))):
-        with pytest.raises(RendererClosedError, match="closed"):
-            use()
 
 
 def test_what_is_no_state_no_pose_no_backend_or_too_large_is_named():
