@@ -108,7 +108,7 @@ def test_weights_are_the_papers_never_nan_and_what_is_no_number_is_refused():
             normalize_likelihood(np.asarray(values))
 
 
-def test_fallons_half_normal_is_a_density_on_zero_to_three_metres_and_the_score_a_mean_over_what_it_compares():
+def test_fallons_half_normal_and_truncated_normal_are_densities_and_the_score_a_mean_over_what_it_compares():
     def density(x):
         log_value = depth_log_likelihood(np.full((1, 1), 4.0), np.full((1, 1, 1), 4.0 + x))[0]
         return np.exp(log_value)
@@ -123,9 +123,6 @@ def test_fallons_half_normal_is_a_density_on_zero_to_three_metres_and_the_score_
         for z in ([2.0], [2.0, np.nan], [2.0, 0.0, 0.3])
     ]
     assert scores == pytest.approx([scores[0]] * 3)
-
-
-def test_fallons_disparity_runs_from_near_to_far_and_its_form_is_a_truncated_normal_density_within_its_planes():
     simulated, s = 1.4, 0.025
     d = float(normalized_disparity(np.array(simulated)))
     for measured in (1.2, 1.4, 1.5, 2.5):
