@@ -88,7 +88,7 @@ def make_corridor_data(
 def _make_map(folder: Path, surveyed: WorldMesh, models: CorridorModels, generators: list, progress: Progress) -> dict:
     """Survey the world as it is given, write map.ply and planar_map.ply, and return what was measured on them."""
     rng, planar_rng, measure_rng = generators
-    caster = WorldCaster.of(surveyed)
+    caster = WorldCaster(surveyed.vertices, surveyed.faces, surveyed.reflectivity)
     scans = survey(caster, models.scanner, rng, progress(models.stations, "surveying from the stations"))
     registered = [scan.as_registered() for scan in scans]
     vertices, faces = fuse(registered, models.fusion, lambda slabs: progress(slabs, "fusing the scans"))

@@ -72,7 +72,7 @@ def record(
     A user is told nominal intrinsics, the poses as believed, and the line on the floor of the whole run.
     """
     states, times = run
-    caster, depths, counts = WorldCaster.of(world), [], Counter()
+    caster, depths, counts = WorldCaster(world.vertices, world.faces, world.reflectivity), [], Counter()
     for state in progress(states[:frames]):
         frame = camera.capture(caster, state, rng)
         depths.append(frame.depth)

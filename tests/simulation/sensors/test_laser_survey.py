@@ -24,7 +24,8 @@ def room(with_pillar=False, material=WALL_PAINT):
     b.box(Placement(), (0, 0, 0), (6, 4, 2.6), material)
     if with_pillar:
         b.box(Placement(), (3.8, 1.8, 0), (4.2, 2.2, 2.6), material)
-    return WorldCaster.of(b.build())
+    built = b.build()
+    return WorldCaster(built.vertices, built.faces, built.reflectivity)
 
 
 def test_points_lie_on_the_walls_dark_and_grazing_surfaces_drop_out_and_mixed_pixels_float_before_the_wall():
