@@ -44,7 +44,6 @@ def test_times_that_are_not_later_are_out_of_order_until_the_clock_is_believed_a
 
 
 def image(rng, noise=0.01):
-    """A corner of a room, a tenth of its pixels without a return."""
     depth = room_depth(SMALL, np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.3]))[0] + noise * rng.standard_normal(SMALL.shape)
     depth[rng.random(SMALL.shape) < 0.1] = np.nan
     return depth.astype(np.float32)

@@ -72,7 +72,6 @@ class Wall:
 
 
 def score_of_y(measured, simulated):
-    """A Gaussian in y alone, so that the whole image gives y with 0.3 m."""
     return 1 - (simulated[:, 0, 1] - measured[0, 1]) ** 2 / (2 * 0.3**2) / WORTH
 
 

@@ -11,7 +11,6 @@ from course_lib.rendering import simplification
 
 @pytest.fixture(autouse=True)
 def a_cache_of_its_own(tmp_path, monkeypatch):
-    """Nothing is kept from earlier runs, nor in the user's own cache."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     simplification.simplified.cache_clear()
     yield tmp_path / "cache"

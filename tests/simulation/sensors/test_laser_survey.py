@@ -19,7 +19,6 @@ POSE = np.array([[1.0, 0, 0, 3.0], [0, 1, 0, 2.0], [0, 0, 1, 1.6], [0, 0, 0, 1]]
 
 
 def room(with_pillar=False, material=WALL_PAINT):
-    """A room of 6 x 4 x 2.6 m from the origin; with a pillar of 0.4 m in its middle."""
     b = MeshBuilder()
     b.box(Placement(), (0, 0, 0), (6, 4, 2.6), material)
     if with_pillar:
