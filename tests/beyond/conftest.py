@@ -6,6 +6,5 @@ from tests.rendering.shapes import SMALL, furnished_room
 
 @pytest.fixture(scope="session")
 def renderer():
-    """A renderer of a small furnished room."""
     with DepthRenderer(furnished_room(), SMALL) as opened:
         yield opened

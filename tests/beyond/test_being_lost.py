@@ -1,5 +1,7 @@
 """Whether a pose is known, from its image, its covariance and the frames before: causally, and never too sure."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -50,10 +52,13 @@ def test_the_papers_filter_is_judged_frame_by_frame_without_looking_ahead(frames
         assert "".join(status[0].upper() for status in judge_track(frames[:count])) == expected[:count]
 
 
-def test_a_refined_pose_is_judged_by_its_own_image():
+def test_a_refined_pose_is_judged_by_its_own_image_and_is_doubtful_where_it_agrees_less_than_usual():
     assert {judge_refined(frame) for frame in (agreeing(0.9, 0.02), agreeing(0.6, 0.01))} == {"tracked"}
     assert {judge_refined(frame) for frame in (agreeing(0.72, 0.14), agreeing(0.35))} == {"lost"}, "through walls"
     assert {judge_refined(frame) for frame in (agreeing(0.0, 1.0, pixels=5), BLIND)} == {"doubtful"}
+    assert told(FITS, agreeing(0.99 * being_lost.FALLEN * 0.95)) == ["tracked", "doubtful"]
+    assert told(FITS, agreeing(1.01 * being_lost.FALLEN * 0.95)) == ["tracked", "tracked"]
+    assert told(FITS, *[POOR] * 40) == ["tracked"] + ["doubtful"] * 40, "what is usual is learned from good frames only"
 
 
 SURE = np.diag([1e-4] * 6)
@@ -68,29 +73,16 @@ def told(*frames, covariance=SURE, rivals=()):
     return statuses
 
 
-def test_a_frame_that_agrees_less_than_usual_is_doubtful():
-    assert told(FITS, agreeing(0.99 * being_lost.FALLEN * 0.95)) == ["tracked", "doubtful"]
-    assert told(FITS, agreeing(1.01 * being_lost.FALLEN * 0.95)) == ["tracked", "tracked"]
-    assert told(FITS, *[POOR] * 40) == ["tracked"] + ["doubtful"] * 40, "what is usual is learned from good frames only"
-
-
-@pytest.mark.parametrize("axis", range(6))
-def test_a_good_image_of_a_pose_that_is_not_known_is_lost(axis):
-    for share, status in ((1.01, "lost"), (0.99, "tracked")):
-        covariance = SURE.copy()
-        covariance[axis, axis] = (share * being_lost.KNOWN[axis // 3]) ** 2
-        assert told(FITS, covariance=covariance) == [status]
-
-
-def test_after_lost_frames_as_many_good_ones_are_wanted_but_no_more_than_three():
+def test_a_good_image_of_an_unknown_pose_is_lost_and_after_lost_frames_as_many_good_ones_are_wanted_but_three():
     assert told(FITS, BEHIND_THE_MAP, FITS) == ["tracked", "lost", "tracked"]
     assert told(FITS, *[BEHIND_THE_MAP] * 2, FITS, FITS)[-2:] == ["lost", "tracked"]
     long = told(FITS, *[BEHIND_THE_MAP] * 9, *[FITS] * being_lost.CONFIRMED)
     assert long[-being_lost.CONFIRMED :] == ["lost"] * (being_lost.CONFIRMED - 1) + ["tracked"]
     assert told(FITS, BEHIND_THE_MAP, POOR) == ["tracked", "lost", "lost"], "a doubtful frame is no good one"
-
-
-def test_a_good_frame_with_a_rival_confirms_nothing():
     after = told(FITS, BEHIND_THE_MAP, FITS, FITS, FITS, rivals=(2, 3))
     assert after == ["tracked", "lost", "lost", "lost", "tracked"]
     assert told(FITS, FITS, rivals=(1,)) == ["tracked", "tracked"], "one that was never lost need not be confirmed"
+    for axis, (share, status) in itertools.product(range(6), ((1.01, "lost"), (0.99, "tracked"))):
+        covariance = SURE.copy()
+        covariance[axis, axis] = (share * being_lost.KNOWN[axis // 3]) ** 2
+        assert told(FITS, covariance=covariance) == [status]

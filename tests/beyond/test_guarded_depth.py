@@ -15,7 +15,6 @@ PERIOD = 0.1
 
 @pytest.fixture(scope="module")
 def walk(renderer):
-    """States `(n, 6)` and their noisy images."""
     true = START + np.arange(1, 31)[:, None] * [0.04, 0, 0, 0, 0, 0.02]
     noise = 0.01 * np.random.default_rng(5).standard_normal((30, *SMALL.shape))
     return true, (renderer.render(true) + noise).astype(np.float32)
@@ -29,7 +28,6 @@ def filters(renderer):
 
 
 def run(renderer, kind, frames):
-    """What a guarded filter says of (image, time)s."""
     guarded = GuardedLocalizer(filters(renderer)[kind], PERIOD)
     guarded.initialize(START)
     return [guarded.step(image, time) for image, time in frames]
@@ -79,7 +77,7 @@ def test_every_trouble_is_named_and_it_comes_back(renderer, walk, rng, kind, tro
     assert errors[[one.outcome == "tracked" for one in seen]].max() < 0.3
 
 
-def test_a_frame_at_fault_moves_the_particles_as_no_measurement_does_and_so_does_each_that_never_came(renderer, walk):
+def test_a_frame_at_fault_or_missed_moves_the_particles_as_no_measurement_does_one_out_of_order_not(renderer, walk):
     images = walk[1]
     plain = filters(renderer)["paper"]
     plain.initialize(START)
@@ -94,10 +92,6 @@ def test_a_frame_at_fault_moves_the_particles_as_no_measurement_does_and_so_does
     assert [len(one.missed) for one in before] == [0] * 5
     for missed, other in zip(after_gap.missed, expected, strict=True):
         assert np.array_equal(missed.particles, other.particles)
-
-
-def test_a_frame_out_of_order_changes_nothing(renderer, walk):
-    images = walk[1]
     seen = run(renderer, "paper", [*timed(images[:5]), (images[5], 0.2), (images[6], 0.5)])
     assert seen[5].outcome == "out of order"
     assert seen[5].estimate is seen[4].estimate

@@ -25,14 +25,11 @@ def near(pose, other):
     return np.hypot(*(np.array(pose)[:2] - other[:2])) < 0.1 and abs(wrap_angle(pose[2] - other[2])) < 0.05
 
 
-def test_a_carried_pose_goes_where_the_rig_went():
+def test_a_carried_pose_goes_where_the_rig_went_and_fusing_two_meets_in_the_middle_across_the_cut_of_the_circle():
     start = CarriedPose(np.array([1.0, 2.0, np.pi / 2]), np.zeros((3, 3)), 0.0, None)
     moved = carried_on(start, Motion(0.5, 0.1, 3.0, np.diag([0.1, 0.2, 0.3]) ** 2))
     np.testing.assert_allclose(moved.mean, [0.9, 2.5, np.pi / 2 + 3.0 - 2 * np.pi])
     np.testing.assert_allclose(np.diag(moved.covariance), [0.2**2, 0.1**2, 0.3**2])  # forward is north
-
-
-def test_fusing_two_equally_sure_poses_meets_in_the_middle_also_across_the_cut_of_the_circle():
     spread = np.diag([0.1, 0.1, 0.1]) ** 2
     carried = CarriedPose(np.array([0.0, 0.0, 3.1]), spread, 0.0, None)
     view = PoseHypothesis(Pose2D(0.2, 0.0, -3.1), spread, (), 4.0, 0.0, ())
@@ -44,16 +41,7 @@ def test_fusing_two_equally_sure_poses_meets_in_the_middle_also_across_the_cut_o
     assert further.log_weight < found.log_weight - 10
 
 
-def test_a_symmetric_room_stays_two_rooms_however_often_it_is_looked_at():
-    tracker = SemanticTracker(SYMMETRIC)
-    for start, end in zip([None, *WALK], WALK, strict=False):
-        track = tracker.step(observed(SYMMETRIC, end), None if start is None else motion(start, end))
-    assert (track.status, track.reason, track.pose) == ("unable", AMBIGUOUS, None)
-    assert [share for _, share in track.alternatives[:2]] == pytest.approx([0.5, 0.5], abs=0.05)
-    assert any(near(pose, WALK[-1]) for pose, _ in track.alternatives[:2])
-
-
-def test_odometry_resolves_what_the_last_view_alone_cannot():
+def test_odometry_resolves_what_the_last_view_alone_or_two_objects_cannot():
     """The plant is seen in the first view only: what it told is carried to the last."""
     tracker, alone = SemanticTracker(PLANTED), SemanticTracker(PLANTED)
     tracker.step(observed(PLANTED, WALK[0]))
@@ -62,27 +50,27 @@ def test_odometry_resolves_what_the_last_view_alone_cannot():
     unsure = alone.step(observed(PLANTED, WALK[2], which=range(5)))
     assert near(track.pose, WALK[2])
     assert unsure.confidence < 0.75 < track.confidence
-
-
-def test_a_last_view_of_two_objects_is_enough_where_the_place_is_known():
     tracker, two = SemanticTracker(PLANTED), observed(PLANTED, WALK[1], which=(3, 5))
     tracker.step(observed(PLANTED, WALK[0]))
     assert near(tracker.step(two, motion(WALK[0], WALK[1])).pose, WALK[1])
     assert SemanticTracker(PLANTED).step(two).reason == TOO_FEW_INLIERS
 
 
-def test_a_rig_that_is_carried_away_is_found_again():
+def test_a_rig_carried_away_is_found_again_nothing_makes_it_no_surer_and_a_symmetric_room_stays_two_rooms():
     tracker, elsewhere = SemanticTracker(PLANTED), np.array([0.9, 1.6, -2.0])  # no alternative of the first view's
     tracker.step(observed(PLANTED, POSE))
     for _ in range(2):
         track = tracker.step(observed(PLANTED, elsewhere), Motion(0.0, 0.0, 0.0, SURE))
     assert near(track.pose, elsewhere)
-
-
-def test_a_view_of_nothing_moves_the_belief_and_makes_it_no_surer():
     tracker = SemanticTracker(PLANTED)
     first = tracker.step(observed(PLANTED, WALK[0]))
     second = tracker.step([], motion(WALK[0], WALK[1]))
     assert near(second.pose, WALK[1])
     assert np.trace(second.covariance) > np.trace(first.covariance)
     assert SemanticTracker(PLANTED).step([]).reason == NOTHING_AGREES
+    tracker = SemanticTracker(SYMMETRIC)
+    for start, end in zip([None, *WALK], WALK, strict=False):
+        track = tracker.step(observed(SYMMETRIC, end), None if start is None else motion(start, end))
+    assert (track.status, track.reason, track.pose) == ("unable", AMBIGUOUS, None)
+    assert [share for _, share in track.alternatives[:2]] == pytest.approx([0.5, 0.5], abs=0.05)
+    assert any(near(pose, WALK[-1]) for pose, _ in track.alternatives[:2])

@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 from course_lib.lessons.project_2.rooms import SEEDS
-from course_lib.simulation.corridor.seeded_recording import corridor_parameters
 from course_lib.simulation.data_folder import checksums, parameter_tables
 from course_lib.simulation.room import data as room
 from course_lib.simulation.room import finale_data as finale
@@ -35,7 +34,7 @@ def test_sizes_stay_small(name):
 @pytest.mark.parametrize(
     ("name", "parameters"),
     [
-        ("corridor", corridor_parameters(corridor.CorridorModels())),
+        ("corridor", corridor.corridor_parameters(corridor.CorridorModels())),
         ("room", parameter_tables(room.RoomModels(), "room")),
         ("finale", finale.finale_parameters(finale.FinaleModels())),
     ],

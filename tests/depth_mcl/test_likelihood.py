@@ -31,11 +31,15 @@ def eq_8(request):
     return request.param
 
 
-def test_the_sum_is_the_papers_sum(eq_8, rng):
+def test_the_sum_is_the_papers_and_a_miss_adds_the_limit_of_its_term_and_stays_in_the_count(eq_8, rng):
     z, simulated = rng.uniform(1, 5, (6, 7)), rng.uniform(1, 5, (9, 6, 7))
     difference = np.abs(z - simulated)
     assert eq_8(z, simulated, 0.1) == pytest.approx((1 - difference / (0.1 + difference)).sum(axis=(1, 2)), rel=1e-5)
     assert eq_8(z, z[None] + 0.1, 0.1) == pytest.approx([21.0], rel=1e-5)  # a difference of alpha counts half
+    z = np.full((1, 3), 2.0)
+    at_miss, far_away = eq_8(z, np.array([[[2.0, 2.0, np.inf]], [[2.0, 2.0, 1e9]]]))
+    assert at_miss == 2.0
+    assert far_away == pytest.approx(at_miss, abs=1e-6)
 
 
 @pytest.mark.parametrize("no_return", [np.nan, 0.0, np.inf, -1.0])
@@ -49,13 +53,6 @@ def test_pixels_that_the_camera_did_not_measure_are_left_out_for_all_particles_a
     assert np.array_equal(eq_8(z, simulated), eq_8(z, elsewhere))
     assert np.isfinite(eq_8(z, simulated)).all()
     assert eq_8(np.full((2, 3), no_return), np.ones((4, 2, 3))).tolist() == [0.0] * 4
-
-
-def test_a_simulated_miss_contributes_the_limit_of_the_term_and_stays_in_the_count(eq_8):
-    z = np.full((1, 3), 2.0)
-    at_miss, far_away = eq_8(z, np.array([[[2.0, 2.0, np.inf]], [[2.0, 2.0, 1e9]]]))
-    assert at_miss == 2.0
-    assert far_away == pytest.approx(at_miss, abs=1e-6)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (3, 7), (144, 176)])
@@ -111,15 +108,7 @@ def test_weights_are_the_papers_never_nan_and_what_is_no_number_is_refused():
             normalize_likelihood(np.asarray(values))
 
 
-def test_fallons_score_is_a_mean_over_the_pixels_that_it_compares():
-    scores = [
-        fallon_weighting("disparity").score(np.array([z]), np.array([[[2.0] * len(z)]]))[0]
-        for z in ([2.0], [2.0, np.nan], [2.0, 0.0, 0.3])
-    ]
-    assert scores == pytest.approx([scores[0]] * 3)
-
-
-def test_fallons_half_normal_is_a_density_on_zero_to_three_metres():
+def test_fallons_half_normal_and_truncated_normal_are_densities_and_the_score_a_mean_over_what_it_compares():
     def density(x):
         log_value = depth_log_likelihood(np.full((1, 1), 4.0), np.full((1, 1, 1), 4.0 + x))[0]
         return np.exp(log_value)
@@ -129,15 +118,11 @@ def test_fallons_half_normal_is_a_density_on_zero_to_three_metres():
     assert density(5.0) == density(np.inf) == pytest.approx(0.33)  # a miss gets the uniform part alone
     with pytest.raises(ValueError, match="disparity"):
         fallon_weighting("squares")
-
-
-def test_normalized_disparity_runs_from_near_to_far():
-    assert normalized_disparity(np.array([0.7, 20.0, 0.1, np.inf])) == pytest.approx([0, 1, 0, 1])
-    step = normalized_disparity(np.array([3.15])) - normalized_disparity(np.array([2.85]))
-    assert step == pytest.approx(0.025, rel=0.05)  # 0.3 m at 3 m
-
-
-def test_fallons_disparity_form_is_a_truncated_normal_density():
+    scores = [
+        fallon_weighting("disparity").score(np.array([z]), np.array([[[2.0] * len(z)]]))[0]
+        for z in ([2.0], [2.0, np.nan], [2.0, 0.0, 0.3])
+    ]
+    assert scores == pytest.approx([scores[0]] * 3)
     simulated, s = 1.4, 0.025
     d = float(normalized_disparity(np.array(simulated)))
     for measured in (1.2, 1.4, 1.5, 2.5):
@@ -145,10 +130,10 @@ def test_fallons_disparity_form_is_a_truncated_normal_density():
         density = truncnorm.pdf(value, -d / s, (1 - d) / s, loc=d, scale=s)
         got = disparity_log_likelihood(np.full((1, 1), measured), np.full((1, 1, 1), simulated))[0]
         assert got == pytest.approx(np.log(0.999 + 0.001 * density))
-
-
-@pytest.mark.parametrize("outside", [0.5, 20.5, np.nan])
-def test_fallons_disparity_form_masks_measurements_outside_its_planes(outside):
-    pair = disparity_log_likelihood(np.array([[2.0, outside]]), np.array([[[2.0, 3.0]]]))
+    assert normalized_disparity(np.array([0.7, 20.0, 0.1, np.inf])) == pytest.approx([0, 1, 0, 1])
+    step = normalized_disparity(np.array([3.15])) - normalized_disparity(np.array([2.85]))
+    assert step == pytest.approx(0.025, rel=0.05)  # 0.3 m at 3 m
     alone = disparity_log_likelihood(np.array([[2.0]]), np.array([[[2.0]]]))
-    assert pair == pytest.approx(alone)
+    for outside in (0.5, 20.5, np.nan):
+        pair = disparity_log_likelihood(np.array([[2.0, outside]]), np.array([[[2.0, 3.0]]]))
+        assert pair == pytest.approx(alone)

@@ -32,7 +32,6 @@ def walk(n):
 
 
 def run(localizer, true):
-    """Estimates along a walk in the small room, the start given."""
     localizer.initialize(START)
     return [localizer.step(room_depth(SMALL, state)[0]) for state in true]
 
@@ -76,13 +75,21 @@ def test_a_step_is_figure_1_one_equation_after_the_other(renderer, scheme):
     assert np.array_equal(localizer.particles, particles[resample(estimate.weights, rng, scheme)])
 
 
-def test_the_same_seed_gives_the_same_bytes_and_another_seed_does_not(renderer):
+def test_the_same_seed_gives_the_same_bytes_and_the_score_falls_when_the_filter_is_lost(renderer):
     runs = [
         np.array([e.particles for e in run(MonteCarloLocalizer(renderer, 60, SIGMA, seed=seed), walk(4))])
         for seed in (7, 7, 8)
     ]
     assert runs[0].tobytes() == runs[1].tobytes()
     assert runs[0].tobytes() != runs[2].tobytes()
+    estimates = []
+    for start in (START, START + np.array([-2.0, 1.5, 0, 0, 0, 1.0])):
+        localizer = MonteCarloLocalizer(renderer, 40, SIGMA)
+        localizer.initialize(start)
+        estimates.append(localizer.step(room_depth(SMALL, START)[0]))
+    assert estimates[0].score > 0.8
+    assert estimates[1].score < 0.5
+    assert estimates[1].ess < 20
 
 
 def test_a_frame_without_measurement_moves_the_particles_says_so_and_the_filter_goes_on(renderer):
@@ -161,25 +168,11 @@ def test_particles_that_are_rendered_in_batches_are_weighed_together(weighting):
     assert estimates[0].score == estimates[1].score
 
 
-def test_the_score_falls_when_the_filter_is_lost_though_the_best_weight_does_not(renderer):
-    estimates = []
-    for start in (START, START + np.array([-2.0, 1.5, 0, 0, 0, 1.0])):
-        localizer = MonteCarloLocalizer(renderer, 40, SIGMA)
-        localizer.initialize(start)
-        estimates.append(localizer.step(room_depth(SMALL, START)[0]))
-    assert estimates[0].score > 0.8
-    assert estimates[1].score < 0.5
-    assert estimates[1].ess < 20
-
-
-def test_bad_settings_are_named_before_the_first_frame(renderer):
+def test_what_cannot_be_a_setting_a_start_or_a_frame_is_named(renderer):
     bad = {"n_particles": 0, "sigma": [0.1] * 5, "alpha": 0.0, "beta": -1.0, "motion": "tangent", "seed": -1}
     for name, value in (*bad.items(), ("resampling", "lottery")):
         with pytest.raises(ValueError, match=rf"{name} must|sigma needs|scheme must"):
             MonteCarloLocalizer(renderer, **{name: value})
-
-
-def test_what_cannot_be_a_start_or_a_frame_is_named(renderer):
     localizer = MonteCarloLocalizer(renderer, 10, SIGMA)
     with pytest.raises(RuntimeError, match="initialize"):
         localizer.step(np.ones(SMALL.shape))
@@ -199,9 +192,6 @@ def test_the_nearest_path_error_hides_error_along_the_path_and_the_timed_error_d
     assert nearest.median == pytest.approx(0.05, abs=1e-6)
     assert timed.median == pytest.approx(np.hypot(0.4, 0.05))
     assert (nearest.within_3sigma, timed.within_3sigma) == (1.0, 0.0)
-
-
-def test_sigma_is_the_root_mean_square_about_zero():
     errors = nearest_path_error(np.array([[0, 0.3], [0, -0.4]]), np.zeros((1, 2)))
     assert errors.sigma == pytest.approx(np.sqrt((0.09 + 0.16) / 2))
     assert errors.within_3sigma == 0.5

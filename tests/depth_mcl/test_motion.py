@@ -18,7 +18,7 @@ STATE = np.array([1.0, -2.0, 0.5, 0.1, -0.2, 3.1])
 MOTIONS = {"world": WORLD_AXES, "body": BODY_AXES, "tangent": TANGENT_SPACE}
 
 
-def test_system_noise_has_the_given_spread_and_no_bias_and_angles_stay_wrapped(rng):
+def test_system_noise_has_the_given_spread_angles_stay_wrapped_and_noise_along_the_body_is_forward_and_left(rng):
     sigma = np.array([0.3, 0.1, 0.05, 0.02, 0.03, 0.04])
     moved = propagate(initial_particles(STATE, 100), [0, 0, 0, 1, 1, 1], rng)
     assert (moved[:, :3] == STATE[:3]).all()
@@ -26,25 +26,6 @@ def test_system_noise_has_the_given_spread_and_no_bias_and_angles_stay_wrapped(r
     moved = propagate(initial_particles(np.zeros(6), 40_000), sigma, rng)
     assert np.allclose(moved.std(axis=0), sigma, rtol=0.02)
     assert np.allclose(moved.mean(axis=0), 0, atol=4 * sigma.max() / 200)
-
-
-@pytest.mark.parametrize("move", [propagate, propagate_body, propagate_tangent])
-@pytest.mark.parametrize("sigma", [[0.1] * 5, [0.1, 0.1, 0.1, 0, 0, -0.1], [np.nan] * 6, 0.1])
-def test_a_bad_sigma_is_named(move, sigma, rng):
-    with pytest.raises(ValueError, match="sigma"):
-        move(initial_particles(STATE, 3), sigma, rng)
-
-
-@pytest.mark.parametrize("pitch", [0.0, np.pi / 2])
-def test_tangent_noise_is_the_same_in_gimbal_lock_as_out_of_it(pitch, rng):
-    start = np.array([0, 0, 0, 0.2, pitch, 0.3])
-    sigma = np.array([0, 0, 0, 0.02, 0.03, 0.04])
-    moved = propagate_tangent(initial_particles(start, 20_000), sigma, rng)
-    turn = np.swapaxes(pose_matrix(start)[None, :3, :3], -1, -2) @ pose_matrix(moved)[:, :3, :3]
-    assert np.allclose(rotation_log(turn).std(axis=0), sigma[3:], rtol=0.03)
-
-
-def test_noise_along_the_body_is_forward_and_left_of_where_each_particle_looks(rng):
     particles = np.repeat([[0.0, 0, 1, 0.1, -0.2, yaw] for yaw in (0.3, np.pi / 2, -2.8)], 20_000, axis=0)
     moved = propagate_body(particles, [0.3, 0.05, 0, 0, 0, 0.2], rng)
     for start in (0, 20_000, 40_000):
@@ -54,6 +35,22 @@ def test_noise_along_the_body_is_forward_and_left_of_where_each_particle_looks(r
         assert (steps @ forward).std() == pytest.approx(0.3, rel=0.03)
         assert (steps @ left).std() == pytest.approx(0.05, rel=0.03)
     assert (moved[:, 2:5] == particles[:, 2:5]).all()
+
+
+def test_a_bad_sigma_is_named(rng):
+    for move in (propagate, propagate_body, propagate_tangent):
+        for sigma in ([0.1] * 5, [0.1, 0.1, 0.1, 0, 0, -0.1], [np.nan] * 6, 0.1):
+            with pytest.raises(ValueError, match="sigma"):
+                move(initial_particles(STATE, 3), sigma, rng)
+
+
+@pytest.mark.parametrize("pitch", [0.0, np.pi / 2])
+def test_tangent_noise_is_the_same_in_gimbal_lock_as_out_of_it(pitch, rng):
+    start = np.array([0, 0, 0, 0.2, pitch, 0.3])
+    sigma = np.array([0, 0, 0, 0.02, 0.03, 0.04])
+    moved = propagate_tangent(initial_particles(start, 20_000), sigma, rng)
+    turn = np.swapaxes(pose_matrix(start)[None, :3, :3], -1, -2) @ pose_matrix(moved)[:, :3, :3]
+    assert np.allclose(rotation_log(turn).std(axis=0), sigma[3:], rtol=0.03)
 
 
 @pytest.mark.parametrize("name", ["body", "tangent"])

@@ -30,39 +30,27 @@ def random_weights(n, rng):
     return w / w.sum()
 
 
-def test_all_particles_start_at_the_initial_state():
+def test_all_particles_start_at_the_initial_state_and_the_effective_sample_size_runs_from_one_to_n():
     assert (initial_particles(STATE, 7) == np.tile(STATE, (7, 1))).all()
     for n in (0, -1, 2.5):
         with pytest.raises(ValueError, match="number of particles"):
             initial_particles(STATE, n)
+    assert effective_sample_size(np.full(50, 0.02)) == pytest.approx(50)
+    assert effective_sample_size(np.eye(50)[3]) == pytest.approx(1)
 
 
-def test_the_weighted_mean_is_the_papers_sum_but_for_angles_at_the_wrap(rng):
+def test_the_mean_is_the_papers_sum_but_for_angles_at_the_wrap_and_moves_with_the_world_even_into_gimbal_lock(rng):
     particles, w = rng.normal(0, 0.01, (200, 6)), random_weights(200, rng)
     assert np.allclose(weighted_mean_state(particles, w), w @ particles, atol=1e-6)
     across = np.zeros((2, 6))
     across[:, 5] = np.deg2rad([179, -179])
     assert np.isclose(abs(weighted_mean_state(across, [0.5, 0.5])[5]), np.pi)
-
-
-def test_the_mean_pose_moves_with_the_world_even_into_gimbal_lock(rng):
     particles, w = STATE + rng.normal(0, 0.1, (80, 6)), random_weights(80, rng)
     move = pose_matrix([3.0, -1.0, 2.0, 0.4, np.pi / 2 - 0.2, 1.0])
     moved = state_from_matrix(move @ pose_matrix(particles))
     expected, got = move @ pose_matrix(weighted_mean_pose(particles, w)), pose_matrix(weighted_mean_pose(moved, w))
     assert np.allclose(got[:3, 3], expected[:3, 3], atol=1e-9)
     assert rotation_angle(got[:3, :3].T @ expected[:3, :3]) < 1e-9
-
-
-@pytest.mark.parametrize("w", [[0.5, 0.6], [1.5, -0.5], [np.nan, 1.0], [1.0]])
-def test_weights_that_do_not_fit_are_refused(w):
-    with pytest.raises(ValueError, match="weights"):
-        weighted_mean_state(np.zeros((2, 6)), w)
-
-
-def test_effective_sample_size_runs_from_one_to_n():
-    assert effective_sample_size(np.full(50, 0.02)) == pytest.approx(50)
-    assert effective_sample_size(np.eye(50)[3]) == pytest.approx(1)
 
 
 def chi_square(draw, n_seeds=40, n_draws=400):
@@ -146,9 +134,12 @@ def test_filterpy_draws_the_same_particles_from_the_same_random_numbers(scheme, 
     assert np.array_equal(np.sort(theirs), resample(w, np.random.default_rng(9), scheme))
 
 
-@pytest.mark.parametrize("w", [[], [0.0, 0.0], [np.nan, 1.0], [-0.1, 1.1], [[0.5, 0.5]]])
-def test_resampling_refuses_bad_weights_and_unknown_schemes(w, rng):
-    with pytest.raises(ValueError, match="weights"):
-        resample(np.asarray(w), rng)
+def test_bad_weights_and_unknown_schemes_are_refused(rng):
+    for w in ([0.5, 0.6], [1.5, -0.5], [np.nan, 1.0], [1.0]):
+        with pytest.raises(ValueError, match="weights"):
+            weighted_mean_state(np.zeros((2, 6)), w)
+    for w in ([], [0.0, 0.0], [np.nan, 1.0], [-0.1, 1.1], [[0.5, 0.5]]):
+        with pytest.raises(ValueError, match="weights"):
+            resample(np.asarray(w), rng)
     with pytest.raises(ValueError, match="systematic"):
         resample(np.ones(3), rng, "roulette")

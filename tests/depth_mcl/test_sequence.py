@@ -42,7 +42,7 @@ def test_what_is_written_is_read(folder):
     assert np.array_equal(sequence.thinned(2, 1).camera_to_world, sequence.camera_to_world[1::2])
 
 
-def test_depth_survives_to_half_a_millimetre_and_nan_stays_nan(tmp_path, rng):
+def test_depth_survives_to_half_a_millimetre_and_nan_stays_nan_and_trajectories_survive(tmp_path, rng):
     depth = rng.uniform(0.01, 60, (20, 30))
     depth[3, 4] = np.nan
     depth[5, 6] = 70.0  # more than 16 bits of millimetres hold
@@ -51,9 +51,6 @@ def test_depth_survives_to_half_a_millimetre_and_nan_stays_nan(tmp_path, rng):
     assert np.isnan(again[[3, 5], [4, 6]]).all()
     assert np.isnan(again).sum() == 2
     assert np.nanmax(np.abs(again - depth)[np.isfinite(again)]) <= 0.000505  # and the last digit of float32
-
-
-def test_tum_trajectories_survive(tmp_path, rng):
     poses, times = optical_pose(random_states(9, rng)), np.sort(rng.random(9))
     write_tum(tmp_path / "t.txt", times, poses)
     read_times, read_poses = read_tum(tmp_path / "t.txt")
@@ -61,7 +58,7 @@ def test_tum_trajectories_survive(tmp_path, rng):
     assert np.allclose(read_poses, poses, atol=1e-7)
 
 
-def test_nothing_is_written_where_lengths_differ_or_a_recording_stands(folder, tmp_path):
+def test_nothing_is_written_where_lengths_differ_or_a_recording_stands_and_listed_images_exist(folder, tmp_path):
     with pytest.raises(ValueError, match="agree"):
         write_sequence(tmp_path / "new", SMALL.matrix, [1, 2], [np.ones(SMALL.shape)], np.eye(4)[None])
     assert not (tmp_path / "new").exists()
@@ -72,10 +69,12 @@ def test_nothing_is_written_where_lengths_differ_or_a_recording_stands(folder, t
     (folder / "poses.txt").unlink()  # what an interrupted write leaves
     with pytest.raises(ValueError, match="already"):
         write_sequence(folder, SMALL.matrix, [1], [np.ones(SMALL.shape)], np.eye(4)[None])
+    (folder / "depth.txt").write_text("0.0 depth/000002.png\n0.1 depth/nowhere.png\n0.2 depth\n0.3 " + 900 * "1")
+    with pytest.raises(SequenceError, match=r"names 3 images that are no files, depth/nowhere\.png in row 2"):
+        read_sequence(folder)
 
 
 def frame_5(f, row):
-    """Replace the row of frame 5."""
     lines = (f / "poses.txt").read_text().splitlines()
     (f / "poses.txt").write_text("\n".join([*lines[:2], row, *lines[3:]]))
 
@@ -113,7 +112,12 @@ def test_a_damaged_recording_is_named(folder, damage, said):
         list(read_sequence(folder))
 
 
-def test_a_recording_without_truth_is_read_and_says_so_where_the_truth_is_asked_for(folder):
+def test_depth_is_in_the_units_told_and_a_recording_without_truth_is_read_and_says_so_where_truth_is_asked_for(folder):
+    millimetres, fifths = read_sequence(folder), read_sequence(folder, units_per_metre=5000)
+    assert np.allclose(fifths.depth(1), millimetres.depth(1) / 5, equal_nan=True)
+    for bad in (0, -1000, np.nan, np.inf):
+        with pytest.raises(ValueError, match="units"):
+            read_sequence(folder, units_per_metre=bad)
     (folder / "poses.txt").unlink()
     sequence = read_sequence(folder)
     assert not sequence.has_poses
@@ -122,14 +126,6 @@ def test_a_recording_without_truth_is_read_and_says_so_where_the_truth_is_asked_
     assert sequence.times is None  # the truth file's; it does not stand alone
     with pytest.raises(SequenceError, match=r"no poses\.txt.*--start"):
         _ = sequence.camera_to_world
-
-
-def test_depth_counts_in_the_units_that_are_told(folder):
-    millimetres, fifths = read_sequence(folder), read_sequence(folder, units_per_metre=5000)
-    assert np.allclose(fifths.depth(1), millimetres.depth(1) / 5, equal_nan=True)
-    for bad in (0, -1000, np.nan, np.inf):
-        with pytest.raises(ValueError, match="units"):
-            read_sequence(folder, units_per_metre=bad)
 
 
 @pytest.fixture
@@ -171,7 +167,7 @@ def test_a_damaged_tum_folder_is_named(tum_folder, damage, said):
         read_sequence(tum_folder[0])
 
 
-def test_a_pose_is_read_from_a_matrix_from_poses_and_from_a_trajectory(folder, tmp_path):
+def test_a_pose_is_read_from_a_matrix_poses_or_a_trajectory_and_with_few_digits_is_a_rotation(folder, tmp_path):
     first = read_sequence(folder).camera_to_world[0]
     np.savetxt(tmp_path / "matrix.txt", first, fmt="%.6f")
     for path in (tmp_path / "matrix.txt", folder / "poses.txt", folder / "groundtruth.txt"):
@@ -180,21 +176,15 @@ def test_a_pose_is_read_from_a_matrix_from_poses_and_from_a_trajectory(folder, t
         np.savetxt(tmp_path / "matrix.txt", matrix)
         with pytest.raises(SequenceError, match="must hold a pose"):
             read_pose(tmp_path / "matrix.txt")
-
-
-def test_poses_written_with_few_digits_are_rotations_again(folder):
     rows = np.loadtxt(folder / "poses.txt")
     np.savetxt(folder / "poses.txt", rows, fmt=["%d"] + ["%.4f"] * 16)
     (folder / "groundtruth.txt").unlink()
     states = state_from_optical_pose(read_sequence(folder).camera_to_world)
     assert np.allclose(optical_pose(states), rows[:, 1:].reshape(-1, 4, 4), atol=2e-4)
-
-
-@pytest.mark.parametrize("up", UP_AXES)
-def test_turning_to_z_up_turns_the_named_axis_to_z(up):
-    rotation = rotation_to_z_up(up)[:3, :3]
-    assert np.array_equal(rotation @ UP_AXES[up], [0, 0, 1])
-    assert np.linalg.det(rotation) == pytest.approx(1)
+    for up, axis in UP_AXES.items():
+        rotation = rotation_to_z_up(up)[:3, :3]
+        assert np.array_equal(rotation @ axis, [0, 0, 1])
+        assert np.linalg.det(rotation) == pytest.approx(1)
 
 
 @pytest.mark.parametrize("name", ["poses.txt", "up.txt", "groundtruth.txt", "path_on_floor.txt", "gravity.txt"])
@@ -205,11 +195,4 @@ def test_what_may_be_missing_may_not_be_something_else(folder, name, target):
     read_sequence(folder)
     (folder / name).symlink_to(target) if target else (folder / name).mkdir()
     with pytest.raises((SequenceError, FileNotFoundError), match=name):
-        read_sequence(folder)
-
-
-def test_a_list_of_images_that_are_not_there_is_named(folder):
-    (folder / "poses.txt").unlink()
-    (folder / "depth.txt").write_text("0.0 depth/000002.png\n0.1 depth/nowhere.png\n0.2 depth\n0.3 " + 900 * "1")
-    with pytest.raises(SequenceError, match=r"names 3 images that are no files, depth/nowhere\.png in row 2"):
         read_sequence(folder)

@@ -41,7 +41,6 @@ def errors(stretch, turn: float, seed: int, **settings: object) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def unturned(stretch):
-    """The spread over seeds in the corridor as it is: median errors of two runs."""
     return [np.median(errors(stretch, 0.0, seed)) for seed in (10_001, 10_002)]
 
 

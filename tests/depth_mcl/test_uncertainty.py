@@ -16,17 +16,14 @@ from course_lib.rendering.sensor import subsample_depth
 WORTH = 50.0  # pixels: what the calibration found, written down a second time
 
 
-@pytest.mark.parametrize("sample_size", [1.5, 8.0, 40.0, 99.0])
-def test_as_many_particles_are_left_as_asked_for(rng, sample_size):
+def test_as_many_particles_are_left_as_asked_for_and_too_few_or_equal_ones_weigh_the_same(rng):
     scores = rng.random(100)
-    tempered = temper(scores, sample_size)
-    expected = np.exp(tempered.sharpness * scores)
-    assert tempered.ess == pytest.approx(sample_size, rel=1e-6)
-    assert tempered.sharpness > 0
-    assert tempered.weights == pytest.approx(expected / expected.sum())
-
-
-def test_too_few_particles_weigh_the_same_and_equal_scores_too(rng):
+    for sample_size in (1.5, 8.0, 40.0, 99.0):
+        tempered = temper(scores, sample_size)
+        expected = np.exp(tempered.sharpness * scores)
+        assert tempered.ess == pytest.approx(sample_size, rel=1e-6)
+        assert tempered.sharpness > 0
+        assert tempered.weights == pytest.approx(expected / expected.sum())
     assert temper(rng.random(5), 10).weights == pytest.approx(np.full(5, 0.2))
     assert temper(rng.random(5), 10).sharpness == 0
     equal = temper(np.full(20, 0.7), 4)
@@ -36,7 +33,7 @@ def test_too_few_particles_weigh_the_same_and_equal_scores_too(rng):
             temper(np.array(scores), 2)
 
 
-def test_a_quadratic_score_gives_the_gaussian_that_it_describes(rng):
+def test_a_quadratic_score_gives_the_gaussian_that_it_describes_about_the_estimate(rng):
     """s = -d^2 / (2 b^2): exp(kappa s) is normal with variance b^2 / kappa, cut by the cloud's own."""
     deviations = np.zeros((200_000, 6))
     deviations[:, 0] = rng.normal(0, 0.2, 200_000)
@@ -44,22 +41,9 @@ def test_a_quadratic_score_gives_the_gaussian_that_it_describes(rng):
     expected = 1 / (1 / 0.2**2 + WORTH / 0.3**2)
     assert error_covariance(deviations, scores)[0, 0] == pytest.approx(expected, rel=0.02)
     assert np.count_nonzero(error_covariance(deviations, scores)) == 1
-
-
-def test_an_estimate_beside_the_best_particles_is_told(rng):
-    """The spread is about the estimate: one that its weights drew aside by 0.3 m has a variance of that at least."""
     deviations = rng.normal(0, 0.05, (300, 6))
     deviations[:, 1] += 0.3
     assert error_covariance(deviations, np.zeros(300))[1, 1] > 0.3**2
-
-
-def test_what_is_given_has_no_variance_after_many_frames():
-    """Turned in the plane, so that no covariance is diagonal; rounding must not add up along z, roll and pitch."""
-    localizer = MonteCarloLocalizer(Wall(), 60, [0.1, 0.02, 0, 0, 0, 0.03], weighting=distance_to_the_wall)
-    localizer.initialize(np.array([0, 0, 1 / 3, 0.1, 0.2, 0.7]))
-    for _ in range(200):
-        estimate = localizer.step(np.full((1, 6), 9.0))
-    assert np.array_equal(np.flatnonzero(np.diag(estimate.error_covariance) > 1e-20), [0, 1, 5])
 
 
 def test_what_a_frame_does_not_correct_is_carried_on(rng):
@@ -88,7 +72,6 @@ class Wall:
 
 
 def score_of_y(measured, simulated):
-    """A Gaussian in y alone, so that the whole image gives y with 0.3 m."""
     return 1 - (simulated[:, 0, 1] - measured[0, 1]) ** 2 / (2 * 0.3**2) / WORTH
 
 
@@ -119,20 +102,22 @@ def test_along_a_wall_errors_add_up_and_the_covariance_with_them(rng):
 
 
 @pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
-def test_without_measurements_the_variance_grows_by_one_frames_noise_at_a_time():
+def test_without_measurements_variance_grows_by_one_frames_noise_a_new_start_forgets_it_and_what_is_given_has_none():
     localizer = MonteCarloLocalizer(Wall(), 2000, [0.1, 0, 0, 0, 0, 0])
     localizer.initialize(np.zeros(6))
     variances = [localizer.step(np.full((1, 6), np.nan)).error_covariance[0, 0] for _ in range(8)]
     assert variances == pytest.approx(0.1**2 * np.arange(1, 9), rel=0.15)
-
-
-def test_a_new_start_forgets_the_earlier_errors():
     localizer = MonteCarloLocalizer(Wall(), 60, [0.1, 0.1, 0, 0, 0, 0], weighting=distance_to_the_wall)
     variances = []
     for _ in range(2):
         localizer.initialize(np.zeros(6))
         variances.append([localizer.step(np.full((1, 6), 9.0)).error_covariance[0, 0] for _ in range(10)])
     assert variances[1][0] < 2 * variances[0][0] < variances[0][9]
+    localizer = MonteCarloLocalizer(Wall(), 60, [0.1, 0.02, 0, 0, 0, 0.03], weighting=distance_to_the_wall)
+    localizer.initialize(np.array([0, 0, 1 / 3, 0.1, 0.2, 0.7]))
+    for _ in range(200):
+        estimate = localizer.step(np.full((1, 6), 9.0))
+    assert np.array_equal(np.flatnonzero(np.diag(estimate.error_covariance) > 1e-20), [0, 1, 5])
 
 
 def test_the_error_is_counted_in_units_of_its_covariance_where_something_was_estimated():
@@ -140,11 +125,8 @@ def test_the_error_is_counted_in_units_of_its_covariance_where_something_was_est
     covariance[np.ix_([0, 5], [0, 5])] = [[4.0, 1.0], [1.0, 1.0]]
     # By hand: the inverse is [[1, -1], [-1, 4]] / 3.
     assert normalized_error([2.0, 9.0, 9.0, 9.0, 9.0, 1.0], covariance) == pytest.approx((4 - 4 + 4) / 3 / 2)
-
-
-@pytest.mark.parametrize("covariance", [np.zeros((6, 6)), np.diag([1e-12, 0, 0, 0, 0, 0]) + 1e-4])
-def test_too_few_particles_have_no_normalized_error(covariance):
-    assert np.isnan(normalized_error(np.full(6, 0.1), covariance))
+    for too_few in (np.zeros((6, 6)), np.diag([1e-12, 0, 0, 0, 0, 0]) + 1e-4):
+        assert np.isnan(normalized_error(np.full(6, 0.1), too_few))
 
 
 def test_errors_along_the_corridor_are_as_large_as_the_covariance_says(corridor_folder):

@@ -12,7 +12,6 @@ OFF_CENTRE = DepthCamera(61, 47, 55.0, 83.0, 21.3, 30.8, near=0.1, far=15.0)  # 
 
 
 def wall(distance=2.0, half=50.0, offset=(0.0, 0.0, 0.0)):
-    """A square wall across the x axis, at x = distance."""
     corners = np.array([[distance, y, z] for y, z in ((-half, -half), (half, -half), (half, half), (-half, half))])
     return SceneMap(corners + offset, np.array([[0, 1, 2], [0, 2, 3]]))
 
@@ -28,7 +27,6 @@ def rough_wall(rng, distance=0.9, half=3.0, edge=0.08, sigma=0.012):
 
 
 def _with_boxes(mesh, *boxes):
-    """A mesh and boxes of (size, place)."""
     boxes = [trimesh.creation.box(size, trimesh.transformations.translation_matrix(at)) for size, at in boxes]
     joined = trimesh.util.concatenate([mesh, *boxes])
     return SceneMap(joined.vertices, joined.faces)
@@ -42,7 +40,6 @@ def fence(distance=0.9, pitch=0.4):
 
 
 def room(size=6.0, offset=(0.0, 0.0, 0.0)):
-    """A closed cube of edge `size` around `offset`."""
     box = trimesh.creation.box((size, size, size))
     return SceneMap(box.vertices + offset, box.faces)
 
@@ -75,7 +72,6 @@ def random_triangles(n, rng, spread=8.0, edge=1.5):
 
 
 def random_states(n, rng, spread=3.0):
-    """Poses with any attitude."""
     states = rng.uniform(-spread, spread, (n, 6))
     states[:, 3:] = rng.uniform(-np.pi, np.pi, (n, 3))
     states[:, 4] /= 2

@@ -8,7 +8,6 @@ TWICE = "def twice(x):\n    return 2 * x\n"
 
 
 def run_twice(path):
-    """Compile and run the function of a source file."""
     names = {"__name__": "twice"}
     exec(compile(TWICE, str(path), "exec"), names)
     return compiled()(names["twice"])(21)

@@ -63,7 +63,7 @@ def test_a_small_thing_before_a_wall_and_one_behind_it():
     assert share_that_differs(scene_map, CAMERA, np.zeros((1, 6))) < 2e-4
 
 
-def test_a_chunk_that_a_view_can_see_is_never_left_out(rng):
+def test_a_chunk_that_a_view_can_see_is_never_left_out_and_leaving_out_the_others_changes_no_pixel(rng, monkeypatch):
     scene = random_triangles(2000, rng, spread=20.0)
     chunks = MeshChunks(scene.vertices, scene.faces)
     poses = optical_pose(random_states(5, rng, spread=9.0))
@@ -75,9 +75,6 @@ def test_a_chunk_that_a_view_can_see_is_never_left_out(rng):
         inside = (z > 0) & (z < OFF_CENTRE.far) & (np.abs(u - 30) < 30.5) & (np.abs(v - 23) < 23.5)
         assert visible[inside.any(axis=1)].all()
     assert 0 < visible.sum() < len(visible)
-
-
-def test_leaving_out_what_no_view_can_see_changes_no_pixel(rng, monkeypatch):
     scene, states = random_triangles(3000, rng, spread=20.0), random_states(16, rng, spread=9.0)
     with DepthRenderer(scene, SMALL, "vtk") as renderer:
         culled = [renderer.render(state) for state in states]

@@ -32,7 +32,6 @@ def neighbours_agree(images):
 
 
 def joined(*maps):
-    """One map of the triangles of several."""
     starts = np.cumsum([0, *(len(each.vertices) for each in maps)])
     faces = [each.faces + start for each, start in zip(maps, starts, strict=False)]
     return SceneMap(np.concatenate([each.vertices for each in maps]), np.concatenate(faces))
@@ -98,7 +97,6 @@ STATE = np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])
 
 
 def board(depth, state=STATE):
-    """A board across the view at this depth."""
     pose = optical_pose(state[None])[0]
     return SceneMap(depth * BOARD @ pose[:3, :3].T + pose[:3, 3], np.array([[0, 1, 2], [0, 2, 3]]))
 
@@ -126,9 +124,13 @@ def test_a_surface_before_near_does_not_hide_the_one_on_far(backend):
         assert np.abs(renderer.render(STATE) - 4.0).max() < 1e-3
 
 
-def test_where_nothing_is_hit_depth_is_infinite(backend):
+def test_where_nothing_is_hit_depth_is_infinite_and_a_closed_renderer_says_so(backend):
     with DepthRenderer(room(), SMALL, backend) as renderer:
         assert np.isinf(renderer.render([[9.0, 0, 0, 0, 0, 0], [1e30, 0, 0, 0, 0, 0]])).all()
+    renderer.close()
+    for use in (lambda: renderer.render(np.zeros(6)), lambda: renderer.render_points(np.zeros((1, 3)))):
+        with pytest.raises(RendererClosedError, match="closed"):
+            use()
 
 
 @pytest.mark.parametrize("distance", [1e4, 1.9e7], ids=["10 km", "19,000 km"])
@@ -176,7 +178,7 @@ def test_no_image_is_mixed_up_for_any_size_number_of_views_or_batch(backend, siz
             assert n == 0 or np.mean(np.abs(images - room_depth(camera, states)) < 1e-3) >= 0.98
 
 
-def test_few_views_after_many_and_many_after_few(rng):
+def test_few_views_after_many_and_a_stopped_render_leaves_no_tile_in_the_way_of_the_measurement(rng, monkeypatch):
     states = random_states(1200, rng, spread=2.5)  # more than one window has tiles
     with DepthRenderer(room(), SMALL, "vtk") as renderer:
         full = renderer.render(states)
@@ -185,16 +187,7 @@ def test_few_views_after_many_and_many_after_few(rng):
         assert np.mean(np.abs(renderer.render(states[5:8]) - full[5:8]) < 1e-4) > 0.999
         assert np.array_equal(renderer.render(states), full)
 
-
-def test_the_same_states_give_the_same_bytes(backend, rng):
-    scene, states = random_triangles(500, rng), random_states(5, rng)
-    with DepthRenderer(scene, SMALL, backend) as first, DepthRenderer(scene, SMALL, backend) as second:
-        assert first.render(states).tobytes() == second.render(states).tobytes()
-
-
-def test_a_stopped_render_leaves_no_tile_in_the_way_of_the_measurement(monkeypatch):
-    """Ctrl-C between drawing and reading, as in a stopped notebook cell: tile 0 and the points share their pixels."""
-
+    # Ctrl-C between drawing and reading, as in a stopped notebook cell: tile 0 and the points share their pixels.
     def stop(self, out):
         raise KeyboardInterrupt
 
@@ -205,6 +198,12 @@ def test_a_stopped_render_leaves_no_tile_in_the_way_of_the_measurement(monkeypat
             with pytest.raises(KeyboardInterrupt):
                 renderer.render(np.zeros(6))
         assert np.abs(renderer.render_points(points) - 1.0).max() < HALF_MILLIMETRE
+
+
+def test_the_same_states_give_the_same_bytes(backend, rng):
+    scene, states = random_triangles(500, rng), random_states(5, rng)
+    with DepthRenderer(scene, SMALL, backend) as first, DepthRenderer(scene, SMALL, backend) as second:
+        assert first.render(states).tobytes() == second.render(states).tobytes()
 
 
 def test_the_linearized_buffer_inverts_the_projection():
@@ -228,15 +227,6 @@ def test_the_cameras_points_through_the_z_buffer_agree_with_numpy(backend, camer
     both = np.isfinite(drawn) & np.isfinite(reference)
     assert both.sum() > 300
     assert np.mean(np.abs(drawn - reference)[both] < HALF_MILLIMETRE) > 0.995
-
-
-def test_a_closed_renderer_says_so(backend):
-    renderer = DepthRenderer(room(), SMALL, backend)
-    renderer.close()
-    renderer.close()
-    for use in (lambda: renderer.render(np.zeros(6)), lambda: renderer.render_points(np.zeros((1, 3)))):
-        with pytest.raises(RendererClosedError, match="closed"):
-            use()
 
 
 def test_what_is_no_state_no_pose_no_backend_or_too_large_is_named():

@@ -142,7 +142,7 @@ def test_a_mesh_that_is_no_map_is_named(vertices, faces, said):
         SceneMap(vertices, np.asarray(faces))
 
 
-def test_a_map_cannot_be_changed_behind_the_renderer_nor_after_a_journey():
+def test_a_map_cannot_be_changed_behind_the_renderer_and_is_only_moved_rigidly():
     given = np.array(TRIANGLE)
     scene = SceneMap(given, np.array([[0, 1, 2]]))
     given[0] = 7.0
@@ -150,9 +150,6 @@ def test_a_map_cannot_be_changed_behind_the_renderer_nor_after_a_journey():
         assert np.array_equal(each.vertices, TRIANGLE)
         with pytest.raises(ValueError, match="read-only"):
             each.vertices[0] = 0
-
-
-def test_a_map_is_only_moved_rigidly():
     turn = np.array([[0.0, -1, 0, 5], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
     assert np.allclose(SceneMap(TRIANGLE, [[0, 1, 2]]).transformed(turn).vertices, [[5, 0, 0], [5, 1, 0], [4, 0, 0]])
     with pytest.raises(ValueError, match="rigid"):
@@ -172,6 +169,8 @@ def test_the_anchor_is_where_most_of_the_map_is_and_follows_the_cameras_by_whole
     assert np.array_equal(there, scene.anchor(np.array([[1e6 + 1, 0, 0]])))
     # Cameras that have left the map draw its anchor no farther than its edge.
     assert np.abs(scene.anchor(np.array([[1e30, 0, 0]]))).max() < 1e6 + 100
+    assert room(2.0).contains([[0, 0, 0], [1.5, 0, 0]], margin=0.0).tolist() == [True, False]
+    assert room(2.0).contains([1.5, 0, 0], margin=1.0)
 
 
 @pytest.mark.parametrize("coordinate", [6e3, 1e6, 3e7, -1e20])
@@ -194,8 +193,3 @@ def test_a_map_that_looks_like_millimetres_is_used_with_a_warning(tmp_path, scal
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         SceneMap.load(tmp_path / "map.ply")
-
-
-def test_contains_has_a_margin():
-    assert room(2.0).contains([[0, 0, 0], [1.5, 0, 0]], margin=0.0).tolist() == [True, False]
-    assert room(2.0).contains([1.5, 0, 0], margin=1.0)

@@ -15,13 +15,11 @@ def box_mesh(low, high, colour, inward=False) -> TexturedMesh:
 
 
 def plain_object(label: str, x: float, y: float, width: float, height: float, colour) -> RoomObject:
-    """A box with a square footprint on the floor."""
     half = width / 2
     return RoomObject(label, x, y, 0.0, (box_mesh((x - half, y - half, 0), (x + half, y + half, height), colour),))
 
 
 def plain_room(*objects: RoomObject) -> Room:
-    """A white room of 6 x 6 m around the origin."""
     walls = np.array([[-3.0, -3.0], [3.0, -3.0], [3.0, 3.0], [-3.0, 3.0]])
     shell = (box_mesh((-3, -3, 0), (3, 3, 2.5), (255, 255, 255), inward=True),)
     return Room(walls, 2.5, objects, shell, (Lamp((0.0, 0.0, 2.3), (1.0, 1.0, 1.0), 1.0),))

@@ -56,10 +56,8 @@ def _pieces(rng: Generator) -> dict[str, Piece]:
         ("green chair", 98, 62, furniture.Chair(0.52, 0.5, 0.44, 0.86, splay=0.02, leg_radius=0.029)),
         ("blue chair", 222, 72, furniture.Chair(0.48, 0.48, 0.46, 0.78, back="shell", leg_radius=0.028)),
     ):
-        cover, frame = (
-            cloth(rng, colour(hue, 78, value), "lattice", size=0.4),
-            wood(rng, colour(hue, 72, 0.8 * value), 0.5),
-        )
+        cover = cloth(rng, colour(hue, 78, value), "lattice", size=0.4)
+        frame = wood(rng, colour(hue, 72, 0.8 * value), 0.5)
         pieces[name] = furniture.build_chair(chair, frame, cover)
     oak, blue = wood(rng, colour(30, 68, 78), 0.9, 512), wood(rng, colour(208, 60, 55), 0.6)
     spread = cloth(rng, colour(205, 66, 74), "tartan", size=0.7, pixels=512)
@@ -87,9 +85,8 @@ def _pieces(rng: Generator) -> dict[str, Piece]:
     fridge = furniture.Refrigerator(0.6, 0.6, 1.55, (0.4,), handle="bar", radius=0.037)
     body = metal(rng, colour(158, 46, 82), 0.8, 512)
     pieces["refrigerator"] = furniture.build_refrigerator(fridge, body, steel, dark, notes)
-    pieces["television"] = furniture.build_television(
-        furniture.Television(1.0, 0.06, 0.045, "floor", 0.45), dark, screen
-    )
+    television = furniture.Television(1.0, 0.06, 0.045, "floor", 0.45)
+    pieces["television"] = furniture.build_television(television, dark, screen)
     return pieces
 
 

@@ -64,9 +64,7 @@ class RigModel:
 
 
 # The rig of data/room, which was photographed before these faults had parameters: kinder than a real one.
-NEARLY_PERFECT_RIG = RigModel(
-    1.0, 0.05, relative_yaw_deg=0.0, baseline_error=0.0, height_error=0.0, assembled_anew=True
-)
+NEARLY_PERFECT_RIG = RigModel(1.0, 0.05, 0.0, baseline_error=0.0, height_error=0.0, assembled_anew=True)
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,10 @@
 """Rays through the true world, with what they meet: distance, incidence and reflectivity."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 
 from course_lib.rendering.ray import EmbreeCaster
-from course_lib.simulation.corridor.mesh_building import WorldMesh
 
 # Rays per call, so that the results of one call stay below about 100 MB.
 _BATCH = 1_000_000
@@ -28,11 +25,6 @@ class WorldCaster:
     def __init__(self, vertices: np.ndarray, faces: np.ndarray, reflectivity: np.ndarray | float = 1.0) -> None:
         self._caster = EmbreeCaster(vertices[faces])
         self.reflectivity = np.broadcast_to(np.asarray(reflectivity, dtype=np.float64), (len(faces),))
-
-    @classmethod
-    def of(cls, world: WorldMesh) -> WorldCaster:
-        """Caster of a world with its reflectivities."""
-        return cls(world.vertices, world.faces, world.reflectivity)
 
     def cast(self, origins: np.ndarray, directions: np.ndarray) -> Hits:
         """First hits of rays; origins and directions broadcast to `(..., 3)`, directions need not have length one."""

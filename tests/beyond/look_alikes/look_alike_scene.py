@@ -48,7 +48,6 @@ def observed(semantic_map, pose, which=None, rng=None):
 
 
 def turned(semantic_map, angle, shift=(0.0, 0.0)):
-    """The same map in another world frame."""
     rotation = rotations(np.array(angle))
     landmarks = [
         Landmark(one.label, *map(float, rotation @ (one.x, one.y) + shift), one.hue, one.saturation)
@@ -58,7 +57,6 @@ def turned(semantic_map, angle, shift=(0.0, 0.0)):
 
 
 def scattered(rng):
-    """A room of eight blue objects of four classes, anywhere."""
     labels = ("sofa",) * 3 + ("chair",) * 2 + ("table",) * 2 + ("potted plant",)
     objects = [Landmark(label, *map(float, rng.uniform(-3, 3, 2).round(1)), *BLUE) for label in labels]
     return SemanticMap(objects, SYMMETRIC.walls)

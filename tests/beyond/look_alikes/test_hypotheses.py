@@ -8,14 +8,7 @@ from course_lib.spherical_stereo.semantic_map.association import Observation
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, observed
 
 
-def test_every_pair_of_right_matches_is_among_the_hypotheses_and_gives_the_pose():
-    found = pair_poses(scene_of(observed(PLANTED, POSE), PLANTED))
-    right = (found.observations == found.landmarks).all(axis=1)
-    np.testing.assert_allclose(found.poses[right], np.tile(POSE, (15, 1)), atol=1e-6)
-    assert len(found.poses) > 15, "look-alikes give wrong pairs too"
-
-
-def test_pairs_join_like_classes_to_distinct_landmarks_at_compatible_distances():
+def test_pairs_join_like_classes_to_distinct_landmarks_at_compatible_distances_and_the_right_ones_give_the_pose():
     observations = observed(PLANTED, POSE)
     scene = scene_of(observations, PLANTED)
     seen, on_map = pairs_of_matches(scene)
@@ -25,14 +18,12 @@ def test_pairs_join_like_classes_to_distinct_landmarks_at_compatible_distances()
         assert all(PLANTED.labels[j] == observations[i].label for i, j in zip(seen[:, k], on_map[:, k], strict=True))
     narrow, _ = pairs_of_matches(scene, gate=0.1)
     assert 0 < len(narrow) < len(seen)
-
-
-def test_two_objects_in_one_place_tell_no_heading():
     observations = [Observation("sofa", 1.0, 0.0, 0.0, 50.0), Observation("sofa", 1.2, 0.0, 0.0, 50.0)]
     assert len(pairs_of_matches(scene_of(observations, PLANTED))[0]) == 0
-
-
-def test_the_fits_covariance_is_that_of_its_errors():
+    found = pair_poses(scene)
+    right = (found.observations == found.landmarks).all(axis=1)
+    np.testing.assert_allclose(found.poses[right], np.tile(POSE, (15, 1)), atol=1e-6)
+    assert len(found.poses) > 15, "look-alikes give wrong pairs too"
     rng = np.random.default_rng(3)
     errors = []
     for _ in range(300):

@@ -51,13 +51,20 @@ def test_in_an_empty_cube_four_places_are_as_good(renderer):
     assert reach == pytest.approx([np.hypot(*walk(PLACE, 5)[-1][:2])] * 2, abs=0.1)
 
 
-def test_what_no_place_explains_is_not_found(renderer, rng):
+def test_what_no_place_explains_is_not_found_and_a_person_who_walks_by_raises_no_alarm(renderer, rng):
     search = GlobalSearch(renderer, seed=1, least=200, most=1_000)
     noise = rng.uniform(0.5, 6.0, (5, *SMALL.shape))
     assert {search.step(depth, np.array([0.0, 1.0, 0.0])).status for depth in noise} == {"searching"}
+    localizer = RecoveringLocalizer(renderer, seed=1)
+    localizer.initialize(PLACE)
+    for number, state in enumerate(walk(PLACE, 12)):
+        depth = renderer.render(state)[0].copy()
+        if 4 <= number < 9:
+            depth[:, 8 * (number - 4) : 8 * (number - 4) + 24] = 0.6
+        assert localizer.step(depth, gravity=down(state)).mode == "following"
 
 
-def test_drawn_poses_have_the_measured_down(rng):
+def test_drawn_poses_have_the_measured_down_and_free_places_are_inside_and_clear_of_furniture(rng):
     positions = rng.uniform(-1, 1, (500, 3))
     for state in (PLACE, ELSEWHERE, np.array([0, 0, 0, 0, np.pi / 2, 0.0]), np.array([0, 0, 0, np.pi, 0, 0.0])):
         poses = upright_poses(positions, 9.81 * down(state), 1e-6, rng)
@@ -65,10 +72,6 @@ def test_drawn_poses_have_the_measured_down(rng):
         forward = np.arctan2(poses[:, 1, 0], poses[:, 0, 0])
         assert np.abs(np.exp(1j * forward).mean()) < 0.15, "any heading"
         assert poses[:, :3, 3] == pytest.approx(positions)
-
-
-def test_free_places_are_inside_and_clear_of_furniture(rng):
-    """A house of two rooms in an empty field; its box holds as much outside as inside."""
     rooms = [room(6.0, (0.0, 0.0, 0.0)), room(6.0, (12.0, 12.0, 0.0))]
     corners = np.concatenate([r.vertices for r in rooms])
     space = FreeSpace(SceneMap(corners, np.concatenate([rooms[0].faces, rooms[1].faces + len(rooms[0].vertices)])))
@@ -99,24 +102,11 @@ def test_carried_away_in_the_dark_it_finds_itself_again(renderer):
     assert found[0].short < found[0].long
 
 
-def test_a_person_who_walks_by_raises_no_alarm(renderer):
-    localizer = RecoveringLocalizer(renderer, seed=1)
-    localizer.initialize(PLACE)
-    for number, state in enumerate(walk(PLACE, 12)):
-        depth = renderer.render(state)[0].copy()
-        if 4 <= number < 9:
-            depth[:, 8 * (number - 4) : 8 * (number - 4) + 24] = 0.6
-        assert localizer.step(depth, gravity=down(state)).mode == "following"
-
-
-def test_the_count_is_the_chi_square_quantile_that_it_approximates():
+def test_the_count_is_the_chi_square_quantile_and_poses_are_counted_by_where_they_are_and_look():
     for bins in (2, 10, 100, 1000):
         exact = chi2.ppf(0.99, bins - 1) / (2 * 0.05)
         assert kld_count(bins, 1, 10**7) == pytest.approx(exact, rel=0.02)
     assert [kld_count(bins, 50, 5_000) for bins in (0, 1, 3_000)] == [50, 50, 5_000]
-
-
-def test_poses_are_counted_by_where_they_are_and_where_they_look():
     states = np.zeros((5, 6))
     states[:, :3] = 0.1
     states[1, 0], states[2, 0], states[3, 5] = 0.2, 3.0, np.pi / 2

@@ -22,7 +22,7 @@ def random_covariance(rng, scale):
     return root @ root.T + 1e-6 * np.eye(6)
 
 
-def test_before_a_bare_wall_an_image_shows_three_directions_of_six_and_a_rough_map_of_it_no_more(rng):
+def test_before_a_bare_wall_an_image_shows_three_directions_a_rough_map_no_more_and_a_furnished_room_all_six(rng):
     """Right, down and about forward are open; the map's roughness, which the camera does not see, tells nothing."""
     pose = optical_pose(np.zeros(6))
     image = image_of(wall(0.9, 5.0), pose)
@@ -35,9 +35,6 @@ def test_before_a_bare_wall_an_image_shows_three_directions_of_six_and_a_rough_m
         information = pose_information(measured, image_of(rough_wall(rng), pose), SMALL)
         known.append(np.diag(information)[[0, 1, 5]] > 0.01 * np.diag(information)[[2, 3, 3]])
     assert np.mean(known) < 0.15
-
-
-def test_in_a_furnished_room_an_image_shows_all_six_and_without_a_view_none():
     pose = optical_pose(np.array([-1.0, 0.3, -0.3, 0.05, 0.1, -0.4]))
     image = image_of(furnished_room(), pose)
     assert np.linalg.matrix_rank(pose_information(image, image, SMALL), hermitian=True) == 6
@@ -54,17 +51,6 @@ def test_an_error_is_carried_along_as_poses_carry_it(rng):
     expected = np.cov(carried, rowvar=False)
     got = predicted_covariance(small, motion, np.full(6, 1e-9))
     assert (np.abs(got - expected) < 0.05 * np.sqrt(np.outer(np.diag(expected), np.diag(expected)))).all()
-
-
-def test_a_wrong_velocity_is_wrong_the_same_way_frame_after_frame():
-    """Deviations add: after ten frames ten times the spread, not the root of ten times."""
-    spread, covariance = np.full(6, 0.01 / PREDICTED), 0.01**2 * np.eye(6)
-    for _ in range(9):
-        covariance = predicted_covariance(covariance, np.zeros(6), spread)
-    assert np.sqrt(np.diag(covariance)) == pytest.approx(np.full(6, 0.1), rel=1e-6)
-
-
-def test_no_dependence_between_the_two_errors_exceeds_the_predicted_covariance(rng):
     for _ in range(20):
         before, spread = random_covariance(rng, 0.1), rng.uniform(0.01, 0.3, 6)
         bound = predicted_covariance(before, np.zeros(6), spread / PREDICTED)
@@ -72,6 +58,10 @@ def test_no_dependence_between_the_two_errors_exceeds_the_predicted_covariance(r
         shared = np.linalg.cholesky(before) @ turn @ np.diag(spread)  # fully dependent errors, any way
         together = before + np.diag(spread**2) + shared + shared.T
         assert np.linalg.eigvalsh(bound - together).min() > -1e-9
+    spread, covariance = np.full(6, 0.01 / PREDICTED), 0.01**2 * np.eye(6)
+    for _ in range(9):
+        covariance = predicted_covariance(covariance, np.zeros(6), spread)
+    assert np.sqrt(np.diag(covariance)) == pytest.approx(np.full(6, 0.1), rel=1e-6)  # ten times, not the root of it
 
 
 def test_along_each_direction_the_surer_is_believed():
@@ -81,9 +71,6 @@ def test_along_each_direction_the_surer_is_believed():
     assert np.sqrt(np.diag(covariance)) == pytest.approx([0.01, 0.1, 0.1, 0.2, 0.02, 0.2])
     assert np.diag(gain) == pytest.approx([1 - 0.01**2 / 0.1**2, 0, 0, 0, 1 - 0.02**2 / 0.2**2, 0])
     assert fused(covariance, information)[1] == pytest.approx(0.0, abs=1e-9), "the same image makes it no surer"
-
-
-def test_a_rival_widens_it_towards_itself_by_how_likely_it_is():
     pose, small = optical_pose(np.zeros(6)), np.eye(6) * 1e-6
     there = np.array([0.4, 0, 0, 0, 0, 0])
     equal = with_rivals(small, pose, [Rival(retract(pose, there), 0.0)])

@@ -13,7 +13,6 @@ STEP = np.array([0.03, 0.0, 0.1, 0.0, 0.05, 0.0])
 
 
 def walked(n, step=STEP):
-    """A prediction after n frames with the same motion."""
     prediction, pose = MotionPrediction(START), START
     prediction.found(pose)
     for _ in range(n):
@@ -22,15 +21,12 @@ def walked(n, step=STEP):
     return prediction, pose
 
 
-def test_before_a_motion_was_seen_the_cloud_is_that_of_a_start_by_hand():
+def test_the_cloud_is_as_wide_as_the_longest_of_the_last_motions_and_before_one_was_seen_as_for_a_start_by_hand():
     prediction = MotionPrediction(START)
     assert prediction.spread()[[0, 3]] == pytest.approx(module.START_SPREAD)
     prediction.found(retract(START, STEP))  # the start was off; that is no motion
     assert prediction.spread()[[0, 3]] == pytest.approx(module.START_SPREAD)
     assert not prediction.motion.any()
-
-
-def test_the_cloud_is_as_wide_as_the_longest_of_the_last_motions():
     prediction, pose = walked(5)
     prediction.found(retract(pose, 4 * STEP), seen=False)  # an image that leaves a direction open teaches no length
     prediction.found(pose, seen=False)
@@ -48,7 +44,7 @@ def test_the_cloud_is_as_wide_as_the_longest_of_the_last_motions():
     assert walked(3, 50 * STEP)[0].spread()[0] == module.MAX_SPREAD[0]
 
 
-def test_particles_lie_about_the_motion_going_on(rng):
+def test_particles_lie_about_the_motion_an_odometer_is_believed_but_for_a_share_and_predictions_decide_ties(rng):
     prediction, pose = walked(3)
     particles = prediction.draw(4000, np.full(6, 1e-6), rng)
     assert particles[0] == pytest.approx(pose, abs=1e-12)
@@ -57,17 +53,21 @@ def test_particles_lie_about_the_motion_going_on(rng):
     assert shares.min() == pytest.approx(-0.25, abs=0.01)
     assert shares.max() == pytest.approx(1.25, abs=0.01)
     assert np.mean(shares) == pytest.approx(0.5, abs=0.03)
-
-
-def test_an_odometer_is_believed_but_for_a_share(rng):
-    prediction, pose = walked(3)
     increment = np.array([0.2, 0.0, 0.0, 0.0, 0.0, 0.4])
     assert prediction.spread(increment)[[0, 3]] == pytest.approx(module.SPREAD_OF_INCREMENT * np.array([0.2, 0.4]))
     particles = prediction.draw(500, np.full(6, 1e-6), rng, increment)
     assert local(retract(pose, increment), particles) == pytest.approx(0.0, abs=1e-4)
+    spread = np.full(6, 0.1)
+    on_the_way = retract(pose, STEP * np.array([[0.0], [0.5], [1.0]]))
+    assert prediction.preference(on_the_way, spread) == pytest.approx(np.zeros(3), abs=1e-9)
+    beyond = retract(retract(pose, STEP), np.array([0.0, 0.2, 0.0, 0.0, 0.0, 0.0]))
+    assert prediction.preference(beyond[None], spread) == pytest.approx([-2.0 * PRIOR_SHARE], rel=0.02)
+    assert prediction.preference(pose[None], spread, STEP)[0] < -0.5 * PRIOR_SHARE, "an odometer says how far it went"
+    prediction.not_found(beyond, spread)
+    assert prediction.preference(np.array([pose, beyond]), spread) == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
-def test_where_it_was_not_found_half_the_cloud_starts_from_either_place_and_grows(rng):
+def test_where_it_was_not_found_or_has_rivals_the_cloud_starts_from_either_place(rng):
     prediction, pose = walked(3)
     doubted, spread = retract(pose, np.array([2.0, 0, 0, 0, 0, 0])), prediction.spread()
     prediction.not_found(doubted, spread)
@@ -76,9 +76,6 @@ def test_where_it_was_not_found_half_the_cloud_starts_from_either_place_and_grow
     assert (along > 1.0).mean() == pytest.approx(0.5, abs=0.01)
     prediction.found(doubted)
     assert not prediction.rivals
-
-
-def test_the_cloud_starts_from_the_rivals_too_and_a_motion_is_taken_from_the_nearest_place(rng):
     prediction, pose = walked(3)
     there, rival = retract(pose, STEP), retract(pose, np.array([3.0, 0, 0, 0, 0, 0]))
     prediction.found(there, rivals=[Rival(rival, -0.01)])
@@ -93,15 +90,3 @@ def test_the_cloud_starts_from_the_rivals_too_and_a_motion_is_taken_from_the_nea
     assert predicted == pytest.approx(arrived, abs=1e-9)
     prediction.found(arrived)
     assert prediction.motion == pytest.approx(STEP, abs=1e-9)
-
-
-def test_between_equals_the_prediction_decides(rng):
-    prediction, pose = walked(3)
-    spread = np.full(6, 0.1)
-    on_the_way = retract(pose, STEP * np.array([[0.0], [0.5], [1.0]]))
-    assert prediction.preference(on_the_way, spread) == pytest.approx(np.zeros(3), abs=1e-9)
-    beyond = retract(retract(pose, STEP), np.array([0.0, 0.2, 0.0, 0.0, 0.0, 0.0]))
-    assert prediction.preference(beyond[None], spread) == pytest.approx([-2.0 * PRIOR_SHARE], rel=0.02)
-    assert prediction.preference(pose[None], spread, STEP)[0] < -0.5 * PRIOR_SHARE, "an odometer says how far it went"
-    prediction.not_found(beyond, spread)
-    assert prediction.preference(np.array([pose, beyond]), spread) == pytest.approx([0.0, 0.0], abs=1e-9)

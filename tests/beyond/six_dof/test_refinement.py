@@ -44,7 +44,7 @@ def test_the_compiled_sums_are_the_equations_sums(rng, camera):
         assert getattr(compiled, name) == pytest.approx(getattr(plain, name), rel=1e-6, abs=1e-6), name
 
 
-def test_the_right_hand_side_is_the_gradient_of_half_the_sum_of_squares(renderer):
+def test_the_right_hand_side_is_the_gradient_and_no_step_is_longer_than_first_order_reaches(renderer):
     """Numerically, with the surface held still: every measured point moved by a small motion of the camera."""
     image = renderer.render_poses(TRUE[None])[0].astype(float)
     measured = np.where(np.isfinite(image), image + 0.01, np.nan)
@@ -60,6 +60,12 @@ def test_the_right_hand_side_is_the_gradient_of_half_the_sum_of_squares(renderer
     numeric = [(cost(1e-5 * e) - cost(-1e-5 * e)) / 2e-5 for e in np.eye(6)]
     assert system.vectors[0] == pytest.approx(numeric, rel=1e-4, abs=1e-4)
     assert system.weights[0] == pytest.approx(np.isfinite(n).all(axis=-1).sum(), rel=1e-6)
+    measured = renderer.render_poses(TRUE[None])[0]
+    far = retract(TRUE, np.array([0.3, 0.2, -0.8, 0.3, 0.4, 0.2]))
+    images = renderer.render_poses(far[None])
+    motion = lengths(solve(normal_equations(measured, images, SMALL, 10.0)))[0]
+    assert (motion <= np.array(LONGEST_STEP) * (1 + 1e-9)).all()
+    assert (motion / LONGEST_STEP).max() == pytest.approx(1.0)
 
 
 def test_poses_near_the_right_one_come_to_it(renderer, rng):
@@ -70,12 +76,3 @@ def test_poses_near_the_right_one_come_to_it(renderer, rng):
     measured[10:40, 20:32] = 0.8
     off = lengths(local(TRUE, refine(renderer, measured, near_poses(rng, 20, 0.04, 0.03), SCALES)))
     assert np.median(off[:, 0]) < 0.01, "a person in the way pulls little"
-
-
-def test_no_step_is_longer_than_first_order_reaches(renderer):
-    measured = renderer.render_poses(TRUE[None])[0]
-    far = retract(TRUE, np.array([0.3, 0.2, -0.8, 0.3, 0.4, 0.2]))
-    images = renderer.render_poses(far[None])
-    motion = lengths(solve(normal_equations(measured, images, SMALL, 10.0)))[0]
-    assert (motion <= np.array(LONGEST_STEP) * (1 + 1e-9)).all()
-    assert (motion / LONGEST_STEP).max() == pytest.approx(1.0)

@@ -54,7 +54,6 @@ def box_world(rng):
 
 @pytest.fixture(scope="module")
 def make(tmp_path_factory):
-    """Makes the data of the box with scanner parameters changed."""
 
     def make_data(folder=None, **scanner):
         fused = []
@@ -83,7 +82,7 @@ def ahead(path):
 
 
 @pytest.mark.slow
-def test_one_seed_gives_the_same_bytes_and_other_files_stay(made, make, tmp_path):
+def test_one_seed_gives_the_same_bytes_and_the_map_is_fused_at_believed_stations(made, make, tmp_path):
     (tmp_path / "wagon").mkdir()
     (tmp_path / "wagon" / "old.txt").write_text("of an older run")
     (tmp_path / "README.md").write_text("written by hand")
@@ -92,43 +91,7 @@ def test_one_seed_gives_the_same_bytes_and_other_files_stay(made, make, tmp_path
     assert checksums(tmp_path, data.PRODUCTS) == (made.folder / "SHA256SUMS").read_text()
     assert (tmp_path / "README.md").read_text() == "written by hand"
     assert not (tmp_path / "wagon" / "old.txt").exists()
-
-
-def test_all_products_are_there_and_readable(made):
-    folder, numbers = made.folder, made.summary["measured"]
-    assert {path.name for path in folder.iterdir()} == set(data.PRODUCTS)
-    assert len(SceneMap.load(folder / "map.ply").faces) == numbers["map"]["triangles"]
-    assert (len(read_sequence(folder / "wagon")), len(read_sequence(folder / "hand"))) == (2, 3)
-    assert json.loads((folder / "summary.json").read_text())["seed"] == 3
-    assert np.isfinite([numbers["map"]["hole_share"], numbers["wagon"]["no_return_share"]]).all()
-    assert set(numbers["noise_on_a_wall_m"]) == {"2 m", "5 m", "8 m"}
-
-
-@pytest.mark.parametrize("name", ["scanner", "fusion", "camera", "wagon", "hand", "floor_survey"])
-def test_every_parameter_has_a_source_or_is_called_chosen(name):
-    model = getattr(data.CorridorModels(), name)
-    comments = field_comments(model)
-    assert set(comments) == {field.name for field in dataclasses.fields(model)}
-    for field, comment in comments.items():
-        assert "chosen" in comment or "data sheet" in comment, field
-
-
-def test_the_map_is_of_the_survey_day(made):
-    assert ahead(made.folder / "map.ply") == pytest.approx(LONG - 2.0, abs=0.1)
-    assert ahead(made.folder / "planar_map.ply") == pytest.approx(LONG - 2.0, abs=0.1)
-
-
-def test_the_recordings_are_of_the_run_day(made):
-    assert ahead(made.folder / "true_world.ply") == pytest.approx(SCREEN - 2.0, abs=0.01)
-    for name in ("wagon", "hand"):
-        sequence = read_sequence(made.folder / name)
-        middle = sequence.depth(0)[62:82, 78:98]
-        assert np.nanmedian(middle) < SCREEN - sequence.camera_to_world[0, 0, 3] + 0.6
-
-
-@pytest.mark.slow
-def test_the_map_is_fused_where_registration_believes_the_stations_stood(make):
-    """Stations believed 0.2 m from where they stood bend the map; fused with their true poses it would not be bent."""
+    # Stations believed 0.2 m from where they stood bend the map; fused with their true poses it would not be bent.
     exact, bent = (
         make(registration_position=sigma, registration_tilt_deg=0.0, registration_heading_deg=0.0).summary["measured"][
             "map"
@@ -141,6 +104,29 @@ def test_the_map_is_fused_where_registration_believes_the_stations_stood(make):
     assert bent["distance_to_surveyed_world"]["median_m"] > 5 * exact["distance_to_surveyed_world"]["median_m"]
 
 
-def test_fusion_is_given_no_true_pose(made):
+@pytest.mark.parametrize("name", ["scanner", "fusion", "camera", "wagon", "hand", "floor_survey"])
+def test_every_parameter_has_a_source_or_is_called_chosen(name):
+    model = getattr(data.CorridorModels(), name)
+    comments = field_comments(model)
+    assert set(comments) == {field.name for field in dataclasses.fields(model)}
+    for field, comment in comments.items():
+        assert "chosen" in comment or "data sheet" in comment, field
+
+
+def test_all_products_are_there_the_map_of_the_survey_day_without_true_poses_the_recordings_of_the_run_day(made):
+    assert ahead(made.folder / "map.ply") == pytest.approx(LONG - 2.0, abs=0.1)
+    assert ahead(made.folder / "planar_map.ply") == pytest.approx(LONG - 2.0, abs=0.1)
+    assert ahead(made.folder / "true_world.ply") == pytest.approx(SCREEN - 2.0, abs=0.01)
+    for name in ("wagon", "hand"):
+        sequence = read_sequence(made.folder / name)
+        middle = sequence.depth(0)[62:82, 78:98]
+        assert np.nanmedian(middle) < SCREEN - sequence.camera_to_world[0, 0, 3] + 0.6
     assert len(made.fused) == 2
     assert not any(hasattr(scan, "true_pose") for scan in made.fused)
+    folder, numbers = made.folder, made.summary["measured"]
+    assert {path.name for path in folder.iterdir()} == set(data.PRODUCTS)
+    assert len(SceneMap.load(folder / "map.ply").faces) == numbers["map"]["triangles"]
+    assert (len(read_sequence(folder / "wagon")), len(read_sequence(folder / "hand"))) == (2, 3)
+    assert json.loads((folder / "summary.json").read_text())["seed"] == 3
+    assert np.isfinite([numbers["map"]["hole_share"], numbers["wagon"]["no_return_share"]]).all()
+    assert set(numbers["noise_on_a_wall_m"]) == {"2 m", "5 m", "8 m"}

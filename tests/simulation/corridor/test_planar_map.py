@@ -9,7 +9,6 @@ from course_lib.simulation.corridor.planar_map import planar_simplification
 
 
 def rough_room(rng, noise=0.01):
-    """A room of 4 x 3 x 2.5 m with bumpy walls, and a ball of 0.2 m radius in it."""
     room = trimesh.creation.box((4.0, 3.0, 2.5)).subdivide_to_size(0.15)
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.2)
     vertices = np.concatenate([room.vertices + noise * rng.uniform(-1, 1, room.vertices.shape), ball.vertices])
@@ -21,20 +20,14 @@ def area(scene_map):
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
 
 
-@pytest.fixture(scope="module")
-def planar():
-    return planar_simplification(rough_room(np.random.default_rng(0)), np.random.default_rng(1))
-
-
-def test_the_six_walls_stay_and_the_ball_goes(planar):
+def test_the_six_walls_stay_the_ball_goes_and_a_plane_is_fitted_by_area():
+    rough = rough_room(np.random.default_rng(0))
+    planar = planar_simplification(rough, np.random.default_rng(1))
     assert area(planar) == pytest.approx(2 * (4 * 3 + 4 * 2.5 + 3 * 2.5), rel=0.05)
-    assert len(planar.faces) < 0.2 * len(rough_room(np.random.default_rng(0)).faces)
+    assert len(planar.faces) < 0.2 * len(rough.faces)
     used = planar.vertices[np.unique(planar.faces)]
     assert (np.linalg.norm(used, axis=1) > 1.0).all()
-
-
-def test_a_plane_is_fitted_by_area_and_not_by_the_number_of_triangles():
-    """Nine square metres in 18 triangles outweigh one in thousands, 40 mm above: the plane stays near the large one."""
+    # Nine square metres in 18 triangles outweigh one in thousands, 40 mm above: the plane stays near the large one.
     coarse, fine = (
         trimesh.Trimesh([[x, x, z], [y, x, z], [y, y, z], [x, y, z]], [[0, 1, 2], [0, 2, 3]])
         for x, y, z in ((0.0, 3.0, 0.0), (1.0, 2.0, 0.04))

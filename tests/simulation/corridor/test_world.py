@@ -28,15 +28,12 @@ def moved(one, other, building, boxes=()):
     return np.any(doors, axis=1)
 
 
-def test_only_doors_and_clutter_differ_between_the_days(world, building):
+def test_the_seed_decides_the_world_and_only_doors_and_clutter_differ_between_its_days(world, building):
     different = [row[4] != row[5] for row in building.layout["left doors"]]
     assert moved(world.survey_day, world.run_day, building).tolist() == different
     assert (moved(world.run_day, world.survey_day, building, world.clutter_boxes) >= different).all()
     middles = world.clutter_boxes.mean(axis=1)
     assert np.abs(middles - [(thing.x, thing.y) for thing in CLUTTER]).max() < 0.4
-
-
-def test_the_seed_decides_the_world(world):
     again, other = make_corridor(np.random.default_rng(4)), make_corridor(np.random.default_rng(5))
     assert np.array_equal(world.run_day.vertices, again.run_day.vertices)
     assert not np.array_equal(world.run_day.vertices, other.run_day.vertices)

@@ -31,16 +31,12 @@ def small(tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_one_seed_gives_the_same_bytes_and_other_files_stay(small, tmp_path):
+def test_one_seed_gives_the_same_bytes_and_says_where_each_pair_and_object_was(small, tmp_path):
     (tmp_path / "README.md").write_text("written by hand")
     make_room_data(tmp_path, 11, SMALL)
     assert checksums(tmp_path, PRODUCTS) == checksums(small, PRODUCTS)
     assert (small / "SHA256SUMS").read_text() == checksums(small, PRODUCTS)
     assert (tmp_path / "README.md").read_text() == "written by hand"
-
-
-@pytest.mark.slow
-def test_the_recording_says_where_each_pair_was_taken(small):
     place = MEASUREMENT_PLACES[2]
     for number, height in ((1, 1.32), (2, 1.44)):
         recording = read_stereo_recording(small / f"experiment_{number}")
@@ -51,10 +47,6 @@ def test_the_recording_says_where_each_pair_was_taken(small):
             assert wrap_angle(pair.pose[2] - np.deg2rad(heading)) == pytest.approx(0.0, abs=1e-12)
             upper, lower = pair.images()
             assert upper.shape == lower.shape == (160, 320, 3)
-
-
-@pytest.mark.slow
-def test_the_map_lists_every_object_of_the_room_where_it_stands(small):
     room, semantic_map = make_experiment_room(), SemanticMap.load(small / "semantic_map.json")
     assert list(semantic_map.labels) == [thing.label for thing in room.objects]
     true = np.array([[thing.x, thing.y] for thing in room.objects])

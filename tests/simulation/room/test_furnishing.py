@@ -48,14 +48,19 @@ def test_the_same_seed_makes_the_same_bytes(rooms, training_rooms, experiment):
     assert bytes_of(make_look_alike_room(SEEDS[0], draw=1)) != bytes_of(rooms[0])
 
 
-def test_no_room_for_reporting_is_the_training_generators(rooms):
-    """The first random number of both is the room's size: here as a share of each generator's range."""
+def test_pieces_neither_overlap_nor_leave_the_room_and_some_look_alike(rooms, training_rooms, experiment):
+    for room in rooms:
+        pieces = [thing for thing in room.objects if thing.label == room.objects[0].label]
+        assert pieces[0].label in LIMITS.kinds
+        assert 3 <= len(pieces) <= 5
+        for other in pieces[1:]:
+            for first, second in zip(pieces[0].meshes, other.meshes, strict=True):
+                np.testing.assert_array_equal(first.texture, second.texture)
+                np.testing.assert_array_equal(first.texture_coordinates, second.texture_coordinates)
+                np.testing.assert_allclose(np.ptp(first.vertices[:, 2]), np.ptp(second.vertices[:, 2]))
     ours = (np.ptp(rooms[0].walls, axis=0) - 5.0) / 2.0
     for source in (SEEDS[0], np.random.default_rng(SEEDS[0]).spawn(1)[0]):
         assert not np.allclose((np.ptp(make_room(source).walls, axis=0) - 4.5) / 3.0, ours)
-
-
-def test_no_two_pieces_at_one_height_overlap_and_none_leaves_the_room(training_rooms, experiment):
     for room in [*training_rooms, experiment]:
         low, high = room.walls.min(axis=0), room.walls.max(axis=0)
         for item in room.objects:
@@ -69,9 +74,6 @@ def test_no_two_pieces_at_one_height_overlap_and_none_leaves_the_room(training_r
                 lower, upper = sorted((first, second), key=lambda item: item.vertices()[:, 2].min())
                 assert (lower.label, upper.label) == ("cabinet", "television")
                 assert upper.vertices()[:, 2].min() >= lower.vertices()[:, 2].max() - 0.005
-
-
-def test_only_the_distance_from_the_centroid_tells_the_sofas_apart(experiment):
     places = np.array([(item.x, item.y) for item in experiment.objects])
     from_centroid = np.linalg.norm(places - places.mean(axis=0), axis=1)
     assert [name for name, *_ in LAYOUT[:3]] == ["sofa south", "sofa east", "sofa west"]
@@ -81,19 +83,7 @@ def test_only_the_distance_from_the_centroid_tells_the_sofas_apart(experiment):
     assert apart.max() < 1.2
 
 
-def test_three_to_five_pieces_of_one_class_are_one_piece_in_several_places(rooms):
-    for room in rooms:
-        pieces = [thing for thing in room.objects if thing.label == room.objects[0].label]
-        assert pieces[0].label in LIMITS.kinds
-        assert 3 <= len(pieces) <= 5
-        for other in pieces[1:]:
-            for first, second in zip(pieces[0].meshes, other.meshes, strict=True):
-                np.testing.assert_array_equal(first.texture, second.texture)
-                np.testing.assert_array_equal(first.texture_coordinates, second.texture_coordinates)
-                np.testing.assert_allclose(np.ptp(first.vertices[:, 2]), np.ptp(second.vertices[:, 2]))
-
-
-def test_the_rig_stands_free_in_two_headings_at_every_place(rooms):
+def test_the_rig_stands_free_in_two_headings_and_every_step_of_a_walk_is_short_and_ends_where_a_rig_can_stand(rooms):
     for seed, room in zip(SEEDS, rooms, strict=True):
         poses = measurement_poses(room, 5, seed)
         assert poses.shape == (5, 3)
@@ -103,16 +93,8 @@ def test_the_rig_stands_free_in_two_headings_at_every_place(rooms):
         assert (np.round(quarters) % 4 != 0).all()
         assert min(distance_to(footprint(thing), poses[:, :2]).min() for thing in room.objects) >= 0.3
         np.testing.assert_array_equal(measurement_poses(room, 20, seed)[:5], poses)
-
-
-@pytest.fixture(scope="module")
-def walks(rooms):
     rng = np.random.default_rng(0)
-    starts = measurement_poses(rooms[0], 20, SEEDS[0])
-    return [(start, walk_from(rooms[0], start, 3, rng)) for start in starts]
-
-
-def test_every_step_of_a_walk_is_short_and_ends_where_a_rig_can_stand(walks, rooms):
+    walks = [(start, walk_from(rooms[0], start, 3, rng)) for start in measurement_poses(rooms[0], 20, SEEDS[0])]
     for start, walk in walks:
         poses = np.vstack([start, walk])
         steps = np.linalg.norm(np.diff(poses[:, :2], axis=0), axis=1)

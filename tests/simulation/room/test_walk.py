@@ -22,17 +22,8 @@ def walk(request):
     return room, walk_states(room, WalkModel(), np.random.default_rng(request.param))
 
 
-def test_it_keeps_clear_of_walls_and_furniture(walk):
+def test_all_six_degrees_of_freedom_move_none_jumps_and_it_keeps_clear_of_walls_and_furniture(walk):
     room, states = walk
-    low, high = room.walls.min(axis=0), room.walls.max(axis=0)
-    assert (states[:, :2] > low + 0.3).all()
-    assert (states[:, :2] < high - 0.3).all()
-    nearest = min(distance_to(footprint(item), states[:, :2]).min() for item in room.objects)
-    assert nearest > 0.15, "corners of the way are rounded, by less than what it keeps clear"
-
-
-def test_all_six_degrees_of_freedom_move_and_none_jumps(walk):
-    _, states = walk
     assert states.shape == (WalkModel().frames, 6)
     steps, turns = steps_and_turns(states)
     assert np.median(steps) == pytest.approx(0.08, rel=0.2)
@@ -43,17 +34,15 @@ def test_all_six_degrees_of_freedom_move_and_none_jumps(walk):
     assert height > 0.05
     assert min(roll, pitch) > 0.1
     assert heading > 1.0
+    low, high = room.walls.min(axis=0), room.walls.max(axis=0)
+    assert (states[:, :2] > low + 0.3).all()
+    assert (states[:, :2] < high - 0.3).all()
+    nearest = min(distance_to(footprint(item), states[:, :2]).min() for item in room.objects)
+    assert nearest > 0.15, "corners of the way are rounded, by less than what it keeps clear"
 
 
 @pytest.mark.slow
-def test_where_nobody_can_walk_it_says_so():
-    room = make_look_alike_room(SEEDS[0])
-    with pytest.raises(NoFreePlace, match="no walk of 120 frames"):
-        walk_states(room, WalkModel(shortest_stretch=50.0), np.random.default_rng(1))
-
-
-@pytest.mark.slow
-def test_a_recording_is_what_a_user_would_have_and_its_seed_decides_every_byte(tmp_path):
+def test_a_recordings_seed_decides_every_byte_and_where_nobody_can_walk_it_says_so(tmp_path):
     coarse = DepthSurveyModel(
         scanner=ScannerModel(step_deg=1.5), fusion=FusionModel(voxel=0.08, truncation=0.24, triangles=4000)
     )
@@ -70,3 +59,6 @@ def test_a_recording_is_what_a_user_would_have_and_its_seed_decides_every_byte(t
     assert (state_from_optical_pose(recording.camera_to_world)[:, :3] > low).all()
     assert (state_from_optical_pose(recording.camera_to_world)[:, :3] < high).all()
     assert np.isfinite(recording.depth(0)).mean() > 0.5
+    room = make_look_alike_room(SEEDS[0])
+    with pytest.raises(NoFreePlace, match="no walk of 120 frames"):
+        walk_states(room, WalkModel(shortest_stretch=50.0), np.random.default_rng(1))

@@ -34,7 +34,7 @@ def renderer():
         yield renderer
 
 
-def test_ahead_is_the_centre_left_is_a_quarter_behind_is_the_seam(renderer):
+def test_ahead_is_the_centre_behind_is_the_seam_and_a_hidden_object_knows_how_much_of_it_is_seen(renderer):
     image = renderer.render(EYE)
     row = int(WIDTH / 2 * (0.5 + np.arctan(0.7 / 1.75) / np.pi))
     assert image.shape == (WIDTH // 2, WIDTH, 3)
@@ -45,6 +45,14 @@ def test_ahead_is_the_centre_left_is_a_quarter_behind_is_the_seam(renderer):
     numbers = renderer.render_objects(EYE)
     assert np.all(numbers[: WIDTH // 2] == BACKGROUND), "row 0 is straight up: objects stand below the horizon"
     assert np.any(numbers[WIDTH // 2 :] != BACKGROUND)
+    boxes = {box.number: box for box in object_boxes(renderer, EYE)}
+    assert 0 <= boxes[2].visible_box[0] < WIDTH < boxes[2].visible_box[2], "across the seam a box passes the width"
+    assert boxes[0].visible_fraction == 1.0
+    assert 0.0 < boxes[3].visible_fraction < 0.6
+    seen, whole = np.array(boxes[3].visible_box), np.array(boxes[3].unoccluded_box)
+    assert (whole[:2] <= seen[:2]).all()
+    assert (whole[2:] >= seen[2:]).all()
+    assert np.any(renderer.render_objects(EYE) == 0), "after the boxes everything is drawn again"
 
 
 def corners_on_image(thing, state, width):
@@ -67,18 +75,7 @@ def test_a_box_is_where_its_corners_project(renderer, yaw):
         assert v_min == pytest.approx(corners_on_image(thing, state, WIDTH)[:, 1].min(), abs=0.6)
 
 
-def test_a_hidden_object_knows_how_much_of_it_is_seen(renderer):
-    boxes = {box.number: box for box in object_boxes(renderer, EYE)}
-    assert 0 <= boxes[2].visible_box[0] < WIDTH < boxes[2].visible_box[2], "across the seam a box passes the width"
-    assert boxes[0].visible_fraction == 1.0
-    assert 0.0 < boxes[3].visible_fraction < 0.6
-    seen, whole = np.array(boxes[3].visible_box), np.array(boxes[3].unoccluded_box)
-    assert (whole[:2] <= seen[:2]).all()
-    assert (whole[2:] >= seen[2:]).all()
-    assert np.any(renderer.render_objects(EYE) == 0), "after the boxes everything is drawn again"
-
-
-def test_rig_tilts_stay_within_their_limits_and_are_shared():
+def test_rig_tilts_stay_within_their_limits_and_faults_of_a_mount_do_not_change_what_is_drawn_after_it():
     model, rng = RigModel(), np.random.default_rng(3)
     rigs = [stand_up((1.0, 2.0, 0.5), 1.44, 0.3, model, rng) for _ in range(200)]
     tilts = np.rad2deg([np.hypot(*rig.tilt) for rig in rigs])
@@ -93,10 +90,7 @@ def test_rig_tilts_stay_within_their_limits_and_are_shared():
         upper, lower = rig.camera_states()
         assert np.linalg.norm(upper[:3] - lower[:3]) == pytest.approx(rig.baseline)
         assert np.rad2deg(np.abs(upper[3:5] - lower[3:5])).max() <= model.relative_tilt_deg + 0.01
-
-
-def test_the_faults_of_a_mount_do_not_change_what_is_drawn_after_it():
-    """So that data/room, made before rigs had a yaw and a wrong baseline, comes out as it was."""
+    # So that data/room, made before rigs had a yaw and a wrong baseline, comes out as it was.
     used, reference = (np.random.default_rng(5) for _ in range(2))
     stand_up((1.0, 2.0, 0.5), 1.44, 0.3, RigModel(), used)
     reference.uniform(size=4)  # the length and the direction of two tilts

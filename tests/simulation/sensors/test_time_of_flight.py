@@ -37,39 +37,20 @@ def capture(world, model=MODEL, seed=0, errors=None):
     return TimeOfFlightCamera(CAMERA, model, rng, errors).capture(world, np.zeros(6), rng)
 
 
-def test_a_wall_at_two_metres_reads_two_metres():
-    depth = capture(walls((2.0, -20.0)), QUIET).depth
-    # The sub-rays of one pixel have slightly different ranges, the corner pixels most: below a millimetre in all.
-    assert np.abs(depth - 2.0).max() < 1e-3
-
-
-def test_systematic_errors_stay_within_the_data_sheet():
-    quiet_with_errors = dataclasses.replace(MODEL, shot_noise=0.0, dark_noise=0.0)
-    errors = [np.median(capture(walls((d, -20.0)), quiet_with_errors).depth) - d for d in np.arange(1.0, 4.0, 0.2)]
-    assert np.abs(errors).max() < 0.015
-    assert np.ptp(errors) > 0.008  # they are cyclic, not constant
-
-
-def test_noise_is_the_data_sheets_at_two_metres_and_grows_with_distance_and_with_darkness():
+def test_noise_grows_with_distance_and_darkness_a_near_bright_wall_saturates_and_one_beyond_the_range_is_wrapped():
     rng = np.random.default_rng(1)
     assert noise_on_a_wall(MODEL, 2.0, rng, reflectivity=0.99) == pytest.approx(0.006, abs=0.001)
     near, middle, far = (noise_on_a_wall(MODEL, d, rng) for d in (2, 5, 8))
     assert near < middle < far
     assert noise_on_a_wall(MODEL, 3.0, rng, reflectivity=0.2) > 1.3 * noise_on_a_wall(MODEL, 3.0, rng, reflectivity=0.8)
-
-
-def test_a_bright_wall_beyond_the_unambiguous_range_comes_back_wrapped():
+    assert np.isnan(capture(walls((0.5, -20.0), reflectivity=0.9)).depth[18, 22])
+    assert capture(walls((0.5, -20.0), reflectivity=0.2)).depth[18, 22] == pytest.approx(0.5, abs=0.03)
     frame = capture(walls((12.0, -20.0), reflectivity=0.9))
     assert frame.depth[18, 22] == pytest.approx(12.0 - MODEL.unambiguous_range, abs=0.3)
     assert frame.nearest[18, 22] > MODEL.unambiguous_range
 
 
-def test_a_near_bright_wall_saturates_and_a_near_dark_one_does_not():
-    assert np.isnan(capture(walls((0.5, -20.0), reflectivity=0.9)).depth[18, 22])
-    assert capture(walls((0.5, -20.0), reflectivity=0.2)).depth[18, 22] == pytest.approx(0.5, abs=0.03)
-
-
-def test_flying_pixels_lie_between_foreground_and_background():
+def test_a_wall_reads_its_distance_within_the_data_sheet_flying_pixels_lie_between_and_scattered_light_pulls():
     # The edge is a third of a sub-pixel column off the middle, so that one column of pixels sees both walls.
     frame = capture(walls((2.0, 0.012), (4.0, -20.0)), QUIET)
     mixed = frame.farthest - frame.nearest > 1.0
@@ -79,13 +60,17 @@ def test_flying_pixels_lie_between_foreground_and_background():
     assert (measured > frame.nearest[mixed] + 0.05).any()
     away = np.minimum(np.abs(frame.depth - 2.0), np.abs(frame.depth - 4.0))
     assert away[~mixed].max() < 0.01
-
-
-def test_scattered_light_pulls_a_far_dark_wall_towards_a_near_bright_one():
     # Three metres apart: at five, a half of the unambiguous range, the phasors would be opposite and only shorten.
     world = walls((1.0, 0.3), (4.0, -20.0), reflectivity=0.6)
     clean, scattered = capture(world, QUIET), capture(world, dataclasses.replace(QUIET, scattered_share=0.003))
     assert np.median((scattered.depth - clean.depth)[:, -4:]) < -0.005
+    quiet_with_errors = dataclasses.replace(MODEL, shot_noise=0.0, dark_noise=0.0)
+    errors = [np.median(capture(walls((d, -20.0)), quiet_with_errors).depth) - d for d in np.arange(1.0, 4.0, 0.2)]
+    assert np.abs(errors).max() < 0.015
+    assert np.ptp(errors) > 0.008  # they are cyclic, not constant
+    depth = capture(walls((2.0, -20.0)), QUIET).depth
+    # The sub-rays of one pixel have slightly different ranges, the corner pixels most: below a millimetre in all.
+    assert np.abs(depth - 2.0).max() < 1e-3
 
 
 def columns_of_the_wall(errors=None):
@@ -93,16 +78,12 @@ def columns_of_the_wall(errors=None):
     return np.isfinite(capture(walls((3.0, 0.6)), QUIET, errors=errors).depth[18]).sum()
 
 
-def test_a_longer_focal_length_shows_things_farther_from_the_middle():
+def test_a_longer_focal_length_shows_things_farther_out_distortion_moves_the_corners_and_the_mount_the_camera():
     """The edge lies 0.2 fx = 11 pixels left of the middle; a tenth more is one pixel farther."""
     told = columns_of_the_wall()
     assert told == columns_of_the_wall(CalibrationErrors())
     assert told - columns_of_the_wall(CalibrationErrors(focal_length=0.2)) in (2, 3)
     assert columns_of_the_wall(CalibrationErrors(focal_length=-0.2)) - told in (2, 3)
-
-
-def test_distortion_moves_the_corners_and_leaves_the_middle():
-    """A pixel that looks farther out than told sees a tilted wall nearer or farther; square walls show it by range."""
     frame = capture(walls((3.0, -20.0)), QUIET, errors=CalibrationErrors(radial=0.5))
     # Range grows with the angle, and depth by the told rays keeps the excess: 3 m sqrt(1 + r'^2) / sqrt(1 + r^2).
     r = np.hypot(*np.moveaxis(CAMERA.rays()[..., :2], -1, 0))
@@ -110,9 +91,6 @@ def test_distortion_moves_the_corners_and_leaves_the_middle():
     assert frame.depth == pytest.approx(expected, abs=2e-3)
     assert frame.depth[0, 0] > 3.05
     assert frame.depth[18, 22] == pytest.approx(3.0, abs=1e-3)
-
-
-def test_the_mount_moves_and_turns_the_camera():
     nearer = capture(walls((3.0, -20.0)), QUIET, errors=CalibrationErrors(mount=(0.1, 0, 0, 0, 0, 0))).depth
     assert nearer == pytest.approx(np.full(CAMERA.shape, 2.9), abs=1e-3)
     turned = capture(walls((3.0, -20.0)), QUIET, errors=CalibrationErrors(mount=(0, 0, 0, 0, 0, 0.1))).depth[18]
