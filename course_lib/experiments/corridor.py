@@ -4,8 +4,6 @@ Every seed makes two recordings: another day in the building of the map, and one
 of calibration and mount. Fallon's scoring runs on both, with the same motion noise and number of particles.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -62,7 +60,7 @@ class Maps(NamedTuple):
     planar: SceneMap
 
     @classmethod
-    def load(cls, data: str | Path) -> Maps:
+    def load(cls, data: str | Path) -> "Maps":
         return cls(*(SceneMap.load(Path(data) / name) for name in ("map.ply", "planar_map.ply")))
 
 
@@ -105,7 +103,11 @@ def run(
         if unusual := [name for name, value in usual.items() if given[name] != value]:
             raise ValueError(f"--{unusual[0]} does not go with --dof 6")
         return six_degrees.run_corridor(runner, seeds or [seed], data, options["frames"], methods)
-    names = _require_methods(methods, seeds)
+    names = six_degrees.require_methods(methods or "all", METHODS)
+    if methods and seeds is None:
+        raise ValueError("--methods goes with --seeds: a single seed runs every row of the table")
+    if not set(METHODS_BY_HAND) <= set(names):
+        raise ValueError(f"--methods must name {' and '.join(METHODS_BY_HAND)}, others of {', '.join(METHODS)}")
     recording = options.pop("recording")
     if idealizations:
         return _run_idealizations(runner, seeds or IDEALIZATION_SEEDS, data, **options)
@@ -116,17 +118,6 @@ def run(
     summary = summarize(record.rows, {"seed": seed, **settings})
     files = {"corridor.json": (summary, rows_of_frames(record.rows))}
     return Outcome(summary, table_1(summary), files, "corridor", record)
-
-
-def _require_methods(methods: str | None, seeds: list[int] | None) -> list[str]:
-    if methods is None:
-        return list(METHODS)
-    if seeds is None:
-        raise ValueError("--methods goes with --seeds: a single seed runs every row of the table")
-    names = methods.split(",")
-    if not set(METHODS_BY_HAND) <= set(names) <= set(METHODS):
-        raise ValueError(f"--methods must name {' and '.join(METHODS_BY_HAND)}, others of {', '.join(METHODS)}")
-    return names
 
 
 def _run_seeds(runner: Runner, seeds: list[int], settings: dict) -> Outcome:
@@ -166,10 +157,7 @@ def record_of_seed(
     bar: Callable = no_bar,
     **options: object,
 ) -> Record:
-    """Return every row of table 1 of a seed. Recordings of its own are made below `folder`.
-
-    options: frames, backend, exact.
-    """
+    """Return every row of table 1 of a seed; its recordings are made in `folder`. options: frames, backend, exact."""
     maps = Maps.load(data)
     if recording == "shipped":
         even, by_hand = read_sequence(Path(data) / "wagon"), None
@@ -237,10 +225,7 @@ def hardship_errors(
 
 
 def summarize(rows: dict[str, Row], settings: dict) -> dict:
-    """Return the numbers of table 1: the paper's experiment at the top level, every method below `methods`.
-
-    Those on the recording that is pushed by hand are below `methods_by_hand`.
-    """
+    """Return the numbers of table 1: the paper's at the top, every method's in `methods` and `methods_by_hand`."""
     parts: dict[str, dict[str, dict]] = {}
     for key, row in rows.items():
         method = key.removesuffix(BY_HAND)
@@ -269,17 +254,14 @@ def summarize(rows: dict[str, Row], settings: dict) -> dict:
 
 def rows_of_frames(rows: dict[str, Row]) -> list[dict]:
     """Return a row a frame for a CSV file: errors, positions and scores of every method."""
-    columns = {"frame": rows["proposed"].run.frames}
-    columns |= {f"{key}_nearest_m": _rounded(row.nearest.errors, 5) for key, row in rows.items()}
-    columns |= {f"{key}_timed_m": _rounded(row.timed.errors, 5) for key, row in rows.items()}
+    frames, columns = rows["proposed"].run.frames, {}
+    columns |= {f"{key}_nearest_m": (row.nearest.errors, 5) for key, row in rows.items()}
+    columns |= {f"{key}_timed_m": (row.timed.errors, 5) for key, row in rows.items()}
     for key, row in rows.items():
-        columns |= {f"{key}_{axis}_m": _rounded(row.run.camera_to_world[:, j, 3], 4) for j, axis in enumerate("xy")}
-    columns |= {f"{key}_score": _rounded(row.run.scores, 5) for key, row in rows.items()}
-    return [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
-
-
-def _rounded(values: np.ndarray, digits: int) -> list[float]:
-    return [round(float(value), digits) for value in values]
+        columns |= {f"{key}_{axis}_m": (row.run.camera_to_world[:, j, 3], 4) for j, axis in enumerate("xy")}
+    columns |= {f"{key}_score": (row.run.scores, 5) for key, row in rows.items()}
+    numbers = [[round(float(value), digits) for value in values] for values, digits in columns.values()]
+    return [dict(zip(["frame", *columns], row, strict=True)) for row in zip(frames, *numbers, strict=True)]
 
 
 def over_recordings(summaries: Sequence[dict], tell: Callable = spread) -> dict[str, dict[str, dict]]:

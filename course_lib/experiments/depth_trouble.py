@@ -13,7 +13,6 @@ and returns whose amplitude falls below the camera's threshold are lost: far one
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
@@ -34,7 +33,6 @@ from course_lib.simulation.sensors.time_of_flight import SPEED_OF_LIGHT, TimeOfF
 
 GATE = Gate(0.3, 15.0)  # chosen: beyond either an estimate is useless for going through a door
 IMAGE = (88, 72)  # pixels, width and height
-Dof = Literal["xyyaw", "6"]
 FILTERS = {"xyyaw": MonteCarloLocalizer, "6": AnnealedLocalizer}
 LIGHT_LEFT = 1 / 16  # share of the exposure that is left after a jump: four stops; chosen
 WHITE_SHARE = 0.3  # reflectivity times cosine of what is seen, which a depth image does not tell; chosen
@@ -84,28 +82,18 @@ SPOILS: dict[str, Spoil] = {
 LENGTHS = dict.fromkeys(("dropped", *SPOILS, "time backwards"), 1) | {"frozen for a second": round(SECOND * FRAME_RATE)}
 
 
-def corridor_trouble(data: str, seed: int, frames: int, shares: Sequence[float], dof: Dof) -> dict:
-    """Return `troubles_of` a filter on a seed's recording of the corridor."""
-    camera, carried = DepthCamera.sr4000().resized(*IMAGE), "wagon" if dof == "xyyaw" else "hand"
-    with temporary_folder() as temporary:
-        folder = temporary / "recording"
-        record_seed(folder, building_of_data(data), seed, camera=camera, frames=frames, carried=carried)
-        return recording_trouble(read_sequence(folder), SceneMap.load(Path(data) / "map.ply"), seed, shares, dof)
-
-
-def recording_trouble(
-    recording: DepthSequence,
-    scene_map: SceneMap,
-    seed: int,
-    shares: Sequence[float],
-    dof: Dof,
-    lengths: Mapping[str, int] = LENGTHS,
+def corridor_trouble(
+    data: str, seed: int, frames: int, shares: Sequence[float], dof: str, lengths: Mapping = LENGTHS, image=IMAGE
 ) -> dict:
-    """`corridor_trouble` of a recording with its truth and times, z up."""
-    images = [recording.depth(index) for index in range(len(recording))]
-    with DepthRenderer(scene_map, recording.camera()) as renderer:
-        run = partial(watched_frames, recording, partial(FILTERS[dof], renderer, seed=seed))
-        return troubles_of(run, lengths, SPOILS, images, recording.times, seed, shares)
+    """Return `troubles_of` a filter ("xyyaw" or "6") on a seed's recording of the corridor. image: size in pixels."""
+    camera, carried = DepthCamera.sr4000().resized(*image), "wagon" if dof == "xyyaw" else "hand"
+    with temporary_folder() as temporary:
+        record_seed(temporary / "run", building_of_data(data), seed, camera=camera, frames=frames, carried=carried)
+        recording = read_sequence(temporary / "run")
+        images = [recording.depth(index) for index in range(len(recording))]
+        with DepthRenderer(SceneMap.load(Path(data) / "map.ply"), recording.camera()) as renderer:
+            run = partial(watched_frames, recording, partial(FILTERS[dof], renderer, seed=seed))
+            return troubles_of(run, lengths, SPOILS, images, recording.times, seed, shares)
 
 
 def watched_frames(recording: DepthSequence, make: Callable, arrivals: Sequence[Arrival]) -> list[dict]:

@@ -59,8 +59,7 @@ def run(
 
 def trouble_table(result: dict) -> str:
     """Return a line a trouble and share of one method."""
-    gate, usual, calm = result["gate"], result["usual"], result["undisturbed"]
-    seeds = result["seeds"]
+    gate, usual, calm, seeds = (result[name] for name in ("gate", "usual", "undisturbed", "seeds"))
     lines = [
         f"{TITLES[result['method']]}: {'seed' if len(seeds) == 1 else 'seeds'} {', '.join(map(str, seeds))}, "
         f"{result['frames']} frames each",

@@ -4,12 +4,8 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.guarded_depth import OUTCOMES
-from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.depth_trouble import GATE, LENGTHS, MAX_RANGE, SPOILS, recording_trouble, underexposed
+from course_lib.experiments.depth_trouble import GATE, LENGTHS, MAX_RANGE, SPOILS, corridor_trouble, underexposed
 from course_lib.experiments.troubled_frames import summary, troubled_frames, troubled_recording
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed
 
 N, PERIOD = 80, 0.1
 TIMES = PERIOD * np.arange(N)
@@ -91,13 +87,9 @@ SEED = 10_008  # for tuning: the tests' own
 
 
 @pytest.fixture(scope="module")
-def troubled_wagon(corridor_folder, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("trouble") / "wagon"
-    camera = DepthCamera.sr4000().resized(44, 36)
-    record_seed(folder, building_of_data(corridor_folder), SEED, camera=camera, frames=26)
+def troubled_wagon(corridor_folder):
     lengths = dict.fromkeys(("dropped", "black", "time backwards"), 1)
-    scene_map = SceneMap.load(corridor_folder / "map.ply")
-    return recording_trouble(read_sequence(folder), scene_map, SEED, [0.1], "xyyaw", lengths)
+    return corridor_trouble(corridor_folder, SEED, 26, [0.1], "xyyaw", lengths, (44, 36))
 
 
 @pytest.mark.slow
