@@ -66,10 +66,10 @@ def observe_room(seed: int, poses: int, network: Sequence, tilt_deg: float | Non
     alike, seen = room.objects[0].label, []
     for number, localizer, pair in photographed_pairs(room, semantic_map, seed, poses, models, detector):
         results = {source: localize_pair(pair, localizer, source) for source in SOURCES}
-        sources = {source: record_of_observations(one.localization.observations) for source, one in results.items()}
-        sources = {
-            s: {"observations": o, "true_landmarks": list(results[s].true_landmarks)} for s, o in sources.items()
-        }
+        sources = {}
+        for source, one in results.items():
+            observations = record_of_observations(one.localization.observations)
+            sources[source] = {"observations": observations, "true_landmarks": list(one.true_landmarks)}
         found, width = results["images"].localization, results["images"].size[0]
         sides = (found.upper_detections, pair.upper_objects), (found.lower_detections, pair.lower_objects)
         counted = [match_detections(*side, width) for side in sides]

@@ -42,12 +42,8 @@ def test_the_same_seed_has_the_same_places_and_each_trouble_its_own():
 
 
 def frame(outcome="tracked", metres=0.01, degrees=0.1):
-    return {
-        "outcome": outcome,
-        "confident": outcome == "tracked",
-        "position_m": metres,
-        "rotation_deg": None if metres is None else degrees,
-    }
+    degrees = None if metres is None else degrees
+    return {"outcome": outcome, "confident": outcome == "tracked", "position_m": metres, "rotation_deg": degrees}
 
 
 @pytest.mark.parametrize(
@@ -83,11 +79,8 @@ def test_a_row_counts_outcomes_recovery_and_wrong_poses():
     bad[5] = frame("repeated", metres=0.9)
     bad[20] = frame("tracked", metres=0.9)
     bad[15] = frame("doubtful", metres=0.5)
-    result = {
-        "undisturbed": calm,
-        "troubles": [{"trouble": "repeated", "share": 0.05, "runs": [(5, 6), (20, 21)], "frames": bad}],
-    }
-    told = summary([result, result], GATE)
+    trouble = {"trouble": "repeated", "share": 0.05, "runs": [(5, 6), (20, 21)], "frames": bad}
+    told = summary([{"undisturbed": calm, "troubles": [trouble]}] * 2, GATE)
     assert told["usual"]["metres"] == pytest.approx(0.09)
     assert told["undisturbed"] == dict(frames=80, good_frames={"tracked": 80}, false_alarms=0, confident_wrong=0)
     (row,) = told["rows"]
