@@ -1,7 +1,6 @@
 """Run paper 1's experiment on the simulated corridor: estimate x, y and yaw, print table 1, save figures 5 and 6.
 
-Every seed makes two recordings: another day in the building of the map, and one pushed by hand, with the usual errors
-of calibration and mount. Fallon's scoring runs on both, with the same motion noise and number of particles.
+Every seed makes two recordings: another day in the building of the map, and one pushed by hand, with the usual errors.
 """
 
 from collections.abc import Callable, Collection, Sequence

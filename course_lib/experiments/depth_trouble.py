@@ -1,9 +1,7 @@
 """What goes wrong with a depth camera's frames, and what paper 1's filter and the annealed one make of it.
 
-Both filters are guarded (`beyond/guarded_depth.py`): what is not a frame is not used. Images are of half the SR4000's
-size each way, so that all troubles at all shares take minutes and not hours. An exposure that jumps is modelled after
-the simulated camera (simulation/sensors/time_of_flight.py). With a share of the light amplitudes fall to that share,
-and ranges are noisier, by
+Both filters are guarded (`beyond/guarded_depth.py`). An exposure that jumps is modelled after the simulated camera
+(simulation/sensors/time_of_flight.py): with a share of the light amplitudes fall to that share, ranges are noisier, by
 
     sigma_r = c / (4 pi f) sqrt(shot^2 / A + dark^2 / A^2),      A = share * WHITE_SHARE * 4 / r^2
 
@@ -32,7 +30,7 @@ from course_lib.simulation.corridor.seeded_recording import building_of_data, re
 from course_lib.simulation.sensors.time_of_flight import SPEED_OF_LIGHT, TimeOfFlightModel
 
 GATE = Gate(0.3, 15.0)  # chosen: beyond either an estimate is useless for going through a door
-IMAGE = (88, 72)  # pixels, width and height
+IMAGE = (88, 72)  # pixels: half of the SR4000's each way, so that all troubles take minutes
 FILTERS = {"xyyaw": MonteCarloLocalizer, "6": AnnealedLocalizer}
 LIGHT_LEFT = 1 / 16  # share of the exposure that is left after a jump: four stops; chosen
 WHITE_SHARE = 0.3  # reflectivity times cosine of what is seen, which a depth image does not tell; chosen
@@ -99,8 +97,7 @@ def corridor_trouble(
 def watched_frames(recording: DepthSequence, make: Callable, arrivals: Sequence[Arrival]) -> list[dict]:
     """Return what became of every frame: outcome, whether the pose is one to go by, its errors. make: the filter.
 
-    A frame that never came, or came out of order, has the pose to which the filter was moved when the next one told of
-    the gap.
+    A frame that never came, or out of order, has the pose to which the filter was moved when the next told of the gap.
     """
     localizer = GuardedLocalizer(make(), float(np.median(np.diff(recording.times))))
     localizer.initialize(state_from_optical_pose(recording.camera_to_world[0]))

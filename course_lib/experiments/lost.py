@@ -1,7 +1,6 @@
 """Lost and found: kidnap the camera, start it anywhere, leave it in peace, and count how often it finds itself.
 
-A recording is played to some frame, then nothing is seen for a while, and it goes on from a frame in another place:
-a kidnapping. Gravity is what an accelerometer would say: the truth's, with a degree of noise.
+A kidnapping: a recording is played to some frame, nothing is seen for a while, and it goes on in another place.
 """
 
 import time

@@ -88,7 +88,7 @@ def observe_room(seed: int, poses: int, network: Sequence, tilt_deg: float | Non
     return {
         "seed": seed,
         "look_alike": {"label": alike, "n": sum(thing.label == alike for thing in room.objects)},
-        "map": [[one.label, one.x, one.y, _or_none(one.hue), one.saturation] for one in semantic_map.landmarks],
+        "map": [_thing(one) for one in semantic_map.landmarks],
         "walls": semantic_map.walls.tolist(),
         "poses": seen,
     }
@@ -157,10 +157,7 @@ def judged_poses(
 
 def record_of_observations(observations: Sequence[Observation]) -> list[list]:
     """Return observations as a record holds them: label, x, y, hue (None: grey), saturation, covariance."""
-    return [
-        [one.label, one.x, one.y, _or_none(one.hue), one.saturation, np.asarray(one.covariance).tolist()]
-        for one in observations
-    ]
+    return [[*_thing(one), np.asarray(one.covariance).tolist()] for one in observations]
 
 
 def stored_observations(entry: dict) -> list[Observation]:
@@ -179,5 +176,5 @@ def stored_map(room: dict) -> SemanticMap:
     )
 
 
-def _or_none(hue: float) -> float | None:
-    return None if np.isnan(hue) else hue
+def _thing(one: Observation | Landmark) -> list:
+    return [one.label, one.x, one.y, None if np.isnan(one.hue) else one.hue, one.saturation]

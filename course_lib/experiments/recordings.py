@@ -200,8 +200,7 @@ def run_localizer(
 def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float | None]:
     """Return median and 90th percentile of position (m) and rotation (degrees) errors, the share within 5 cm, 5 deg.
 
-    The mean normalized error is near 1 where the covariance says rightly how large errors are; None where a frame had
-    too few particles for a covariance.
+    The mean normalized error is near 1 where the covariance is right; None where a frame had too few particles for it.
     """
     position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
     rotation_deg, normalized = np.rad2deg(rotation), float(np.mean(run.normalized_errors))

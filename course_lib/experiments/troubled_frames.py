@@ -73,10 +73,9 @@ def troubled_recording(
 def troubles_of(
     run: Callable, lengths: Mapping, spoils: Mapping, images: Sequence, times: Sequence, seed: int, shares: Sequence
 ) -> dict:
-    """Run a method on a recording undisturbed, and with every trouble at every share (0 to 1).
+    """Run a method on a recording undisturbed, and with every trouble, of its length, at every share (0 to 1).
 
-    run: gives, for a list of `Arrival`, {"outcome", "confident", "position_m", "rotation_deg"} each. lengths: of each
-    trouble. Returns {"undisturbed": frames, "troubles": [{"trouble", "share", "runs", "frames"}]}.
+    run: gives, for a list of `Arrival`, {"outcome", "confident", "position_m", "rotation_deg"} each.
     """
     calm = run([Arrival(image, float(time)) for image, time in zip(images, times, strict=True)])
     rows = []

@@ -28,7 +28,7 @@ def meets_the_targets(median, sigma, within_3sigma, timed_median):
 
 @pytest.mark.slow
 def test_a_stretch_of_the_corridor_meets_the_targets_of_the_whole(maps, wagon):
-    """200 particles, alpha 0.1, beta 0.01, on a seed of no tuning and no report."""
+    """On a seed of no tuning and no report."""
     _, nearest, timed = run_row(METHODS["proposed"], maps, wagon, seed=77, frames=14)
     assert meets_the_targets(nearest.median, nearest.sigma, nearest.within_3sigma, timed.median)
 

@@ -86,14 +86,10 @@ def test_a_time_that_goes_backwards_is_up_to_a_second_before_the_last(images):
 SEED = 10_008  # for tuning: the tests' own
 
 
-@pytest.fixture(scope="module")
-def troubled_wagon(corridor_folder):
-    lengths = dict.fromkeys(("dropped", "black", "time backwards"), 1)
-    return corridor_trouble(corridor_folder, SEED, 26, [0.1], "xyyaw", lengths, (44, 36))
-
-
 @pytest.mark.slow
-def test_the_depth_filter_names_every_frame_and_recovers(troubled_wagon):
+def test_the_depth_filter_names_every_frame_and_recovers(corridor_folder):
+    lengths = dict.fromkeys(("dropped", "black", "time backwards"), 1)
+    troubled_wagon = corridor_trouble(corridor_folder, SEED, 26, [0.1], "xyyaw", lengths, (44, 36))
     told = summary([troubled_wagon], GATE)
     assert told["undisturbed"]["false_alarms"] == told["undisturbed"]["confident_wrong"] == 0
     names = {row["trouble"]: row["outcomes"] for row in told["rows"]}

@@ -38,9 +38,9 @@ def localized(pairs=((0, 0), (1, 1), (2, 2)), pose=Pose2D(1.1, 1.7, -3.1), statu
 
 
 def test_errors_are_absolute_and_the_heading_goes_the_short_way_round():
-    judged = outcome(localized(), TRUE_POSE, [0, 1, 2])
-    assert judged[:3] == ("correct", pytest.approx(0.1), pytest.approx(0.3))
-    assert judged.dtheta_deg == pytest.approx(math.degrees(2 * math.pi - 6.2))
+    kind, *errors = outcome(localized(), TRUE_POSE, [0, 1, 2])
+    assert kind == "correct"
+    assert errors == pytest.approx([0.1, 0.3, math.degrees(2 * math.pi - 6.2)])
 
 
 def test_one_wrong_pair_is_incorrect_and_one_of_unlike_classes_does_not_count():
@@ -67,12 +67,12 @@ def test_no_pose_or_one_pair_is_unable(found):
     assert all(math.isnan(error) for error in judged[1:])
 
 
-def detection(label, u, v=300.0, across=100.0, down=80.0):
-    return Detection(label, 0.9, (u, v, u + across, v + down), 10.0, 50.0)
+def detection(label, u, across=100.0):
+    return Detection(label, 0.9, (u, 300.0, u + across, 380.0), 10.0, 50.0)
 
 
-def true(number, label, u, v=300.0, across=100.0, down=80.0):
-    return TrueObject(number, label, (u, v, u + across, v + down), (u, v, u + across, v + down), 1.0)
+def true(number, label, u):
+    return TrueObject(number, label, *[(u, 300.0, u + 100.0, 380.0)] * 2, 1.0)
 
 
 # The box of what is seen, and of all of it.
@@ -174,9 +174,8 @@ def test_a_detection_is_right_a_false_alarm_or_ignored(box, label, wanted, ignor
 
 
 def test_the_best_score_takes_the_free_object_that_it_overlaps_most_and_a_second_one_is_a_false_alarm():
-    matching = matched([[100, 300, 150, 400], [105, 300, 155, 400]], [0.5, 0.9], [[100, 300, 150, 400]])
-    assert matching.scores.tolist() == [0.9, 0.5]
-    assert matching.correct.tolist() == [True, False]
+    scores, correct, _ = matched([[100, 300, 150, 400], [105, 300, 155, 400]], [0.5, 0.9], [[100, 300, 150, 400]])
+    assert (scores.tolist(), correct.tolist()) == ([0.9, 0.5], [True, False])
     # The second one overlaps the first object alone: it is right only where that one is left free.
     boxes, objects = [[100, 0, 200, 100], [130, 0, 230, 100]], [[120, 0, 220, 100], [95, 0, 195, 100]]
     assert matched(boxes, [0.9, 0.8], objects).correct.tolist() == [True, True]
