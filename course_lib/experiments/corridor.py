@@ -322,14 +322,13 @@ def table_over_recordings(result: dict, told: str = "least to greatest") -> str:
 
 def table_of_idealizations(result: dict) -> str:
     """Return median errors of the paper's method with each hardship alone: median over seeds (least to greatest)."""
-    seeds, (width, height) = result["seeds"], result["image"]
+    seeds, (width, height), columns = result["seeds"], result["image"], {"median_m": 3, "median_timed_m": 3}
     lines = [
         f"What idealizations are worth: {len(seeds)} recordings, seeds {seeds[0]} to {seeds[-1]}, "
         f"{width} x {height} pixels, {result['n_particles']} particles",
         "",
         f"{'hardship':18} {'nearest median [m]':>22} {'same frame median [m]':>22}",
     ]
-    columns = {"median_m": 3, "median_timed_m": 3}
     return "\n".join([*lines, *(f"{name:18} {_spreads(row, columns)}" for name, row in result["hardships"].items())])
 
 

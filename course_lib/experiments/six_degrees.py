@@ -158,12 +158,8 @@ def six_degrees_table(rows: dict[str, dict]) -> str:
 
 def thinnings(methods: Iterable[str], everies: Sequence[int]) -> list[tuple[str, int, int]]:
     """Return (method, every, offset) of every offset of each thinning; the floor has none."""
-    return [
-        (method, every, offset)
-        for method in methods
-        for every in ((1,) if method == "floor" else everies)
-        for offset in range(every)
-    ]
+    runs = [(method, every) for method in methods for every in ((1,) if method == "floor" else everies)]
+    return [(method, every, offset) for method, every in runs for offset in range(every)]
 
 
 def thinned_run(map_file: str, sequence: str, method: str, every: int, offset: int, seed: int) -> dict[str, list]:

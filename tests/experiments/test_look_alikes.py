@@ -28,12 +28,9 @@ def record_of(semantic_map, seed=7, which=None):
     indices = list(range(len(semantic_map))) if which is None else list(which)
     entry = {"observations": record_of_observations(observed(semantic_map, POSE, indices)), "true_landmarks": indices}
     pose = {"pose": POSE.tolist(), "name": "00", "sources": {"images": entry, "exact_boxes": entry}}
-    return {
-        "seed": seed,
-        "map": [[one.label, one.x, one.y, one.hue, one.saturation] for one in semantic_map.landmarks],
-        "walls": np.asarray(semantic_map.walls).tolist(),
-        "poses": [pose | {"experiment": 1}, pose | {"experiment": 2}],
-    }
+    landmarks = [[one.label, one.x, one.y, one.hue, one.saturation] for one in semantic_map.landmarks]
+    poses = [pose | {"experiment": number} for number in (1, 2)]
+    return {"seed": seed, "map": landmarks, "walls": np.asarray(semantic_map.walls).tolist(), "poses": poses}
 
 
 def views_of(semantic_map, which=None):

@@ -24,11 +24,9 @@ GATE = Gate(0.3, 15.0)
 def test_stretches_make_up_the_share_and_do_not_touch(share, n, length):
     for seed in range(20):
         runs = troubled_runs(n, share, length, np.random.default_rng(seed))
-        assert len(runs) == max(1, round(share * n / length))
-        assert all(end - first == length for first, end in runs)
+        assert [end - first for first, end in runs] == [length] * max(1, round(share * n / length))
         assert all(first > before_end for (_, before_end), (first, _) in pairwise(runs))
-        assert runs[0][0] >= 1
-        assert runs[-1][1] <= n - LEFT_AT_THE_END
+        assert 1 <= runs[0][0] < runs[-1][1] <= n - LEFT_AT_THE_END
         assert troubled_frames(runs, n).sum() == len(runs) * length
 
 

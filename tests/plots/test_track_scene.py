@@ -91,8 +91,7 @@ def test_far_from_zero_the_scene_is_brought_near(scene_map, wagon, run):
 def test_doubtful_and_lost_frames_are_marked_and_said(scene_map, wagon, run):
     statuses = ["tracked"] * 30 + ["doubtful"] * 4 + ["lost"] * 6
     plotter, words = track_scene(scene_map, run._replace(statuses=statuses), wagon, "z", NEAR, FAR)
-    assert [mesh.n_points for mesh in of_colour(plotter, ORANGE)] == [4]
-    assert [mesh.n_points for mesh in of_colour(plotter, VERMILION)] == [6]
+    assert [[mesh.n_points for mesh in of_colour(plotter, one)] for one in (ORANGE, VERMILION)] == [[4], [6]]
     assert "orange where doubtful, red where lost" in words
 
 
