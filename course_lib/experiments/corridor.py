@@ -71,15 +71,6 @@ class Row(NamedTuple):
     timed: PositionError
 
 
-class Record(NamedTuple):
-    """What one seed gave, for figures."""
-
-    maps: Maps
-    sequence: DepthSequence
-    rows: dict[str, Row]
-    backend: str
-
-
 def run(
     runner: Runner,
     *,
@@ -113,10 +104,10 @@ def run(
     settings = {"data": str(data), **options, "recording": recording, "methods": names}
     if seeds is not None:
         return _run_seeds(runner, seeds, settings)
-    record = record_of_seed(seed, runner.temporary, **settings, bar=runner.bar)
-    summary = summarize(record.rows, {"seed": seed, **settings})
-    files = {"corridor.json": (summary, rows_of_frames(record.rows))}
-    return Outcome(summary, table_1(summary), files, "corridor", record)
+    maps, sequence, rows = record_of_seed(seed, runner.temporary, **settings, bar=runner.bar)
+    summary = summarize(rows, {"seed": seed, **settings})
+    files = {"corridor.json": (summary, rows_of_frames(rows))}
+    return Outcome(summary, table_1(summary), files, "corridor", (maps, sequence, rows, options["backend"]))
 
 
 def _run_seeds(runner: Runner, seeds: list[int], settings: dict) -> Outcome:
@@ -155,21 +146,20 @@ def record_of_seed(
     methods: Collection[str],
     bar: Callable = no_bar,
     **options: object,
-) -> Record:
-    """Return every row of table 1 of a seed; its recordings are made in `folder`. options: frames, backend, exact."""
+) -> tuple[Maps, DepthSequence, dict[str, Row]]:
+    """Return table 1 of a seed, whose recordings are made in `folder`. options: frames, backend, exact."""
     maps = Maps.load(data)
     if recording == "shipped":
         even, by_hand = read_sequence(Path(data) / "wagon"), None
     else:
         even, by_hand = own_recordings(data, folder, seed, options["frames"], bar)
-    rows = run_rows(maps, even, by_hand, methods, bar, n_particles=particles, seed=seed, **options)
-    return Record(maps, even, rows, options["backend"])
+    return maps, even, run_rows(maps, even, by_hand, methods, bar, n_particles=particles, seed=seed, **options)
 
 
 def table_1_of_seed(seed: int, **settings: object) -> dict:
     """Return table 1 of a seed as JSON holds it: the summary, and a row a frame."""
     with temporary_folder() as folder:
-        rows = record_of_seed(seed, folder, **settings).rows
+        rows = record_of_seed(seed, folder, **settings)[-1]
     return {"summary": summarize(rows, {"seed": seed, **settings}), "frames": rows_of_frames(rows)}
 
 
