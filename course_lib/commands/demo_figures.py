@@ -37,11 +37,6 @@ def corridor(out: Path, record) -> list[str]:
     return [*_save(out, figures, 130), "trajectory.txt (TUM)", scene]
 
 
-def covariance(out: Path, runs: dict[str, list[dict]]) -> list[str]:
-    """Whether each filter's covariance covers its errors."""
-    return _save(out, {"covariance.png": covariance_figure(runs)})
-
-
 def room(out: Path, record) -> list[str]:
     """All poses of both experiments from above; of one that is right and one that is wrong a figure and a scene."""
     semantic_map, results = record

@@ -1,10 +1,7 @@
 """Run paper 1's experiment on the simulated corridor: estimate x, y and yaw, print table 1, save figures 5 and 6.
 
-Every seed makes two recordings: another day in the building of the map, and one pushed by hand, with the usual errors
-of calibration and mount. Fallon's scoring runs on both, with the same motion noise and number of particles.
+Every seed makes two recordings: another day in the building of the map, and one pushed by hand, with the usual errors.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
@@ -62,7 +59,7 @@ class Maps(NamedTuple):
     planar: SceneMap
 
     @classmethod
-    def load(cls, data: str | Path) -> Maps:
+    def load(cls, data: str | Path) -> "Maps":
         return cls(*(SceneMap.load(Path(data) / name) for name in ("map.ply", "planar_map.ply")))
 
 
@@ -72,15 +69,6 @@ class Row(NamedTuple):
     run: Run
     nearest: PositionError
     timed: PositionError
-
-
-class Record(NamedTuple):
-    """What one seed gave, for figures."""
-
-    maps: Maps
-    sequence: DepthSequence
-    rows: dict[str, Row]
-    backend: str
 
 
 def run(
@@ -105,28 +93,21 @@ def run(
         if unusual := [name for name, value in usual.items() if given[name] != value]:
             raise ValueError(f"--{unusual[0]} does not go with --dof 6")
         return six_degrees.run_corridor(runner, seeds or [seed], data, options["frames"], methods)
-    names = _require_methods(methods, seeds)
+    names = six_degrees.require_methods(methods or "all", METHODS)
+    if methods and seeds is None:
+        raise ValueError("--methods goes with --seeds: a single seed runs every row of the table")
+    if not set(METHODS_BY_HAND) <= set(names):
+        raise ValueError(f"--methods must name {' and '.join(METHODS_BY_HAND)}, others of {', '.join(METHODS)}")
     recording = options.pop("recording")
     if idealizations:
         return _run_idealizations(runner, seeds or IDEALIZATION_SEEDS, data, **options)
     settings = {"data": str(data), **options, "recording": recording, "methods": names}
     if seeds is not None:
         return _run_seeds(runner, seeds, settings)
-    record = record_of_seed(seed, runner.temporary, **settings, bar=runner.bar)
-    summary = summarize(record.rows, {"seed": seed, **settings})
-    files = {"corridor.json": (summary, rows_of_frames(record.rows))}
-    return Outcome(summary, table_1(summary), files, "corridor", record)
-
-
-def _require_methods(methods: str | None, seeds: list[int] | None) -> list[str]:
-    if methods is None:
-        return list(METHODS)
-    if seeds is None:
-        raise ValueError("--methods goes with --seeds: a single seed runs every row of the table")
-    names = methods.split(",")
-    if not set(METHODS_BY_HAND) <= set(names) <= set(METHODS):
-        raise ValueError(f"--methods must name {' and '.join(METHODS_BY_HAND)}, others of {', '.join(METHODS)}")
-    return names
+    maps, sequence, rows = record_of_seed(seed, runner.temporary, **settings, bar=runner.bar)
+    summary = summarize(rows, {"seed": seed, **settings})
+    files = {"corridor.json": (summary, rows_of_frames(rows))}
+    return Outcome(summary, table_1(summary), files, "corridor", (maps, sequence, rows, options["backend"]))
 
 
 def _run_seeds(runner: Runner, seeds: list[int], settings: dict) -> Outcome:
@@ -165,24 +146,20 @@ def record_of_seed(
     methods: Collection[str],
     bar: Callable = no_bar,
     **options: object,
-) -> Record:
-    """Return every row of table 1 of a seed. Recordings of its own are made below `folder`.
-
-    options: frames, backend, exact.
-    """
+) -> tuple[Maps, DepthSequence, dict[str, Row]]:
+    """Return table 1 of a seed, whose recordings are made in `folder`. options: frames, backend, exact."""
     maps = Maps.load(data)
     if recording == "shipped":
         even, by_hand = read_sequence(Path(data) / "wagon"), None
     else:
         even, by_hand = own_recordings(data, folder, seed, options["frames"], bar)
-    rows = run_rows(maps, even, by_hand, methods, bar, n_particles=particles, seed=seed, **options)
-    return Record(maps, even, rows, options["backend"])
+    return maps, even, run_rows(maps, even, by_hand, methods, bar, n_particles=particles, seed=seed, **options)
 
 
 def table_1_of_seed(seed: int, **settings: object) -> dict:
     """Return table 1 of a seed as JSON holds it: the summary, and a row a frame."""
     with temporary_folder() as folder:
-        rows = record_of_seed(seed, folder, **settings).rows
+        rows = record_of_seed(seed, folder, **settings)[-1]
     return {"summary": summarize(rows, {"seed": seed, **settings}), "frames": rows_of_frames(rows)}
 
 
@@ -237,10 +214,7 @@ def hardship_errors(
 
 
 def summarize(rows: dict[str, Row], settings: dict) -> dict:
-    """Return the numbers of table 1: the paper's experiment at the top level, every method below `methods`.
-
-    Those on the recording that is pushed by hand are below `methods_by_hand`.
-    """
+    """Return the numbers of table 1: the paper's at the top, every method's in `methods` and `methods_by_hand`."""
     parts: dict[str, dict[str, dict]] = {}
     for key, row in rows.items():
         method = key.removesuffix(BY_HAND)
@@ -269,17 +243,14 @@ def summarize(rows: dict[str, Row], settings: dict) -> dict:
 
 def rows_of_frames(rows: dict[str, Row]) -> list[dict]:
     """Return a row a frame for a CSV file: errors, positions and scores of every method."""
-    columns = {"frame": rows["proposed"].run.frames}
-    columns |= {f"{key}_nearest_m": _rounded(row.nearest.errors, 5) for key, row in rows.items()}
-    columns |= {f"{key}_timed_m": _rounded(row.timed.errors, 5) for key, row in rows.items()}
+    frames, columns = rows["proposed"].run.frames, {}
+    columns |= {f"{key}_nearest_m": (row.nearest.errors, 5) for key, row in rows.items()}
+    columns |= {f"{key}_timed_m": (row.timed.errors, 5) for key, row in rows.items()}
     for key, row in rows.items():
-        columns |= {f"{key}_{axis}_m": _rounded(row.run.camera_to_world[:, j, 3], 4) for j, axis in enumerate("xy")}
-    columns |= {f"{key}_score": _rounded(row.run.scores, 5) for key, row in rows.items()}
-    return [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
-
-
-def _rounded(values: np.ndarray, digits: int) -> list[float]:
-    return [round(float(value), digits) for value in values]
+        columns |= {f"{key}_{axis}_m": (row.run.camera_to_world[:, j, 3], 4) for j, axis in enumerate("xy")}
+    columns |= {f"{key}_score": (row.run.scores, 5) for key, row in rows.items()}
+    numbers = [[round(float(value), digits) for value in values] for values, digits in columns.values()]
+    return [dict(zip(["frame", *columns], row, strict=True)) for row in zip(frames, *numbers, strict=True)]
 
 
 def over_recordings(summaries: Sequence[dict], tell: Callable = spread) -> dict[str, dict[str, dict]]:
@@ -341,14 +312,13 @@ def table_over_recordings(result: dict, told: str = "least to greatest") -> str:
 
 def table_of_idealizations(result: dict) -> str:
     """Return median errors of the paper's method with each hardship alone: median over seeds (least to greatest)."""
-    seeds, (width, height) = result["seeds"], result["image"]
+    seeds, (width, height), columns = result["seeds"], result["image"], {"median_m": 3, "median_timed_m": 3}
     lines = [
         f"What idealizations are worth: {len(seeds)} recordings, seeds {seeds[0]} to {seeds[-1]}, "
         f"{width} x {height} pixels, {result['n_particles']} particles",
         "",
         f"{'hardship':18} {'nearest median [m]':>22} {'same frame median [m]':>22}",
     ]
-    columns = {"median_m": 3, "median_timed_m": 3}
     return "\n".join([*lines, *(f"{name:18} {_spreads(row, columns)}" for name, row in result["hardships"].items())])
 
 

@@ -1,9 +1,7 @@
 """What goes wrong with a depth camera's frames, and what paper 1's filter and the annealed one make of it.
 
-Both filters are guarded (`beyond/guarded_depth.py`): what is not a frame is not used. Images are of half the SR4000's
-size each way, so that all troubles at all shares take minutes and not hours. An exposure that jumps is modelled after
-the simulated camera (simulation/sensors/time_of_flight.py). With a share of the light amplitudes fall to that share,
-and ranges are noisier, by
+Both filters are guarded (`beyond/guarded_depth.py`). An exposure that jumps is modelled after the simulated camera
+(simulation/sensors/time_of_flight.py): with a share of the light amplitudes fall to that share, ranges are noisier, by
 
     sigma_r = c / (4 pi f) sqrt(shot^2 / A + dark^2 / A^2),      A = share * WHITE_SHARE * 4 / r^2
 
@@ -13,7 +11,6 @@ and returns whose amplitude falls below the camera's threshold are lost: far one
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
@@ -33,8 +30,7 @@ from course_lib.simulation.corridor.seeded_recording import building_of_data, re
 from course_lib.simulation.sensors.time_of_flight import SPEED_OF_LIGHT, TimeOfFlightModel
 
 GATE = Gate(0.3, 15.0)  # chosen: beyond either an estimate is useless for going through a door
-IMAGE = (88, 72)  # pixels, width and height
-Dof = Literal["xyyaw", "6"]
+IMAGE = (88, 72)  # pixels: half of the SR4000's each way, so that all troubles take minutes
 FILTERS = {"xyyaw": MonteCarloLocalizer, "6": AnnealedLocalizer}
 LIGHT_LEFT = 1 / 16  # share of the exposure that is left after a jump: four stops; chosen
 WHITE_SHARE = 0.3  # reflectivity times cosine of what is seen, which a depth image does not tell; chosen
@@ -84,35 +80,24 @@ SPOILS: dict[str, Spoil] = {
 LENGTHS = dict.fromkeys(("dropped", *SPOILS, "time backwards"), 1) | {"frozen for a second": round(SECOND * FRAME_RATE)}
 
 
-def corridor_trouble(data: str, seed: int, frames: int, shares: Sequence[float], dof: Dof) -> dict:
-    """Return `troubles_of` a filter on a seed's recording of the corridor."""
-    camera, carried = DepthCamera.sr4000().resized(*IMAGE), "wagon" if dof == "xyyaw" else "hand"
-    with temporary_folder() as temporary:
-        folder = temporary / "recording"
-        record_seed(folder, building_of_data(data), seed, camera=camera, frames=frames, carried=carried)
-        return recording_trouble(read_sequence(folder), SceneMap.load(Path(data) / "map.ply"), seed, shares, dof)
-
-
-def recording_trouble(
-    recording: DepthSequence,
-    scene_map: SceneMap,
-    seed: int,
-    shares: Sequence[float],
-    dof: Dof,
-    lengths: Mapping[str, int] = LENGTHS,
+def corridor_trouble(
+    data: str, seed: int, frames: int, shares: Sequence[float], dof: str, lengths: Mapping = LENGTHS, image=IMAGE
 ) -> dict:
-    """`corridor_trouble` of a recording with its truth and times, z up."""
-    images = [recording.depth(index) for index in range(len(recording))]
-    with DepthRenderer(scene_map, recording.camera()) as renderer:
-        run = partial(watched_frames, recording, partial(FILTERS[dof], renderer, seed=seed))
-        return troubles_of(run, lengths, SPOILS, images, recording.times, seed, shares)
+    """Return `troubles_of` a filter ("xyyaw" or "6") on a seed's recording of the corridor. image: size in pixels."""
+    camera, carried = DepthCamera.sr4000().resized(*image), "wagon" if dof == "xyyaw" else "hand"
+    with temporary_folder() as temporary:
+        record_seed(temporary / "run", building_of_data(data), seed, camera=camera, frames=frames, carried=carried)
+        recording = read_sequence(temporary / "run")
+        images = [recording.depth(index) for index in range(len(recording))]
+        with DepthRenderer(SceneMap.load(Path(data) / "map.ply"), recording.camera()) as renderer:
+            run = partial(watched_frames, recording, partial(FILTERS[dof], renderer, seed=seed))
+            return troubles_of(run, lengths, SPOILS, images, recording.times, seed, shares)
 
 
 def watched_frames(recording: DepthSequence, make: Callable, arrivals: Sequence[Arrival]) -> list[dict]:
     """Return what became of every frame: outcome, whether the pose is one to go by, its errors. make: the filter.
 
-    A frame that never came, or came out of order, has the pose to which the filter was moved when the next one told of
-    the gap.
+    A frame that never came, or out of order, has the pose to which the filter was moved when the next told of the gap.
     """
     localizer = GuardedLocalizer(make(), float(np.median(np.diff(recording.times))))
     localizer.initialize(state_from_optical_pose(recording.camera_to_world[0]))

@@ -90,13 +90,10 @@ def one_place(
     estimate, state, views = look_around(renderer, starts, true_pose, capture, rng)
     position, rotation = pose_errors(optical_pose(estimate.state), optical_pose(state))
     degrees = float(np.rad2deg(rotation))
-    return result | {
-        "views": views,
-        "position_m": float(position),
-        "rotation_deg": degrees,
-        "status": estimate.status if is_known(estimate) else "open",
-        "reached": bool(position <= REACHED[0] and degrees <= REACHED[1]),
-    }
+    reached = bool(position <= REACHED[0] and degrees <= REACHED[1])
+    status = estimate.status if is_known(estimate) else "open"
+    found = {"views": views, "position_m": float(position), "rotation_deg": degrees}
+    return result | found | {"status": status, "reached": reached}
 
 
 def look_around(
@@ -165,12 +162,10 @@ def mean_score(estimates: Sequence[AnnealedEstimate]) -> float:
 
 def robot_states(pose: np.ndarray, rng: Generator) -> np.ndarray:
     """True states `(FRAMES, 6)` of the depth camera on a robot that stands at x, y, heading and rolls on slowly."""
-    x, y, heading = pose
     height, level = LEVEL_SIGMA
     tilt = level * rng.standard_normal((FRAMES, 2))
-    ahead = STEP * np.arange(FRAMES)
     z = CAMERA_HEIGHT + height * rng.standard_normal(FRAMES)
-    headings = heading + TURN * np.arange(FRAMES)
+    x, y, headings, ahead = *pose[:2], pose[2] + TURN * np.arange(FRAMES), STEP * np.arange(FRAMES)
     return np.column_stack([x + ahead * np.cos(headings), y + ahead * np.sin(headings), z, tilt, headings])
 
 

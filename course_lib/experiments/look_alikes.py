@@ -107,8 +107,7 @@ def answers_of_sequences(
 ) -> list[Answer]:
     """Follow every sequence of views (`observe_views`) with odometry and without, and judge the last answer.
 
-    thinned: without `LEFT_OUT` of all observations, after one view, after two, and so on: where one view does not tell
-    nearly everything.
+    thinned: without `LEFT_OUT` of all observations, after one view, after two, and so on.
     """
     answers = []
     for room, further in progress(list(zip(rooms, views, strict=True))):
@@ -164,10 +163,8 @@ def answers_table(answers: Sequence[Answer]) -> dict:
 
 def tables_by_method(answers: Sequence[Answer]) -> dict[str, dict]:
     """`answers_table` of every method, in the order in which they came."""
-    return {
-        method: answers_table([one for one in answers if one.method == method])
-        for method in dict.fromkeys(one.method for one in answers)
-    }
+    methods = dict.fromkeys(one.method for one in answers)
+    return {method: answers_table([one for one in answers if one.method == method]) for method in methods}
 
 
 def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
@@ -176,11 +173,8 @@ def risk_coverage(answers: Sequence[Answer]) -> dict[str, list[float]]:
     wrong = ~np.array([one.best_is_right for one in answers], dtype=bool)
     thresholds = np.unique(confidence[confidence > 0])[::-1]
     given = [confidence >= threshold for threshold in thresholds]
-    return {
-        "threshold": thresholds.tolist(),
-        "coverage_percent": [100.0 * float(one.mean()) for one in given],
-        "risk_percent": [100.0 * float(wrong[one].mean()) for one in given],
-    }
+    coverage, risk = ([100.0 * float(one.mean()) for one in told] for told in (given, [wrong[one] for one in given]))
+    return {"threshold": thresholds.tolist(), "coverage_percent": coverage, "risk_percent": risk}
 
 
 def why_not_answered(rooms: Sequence[dict], answers: Sequence[Answer]) -> dict[str, float | None]:
@@ -213,10 +207,9 @@ def answers_summary(
             found[name] = tables_by_method(answers_of_sequences(rooms, views, thinned, progress))
     if ablation:
         variants = {name: partial(associate_consistent, evidence=one) for name, one in ABLATION.items()}
-        found["ablation"] = {
-            name: tables_by_method(answers_of_rooms(rooms, variants, wrong_map, progress))
-            for name, wrong_map in (("right_map", False), ("wrong_map", True))
-        }
+        found["ablation"] = {}
+        for name, wrong_map in (("right_map", False), ("wrong_map", True)):
+            found["ablation"][name] = tables_by_method(answers_of_rooms(rooms, variants, wrong_map, progress))
     return found
 
 
@@ -243,14 +236,8 @@ def _line(name: str, cells: Sequence) -> str:
 
 
 def _row(name: str, table: dict) -> str:
-    shares = [_share(table, kind) for kind in (*KINDS, "all_matches_right")]
+    shares = [(table[f"{kind}_percent"], table[f"{kind}_wilson_percent"]) for kind in (*KINDS, "all_matches_right")]
+    told = ["-" if share is None else f"{share:.1f} ({ends[0]:.1f}-{ends[1]:.1f})" for share, ends in shares]
     errors = [table[f"mean_{error}"] for error in ("dx_m", "dy_m", "dtheta_deg")]
     texts = ["-" if error is None else f"{error:.3f}" for error in errors]
-    return _line(name.replace("_", " "), (table["n"], *shares, *texts))
-
-
-def _share(table: dict, kind: str) -> str:
-    if table[f"{kind}_percent"] is None:
-        return "-"
-    low, high = table[f"{kind}_wilson_percent"]
-    return f"{table[f'{kind}_percent']:.1f} ({low:.1f}-{high:.1f})"
+    return _line(name.replace("_", " "), (table["n"], *told, *texts))

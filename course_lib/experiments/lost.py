@@ -1,7 +1,6 @@
 """Lost and found: kidnap the camera, start it anywhere, leave it in peace, and count how often it finds itself.
 
-A recording is played to some frame, then nothing is seen for a while, and it goes on from a frame in another place:
-a kidnapping. Gravity is what an accelerometer would say: the truth's, with a degree of noise.
+A kidnapping: a recording is played to some frame, nothing is seen for a while, and it goes on in another place.
 """
 
 import time
@@ -47,12 +46,9 @@ def run(runner: Runner, *, seeds: list[int], recording: Path | None, data: Path 
 def trial(map_file: str, sequence: str, seed: int) -> dict[str, dict]:
     """One trial: a kidnapping, a start from anywhere, and the recording in peace."""
     recording = read_sequence(sequence)
+    parts = {"kidnapped": kidnapping, "start": start_anywhere, "in peace": undisturbed}
     with DepthRenderer(SceneMap.load(map_file), recording.camera()) as renderer:
-        return {
-            "kidnapped": kidnapping(recording, renderer, seed),
-            "start": start_anywhere(recording, renderer, seed),
-            "in peace": undisturbed(recording, renderer, seed),
-        }
+        return {name: part(recording, renderer, seed) for name, part in parts.items()}
 
 
 def corridor_trial(data: str, seed: int) -> dict[str, dict]:
@@ -74,10 +70,7 @@ def summarize(trials: Sequence[dict[str, dict]]) -> dict[str, float | None]:
         "started_right": sum(found),
         "started_wrong": len(found) - sum(found),
         "started_several": sum(one["status"] == "several" for one in starts),
-        **{
-            f"{name}_to_start": float(np.median([s[name] for s in starts]))
-            for name in ("frames", "particles", "seconds")
-        },
+        **{f"{key}_to_start": float(np.median([s[key] for s in starts])) for key in ("frames", "particles", "seconds")},
         "undisturbed_frames": sum(one["frames"] for one in peace),
         "false_alarms": sum(one["alarms"] for one in peace),
     }
@@ -149,10 +142,7 @@ def start_anywhere(recording: DepthSequence, renderer: DepthRenderer, seed: int)
 def _played(
     recording: DepthSequence, frames: Iterable[int | None], rng: np.random.Generator
 ) -> Iterator[tuple[np.ndarray, np.ndarray | None, np.ndarray | None]]:
-    """Depth image, gravity and true pose of frames; None among them is a frame in which nothing is seen.
-
-    Gravity is what an accelerometer at rest says is down, `(3,)` in the optical frame, with noise.
-    """
+    """Depth image, gravity `(3,)` in the optical frame, and true pose of frames; in a frame None nothing is seen."""
     for index in frames:
         if index is None:
             yield np.full(recording.image_shape, np.nan, dtype=np.float32), None, None

@@ -66,13 +66,10 @@ def observe_room(seed: int, poses: int, network: Sequence, tilt_deg: float | Non
     alike, seen = room.objects[0].label, []
     for number, localizer, pair in photographed_pairs(room, semantic_map, seed, poses, models, detector):
         results = {source: localize_pair(pair, localizer, source) for source in SOURCES}
-        sources = {
-            source: {
-                "observations": record_of_observations(one.localization.observations),
-                "true_landmarks": list(one.true_landmarks),
-            }
-            for source, one in results.items()
-        }
+        sources = {}
+        for source, one in results.items():
+            observations = record_of_observations(one.localization.observations)
+            sources[source] = {"observations": observations, "true_landmarks": list(one.true_landmarks)}
         found, width = results["images"].localization, results["images"].size[0]
         sides = (found.upper_detections, pair.upper_objects), (found.lower_detections, pair.lower_objects)
         counted = [match_detections(*side, width) for side in sides]
@@ -91,7 +88,7 @@ def observe_room(seed: int, poses: int, network: Sequence, tilt_deg: float | Non
     return {
         "seed": seed,
         "look_alike": {"label": alike, "n": sum(thing.label == alike for thing in room.objects)},
-        "map": [[one.label, one.x, one.y, _or_none(one.hue), one.saturation] for one in semantic_map.landmarks],
+        "map": [_thing(one) for one in semantic_map.landmarks],
         "walls": semantic_map.walls.tolist(),
         "poses": seen,
     }
@@ -160,10 +157,7 @@ def judged_poses(
 
 def record_of_observations(observations: Sequence[Observation]) -> list[list]:
     """Return observations as a record holds them: label, x, y, hue (None: grey), saturation, covariance."""
-    return [
-        [one.label, one.x, one.y, _or_none(one.hue), one.saturation, np.asarray(one.covariance).tolist()]
-        for one in observations
-    ]
+    return [[*_thing(one), np.asarray(one.covariance).tolist()] for one in observations]
 
 
 def stored_observations(entry: dict) -> list[Observation]:
@@ -182,5 +176,5 @@ def stored_map(room: dict) -> SemanticMap:
     )
 
 
-def _or_none(hue: float) -> float | None:
-    return None if np.isnan(hue) else hue
+def _thing(one: Observation | Landmark) -> list:
+    return [one.label, one.x, one.y, None if np.isnan(one.hue) else one.hue, one.saturation]

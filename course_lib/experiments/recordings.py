@@ -145,9 +145,8 @@ def run_localizer(
     """
     to_z_up = rotation_to_z_up(up or sequence.up or "z")
     check, faults = FrameCheck(near, far), []
-    camera = used = sequence.camera(near, far)
-    if coarse:
-        used = camera.resized(COARSE_WIDTH, COARSE_HEIGHT)
+    camera = sequence.camera(near, far)
+    used = camera.resized(COARSE_WIDTH, COARSE_HEIGHT) if coarse else camera
     count = len(sequence) if frames is None else min(frames, len(sequence))
     if count < 1:
         raise ValueError(f"frames must be at least 1; got {frames}")
@@ -155,17 +154,15 @@ def run_localizer(
     true = state_from_optical_pose(to_z_up @ sequence.camera_to_world[:count]) if sequence.has_poses else ()
     estimates, agreements, seconds = [], [], 0.0
     with (
-        warnings.catch_warnings(),
+        warnings.catch_warnings(action="ignore", category=NoMeasurementWarning),  # they are counted instead, below
         DepthRenderer(scene_map.transformed(to_z_up), used, backend, exact=exact) as renderer,
     ):
-        warnings.simplefilter("ignore", NoMeasurementWarning)  # they are counted instead, below
         localizer = make(renderer, n_particles=n_particles, seed=seed)
         localizer.initialize(state_from_optical_pose(to_z_up @ start))
         for index in progress(range(count)):
             depth = sequence.depth(index)
             if watched:
-                time_of_frame = None if sequence.times is None else float(sequence.times[index])
-                faults.append(check.look(depth, time_of_frame).fault)
+                faults.append(check.look(depth, None if sequence.times is None else float(sequence.times[index])).fault)
                 depth = depth if faults[-1] is None else np.full_like(depth, np.nan)
             if coarse:
                 depth = subsample_depth(depth, camera, used)
@@ -203,8 +200,7 @@ def run_localizer(
 def pose_error_summary(run: Run, sequence: DepthSequence) -> dict[str, float | None]:
     """Return median and 90th percentile of position (m) and rotation (degrees) errors, the share within 5 cm, 5 deg.
 
-    The mean normalized error is near 1 where the covariance says rightly how large errors are; None where a frame had
-    too few particles for a covariance.
+    The mean normalized error is near 1 where the covariance is right; None where a frame had too few particles for it.
     """
     position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
     rotation_deg, normalized = np.rad2deg(rotation), float(np.mean(run.normalized_errors))

@@ -131,13 +131,9 @@ def _summarize(experiments: dict, summaries: dict, semantic_map: SemanticMap, ba
 def _rows(experiments: dict[str, dict[str, list[PairResult]]]) -> list[dict]:
     """A row a pose for a CSV file."""
     return [
-        {
-            "experiment": experiment,
-            "source": source,
-            "place": one.pair.name,
-            **pose_columns(one.pair.pose, one.localization, one.outcome),
-            "seconds": round(one.seconds, 3),
-        }
+        {"experiment": experiment, "source": source, "place": one.pair.name}
+        | pose_columns(one.pair.pose, one.localization, one.outcome)
+        | {"seconds": round(one.seconds, 3)}
         for experiment, by_source in experiments.items()
         for source, results in by_source.items()
         for one in results
@@ -159,12 +155,10 @@ def pose_columns(true_pose: Sequence[float], found: Localization, judged: PoseOu
 
 def exact_detections(objects: Sequence[TrueObject], image: np.ndarray) -> tuple[list[Detection], list[int]]:
     """Return what a perfect detector would report of an image `(H, W, 3)` BGR, and the object each detection shows."""
-    chosen = [thing for thing in objects if counts_as_object(thing, image.shape[1])]
-    detections = [
-        Detection(thing.label, 1.0, thing.visible_box, *mean_hue_saturation(image, thing.visible_box))
-        for thing in chosen
-    ]
-    return detections, [thing.number for thing in chosen]
+    chosen = [one for one in objects if counts_as_object(one, image.shape[1])]
+    colours = [mean_hue_saturation(image, one.visible_box) for one in chosen]
+    detections = [Detection(a.label, 1.0, a.visible_box, *colour) for a, colour in zip(chosen, colours, strict=True)]
+    return detections, [one.number for one in chosen]
 
 
 def localize_pair(pair: StereoPair, localizer: SemanticLocalizer, source: str = "images") -> PairResult:
@@ -263,12 +257,10 @@ def range_errors(
 
 
 class RolledPair(NamedTuple):
-    """What the method made of one pair as it was, and of the same images, `width` pixels wide, rolled by `columns`.
+    """What the method made of one pair as it was, and of the same images, `width` pixels wide, rolled by `columns` k.
 
-        np.roll(image, k, axis=1)  is the view of a rig turned by 2 pi k / W to the left
-
-    So x and y should stay and the heading should grow by that angle. The pose moves all the same, because a detector
-    shifted by less than its stride draws boxes a pixel or two elsewhere: half a metre for an object at 6 m (2.4).
+    That is the view of a rig turned by 2 pi k / W to the left. The pose moves all the same: a detector shifted by less
+    than its stride draws boxes a pixel or two elsewhere, half a metre for an object at 6 m (2.4).
     """
 
     columns: int
@@ -308,9 +300,8 @@ def compare(pair: RolledPair) -> tuple[bool, float, float]:
         {landmark: np.arctan2(one.observations[i].y, one.observations[i].x) for i, landmark in one.used_pairs}
         for one in (straight, rolled)
     )
-    agree = before.keys() == after.keys() and all(
-        abs(wrap_angle(after[landmark] - before[landmark] + angle)) < SAME_DIRECTION for landmark in before
-    )
+    turns = [wrap_angle(after.get(landmark, np.nan) - before[landmark] + angle) for landmark in before]
+    agree = before.keys() == after.keys() and all(abs(turn) < SAME_DIRECTION for turn in turns)
     moved = float(np.hypot(rolled.pose.x - straight.pose.x, rolled.pose.y - straight.pose.y))
     return agree, moved, float(abs(wrap_angle(rolled.pose.theta - straight.pose.theta - angle)))
 

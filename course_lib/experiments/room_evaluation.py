@@ -93,8 +93,8 @@ def _overlaps(detections: Sequence[Detection], objects: Sequence[TrueObject], bo
 def identify_detections(detections: Sequence[Detection], objects: Sequence[TrueObject], width: int) -> tuple[int, ...]:
     """Return the number of the object that each detection shows, or `NO_OBJECT`. width: of the panorama, pixels.
 
-    Each object is shown once, by the detection of its class that overlaps it most. An object half hidden has two boxes,
-    around what is seen of it and around all of it: the greater overlap counts. Source: paper 2, section 3 (by people).
+    Each object is shown once, by the detection of its class that overlaps it most: around what is seen of it, or around
+    all of it. Source: paper 2, section 3 (by people).
     """
     found = [NO_OBJECT] * len(detections)
     overlap = np.maximum(*(_overlaps(detections, objects, f"{box}_box", width) for box in ("visible", "unoccluded")))

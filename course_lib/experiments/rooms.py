@@ -95,28 +95,23 @@ def rooms_summary(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> dict:
     """Tables of many rooms: by experiment (1, 2: the heights; both), source and method; and what lies behind them."""
     tables: dict = {"experiment_1": {}, "experiment_2": {}, "both": {}}
     for experiment, source, method in product(tables, SOURCES, METHODS):
-        own = [
-            one
-            for one in judged
-            if (one.source, one.method) == (source, method) and experiment in ("both", f"experiment_{one.experiment}")
-        ]
+        own = [one for one in judged if (one.source, one.method) == (source, method)]
+        own = [one for one in own if experiment in ("both", f"experiment_{one.experiment}")]
         tables[experiment].setdefault(source, {})[method] = rates_and_errors(own)
     poses = [pose for room in rooms for pose in room["poses"]]
     sizes, alike = [len(room["map"]) for room in rooms], {}
     for room in sorted(rooms, key=lambda room: room["look_alike"]["label"]):
         alike.setdefault(room["look_alike"]["label"], []).append(room["look_alike"]["n"])
     counts = {key: sum(pose[key] for pose in poses) for key in ("objects", "found", "detections")}
+    shares = {"precision": "detections", "recall": "objects"}
+    shares = {name: counts["found"] / counts[of] if counts[of] else None for name, of in shares.items()}
     return {
         "seeds": [room["seed"] for room in rooms],
         "rooms": len(rooms),
         "poses_a_room_and_height": len(rooms[0]["poses"]) // 2,
         "look_alikes": alike,
         "objects_a_room": {"least": min(sizes), "median": float(np.median(sizes)), "most": max(sizes)},
-        "detector": counts
-        | {
-            "precision": counts["found"] / counts["detections"] if counts["detections"] else None,
-            "recall": counts["found"] / counts["objects"] if counts["objects"] else None,
-        },
+        "detector": counts | shares,
         "wrong_pairs": wrong_pair_causes(rooms, judged),
         "seconds_per_pose": float(np.median([pose["seconds"] for pose in poses])),
         **tables,
@@ -133,10 +128,7 @@ def rates_and_errors(judged: Sequence[JudgedPose]) -> dict:
 
 
 def wrong_pair_causes(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> dict:
-    """The wrong pairs of the paper's method by source: how many poses have one, and what was taken for its like.
-
-    nothing: a detection of nothing, or of two objects at once.
-    """
+    """The wrong pairs of the paper's method: poses that have one, what was taken for what (nothing: or two at once)."""
     alike = {room["seed"]: room["look_alike"]["label"] for room in rooms}
     causes = {source: {"poses": 0, "look_alikes": 0, "others": 0, "nothing": 0} for source in SOURCES}
     for one in (one for one in judged if one.method == "paper"):
@@ -151,10 +143,8 @@ def wrong_pair_causes(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> di
 def tables(summary: dict) -> str:
     """Everything about the rooms, the paper's numbers beside ours."""
     alike, objects, heights = summary["look_alikes"], summary["objects_a_room"], CAMERA_HEIGHTS.items()
-    # Seeds with their runs joined: 1-5, 8.
-    runs = [
-        [seed for _, seed in run] for _, run in groupby(enumerate(summary["seeds"]), key=lambda one: one[1] - one[0])
-    ]
+    by_run = groupby(enumerate(summary["seeds"]), key=lambda one: one[1] - one[0])
+    runs = [[seed for _, seed in run] for _, run in by_run]  # Seeds with their runs joined: 1-5, 8.
     seeds = ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs)
     kinds = ", ".join(f"{min(counts)} to {max(counts)} {label}s in {len(counts)}" for label, counts in alike.items())
     lines = [
@@ -244,9 +234,8 @@ def _group(values: dict, kind: str) -> str:
     group = values[kind]
     if not group["n"]:
         return f"{0:5d}{'none':>16}"
-    return f"{group['n']:5d}" + _errors(
-        [f"{group[f'median_{error}']:.3f} ({group[f'mean_{error}']:.3f})" for error in ERRORS]
-    )
+    texts = [f"{group[f'median_{error}']:.3f} ({group[f'mean_{error}']:.3f})" for error in ERRORS]
+    return f"{group['n']:5d}" + _errors(texts)
 
 
 def _errors(texts: Sequence[str]) -> str:

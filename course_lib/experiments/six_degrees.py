@@ -92,11 +92,8 @@ def run_frames(
 
 
 def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callable = iter) -> dict[str, list]:
-    """What refinement makes of the *true* pose: the recording's truth, map and camera agree no better than this.
-
-    score: at the truth itself, before refinement.
-    """
-    frames: dict[str, list] = {name: [] for name in ("position_m", "rotation_deg", "status", "renders", "score")}
+    """What refinement makes of the *true* pose: no estimate agrees better. score: at the truth, before refinement."""
+    rows = []
     with DepthRenderer(scene_map, sequence.camera()) as renderer:
         fine = pyramid(renderer)[-1]
         for index in progress(range(len(sequence))):
@@ -106,10 +103,9 @@ def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callabl
             refined = refine(fine.renderer, fine.measured, true, FLOOR_SCALES)
             position, rotation = pose_errors(refined[0], true[0])
             status = judge_refined(agreement(fine.measured, fine.renderer.render_poses(refined)[0]))
-            found = float(position), float(np.rad2deg(rotation)), status, len(FLOOR_SCALES), score
-            for own, value in zip(frames.values(), found, strict=True):
-                own.append(value)
-    return frames
+            rows.append((float(position), float(np.rad2deg(rotation)), status, len(FLOOR_SCALES), score))
+    names = ("position_m", "rotation_deg", "status", "renders", "score")
+    return {name: list(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
 
 
 def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:
@@ -162,12 +158,8 @@ def six_degrees_table(rows: dict[str, dict]) -> str:
 
 def thinnings(methods: Iterable[str], everies: Sequence[int]) -> list[tuple[str, int, int]]:
     """Return (method, every, offset) of every offset of each thinning; the floor has none."""
-    return [
-        (method, every, offset)
-        for method in methods
-        for every in ((1,) if method == "floor" else everies)
-        for offset in range(every)
-    ]
+    runs = [(method, every) for method in methods for every in ((1,) if method == "floor" else everies)]
+    return [(method, every, offset) for method, every in runs for offset in range(every)]
 
 
 def thinned_run(map_file: str, sequence: str, method: str, every: int, offset: int, seed: int) -> dict[str, list]:
@@ -177,10 +169,7 @@ def thinned_run(map_file: str, sequence: str, method: str, every: int, offset: i
 
 
 def corridor_hand(data: str, seed: int, frames: int | None, methods: list[str]) -> dict[str, dict[str, dict]]:
-    """Run each method on a seed's recording carried by hand through the corridor, and on one with calibration errors.
-
-    In the second, focal length, lens, and mount are wrong by what is usual; the filter is told the nominal values.
-    """
+    """Run each method on a seed's recording by hand through the corridor, and on one with calibration errors."""
     scene_map, building = SceneMap.load(Path(data) / "map.ply"), building_of_data(data)
     result = {}
     with temporary_folder() as temporary:

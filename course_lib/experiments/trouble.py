@@ -1,7 +1,4 @@
-"""Trouble the sensors of both methods, and tell what becomes of every frame: named, recovered, never confidently wrong.
-
-Frames are dropped, repeated, black, half covered, out of order, panoramas dark or exchanged, at shares of the frames.
-"""
+"""Trouble the sensors of both methods at shares of the frames, and tell what becomes of every frame."""
 
 from itertools import product
 from pathlib import Path
@@ -59,8 +56,7 @@ def run(
 
 def trouble_table(result: dict) -> str:
     """Return a line a trouble and share of one method."""
-    gate, usual, calm = result["gate"], result["usual"], result["undisturbed"]
-    seeds = result["seeds"]
+    gate, usual, calm, seeds = (result[name] for name in ("gate", "usual", "undisturbed", "seeds"))
     lines = [
         f"{TITLES[result['method']]}: {'seed' if len(seeds) == 1 else 'seeds'} {', '.join(map(str, seeds))}, "
         f"{result['frames']} frames each",
@@ -74,9 +70,8 @@ def trouble_table(result: dict) -> str:
         f"{'':20} {'[%]':>6} {'':>7} {'':>7} {'[%]':>6} {'[%]':>7} {'wrong':>10}",
     ]
     for row in result["rows"]:
-        back, beside = (
-            f"{100 * row[name] / row['judged']:.0f}" if row["judged"] else "-" for name in ("recovered", "undisturbed")
-        )
+        shares = [100 * row[name] / row["judged"] if row["judged"] else None for name in ("recovered", "undisturbed")]
+        back, beside = ("-" if share is None else f"{share:.0f}" for share in shares)
         lines.append(
             f"{row['trouble']:20} {100 * row['share']:>6.0f} {row['frames']:>7} {row['judged']:>7} "
             f"{back:>6} {beside:>7} {row['confident_wrong']:>10}   {told(row['outcomes'])}"

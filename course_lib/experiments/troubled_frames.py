@@ -50,13 +50,7 @@ def troubled_runs(n_frames: int, share: float, length: int, rng: np.random.Gener
 
 
 def troubled_recording(
-    trouble: str,
-    spoils: Mapping[str, Spoil],
-    images: Sequence,
-    times: Sequence[float],
-    share: float,
-    rng: np.random.Generator,
-    length: int = 1,
+    trouble: str, spoils: Mapping[str, Spoil], images: Sequence, times: Sequence, share: float, rng, length: int = 1
 ) -> tuple[list[Arrival], list[tuple[int, int]]]:
     """Return what arrives of a recording, an `Arrival` for each frame that is due, and the troubled stretches.
 
@@ -77,18 +71,11 @@ def troubled_recording(
 
 
 def troubles_of(
-    run: Callable[[list[Arrival]], list[dict]],
-    lengths: Mapping[str, int],
-    spoils: Mapping[str, Spoil],
-    images: Sequence,
-    times: Sequence[float],
-    seed: int,
-    shares: Sequence[float],
+    run: Callable, lengths: Mapping, spoils: Mapping, images: Sequence, times: Sequence, seed: int, shares: Sequence
 ) -> dict:
-    """Run a method on a recording undisturbed, and with every trouble at every share (0 to 1).
+    """Run a method on a recording undisturbed, and with every trouble, of its length, at every share (0 to 1).
 
-    run: gives, for each frame that was due, {"outcome", "confident", "position_m", "rotation_deg"}. lengths: of each
-    trouble. Returns {"undisturbed": frames, "troubles": [{"trouble", "share", "runs", "frames"}]}.
+    run: gives, for a list of `Arrival`, {"outcome", "confident", "position_m", "rotation_deg"} each.
     """
     calm = run([Arrival(image, float(time)) for image, time in zip(images, times, strict=True)])
     rows = []
@@ -163,8 +150,7 @@ def _row(results: Sequence[dict], k: int, gate: Gate, usual: Gate) -> dict:
         judged += [frames[index] for index in indices]
         beside += [one["undisturbed"][index] for index in indices]
     return {
-        "trouble": results[0]["troubles"][k]["trouble"],
-        "share": results[0]["troubles"][k]["share"],
+        **{name: results[0]["troubles"][k][name] for name in ("trouble", "share")},
         "frames": len(bad) + len(good),
         "troubled": len(bad),
         "outcomes": _counts(bad),

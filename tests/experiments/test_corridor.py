@@ -28,7 +28,7 @@ def meets_the_targets(median, sigma, within_3sigma, timed_median):
 
 @pytest.mark.slow
 def test_a_stretch_of_the_corridor_meets_the_targets_of_the_whole(maps, wagon):
-    """200 particles, alpha 0.1, beta 0.01, on a seed of no tuning and no report."""
+    """On a seed of no tuning and no report."""
     _, nearest, timed = run_row(METHODS["proposed"], maps, wagon, seed=77, frames=14)
     assert meets_the_targets(nearest.median, nearest.sigma, nearest.within_3sigma, timed.median)
 
@@ -63,9 +63,7 @@ def test_the_papers_method_follows_a_seeds_recordings_in_the_shipped_map(corrido
     assert np.linalg.norm(path[-1] - path[0]) > 0.6
     rows = run_rows(maps, *recordings, methods=("proposed",), seed=1, n_particles=80)
     assert set(rows) == {"proposed", "proposed" + BY_HAND}
-    for row in rows.values():
-        assert row.timed.median < 0.15
-        assert row.timed.errors[-1] < 0.25
+    assert all(row.timed.median < 0.15 and row.timed.errors[-1] < 0.25 for row in rows.values())
 
 
 def test_the_reported_results_meet_the_targets(corridor_folder):

@@ -15,11 +15,9 @@ from course_lib.experiments.look_alikes import (
     answers_table,
     is_right,
     measured_motion,
-    pose_errors,
     risk_coverage,
 )
 from course_lib.experiments.observed_rooms import record_of_observations
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed, scattered
 
 STEPS = (POSE, POSE + [0.3, -0.1, 0.2], POSE + [0.5, 0.2, 0.3])  # noqa: RUF005 (they are arrays)
@@ -30,19 +28,14 @@ def record_of(semantic_map, seed=7, which=None):
     indices = list(range(len(semantic_map))) if which is None else list(which)
     entry = {"observations": record_of_observations(observed(semantic_map, POSE, indices)), "true_landmarks": indices}
     pose = {"pose": POSE.tolist(), "name": "00", "sources": {"images": entry, "exact_boxes": entry}}
-    return {
-        "seed": seed,
-        "map": [[one.label, one.x, one.y, one.hue, one.saturation] for one in semantic_map.landmarks],
-        "walls": np.asarray(semantic_map.walls).tolist(),
-        "poses": [pose | {"experiment": 1}, pose | {"experiment": 2}],
-    }
+    landmarks = [[one.label, one.x, one.y, one.hue, one.saturation] for one in semantic_map.landmarks]
+    poses = [pose | {"experiment": number} for number in (1, 2)]
+    return {"seed": seed, "map": landmarks, "walls": np.asarray(semantic_map.walls).tolist(), "poses": poses}
 
 
 def views_of(semantic_map, which=None):
-    views = [
-        {"pose": list(map(float, pose)), "observations": record_of_observations(observed(semantic_map, pose, which))}
-        for pose in STEPS[1:]
-    ]
+    seen = [record_of_observations(observed(semantic_map, pose, which)) for pose in STEPS[1:]]
+    views = [{"pose": pose.tolist(), "observations": one} for pose, one in zip(STEPS[1:], seen, strict=True)]
     return [{"experiment": 2, "name": "00", "views": views}]
 
 
@@ -56,11 +49,6 @@ def answer(kind="correct", confidence=0.9, right=True, seed=1, errors=(0.1, 0.2,
 )
 def test_correct_is_within_half_a_metre_and_ten_degrees(error, right):
     assert is_right(error) is right
-
-
-def test_a_heading_is_wrong_the_short_way_round():
-    errors = pose_errors(Pose2D(1.0, 2.0, np.pi - 0.01), (1.1, 1.8, -np.pi + 0.01))
-    assert errors == pytest.approx((0.1, 0.2, np.degrees(0.02)))
 
 
 def test_every_matcher_answers_and_only_the_consistent_one_says_that_it_cannot():
@@ -119,10 +107,6 @@ def test_the_table_counts_kinds_and_averages_the_errors_of_the_correct():
 
 
 def test_risk_over_coverage_goes_through_every_threshold():
-    answers = [
-        answer(confidence=c, right=r) for c, r in ((0.9, True), (0.8, False), (0.7, True), (0.7, True), (0, False))
-    ]
-    curve = risk_coverage(answers)
-    assert curve["threshold"] == [0.9, 0.8, 0.7]
-    assert curve["coverage_percent"] == [20.0, 40.0, 80.0]
-    assert curve["risk_percent"] == [0.0, 50.0, 25.0]
+    told = (0.9, True), (0.8, False), (0.7, True), (0.7, True), (0, False)
+    curve = risk_coverage([answer(confidence=confidence, right=right) for confidence, right in told])
+    assert list(curve.values()) == [[0.9, 0.8, 0.7], [20.0, 40.0, 80.0], [0.0, 50.0, 25.0]]

@@ -16,7 +16,6 @@ from course_lib.rendering.sensor import subsample_depth
 LOST_POSITION, LOST_ROTATION = 0.3, np.deg2rad(15.0)  # m, rad; beyond either a frame is truly lost
 WIDTH = 40  # pixels, of the thinned images
 
-
 WAYS = {
     "kidnapped": {"skipped": (0.2, 0.6)},
     "started beside": {"shift": (0.3, 0.3, 0.2), "turn_deg": 50.0},
@@ -26,17 +25,7 @@ WAYS = {
 
 
 def judged_run(
-    folder,
-    tmp_path,
-    seed,
-    frames,
-    *,
-    noise=0.3,
-    n_particles=30,
-    skipped=(0, 0),
-    shift=(0, 0, 0),
-    turn_deg=0.0,
-    mirrored=False,
+    folder, tmp_path, seed, frames, *, noise=0.3, n_particles=30, skipped=(0, 0), shift=0, turn_deg=0, mirrored=False
 ):
     """Which frames of the shipped recording, run one way, are truly lost, and what each was called.
 
@@ -57,15 +46,9 @@ def judged_run(
     small = camera.resized(WIDTH, round(WIDTH * camera.height / camera.width))
     depths = [subsample_depth(sequence.depth(i), camera, small) for i in kept]
     write_sequence(tmp_path / "thinned", small.matrix, kept, depths, sequence.camera_to_world[kept], up=sequence.up)
-    run = run_sequence(
-        scene_map,
-        read_sequence(tmp_path / "thinned"),
-        start=start,
-        n_particles=n_particles,
-        seed=seed,
-        backend="ray",
-        **system_noise("xyyaw", *(noise * usual for usual in SIGMA["xyyaw"])),
-    )
+    options = {"start": start, "n_particles": n_particles, "seed": seed, "backend": "ray"}
+    options |= system_noise("xyyaw", *(noise * usual for usual in SIGMA["xyyaw"]))
+    run = run_sequence(scene_map, read_sequence(tmp_path / "thinned"), **options)
     metres, radians = pose_errors(run.camera_to_world, sequence.camera_to_world[kept])
     return (metres > LOST_POSITION) | (radians > LOST_ROTATION) | mirrored, np.array(run.statuses)
 

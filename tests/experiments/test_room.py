@@ -15,13 +15,8 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, Sema
 
 WIDTH, COLUMNS = 1280, 97
 ANGLE = 2 * np.pi * COLUMNS / WIDTH
-MAP = SemanticMap(
-    (
-        Landmark("sofa", 4.0, 0.0, 20.0, 60.0),
-        Landmark("table", 1.0, 3.0, 120.0, 60.0),
-        Landmark("chair", -2.0, 1.0, 240.0, 60.0),
-    )
-)
+THINGS = ("sofa", 4.0, 0.0, 20.0), ("table", 1.0, 3.0, 120.0), ("chair", -2.0, 1.0, 240.0)
+MAP = SemanticMap([Landmark(*thing, 60.0) for thing in THINGS])
 LOCALIZER = SemanticLocalizer(StereoRig(0.3, 1.4), MAP)
 
 
@@ -56,8 +51,8 @@ def localized(turn=0.0, shift=(0.0, 0.0), labels=("sofa", "table", "chair")):
     )
 
 
-def pair(rolled, straight=None):
-    return RolledPair(COLUMNS, WIDTH, straight or localized(), rolled)
+def pair(rolled):
+    return RolledPair(COLUMNS, WIDTH, localized(), rolled)
 
 
 def test_what_moves_and_turns_besides_is_measured():
@@ -75,13 +70,8 @@ def test_what_does_not_agree(rolled):
 
 
 def test_the_summary_is_of_those_that_agree():
-    found = turn_summary(
-        [
-            pair(localized(ANGLE - 0.01, (0.0, 0.02))),
-            pair(localized(ANGLE, (0.105, 0.0))),
-            pair(localized(-ANGLE, (3.0, 0.0))),
-        ]
-    )
+    rolled = localized(ANGLE - 0.01, (0.0, 0.02)), localized(ANGLE, (0.105, 0.0)), localized(-ANGLE, (3.0, 0.0))
+    found = turn_summary([pair(one) for one in rolled])
     assert (found["n"], found["associations_agree"], found["within_0.10_m"]) == (3, 2, 1)
     assert found["columns"] == [COLUMNS]
     assert found["greatest_moved_m"] == pytest.approx(0.105)

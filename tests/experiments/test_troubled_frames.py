@@ -24,11 +24,9 @@ GATE = Gate(0.3, 15.0)
 def test_stretches_make_up_the_share_and_do_not_touch(share, n, length):
     for seed in range(20):
         runs = troubled_runs(n, share, length, np.random.default_rng(seed))
-        assert len(runs) == max(1, round(share * n / length))
-        assert all(end - first == length for first, end in runs)
+        assert [end - first for first, end in runs] == [length] * max(1, round(share * n / length))
         assert all(first > before_end for (_, before_end), (first, _) in pairwise(runs))
-        assert runs[0][0] >= 1
-        assert runs[-1][1] <= n - LEFT_AT_THE_END
+        assert 1 <= runs[0][0] < runs[-1][1] <= n - LEFT_AT_THE_END
         assert troubled_frames(runs, n).sum() == len(runs) * length
 
 
@@ -42,12 +40,8 @@ def test_the_same_seed_has_the_same_places_and_each_trouble_its_own():
 
 
 def frame(outcome="tracked", metres=0.01, degrees=0.1):
-    return {
-        "outcome": outcome,
-        "confident": outcome == "tracked",
-        "position_m": metres,
-        "rotation_deg": None if metres is None else degrees,
-    }
+    degrees = None if metres is None else degrees
+    return {"outcome": outcome, "confident": outcome == "tracked", "position_m": metres, "rotation_deg": degrees}
 
 
 @pytest.mark.parametrize(
@@ -83,11 +77,8 @@ def test_a_row_counts_outcomes_recovery_and_wrong_poses():
     bad[5] = frame("repeated", metres=0.9)
     bad[20] = frame("tracked", metres=0.9)
     bad[15] = frame("doubtful", metres=0.5)
-    result = {
-        "undisturbed": calm,
-        "troubles": [{"trouble": "repeated", "share": 0.05, "runs": [(5, 6), (20, 21)], "frames": bad}],
-    }
-    told = summary([result, result], GATE)
+    trouble = {"trouble": "repeated", "share": 0.05, "runs": [(5, 6), (20, 21)], "frames": bad}
+    told = summary([{"undisturbed": calm, "troubles": [trouble]}] * 2, GATE)
     assert told["usual"]["metres"] == pytest.approx(0.09)
     assert told["undisturbed"] == dict(frames=80, good_frames={"tracked": 80}, false_alarms=0, confident_wrong=0)
     (row,) = told["rows"]

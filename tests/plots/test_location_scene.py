@@ -13,27 +13,25 @@ from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from tests.plots.test_track_scene import of_colour
 from tests.spherical_stereo.stereo_scene import BASELINE, mapped_scene
 
+UPPER, LOWER, MAP = mapped_scene()
+
 
 @pytest.fixture(scope="module")
-def answer():
-    upper, lower, semantic_map = mapped_scene()
-    localizer = SemanticLocalizer(StereoRig(BASELINE), semantic_map)
-    return semantic_map, localizer.localize_views(upper, lower)
+def found():
+    return SemanticLocalizer(StereoRig(BASELINE), MAP).localize_views(UPPER, LOWER)
 
 
-def test_every_landmark_has_a_post_and_its_class(answer):
-    semantic_map, found = answer
-    plotter, _ = location_scene(semantic_map, found)
-    for label in set(semantic_map.labels):
-        chosen = semantic_map.positions[[one == label for one in semantic_map.labels]]
+def test_every_landmark_has_a_post_and_its_class(found):
+    plotter, _ = location_scene(MAP, found)
+    for label in set(MAP.labels):
+        chosen = MAP.positions[[one == label for one in MAP.labels]]
         posts = [mesh for mesh in of_colour(plotter, class_style(label)[0]) if mesh.n_points == 8]
         middles = np.array([np.asarray(mesh.center)[:2] for mesh in posts])
         assert np.allclose(np.sort(middles, axis=0), np.sort(chosen, axis=0), atol=1e-4)
 
 
-def test_rays_go_from_the_pose_to_the_places_and_ellipses_lie_there(answer):
-    semantic_map, found = answer
-    plotter, words = location_scene(semantic_map, found)
+def test_rays_go_from_the_pose_to_the_places_and_ellipses_lie_there(found):
+    plotter, words = location_scene(MAP, found)
     rays = of_colour(plotter, "#696969")
     assert len(rays) == len(found.observations) == 5
     places = found.pose.apply([[one.x, one.y] for one in found.observations])
@@ -50,13 +48,11 @@ def test_rays_go_from_the_pose_to_the_places_and_ellipses_lie_there(answer):
     assert "rejected" not in words
 
 
-def test_a_rejected_pose_is_called_so_and_no_pose_is_said(answer):
-    semantic_map, _ = answer
-    upper, lower, _ = mapped_scene()
-    rejected = SemanticLocalizer(StereoRig(1.0), semantic_map).localize_views(upper, lower)
+def test_a_rejected_pose_is_called_so_and_no_pose_is_said():
+    rejected = SemanticLocalizer(StereoRig(1.0), MAP).localize_views(UPPER, LOWER)
     assert rejected.pose is None
-    assert "rejected pose: coloured axes" in location_scene(semantic_map, rejected)[1]
-    nothing = SemanticLocalizer(StereoRig(BASELINE), semantic_map).localize_views(replace(upper, detections=()), lower)
-    plotter, words = location_scene(semantic_map, nothing)
+    assert "rejected pose: coloured axes" in location_scene(MAP, rejected)[1]
+    nothing = SemanticLocalizer(StereoRig(BASELINE), MAP).localize_views(replace(UPPER, detections=()), LOWER)
+    plotter, words = location_scene(MAP, nothing)
     assert "no pose, no detections" in words
     assert len(page_html(plotter, "A map", words)) < 1_300_000

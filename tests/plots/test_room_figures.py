@@ -13,13 +13,11 @@ from tests.beyond.look_alikes.look_alike_scene import SYMMETRIC
 
 
 def test_a_line_joins_each_measured_object_to_its_landmark_and_a_swap_crosses():
-    landmarks = [Landmark("sofa", 1.0, 1.0, 20.0, 50.0), Landmark("sofa", 3.0, 1.0, 20.0, 50.0)]
-    measured = [Observation("sofa", 1.0, 1.5, 20.0, 50.0), Observation("sofa", 3.0, 1.5, 20.0, 50.0)]
-    result = SimpleNamespace(
-        pair=SimpleNamespace(pose=(0.0, 0.0, 0.0)),
-        localization=SimpleNamespace(pose=Pose2D(0.0, 0.0, 0.0), observations=measured, used_pairs=((0, 1), (1, 0))),
-        true_landmarks=(0, 1),
-    )
+    landmarks = [Landmark("sofa", x, 1.0, 20.0, 50.0) for x in (1.0, 3.0)]
+    measured = [Observation("sofa", x, 1.5, 20.0, 50.0) for x in (1.0, 3.0)]
+    pose = Pose2D(0.0, 0.0, 0.0)
+    found = SimpleNamespace(pose=pose, observations=measured, used_pairs=((0, 1), (1, 0)))
+    result = SimpleNamespace(pair=SimpleNamespace(pose=pose), localization=found, true_landmarks=(0, 1))
     figure = pose_figure(SemanticMap(landmarks), result, "swapped")
     axes = figure.axes[0]
     dashed = [line.get_xydata().tolist() for line in axes.lines if line.get_linestyle() == "--"]

@@ -32,18 +32,9 @@ def run(wagon) -> Run:
     """A run that knows the truth, but for one frame."""
     poses = np.array(wagon.camera_to_world[:FRAMES])
     poses[OFF, 2, 3] += 0.5
-    unused = dict.fromkeys(("ess", "normalized_errors", "deviations", "error_sigmas", "renders"), np.empty(0))
-    return Run(
-        frames=wagon.frames[:FRAMES],
-        states=state_from_optical_pose(poses),
-        camera_to_world=poses,
-        scores=np.where(np.arange(FRAMES) == 30, 0.2, 0.8),
-        agreements=[],
-        statuses=["tracked"] * FRAMES,
-        ms_per_frame=0.0,
-        frames_without_measurement=0,
-        **unused,
-    )
+    known = {"frames": wagon.frames[:FRAMES], "states": state_from_optical_pose(poses), "camera_to_world": poses}
+    known |= {"scores": np.where(np.arange(FRAMES) == 30, 0.2, 0.8), "statuses": ["tracked"] * FRAMES}
+    return Run(**dict.fromkeys(Run._fields, ()) | known)
 
 
 def posed(wagon, camera_to_world=None):
@@ -100,8 +91,7 @@ def test_far_from_zero_the_scene_is_brought_near(scene_map, wagon, run):
 def test_doubtful_and_lost_frames_are_marked_and_said(scene_map, wagon, run):
     statuses = ["tracked"] * 30 + ["doubtful"] * 4 + ["lost"] * 6
     plotter, words = track_scene(scene_map, run._replace(statuses=statuses), wagon, "z", NEAR, FAR)
-    assert [mesh.n_points for mesh in of_colour(plotter, ORANGE)] == [4]
-    assert [mesh.n_points for mesh in of_colour(plotter, VERMILION)] == [6]
+    assert [[mesh.n_points for mesh in of_colour(plotter, one)] for one in (ORANGE, VERMILION)] == [[4], [6]]
     assert "orange where doubtful, red where lost" in words
 
 
