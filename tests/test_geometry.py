@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
@@ -59,41 +59,34 @@ def test_optical_pose_round_trip(rng):
     assert np.allclose(optical_pose(state_from_optical_pose(poses)), poses, atol=1e-12)
 
 
-@pytest.mark.parametrize(("states", "said"), [(np.zeros(5), "shape"), ([np.nan] * 6, "finite"), (3.0, "shape")])
-def test_bad_states_are_named(states, said):
+@pytest.mark.parametrize(
+    ("function", "wrong", "said"),
+    [
+        *((pose_matrix, (states,), "shape") for states in (np.zeros(5), 3.0)),
+        (pose_matrix, ([np.nan] * 6,), "finite"),
+        (state_from_matrix, (np.diag([1.0, 1.0, -1.0, 1.0]),), "rotation"),
+        (state_from_matrix, (np.diag([1.0, 1.0, 1.0, 7.0]),), "last row"),
+        *((circular_mean, ([0.1, 0.2, 0.3], w), "weights") for w in ([1, 1], [1, -1, 1], [0, 0, 0], [1, np.nan, 1])),
+    ],
+)
+def test_what_is_no_state_no_rotation_and_no_weight_is_refused(function, wrong, said):
     with pytest.raises(ValueError, match=said):
-        pose_matrix(states)
+        function(*wrong)
 
 
-def test_a_matrix_that_is_no_rotation_is_refused():
-    with pytest.raises(ValueError, match="rotation"):
-        state_from_matrix(np.diag([1.0, 1.0, -1.0, 1.0]))
-    with pytest.raises(ValueError, match="last row"):
-        state_from_matrix(np.diag([1.0, 1.0, 1.0, 7.0]))
-
-
+@example(np.pi)
 @given(st.floats(-1e4, 1e4))
 def test_wrapped_angles_lie_in_range_and_mean_the_same_direction(angle):
     wrapped = wrap_angle(angle)
     assert -np.pi <= wrapped < np.pi
-    assert np.isclose(np.exp(1j * wrapped), np.exp(1j * angle), atol=1e-9)
-
-
-def test_pi_wraps_to_minus_pi():
-    assert wrap_angle(np.pi) == -np.pi
     assert wrap_angle(-1e-20) > -np.pi
+    assert np.isclose(np.exp(1j * wrapped), np.exp(1j * angle), atol=1e-9)
 
 
 def test_circular_mean_crosses_the_wrap_and_opposite_angles_have_none():
     assert np.isclose(abs(circular_mean(np.deg2rad([179.0, -179.0]))), np.pi)
     assert np.isclose(circular_mean(np.deg2rad([170.0, -160.0]), [2, 1]), np.deg2rad(179.96), atol=2e-3)
     assert np.isnan(circular_mean([0.0, np.pi]))
-
-
-@pytest.mark.parametrize("weights", [[1, 1], [1, -1, 1], [0, 0, 0], [1, np.nan, 1]])
-def test_bad_weights_are_refused(weights):
-    with pytest.raises(ValueError, match="weights"):
-        circular_mean([0.1, 0.2, 0.3], weights)
 
 
 def test_rotation_exp_is_the_exponential_of_the_cross_product_matrix_and_log_undoes_it(rng):

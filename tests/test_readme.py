@@ -128,17 +128,16 @@ def test_the_speed_is_what_the_benchmark_printed():
     assert (float(told[1]), float(told[2])) == (round(found["step_ms"]), round(found["embree_ratio"]))
 
 
-def test_the_readme_is_a_front_page_whose_numbers_stand_in_the_results():
+def test_the_readme_is_a_front_page_whose_numbers_links_and_commands_are_right():
     assert len(README.splitlines()) <= 130
     rows = [line for line in README.splitlines() if re.match(r"\| .*\d", line) and "](" not in line]
     assert len(rows) >= 6
     assert [row for row in rows if row not in RESULTS.splitlines()] == []
-
-
-def test_every_command_that_is_named_exists():
     calls = re.findall(r"python3 course\.py ([a-z][^`#\n]*)", README + RESULTS)
     assert len(calls) >= 10
     assert [call for call in calls if find_command(call.split()) is None] == []
+    for target in re.findall(r"\]\(([^)#]+)\)", README + RESULTS):
+        assert target.startswith("http") or (ROOT / target).exists(), target
 
 
 def test_the_snippets_of_the_readme_follow_the_wagon_and_find_the_rig(monkeypatch):
@@ -153,23 +152,15 @@ def test_the_snippets_of_the_readme_follow_the_wagon_and_find_the_rig(monkeypatc
     assert np.hypot(found.pose.x - true[0], found.pose.y - true[1]) < 0.5
 
 
-def test_every_local_link_leads_somewhere():
-    for target in re.findall(r"\]\(([^)#]+)\)", README + RESULTS):
-        assert target.startswith("http") or (ROOT / target).exists(), target
-
-
-ROOM = [
-    ("correct [%]", "greedy", ("correct_percent",), 0),
-    ("incorrect [%]", "greedy", ("incorrect_percent",), 0),
-    ("unable [%]", "greedy", ("unable_percent",), 0),
-    ("mean error in x when correct [m]", "greedy", ("correct", "mean_dx_m"), 2),
-    ("mean error in y when correct [m]", "greedy", ("correct", "mean_dy_m"), 2),
-    ("mean error in heading when correct [degrees]", "greedy", ("correct", "mean_dtheta_deg"), 1),
-    ("correct from exact boxes [%]", "greedy_exact_boxes", ("correct_percent",), 0),
-]
-
-
-@pytest.mark.parametrize(("name", "method", "keys", "digits"), ROOM)
+@pytest.mark.parametrize(
+    ("name", "method", "keys", "digits"),
+    [
+        *((f"{kind} [%]", "greedy", (f"{kind}_percent",), 0) for kind in ("correct", "incorrect", "unable")),
+        *((f"mean error in {axis} when correct [m]", "greedy", ("correct", f"mean_d{axis}_m"), 2) for axis in "xy"),
+        ("mean error in heading when correct [degrees]", "greedy", ("correct", "mean_dtheta_deg"), 1),
+        ("correct from exact boxes [%]", "greedy_exact_boxes", ("correct_percent",), 0),
+    ],
+)
 def test_the_rows_of_the_room_are_the_medians_and_ranges_of_its_stored_results(name, method, keys, digits):
     for experiment, cell in zip(("experiment_1", "experiment_2"), row(f"{name} |")[:2], strict=True):
         values = [stored(f"room/seed_{seed}.json")[experiment][method] for seed in range(1, 6)]
@@ -197,20 +188,21 @@ def test_the_results_quote_detector_stereo_and_distances_as_stored():
         assert quoted == [f"{values[key]:.{digits}f}" for key in keys]
 
 
-METHODS = [
-    ("the paper's method", "paper"),
-    ("implausible poses rejected", "library"),
-    ("eq. (1) as printed", "as_printed"),
-]
-
-
 @pytest.mark.parametrize("source", ["images", "exact_boxes"])
-@pytest.mark.parametrize(("words", "method"), METHODS)
-def test_the_rows_of_the_rooms_are_the_stored_shares_and_intervals(words, method, source):
-    found = stored("room/rooms_1-20.json")["both"][source][method]
-    kinds = [(found[f"{kind}_percent"], *found[f"{kind}_rooms_percent"]) for kind in ("correct", "incorrect", "unable")]
-    cells = ["{:.1f} ({:.0f} to {:.0f})".format(*shares) for shares in kinds]
-    assert row(f"from {source.replace('_', ' ')}, {words} |")[:3] == cells
+def test_the_rows_of_the_rooms_and_of_the_tilts_are_the_stored_shares_intervals_and_errors(source):
+    methods = {"the paper's method": "paper", "implausible poses rejected": "library"}
+    for words, method in (methods | {"eq. (1) as printed": "as_printed"}).items():
+        found = stored("room/rooms_1-20.json")["both"][source][method]
+        kinds = ("correct", "incorrect", "unable")
+        shares = [(found[f"{kind}_percent"], *found[f"{kind}_rooms_percent"]) for kind in kinds]
+        cells = ["{:.1f} ({:.0f} to {:.0f})".format(*share) for share in shares]
+        assert row(f"from {source.replace('_', ' ')}, {words} |")[:3] == cells
+    for tilt, sources in stored("room/tilts_1-10.json")["tilts"].items():
+        found = sources[source]
+        correct = [found[method]["correct"] for method in ("paper", "weighted_fit")]
+        cells = [f"{found['paper']['correct_percent']:.0f}", f"{found['library']['unable_percent']:.0f}"]
+        cells += ["{median_dx_m:.2f}, {median_dy_m:.2f}, {median_dtheta_deg:.1f}".format(**one) for one in correct]
+        assert row(f"from {source.replace('_', ' ')}, {tilt} degrees |")[:4] == cells
 
 
 ANSWERS = [("one_view", f"one view, {name}", name) for name in ("greedy", "hungarian", "consistent")]
@@ -226,30 +218,15 @@ ANSWERS += [
 @pytest.mark.parametrize(("group", "name", "method"), ANSWERS)
 def test_the_rows_of_the_look_alikes_are_the_stored_shares_and_errors(group, name, method):
     found = stored("room/rooms_1-20.json")["answers"][group][method]
-    kinds = [
-        (found[f"{kind}_percent"], *found[f"{kind}_wilson_percent"]) for kind in ("correct", "wrong", "unanswered")
-    ]
-    cells = ["{:.1f} ({:.1f} to {:.1f})".format(*shares) for shares in kinds]
+    kinds = ("correct", "wrong", "unanswered")
+    shares = [(found[f"{kind}_percent"], *found[f"{kind}_wilson_percent"]) for kind in kinds]
+    cells = ["{:.1f} ({:.1f} to {:.1f})".format(*share) for share in shares]
     if group != "thinned_views":
         right = found["all_matches_right_percent"]
         cells.append("-" if right is None else f"{right:.1f}")
     cells.append("{mean_dx_m:.2f}, {mean_dy_m:.2f}, {mean_dtheta_deg:.1f}".format(**found))
     assert row(f"{name} |")[: len(cells)] == cells
-
-
-def test_the_rows_of_the_ablation_are_the_stored_shares():
-    found = stored("room/rooms_1-20.json")["answers"]["ablation"]
-    for name, shown in found["right_map"].items():
-        percents = [shown[f"{kind}_percent"] for kind in ("correct", "wrong", "unanswered")]
-        percents.append(found["wrong_map"][name]["wrong_percent"])
+    ablation = stored("room/rooms_1-20.json")["answers"]["ablation"]
+    for name, shown in ablation["right_map"].items():
+        percents = [shown[f"{kind}_percent"] for kind in kinds] + [ablation["wrong_map"][name]["wrong_percent"]]
         assert row(f"{name.replace('_', ' ')} |")[:4] == [f"{share:.1f}" for share in percents]
-
-
-@pytest.mark.parametrize("source", ["images", "exact_boxes"])
-@pytest.mark.parametrize("tilt", ["0", "0.1", "0.3", "1"])
-def test_the_rows_of_the_tilts_are_the_stored_shares_and_errors(source, tilt):
-    found = stored("room/tilts_1-10.json")["tilts"][tilt][source]
-    correct = [found[method]["correct"] for method in ("paper", "weighted_fit")]
-    cells = [f"{found['paper']['correct_percent']:.0f}", f"{found['library']['unable_percent']:.0f}"]
-    cells += ["{median_dx_m:.2f}, {median_dy_m:.2f}, {median_dtheta_deg:.1f}".format(**one) for one in correct]
-    assert row(f"from {source.replace('_', ' ')}, {tilt} degrees |")[:4] == cells

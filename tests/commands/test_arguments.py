@@ -119,31 +119,17 @@ def test_seeds_are_numbers_and_ranges():
     assert parse_seeds("2-3, 1-2,10000") == [2, 3, 1, 10000]
 
 
-def chosen(*words):
-    parser = argparse.ArgumentParser()
-    add_detector_arguments(parser)
-    return chosen_detector(parser.parse_args(words))
+def test_what_is_given_reaches_the_detector_and_the_rest_is_left_to_its_folder(tmp_path, monkeypatch):
+    def chosen(*words):
+        parser = argparse.ArgumentParser()
+        add_detector_arguments(parser)
+        return chosen_detector(parser.parse_args(words))
 
-
-@pytest.fixture
-def loaded(monkeypatch):
-    """YoloDetector.load gives back what it was asked for."""
     monkeypatch.setattr(YoloDetector, "load", lambda folder, **options: (folder, options))
-
-
-def test_what_is_given_reaches_the_detector_and_the_rest_is_left_to_its_folder(loaded, tmp_path):
     assert chosen() == (data_path("detector"), {})
     words = ["--detector", str(tmp_path), "--input-size", "1280", "512", "--score-threshold", "0.7"]
     assert chosen(*words) == (tmp_path, {"input_size": (1280, 512), "score_threshold": 0.7})
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--input-size", "1280", "500"], "--input-size must be two multiples of 32 above 0; got 1280 500"),
-        (["--score-threshold", "1.5"], "--score-threshold must be between 0 and 1; got 1.5"),
-    ],
-)
-def test_an_option_of_the_detector_that_does_not_fit_is_named(loaded, words, message):
-    with pytest.raises(ValueError, match=message):
-        chosen(*words)
+    with pytest.raises(ValueError, match="--input-size must be two multiples of 32 above 0; got 1280 500"):
+        chosen("--input-size", "1280", "500")
+    with pytest.raises(ValueError, match="--score-threshold must be between 0 and 1; got"):
+        chosen("--score-threshold", "1.5")

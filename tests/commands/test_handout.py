@@ -7,7 +7,7 @@ from course_lib.cli import main
 from course_lib.commands import handout
 
 
-def test_it_makes_the_folder_and_says_which_part_is_whose(tmp_path, capsys):
+def test_it_makes_the_folder_and_says_which_part_is_whose_and_draws_a_seed(tmp_path, capsys, monkeypatch):
     assert main(["handout", "06", "--out", str(tmp_path / "class"), "--seed", "5"]) == 0
     out = capsys.readouterr().out
     assert out.startswith("1 notebook in ")
@@ -15,14 +15,9 @@ def test_it_makes_the_folder_and_says_which_part_is_whose(tmp_path, capsys):
     assert f"{tmp_path / 'class' / 'teacher'}   for you alone" in out
     assert "SEED = 5" in (tmp_path / "class" / "teacher" / "grading" / "course_grading.py").read_text()
     assert not (tmp_path / "class" / "teacher" / "solved").exists()
-
-
-def test_without_a_seed_the_system_draws_one(tmp_path, monkeypatch):
-    drawn = []
-    monkeypatch.setattr(handout.secrets, "randbits", lambda bits: drawn.append(bits) or 4_000_000_007)
-    assert main(["handout", "00", "--out", str(tmp_path / "class")]) == 0
-    assert drawn[0] >= 60
-    assert "SEED = 4000000007" in (tmp_path / "class" / "teacher" / "grading" / "course_grading.py").read_text()
+    monkeypatch.setattr(handout.secrets, "randbits", lambda bits: 4_000_000_007 if bits >= 60 else 0)
+    assert main(["handout", "00", "--out", str(tmp_path / "drawn")]) == 0
+    assert "SEED = 4000000007" in (tmp_path / "drawn" / "teacher" / "grading" / "course_grading.py").read_text()
 
 
 @pytest.mark.parametrize(

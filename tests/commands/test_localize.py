@@ -28,7 +28,6 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, told):
     assert summary["median_position_m"] < 0.15
     stored = json.loads((tmp_path / "localize.json").read_text())
     assert stored["median_position_m"] == summary["median_position_m"]
-    assert {"numpy", "vtk", "course_lib"} <= stored["versions"].keys()
     rows = rows_of(tmp_path / "localize.csv")
     assert [row["status"] for row in rows] == ["tracked"] * 6
     assert all(0.4 < float(row["score"]) < 1 and float(row["position_error_m"]) < 0.3 for row in rows)

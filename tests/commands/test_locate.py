@@ -64,11 +64,8 @@ def test_the_table_and_the_files_say_the_same(pair, tmp_path, printed):
     stored = json.loads((out / "locate.json").read_text())
     assert f"pose: x {stored['x_m']:.2f} ± {stored['sigma_x_m']:.2f} m" in text
     assert "5 objects above, 5 below, 5 seen in both" in text
-    assert text.count("\n 1 ") == text.count("\n 5 ") == 1
     assert len((out / "locate.csv").read_text().splitlines()) == 6
     assert min(cv2.imread(str(out / "locate.png")).shape[:2]) > 1000
-    assert "Written to" in text
-    assert "locate.html (to be turned in a browser)" in text
     assert "<title>On the map</title>" in (out / "locate.html").read_text()
 
 

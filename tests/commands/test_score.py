@@ -16,20 +16,17 @@ def scored(monkeypatch):
     return calls
 
 
-def test_the_files_function_is_scored(scored, tmp_path):
+def test_the_files_function_is_scored_and_of_a_notebook_only_what_defines_is_run(scored, tmp_path):
     (tmp_path / "P1.py").write_text("def localize(*given):\n    return 42\n")
     assert scoring.main(["P1", str(tmp_path / "P1.py"), "--seeds", "10001", "10002"]) == 0
     ((name, function, seeds),) = scored
     assert (name, function(), seeds) == ("P1", 42, [10_001, 10_002])
-
-
-def test_of_a_notebook_only_what_defines_is_run(scored, tmp_path):
     sources = ["%matplotlib inline\nSIZE = 6", "check('P1.1', 1 / 0)", "def localize(*given):\n    return SIZE"]
     notebook = new_notebook(cells=[new_markdown_cell("# P1"), *map(new_code_cell, sources)])
     path = tmp_path / "P1.ipynb"
     nbformat.write(notebook, path)
     assert scoring.main(["P1", str(path)]) == 0
-    ((_, function, seeds),) = scored
+    _, function, seeds = scored[1]
     assert (function(), seeds) == (6, None)
 
 

@@ -14,17 +14,6 @@ def words_for(*words, n_workers=1):
     return command.pytest_arguments(parse("course.py test", command, list(words)), n_workers)
 
 
-def test_without_arguments_the_lessons_and_the_tests_run_on_every_processor():
-    words = words_for("-x", n_workers=2)
-    assert words[words.index("-n") + 1] == "2"
-    # The cells of a lesson share a kernel: spread over two processes they would fail.
-    assert words[words.index("--dist") + 1] == "loadfile"
-    assert words[-1] == "-x"
-    # One's own -n comes last, so that it counts.
-    assert words_for("-n", "3", n_workers=2)[-2:] == ["-n", "3"]
-    assert "-n" not in words_for()
-
-
 @pytest.mark.parametrize(
     ("words", "parts", "marks"),
     [
@@ -33,8 +22,13 @@ def test_without_arguments_the_lessons_and_the_tests_run_on_every_processor():
         (["--fast"], ["tests"], "not release and not browser and not slow"),
     ],
 )
-def test_parts_can_be_left_out(words, parts, marks):
-    given = words_for(*words)
+def test_the_lessons_and_the_tests_run_on_every_processor_and_parts_can_be_left_out(words, parts, marks):
+    given = words_for(*words, "-n", "3", n_workers=2)
+    # The cells of a lesson share a kernel: spread over two processes they would fail.
+    assert given[given.index("-n") :][:2] == ["-n", "2"]
+    assert given[given.index("--dist") + 1] == "loadfile"
+    assert given[-2:] == ["-n", "3"], "one's own comes last, so that it counts"
+    assert "-n" not in words_for(*words)
     assert [word for word in given if word in ("notebooks", "tests")] == parts
     assert ("--nbval" in given) == ("notebooks" in parts)
     assert (given[given.index("-m") + 1] if "-m" in given else None) == marks
@@ -70,7 +64,7 @@ except OSError as error:
 
 
 @pytest.mark.slow
-def test_a_failing_test_and_a_wrong_stored_output_fail_the_run(course, capfd):
+def test_a_failing_test_a_wrong_stored_output_and_no_test_at_all_fail_the_run(course, capfd):
     (course / "tests" / "test_one.py").write_text("def test_one():\n    assert False\n")
     # The second cell needs the first one's kernel; the third reaches for the network.
     write_notebook(
@@ -81,9 +75,6 @@ def test_a_failing_test_and_a_wrong_stored_output_fail_the_run(course, capfd):
     out = capfd.readouterr().out
     assert "2 failed, 3 passed" in out
     assert "FAILED (pytest's exit code 1); not all tests passed." in out
-
-
-def test_a_run_without_tests_does_not_pass(course, capfd):
     for content, code in (("def test_one():\n    pass\n", 0), ("", 5)):
         (course / "tests" / "test_one.py").write_text(content)
         assert main(["test", "tests"]) == code

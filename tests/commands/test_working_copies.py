@@ -87,6 +87,10 @@ def test_a_changed_copy_is_never_written_over_and_an_unchanged_one_follows_the_c
     make_copies(small)
     mine = small / "work" / LESSON_06
     begin(mine)
+    notebook = nbformat.read(small / "notebooks" / LESSON_06, as_version=4)
+    notebook.cells[0].outputs = [nbformat.v4.new_output("stream", text="drawn anew")]
+    (small / "notebooks" / LESSON_06).write_text(json.dumps(notebook))  # and its text in one piece, not in lines
+    assert make_copies(small) == [], "outputs alone are no change"
     (small / "work" / "GLOSSARY.md").write_text("with my notes")
     kept = mine.read_bytes()
     for name in [*lessons(small).values(), "07_new.ipynb"]:
@@ -104,16 +108,6 @@ def test_a_changed_copy_is_never_written_over_and_an_unchanged_one_follows_the_c
         assert (small / "work" / name).read_bytes() == (small / "notebooks" / name).read_bytes()
 
 
-def test_a_lesson_whose_outputs_alone_were_drawn_anew_has_not_changed(small):
-    make_copies(small)
-    begin(small / "work" / LESSON_06)
-    path = small / "notebooks" / LESSON_06
-    notebook = nbformat.read(path, as_version=4)
-    notebook.cells[0].outputs = [nbformat.v4.new_output("stream", text="drawn anew")]
-    path.write_text(json.dumps(notebook))  # and its text in one piece, not in lines
-    assert make_copies(small) == []
-
-
 def test_a_fresh_one_takes_the_name_and_the_old_one_stays_beside_it(small):
     make_copies(small)
     mine, project = small / "work" / LESSON_06, small / "work" / "projects" / "P1_the_whole_filter.ipynb"
@@ -129,13 +123,6 @@ def test_a_fresh_one_takes_the_name_and_the_old_one_stays_beside_it(small):
     assert len(list(project.parent.glob("P1*.ipynb"))) == 4
 
 
-def test_a_number_without_a_lesson_changes_nothing(small):
-    before = contents(small)
-    with pytest.raises(ValueError, match="no lesson 07, X9; there are: 00, 06, P1"):
-        make_copies(small, ["06", "x9", "7"])
-    assert contents(small) == before
-
-
 @pytest.mark.parametrize(
     ("notebook", "opened"),
     [
@@ -145,15 +132,16 @@ def test_a_number_without_a_lesson_changes_nothing(small):
         ("notebooks/mine.ipynb", "notebooks/mine.ipynb"),
     ],
 )
-def test_what_opens_for_a_lesson_is_its_copy(small, notebook, opened):
+def test_what_opens_for_a_lesson_is_its_copy_and_what_cannot_be_is_told(small, notebook, opened):
     write_lesson(small / "notebooks" / "mine.ipynb", "not a lesson")
     assert copy_of(notebook.format(root=small), small) == opened
-
-
-def test_what_cannot_be_opened_is_told(small):
-    for notebook, said in (("../x.ipynb", "lies outside"), ("notebooks/x.ipynb", "there is no notebook notebooks/x")):
+    before = contents(small)
+    for wrong, said in (("../x.ipynb", "lies outside"), ("notebooks/x.ipynb", "there is no notebook notebooks/x")):
         with pytest.raises(ValueError, match=said):
-            copy_of(notebook, small)
+            copy_of(wrong, small)
+    with pytest.raises(ValueError, match="no lesson 07, X9; there are: 00, 06, P1"):
+        make_copies(small, ["06", "x9", "7"])
+    assert contents(small) == before
 
 
 def test_git_pull_over_a_tree_in_which_a_student_has_worked(course, tmp_path):

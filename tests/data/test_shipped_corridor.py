@@ -56,7 +56,7 @@ def test_a_run_has_a_timed_pose_for_every_frame_and_short_steps(run, least_frame
 @pytest.mark.parametrize("number", [i for i, row in enumerate(CLUTTER) if row[0] in ("cartons", "person", "bin")])
 def test_the_map_lacks_the_clutter(number, map_caster, true_caster):
     kind, x, y, _ = CLUTTER[number]
-    # At the middle of the thing, from the middle of the corridor; people are met at the chest, not between the legs.
+    # From the middle of the corridor; people are met at the chest, not between the legs.
     height = 1.2 if kind == "person" else 0.5
     eye = np.array([x - 1.5, 0.0, height])
     target = np.array([x, y, height]) - eye
@@ -85,21 +85,6 @@ def test_at_the_true_poses_the_camera_mostly_agrees_with_the_map(run, map_caster
                 medians.append(np.nanmedian(error))
         assert scores[1] > max(scores[0], scores[2]) * 1.01, f"frame {index}"
     assert np.median(medians) < 0.035
-
-
-def test_the_measured_numbers_are_those_of_a_survey_and_a_time_of_flight_camera(summary):
-    measured = summary["measured"]
-    assert 0.002 < measured["map"]["distance_to_surveyed_world"]["median_m"] < 0.015
-    assert 0.005 < measured["map"]["distance_to_surveyed_world"]["p90_m"] < 0.03
-    assert 0.01 < measured["map"]["hole_share"] < 0.10
-    assert 0.008 < measured["map"]["registration"]["mean_point_distance_m"] < 0.013
-    for rates in (measured["wagon"], measured["hand"]):
-        assert 0.02 < rates["no_return_share"] < 0.35
-        assert 0.0 < rates["saturated_share"] < 0.02
-        assert 0.0 < rates["wrapped_share"] < rates["beyond_unambiguous_range_share"]
-        assert 0.002 < rates["flying_share"] < 0.05
-    noise = list(measured["noise_on_a_wall_m"].values())
-    assert noise == sorted(noise)
 
 
 def test_seed_models_and_true_world_are_those_of_the_code(summary):

@@ -16,21 +16,13 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 DATA = Path(__file__).resolve().parents[2] / "data"
 
 
-@pytest.fixture(scope="module")
-def room():
-    return make_look_alike_room(SEED)
-
-
-def test_the_semantic_map_is_of_the_seeds_room(room):
+def test_both_maps_are_surveys_of_the_seeds_room():
+    room = make_look_alike_room(SEED)
     semantic_map = SemanticMap.load(DATA / "finale" / "semantic_map.json")
     assert [item.label for item in room.objects] == list(semantic_map.labels)
     away = semantic_map.positions - [(item.x, item.y) for item in room.objects]
     assert 0.003 < np.sqrt(np.mean(away**2)) < 0.02, "surveyed with an error of a centimetre"
-
-
-def test_the_mesh_map_is_a_survey_of_the_same_room(room):
     scene_map = SceneMap.load(DATA / "finale" / "map.ply")
-    assert len(scene_map) == 60_000
     eye = np.append(room.walls.mean(axis=0), 1.5)
     directions = np.random.default_rng(0).standard_normal((400, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
@@ -40,22 +32,17 @@ def test_the_mesh_map_is_a_survey_of_the_same_room(room):
 
 
 @pytest.mark.parametrize("name", SEEDS)
-def test_projects_hold_the_rooms_of_their_seeds(name):
+def test_projects_hold_the_rooms_of_their_seeds_and_true_poses_lay_what_is_seen_on_the_map(name):
     rooms = project_rooms(DATA / "projects" / f"rooms_{name}.json")
     assert tuple(room.seed for room in rooms) == SEEDS[name]
-    assert all(len(room.views) == 2 * POSES for room in rooms)
-    assert all(room.semantic_map.labels.count(room.look_alike) >= 3 for room in rooms)
-
-
-def test_the_truth_belongs_to_the_views():
-    """Observations laid on the map by the true pose lie where the landmarks are that they show."""
     off = []
-    for room in project_rooms(DATA / "projects" / "rooms_practice.json"):
+    for room in rooms:
+        assert len(room.views) == 2 * POSES
+        assert room.semantic_map.labels.count(room.look_alike) >= 3
         for view in room.views:
             c, s = np.cos(view.pose[2]), np.sin(view.pose[2])
             for one, landmark in zip(view.observations, view.shows, strict=True):
                 if landmark != NO_OBJECT:
                     there = np.array([[c, -s], [s, c]]) @ [one.x, one.y] + view.pose[:2]
                     off.append(np.linalg.norm(there - room.semantic_map.positions[landmark]))
-    assert len(off) > 150
     assert np.median(off) < 0.2

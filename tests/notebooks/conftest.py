@@ -12,9 +12,6 @@ import pytest
 from course_lib.paths import notebook_paths, project_paths
 from tests.notebooks.driven_lab import require_chromium, served_lab
 
-# Tests of what every notebook must keep: projects have the rules of the lessons, but a shape of their own.
-OF_PROJECTS_TOO = ("test_rules",)
-
 
 @dataclass(frozen=True)
 class Lesson:
@@ -74,7 +71,8 @@ def read(path: Path) -> Lesson:
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "lesson" in metafunc.fixturenames:
-        projects = project_paths() if metafunc.module.__name__.endswith(OF_PROJECTS_TOO) else []
+        # Projects have the rules of the lessons, but a shape of their own.
+        projects = project_paths() if metafunc.module.__name__.endswith("test_rules") else []
         lessons = [read(path) for path in [*notebook_paths(), *projects]]
         metafunc.parametrize("lesson", lessons, ids=[lesson.path.stem for lesson in lessons])
     if "project" in metafunc.fixturenames:
@@ -82,23 +80,12 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         metafunc.parametrize("project", projects, ids=[project.number for project in projects])
 
 
-@pytest.fixture
-def all_lessons() -> list[Lesson]:
-    return [read(path) for path in notebook_paths()]
-
-
 @pytest.fixture(scope="module")
-def lab_folder(tmp_path_factory) -> Path:
-    """What that JupyterLab serves: copies of the notebooks."""
-    return tmp_path_factory.mktemp("lab")
-
-
-@pytest.fixture(scope="module")
-def lab(lab_folder):
-    """Address of the lessons' JupyterLab, for the tests of one file."""
+def lab(tmp_path_factory):
+    """Address of the lessons' JupyterLab on copies of the notebooks, for the tests of one file."""
     require_chromium()
     pytest.importorskip("playwright.sync_api")
-    with served_lab(lab_folder) as address:
+    with served_lab(tmp_path_factory.mktemp("lab")) as address:
         yield address
 
 

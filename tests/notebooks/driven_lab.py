@@ -139,11 +139,7 @@ def wait_for_a_picture(page, panel, event: str, act: Callable[[], None]) -> floa
 
 
 def serious_findings(page) -> list[list[str]]:
-    """What axe-core finds inside the outputs, serious or critical: rule, impact, CSS selector of the element, its HTML.
-
-    axe-core (https://github.com/dequelabs/axe-core) is one script in the package axe-playwright-python; it is put into
-    the page as text, so that nothing is loaded from anywhere.
-    """
+    """What axe-core finds in the outputs, serious or critical: rule, impact, CSS selector, HTML. Nothing is loaded."""
     base = pytest.importorskip("axe_playwright_python.base")
     page.evaluate(base.AXE_SCRIPT)
     assert page.locator(OUTPUTS).count() > 0

@@ -34,14 +34,10 @@ def stub_of(lesson, number: str):
     return functions_of(lesson, only(lesson.exercise_cells(number, "exercise")))
 
 
-def test_a_lesson_has_three_to_six_exercises_and_the_library_knows_them(lesson):
-    numbers = lesson.exercise_numbers()
-    assert 3 <= len(numbers) <= 6
-    assert numbers == [exercise.number for exercise in lesson_exercises(lesson.number)]
-
-
-def test_a_lesson_has_a_warm_up_a_core_exercise_and_a_challenge_and_says_so(lesson):
+def test_a_lesson_has_three_to_six_exercises_of_all_levels_and_says_so(lesson):
     exercises = lesson_exercises(lesson.number)
+    assert 3 <= len(exercises) <= 6
+    assert lesson.exercise_numbers() == [exercise.number for exercise in exercises]
     assert {exercise.level for exercise in exercises} == {"warm-up", "core", "challenge"}
     for exercise in exercises:
         heading = only(lesson.exercise_cells(exercise.number, "task")).source.splitlines()[0]
@@ -73,13 +69,9 @@ def require_unsolved_stub(notebook, number: str) -> None:
     assert "".join(o.text for o in cell.outputs).startswith(f"{number}: not attempted")
 
 
-def test_the_check_cell_checks_the_stub_which_is_not_passed(lesson):
+def test_the_stub_is_not_passed_and_the_solution_is_folded_with_its_number_alone_and_passes(lesson):
     for number in lesson.exercise_numbers():
         require_unsolved_stub(lesson, number)
-
-
-def test_the_solution_is_folded_with_nothing_but_its_number_to_be_seen_and_passes(lesson):
-    for number in lesson.exercise_numbers():
         cell = only(lesson.exercise_cells(number, "solution"))
         assert cell.metadata["jupyter"]["source_hidden"] is True
         assert cell.source.splitlines()[0] == f"# Solution {number}", "a folded cell shows its first line"
@@ -92,7 +84,7 @@ def test_the_solution_is_folded_with_nothing_but_its_number_to_be_seen_and_passe
 
 
 @pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
-def test_each_typical_mistake_fails_with_its_own_hint(exercise):
+def test_the_reference_is_right_and_each_typical_mistake_fails_with_its_own_hint(exercise):
     assert len({mistake.hint for mistake in exercise.mistakes}) == len(exercise.mistakes) >= 3
     for mistake in exercise.mistakes:
         assert "return " not in mistake.hint, "a hint does not give the answer away as code"
@@ -101,8 +93,4 @@ def test_each_typical_mistake_fails_with_its_own_hint(exercise):
             verdict = judge(exercise, function, seed)
             assert verdict.status == "wrong"
             assert mistake.hint in verdict.message
-
-
-@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
-def test_the_reference_is_right_on_every_seed(exercise):
     assert all(judge(exercise, exercise.reference, seed).status == "right" for seed in SEEDS)

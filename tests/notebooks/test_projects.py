@@ -24,13 +24,11 @@ def model_solution(project):
     return module
 
 
-def test_every_project_has_a_notebook_and_a_model_solution():
+def test_the_title_promises_and_says_how_long_and_how_it_is_marked_and_no_hidden_seed_is_told(project):
     names = [path.name[:2] for path in project_paths()]
-    assert names == project_names()
-    assert sorted(path.name[:2] for path in SOLUTIONS.glob("*_model_solution.py")) == names
-
-
-def test_the_title_promises_and_says_how_long_and_how_it_is_marked(project):
+    assert names == project_names() == sorted(path.name[:2] for path in SOLUTIONS.glob("*_model_solution.py"))
+    numbers = set(re.findall(r"\d+", project.path.read_text(encoding="utf-8")))
+    assert not numbers & {str(seed) for seed in find_project(project.number).seeds}
     title = project.cells[0].source
     assert re.match(rf"# {project.number} · \S", title)
     assert 2 <= float(re.search(r"\*\*(\d(?:\.5)?) hours", title)[1]) <= 4
@@ -82,23 +80,13 @@ def test_the_package_hands_on_what_the_notebook_names(project):
     assert [name for name in package.__all__ if not re.search(rf"\b{name}\b", cells)] == []
 
 
-def test_no_hidden_seed_is_printed_in_the_notebook(project):
-    numbers = set(re.findall(r"\d+", project.path.read_text(encoding="utf-8")))
-    assert not numbers & {str(seed) for seed in find_project(project.number).seeds}
-
-
 @pytest.mark.slow
-def test_the_model_solution_is_better_than_the_paper_on_a_hidden_seed(project):
+def test_on_a_hidden_seed_the_model_solution_beats_the_paper_and_rivals_are_as_stored(project):
     found = find_project(project.number)
     outcome = one_outcome(found, getattr(model_solution(project), found.function), found.seeds[0])
     assert not outcome.failed, outcome.remark
-    assert is_better(found, outcome.value, stored_rivals(found)["paper"][1][0])
-
-
-@pytest.mark.slow
-def test_the_stored_numbers_of_the_rivals_are_those_of_a_recomputation(project):
-    found = find_project(project.number)
     stored = stored_rivals(found)
+    assert is_better(found, outcome.value, stored["paper"][1][0])
     for rival in found.rivals:
         outcome = one_outcome(found, rival.function, found.seeds[0])
         assert outcome.value == pytest.approx(stored[rival.key][1][0], rel=0.05)

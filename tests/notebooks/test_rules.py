@@ -5,18 +5,16 @@ import re
 import statistics
 
 from course_lib.commands.saved_panels import WIDGET_VIEW
-from course_lib.paths import REPOSITORY
+from course_lib.paths import REPOSITORY, notebook_paths
+from tests.notebooks.conftest import read
 from tools.refresh import MAX_BYTES, METADATA
 
 FORBIDDEN_WIDGETS = {"Output", "interact", "interactive", "interactive_output", "interact_manual", "Play"}
 MAX_SCENE_BYTES, MAX_SCENES_BYTES = 1_300_000, 15_000_000
 OPT_OUT = re.compile("nbval.(ignore.output|skip|raises.exception)|validate.ignore.output|raises-exception", re.I)
 """By what nbval does not compare a cell's output, in a comment or as a tag."""
+LESSONS = [read(path) for path in notebook_paths()]
 SHOWN_TYPES = {"text/plain", "text/html", "text/markdown", "text/latex"}
-
-
-def test_cells_were_run_once_from_top_to_bottom(lesson):
-    assert [cell.execution_count for cell in lesson.code_cells] == list(range(1, len(lesson.code_cells) + 1))
 
 
 def test_outputs_are_what_was_shown_and_printed_no_error_and_no_bare_object(lesson):
@@ -38,30 +36,31 @@ def test_cells_are_short_and_lines_fit_the_page(lesson):
     assert max(lengths) <= 25
 
 
-def test_few_cells_opt_out_of_comparison_and_each_says_why(all_lessons):
-    cells = [cell for lesson in all_lessons for cell in lesson.code_cells]
+def test_few_cells_opt_out_of_comparison_and_each_says_why():
+    cells = [cell for lesson in LESSONS for cell in lesson.code_cells]
     opted_out = [cell for cell in cells if OPT_OUT.search(" ".join([cell.source, *cell.metadata.get("tags", [])]))]
     assert len(opted_out) <= 0.01 * len(cells)
     for cell in opted_out:
         assert re.search(r"^#\s*(because|reason:).{10,}", cell.source, re.M | re.I), f"{cell.id} says no reason"
 
 
-def test_the_file_is_small_and_stores_no_widget_state(lesson):
+def test_the_file_is_small_run_from_top_to_bottom_and_stores_no_widget_state(lesson):
+    assert [cell.execution_count for cell in lesson.code_cells] == list(range(1, len(lesson.code_cells) + 1))
+    ids = {cell.id for cell in lesson.cells}
+    assert len(ids) == len(lesson.cells)
+    assert all(re.fullmatch(rf"{lesson.number}-[a-z0-9-]+", one) for one in ids)
     assert lesson.path.stat().st_size <= MAX_BYTES
     assert WIDGET_VIEW not in lesson.path.read_text(encoding="utf-8")
     assert lesson.notebook.metadata == METADATA
 
 
-def test_every_picture_has_alternative_text(lesson):
+def test_every_picture_has_alternative_text_which_is_told_out_of_sight(lesson):
     text = "\n".join([*lesson.html, lesson.markdown])
     images = [re.search(r'\balt="([^"]*)"|$', image)[1] or "" for image in re.findall(r"<img\b[^>]*>", text)]
     images += re.findall(r"!\[([^\]]*)\]\(", lesson.markdown)
     assert [alt for alt in images if len(alt.split()) < 4] == []
     frames = re.findall(r"<iframe\b[^>]*>", text)
     assert [frame for frame in frames if not re.search(r'\btitle="[^"]{8,}"', frame)] == []
-
-
-def test_what_a_picture_shows_is_told_out_of_sight_not_before_one_looks(lesson):
     for cell in [cell for cell in lesson.visible_code_cells if not cell.metadata.get("exercise")]:
         words = [node for node in ast.walk(ast.parse(cell.source)) if isinstance(node, ast.keyword)]
         told = [word.value for word in words if word.arg == "alt"]
@@ -80,8 +79,8 @@ def scene_sources(lesson) -> list[str]:
     return re.findall(r'<iframe\b[^>]*\bsrc="([^"]+)"', "".join([*lesson.html, lesson.markdown]))
 
 
-def test_every_stored_scene_is_shown_and_all_of_them_are_small(all_lessons):
-    shown = {source for lesson in all_lessons for source in scene_sources(lesson)}
+def test_every_stored_scene_is_shown_and_all_of_them_are_small():
+    shown = {source for lesson in LESSONS for source in scene_sources(lesson)}
     stored = sorted((REPOSITORY / "notebooks" / "scenes").glob("*.html"))
     assert {f"scenes/{path.name}" for path in stored} == shown
     assert sum(path.stat().st_size for path in stored) <= MAX_SCENES_BYTES
@@ -97,18 +96,12 @@ def test_scenes_are_small_and_there_and_those_of_pyvista_have_their_picture(less
             assert re.search(r"</iframe><details><summary>[^<]+</summary><img alt=", html), cell.id
 
 
-def test_nearly_every_printed_line_says_what_was_measured_not_whether_it_was_good(all_lessons):
-    outputs = [o for lesson in all_lessons for o in lesson.outputs if o.get("name") == "stdout"]
+def test_nearly_every_printed_line_says_what_was_measured_not_whether_it_was_good():
+    outputs = [o for lesson in LESSONS for o in lesson.outputs if o.get("name") == "stdout"]
     printed = [line for output in outputs for line in output.text.splitlines()]
     verdicts = [line for line in printed if re.search(r"\b(True|False)\b", line)]
     assert len(printed) >= 500
     assert len(verdicts) <= 10, verdicts
-
-
-def test_cell_ids_are_the_lessons_own(lesson):
-    ids = [cell.id for cell in lesson.cells]
-    assert len(set(ids)) == len(ids)
-    assert all(re.fullmatch(rf"{lesson.number}-[a-z0-9-]+", id_) for id_ in ids)
 
 
 def names_in(source: str) -> set[str]:
@@ -122,8 +115,3 @@ def test_no_lesson_uses_widgets_that_hang_or_global_random_numbers(lesson):
     for cell in lesson.code_cells:
         assert not names_in(cell.source) & FORBIDDEN_WIDGETS, cell.id
         assert not re.search(r"np\.random\.(?!default_rng|Generator)", cell.source), cell.id
-
-
-def test_no_plumbing_uses_widgets_that_hang():
-    for path in (REPOSITORY / "course_lib" / "lessons").glob("**/*.py"):
-        assert not names_in(path.read_text(encoding="utf-8")) & FORBIDDEN_WIDGETS, path.name

@@ -51,10 +51,7 @@ def settled_picture(page) -> np.ndarray:
 
 
 def share_changed_by_a_turn(page) -> float:
-    """Share of the pixels that differ clearly once the mouse was dragged from the middle to the right.
-
-    It is dragged again until they do: a busy page misses some.
-    """
+    """Share of the pixels that differ clearly once the mouse was dragged (again until they do)."""
     before = settled_picture(page)
     for _ in range(AGAIN):
         page.mouse.move(SIZE["width"] / 2, SIZE["height"] / 2)

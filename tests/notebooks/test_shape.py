@@ -25,22 +25,16 @@ def text_of(cells: list) -> str:
     return "\n\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
 
 
-def test_sections_are_all_there_in_order(lesson):
+def test_sections_are_all_there_in_order_below_a_title_that_promises_and_says_how_long(lesson):
     assert re.findall(r"^## (.+?)\s*$", lesson.markdown, re.M) == SECTIONS
-
-
-def test_the_title_promises_and_says_how_long(lesson):
+    levels = [len(marks) for marks in re.findall(r"^(#+) ", lesson.markdown, re.M)]
+    assert (levels[0], levels.count(1)) == (1, 1)
+    assert all(b - a <= 1 for a, b in itertools.pairwise(levels))
     title = lesson.cells[0].source
     assert re.match(rf"# {lesson.number} · \S", title)
     assert 1 <= len(re.findall(r"^\* ", title, re.M)) <= 3, "promises"
     assert 20 <= int(re.search(r"\*\*(\d+) minutes", title)[1]) <= 50
     assert re.search(r"[Pp]aper", title)
-
-
-def test_nothing_runs_before_the_prediction(lesson):
-    first_code = [cell.cell_type for cell in lesson.cells].index("code")
-    assert "## Predict" in text_of(lesson.cells[:first_code])
-    assert "?" in text_of(section(lesson, "Predict"))
 
 
 def called(cell, name: str) -> ast.Call | None:
@@ -56,7 +50,10 @@ def typed_in(answer: ast.expr) -> str:
     return "".join(part.value for string in strings for part in string.values if isinstance(part, ast.Constant))
 
 
-def test_every_prediction_has_a_box_right_below_it(lesson):
+def test_nothing_runs_before_the_prediction_and_every_one_has_a_box_right_below_it(lesson):
+    first_code = [cell.cell_type for cell in lesson.cells].index("code")
+    assert "## Predict" in text_of(lesson.cells[:first_code])
+    assert "?" in text_of(section(lesson, "Predict"))
     text, asked = section(lesson, "Predict")[:2]
     assert asked.cell_type == "code"
     number, *questions = [argument.value for argument in called(asked, "predict").args]
@@ -99,20 +96,14 @@ def test_the_idea_has_a_picture_before_its_first_equation(lesson):
     assert not any("$$" in text for text in shown[: pictures[0]]), "the picture comes first, then the equation"
 
 
-def test_play_has_a_panel_and_asks(lesson):
+def test_play_has_a_panel_and_asks_measure_and_break_it_print_numbers_as_does_every_figure(lesson):
     cells = section(lesson, "Play")
     shown = [o.data["text/plain"] for cell in cells for o in cell.get("outputs", []) if "data" in o]
     assert any(text.startswith("Panel '") for text in shown)
     assert "?" in text_of(cells)
-
-
-def test_measure_and_break_it_print_numbers(lesson):
     for name in ("Measure", "Break it"):
         outputs = [o for cell in section(lesson, name) for o in cell.get("outputs", [])]
         assert any(re.search(r"\d", o.get("text", "")) for o in outputs), name
-
-
-def test_a_figure_never_stands_without_numbers(lesson):
     for cell in lesson.code_cells:
         shown = [o.data["text/plain"] for o in cell.outputs if "data" in o]
         if any(text.startswith("Picture:") for text in shown):
@@ -128,9 +119,3 @@ def test_the_recap_names_terms_in_both_languages_and_says_what_to_read_next(less
     further = re.search(r"\*\*Further reading\b(.+?)\*\*Next", recap, re.S)
     assert further, "**Further reading** stands before **Next:**"
     assert 2 <= len(re.findall(r"\b(?:19|20)\d\d\b", further[1])) <= 6, "two to four works, with their years"
-
-
-def test_headings_step_down_one_level_at_a_time(lesson):
-    levels = [len(marks) for marks in re.findall(r"^(#+) ", lesson.markdown, re.M)]
-    assert (levels[0], levels.count(1)) == (1, 1)
-    assert all(b - a <= 1 for a, b in itertools.pairwise(levels))

@@ -39,37 +39,23 @@ def matching(scores, correct, n_objects):
     return Matching(np.array(scores, float), np.array(correct, bool), n_objects)
 
 
-def test_the_curve_counts_all_panoramas_together():
+def test_the_curve_counts_all_panoramas_together_and_equal_scores_enter_it_together():
     curve = precision_recall_curve([matching([0.9, 0.6], [True, False], 2), matching([0.8], [True], 2)])
     assert curve.threshold.tolist() == [0.9, 0.8, 0.6]
     assert curve.precision == pytest.approx([1.0, 1.0, 2 / 3])
     assert curve.recall == pytest.approx([0.25, 0.5, 0.5])
-
-
-def test_detections_of_equal_score_enter_the_curve_together():
+    assert [scores_at(curve, limit) for limit in (0.9, 0.81)] == [(1.0, 0.25)] * 2
+    np.testing.assert_array_equal(scores_at(curve, 0.95), (np.nan, 0.0))
     curve = precision_recall_curve([matching([0.7, 0.7], [True, False], 1)])
     assert (curve.threshold.tolist(), curve.precision.tolist()) == ([0.7], [0.5])
 
 
-def test_scores_at_a_threshold_keep_detections_of_that_score_and_above_all_nothing_is_found():
-    curve = precision_recall_curve([matching([0.9, 0.6], [True, False], 2)])
-    assert [scores_at(curve, limit) for limit in (0.9, 0.61, 0.6)] == [(1.0, 0.5), (1.0, 0.5), (0.5, 0.5)]
-    np.testing.assert_array_equal(scores_at(curve, 0.95), (np.nan, 0.0))
-
-
-def test_the_best_threshold_has_the_largest_f1():
+def test_the_best_threshold_has_the_largest_f1_and_the_average_precision_is_the_area():
     # F1: 0.9 -> 0.5, 0.8 -> 0.8, 0.5 -> 6/7, 0.4 -> 6/8.
     curve = precision_recall_curve([matching([0.9, 0.8, 0.5, 0.4], [True, True, True, False], 3)])
     assert best_threshold(curve) == 0.5
-
-
-def test_a_perfect_detector_has_average_precision_one_and_a_half_blind_one_a_half():
-    assert average_precision(precision_recall_curve([matching([0.9, 0.8], [True, True], 2)])) == pytest.approx(1.0)
-    assert average_precision(precision_recall_curve([matching([0.9], [True], 2)])) == pytest.approx(0.5)
-    assert average_precision(precision_recall_curve([matching([], [], 2)])) == 0.0
-
-
-def test_curves_without_objects_or_hits_are_named():
+    for found, area in ((([0.9, 0.8], [True, True], 2), 1), (([0.9], [True], 2), 0.5), (([], [], 2), 0)):
+        assert average_precision(precision_recall_curve([matching(*found)])) == pytest.approx(area)
     with pytest.raises(DetectionScoreError, match="no object"):
         precision_recall_curve([matching([0.5], [False], 0)])
     with pytest.raises(DetectionScoreError, match="no detection is right"):

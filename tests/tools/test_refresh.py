@@ -15,9 +15,8 @@ from tools.refresh import RefreshError
 
 
 def written(folder, *sources: str):
-    cells = [new_markdown_cell("# A title")] + [new_code_cell(source) for source in sources]
-    for index, cell in enumerate(cells):
-        cell.id = f"99-{index}"
+    cells = [new_markdown_cell("# A title", id="99-0")]
+    cells += [new_code_cell(source, id=f"99-{k}") for k, source in enumerate(sources, 1)]
     path = folder / "99_test.ipynb"
     nbformat.write(new_notebook(cells=cells), path)
     return path
@@ -60,7 +59,7 @@ def refreshed(tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_outputs_are_stored_without_views_state_or_a_progress_bar(refreshed):
+def test_outputs_are_stored_without_views_state_or_a_progress_bar_and_again_in_the_same_bytes(refreshed):
     notebook = nbformat.read(refreshed, as_version=4)
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert [cell.execution_count for cell in code] == [1, 2, 3, 4, 5]
@@ -71,10 +70,6 @@ def test_outputs_are_stored_without_views_state_or_a_progress_bar(refreshed):
     assert printed.text == "done: 6\n"
     assert notebook.metadata == refresh.METADATA
     assert [path.name for path in (refreshed.parent / "scenes").iterdir()] == ["99_axes.html"]
-
-
-@pytest.mark.slow
-def test_a_second_refresh_changes_no_byte(refreshed):
     before = refreshed.read_bytes()
     refresh.refresh(refreshed)
     assert refreshed.read_bytes() == before
@@ -114,11 +109,10 @@ def test_nbval_agrees_with_what_was_stored_and_notices_each_changed_output(refre
     [
         (["x = 1", "1 / 0"], 1800, "ZeroDivisionError"),
         (["import time; time.sleep(100_000)"], 0.5, r"longer than 0\.5 s"),
-        (["import os; os._exit(3)"], 1800, "(?i)died|dead"),
         (["import urllib.request", "urllib.request.urlopen('http://192.0.2.1/')"], 1800, r"no connection to 192\.0"),
         (["print('x' * 500_000)"], 1800, "501 kB"),
     ],
-    ids=["error", "time-out", "dead kernel", "network", "too large"],
+    ids=["error", "time-out", "network", "too large"],
 )
 @pytest.mark.slow
 def test_what_fails_leaves_the_file_as_it_was(tmp_path, sources, timeout, words):

@@ -39,13 +39,6 @@ def test_the_window_left_as_it_is_shows_the_extended_panorama_and_objects_of_the
     assert sample.boxes.tolist() == [[20, 50, 50, 90], [276, 50, 306, 90]]
 
 
-@pytest.mark.parametrize(("roll", "ignored"), [(0, True), (-8, False)])
-def test_an_object_cut_to_less_than_two_fifths_is_ignored(roll, ignored):
-    # 12 of 40 columns are left of the window's end, then 20 of 40.
-    sample = panorama_window(painted([244, 50, 284, 90]), (256, HEIGHT), roll)
-    assert sample.ignored[sample.boxes[:, 2] == 256].tolist() == [ignored]
-
-
 def test_one_seed_gives_one_sample_and_another_seed_another():
     panorama = painted([30, 50, 70, 90])
     rngs = map(np.random.default_rng, (1, 1, 2))

@@ -64,17 +64,16 @@ def test_a_training_that_goes_on_equals_one_in_one_piece(toy, tmp_path):
     torch.testing.assert_close(a, b, atol=1e-4, rtol=1e-3)
 
 
-def test_two_processes_train_one_network(toy, tmp_path):
+def test_two_processes_train_one_network_and_what_cannot_be_trained_is_named(toy, tmp_path):
     result = run(toy, tmp_path, plan(epochs=2, processes=2))
     assert (result.position.images_seen, result.position.epoch) == (16, 2)
     check_weights(read_cfg(toy / "tiny.cfg"), result.weights)
-
-
-def test_what_cannot_be_trained_is_named(toy, tmp_path):
-    with pytest.raises(TrainingDataError, match="multiples of 32"):
-        run(toy, tmp_path, plan(window=(250, 128)))
-    with pytest.raises(TrainingDataError, match="at least two"):
-        run(toy, tmp_path, plan(batch_size=3, processes=2))
+    for wrong, said in (
+        ({"window": (250, 128)}, "multiples of 32"),
+        ({"batch_size": 3, "processes": 2}, "at least two"),
+    ):
+        with pytest.raises(TrainingDataError, match=said):
+            run(toy, tmp_path, plan(**wrong))
     with pytest.raises(CheckpointError, match="nothing to go on from"):
         run(toy, tmp_path / "new", plan(epochs=1), resume=True)
     run(toy, tmp_path / "old", plan(epochs=1))
