@@ -170,3 +170,12 @@ def test_opengl_that_is_missing_is_installed_or_its_line_is_told(course, monkeyp
     line = "apt-get install -y --no-install-recommends libegl1 libgl1-mesa-dri libgl1"
     assert course.ran == (["apt-get update", line] if root else [])
     assert (line in capsys.readouterr().err) == (not root)
+
+
+def test_what_stopped_pip_is_told_in_a_sentence(course):
+    for output, told in (
+        ("ERROR: [Errno 28] No space left on device", "the disk is full"),
+        ("ERROR: No matching distribution found for x (from versions: none)", "Is there a network connection"),
+        ("a\nERROR: hashes do not match", "could not install the environment. pip said: ERROR: hashes do not match"),
+    ):
+        assert told in course.why_not_installed(output)

@@ -122,3 +122,16 @@ def test_a_command_that_is_killed_leaves_the_old_or_whole_files_without_run_json
         assert files == {"run.json": b'{"command": "old"}'} or "run.json" not in files
         files.pop("run.json", None)
         assert all(content.endswith(ENDS[Path(file).suffix]) for file, content in files.items())
+
+
+@pytest.mark.skipif(subprocess.call("unshare -rm true 2>/dev/null", shell=True) != 0, reason="no mount of one's own")
+def test_on_a_full_disk_the_old_stays_whole_and_the_error_says_why(tmp_path):
+    program = "import sys; from tests.test_interrupt import *; out = Path(sys.argv[1]) / 'out'; write_run(out, 'old')\n"
+    program += "try:\n    write_run(out, 'new' * 100_000)\nexcept OSError as error:\n    print(error)\n"
+    program += "print(sorted(tree(out).items()))"
+    mount = 'mount -t tmpfs -o size=256k none "$1" && exec "$2" -c "$3" "$1"'
+    command = ["unshare", "-rm", "sh", "-c", mount, "sh", str(tmp_path), sys.executable, program]
+    error, files = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=True).stdout.splitlines()
+    assert "No space left on device" in error
+    assert [name for name in NAMES if f"('{name}', b'old')" not in files] == []
+    assert "'run.json'" in files

@@ -93,3 +93,6 @@ def test_the_real_pair_is_matched_and_its_objects_find_themselves(told):
     lower = [one.name for one in boxes.lower]
     assert pairs == {(i, lower.index(one.name)) for i, one in enumerate(boxes.upper) if one.name in lower}
     assert (len(pairs), summary["unmatched"]) == (16, [])
+    # No ground truth, but two ways of measuring: they agree where the boxes show the whole object.
+    ratios = [r["box_centre"]["horizontal_range_m"] / r["disparity"]["horizontal_range_m"] for r in summary["objects"]]
+    assert np.median(np.abs(np.array(ratios) - 1)) < 0.15

@@ -3,12 +3,13 @@
 import importlib
 
 import numpy as np
+import pytest
 
 from course_lib.beyond import AnnealedLocalizer
 from course_lib.beyond.six_dof import refinement
-from course_lib.commands.warm_up import compile_loops
+from course_lib.commands.warm_up import compile_loops, simplify_corridor
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer, SceneMap
-from course_lib.rendering import raster
+from course_lib.rendering import raster, simplification
 
 LIKELIHOOD = importlib.import_module("course_lib.depth_mcl.likelihood")  # the package's name for it is the function
 LOOPS = ((raster, "draw_views"), (LIKELIHOOD, "_sums"), (refinement, "_sums"))
@@ -32,3 +33,15 @@ def test_the_filter_compiles_nothing_that_the_set_up_did_not():
             localizer.initialize(np.zeros(6))
             localizer.step(np.full((12, 16), 2.0, dtype=np.float32))
     assert compiled_forms() == before
+
+
+@pytest.mark.slow
+def test_the_corridors_map_is_not_simplified_again(tmp_path, monkeypatch, corridor_folder):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    simplification.simplified.cache_clear()
+    simplify_corridor()
+    simplification.simplified.cache_clear()
+    monkeypatch.setattr(simplification, "_welded", lambda *_: pytest.fail("it was simplified again"))
+    scene_map = SceneMap.load(corridor_folder / "map.ply")
+    assert len(simplification.simplified(scene_map)) < len(scene_map) / 2
+    simplification.simplified.cache_clear()

@@ -115,3 +115,8 @@ def test_no_lesson_uses_widgets_that_hang_or_global_random_numbers(lesson):
     for cell in lesson.code_cells:
         assert not names_in(cell.source) & FORBIDDEN_WIDGETS, cell.id
         assert not re.search(r"np\.random\.(?!default_rng|Generator)", cell.source), cell.id
+
+
+def test_no_plumbing_uses_widgets_that_hang():
+    for path in (REPOSITORY / "course_lib" / "lessons").glob("**/*.py"):
+        assert not names_in(path.read_text(encoding="utf-8")) & FORBIDDEN_WIDGETS, path.name
