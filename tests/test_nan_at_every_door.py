@@ -1,7 +1,7 @@
 """NaN at every door: each number that a public function takes is made NaN in turn, and refused by name.
 
 Only where NaN is the word for "nothing was measured" (depth images, points, hue) does it pass, and then it counts for
-nothing. No door gives an answer made of NaN without a word. The doors are those of DESIGN.md's public names.
+nothing. No door gives an answer made of NaN without a word. The doors are the packages' public names.
 """
 
 from pathlib import Path

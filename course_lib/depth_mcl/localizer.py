@@ -57,8 +57,8 @@ class MonteCarloLocalizer:
     `motion` says: those of the body unless told otherwise (forward, left, up), where 0 keeps z, roll, pitch or yaw at
     its initial value, as the paper's experiment does, which estimates x, y and yaw; `TANGENT_SPACE` for all six degrees
     of freedom, `WORLD_AXES` for eq. (5) as printed. weighting: how particles are weighed; None for the paper's rule
-    with alpha (metres) and beta. seed: of the one generator that all draws come from.
-    Raises `ValueError` for zero particles, a bad sigma, motion, alpha, beta or resampling scheme.
+    with alpha (metres) and beta, which belong to that rule alone. seed: of the one generator that all draws come from.
+    Raises `ValueError` for zero particles, a bad sigma, motion, weighting, alpha, beta or resampling scheme.
     Source: paper 1, figure 1.
     """
 
@@ -82,6 +82,10 @@ class MonteCarloLocalizer:
                 raise ValueError(f"{name} must be positive; got {value!r}")
         if not all(callable(getattr(motion, part, None)) for part in Motion._fields):
             raise ValueError(f"motion must have the calls {', '.join(Motion._fields)} (motion.py); got {motion!r}")
+        if weighting is not None and not all(callable(getattr(weighting, part, None)) for part in Weighting._fields):
+            raise ValueError(f"weighting must have the calls {', '.join(Weighting._fields)}; got {weighting!r}")
+        if weighting is not None and (alpha, beta) != (ALPHA, BETA):
+            raise ValueError("alpha and beta must not be given beside a weighting: they are the paper's rule's")
         resample(np.ones(1), np.random.default_rng(0), resampling)  # an unknown scheme is told now, not at frame one
         self.renderer = renderer
         self.n_particles = int(n_particles)

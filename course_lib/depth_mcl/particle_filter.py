@@ -4,7 +4,7 @@ Particles are an array `(N, 6)` of states [x, y, z, roll, pitch, yaw], eqs (1) a
 and a `numpy.random.Generator` in, arrays out. All four resampling schemes share one signature.
 """
 
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -94,7 +94,7 @@ def resample(
             rest = n * w - copies
             copies += np.bincount(_pick(rest / rest.sum(), np.sort(rng.random(n_rest))), minlength=len(w))
         return np.repeat(np.arange(len(w)), copies)
-    raise ValueError(f"scheme must be systematic, stratified, multinomial or residual; got {scheme!r}")
+    raise ValueError(f"scheme must be one of {', '.join(get_args(Scheme))}; got {scheme!r}")
 
 
 def _pick(w: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -16,6 +16,8 @@ from course_lib.depth_mcl.fallon import (
     weights_from_log_likelihood,
 )
 from course_lib.depth_mcl.likelihood import (
+    ALPHA,
+    BETA,
     DepthImageError,
     compiled_likelihood,
     likelihood,
@@ -24,6 +26,10 @@ from course_lib.depth_mcl.likelihood import (
 )
 
 finite_likelihoods = arrays(float, st.integers(1, 60), elements=st.floats(-1e6, 1e6))
+
+
+def test_alpha_and_beta_are_the_papers():
+    assert (ALPHA, BETA) == (0.1, 0.01)
 
 
 @pytest.fixture(params=[likelihood, compiled_likelihood], ids=["eq. (8) as one reads it", "its compiled twin"])

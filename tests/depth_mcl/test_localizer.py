@@ -1,6 +1,7 @@
 """The whole filter on small rooms, and what it does with bad input."""
 
 import warnings
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from course_lib.depth_mcl.fallon import fallon_weighting
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, paper_weighting, weights
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, propagate
-from course_lib.depth_mcl.particle_filter import initial_particles, resample, weighted_mean_state
+from course_lib.depth_mcl.particle_filter import Scheme, initial_particles, resample, weighted_mean_state
 from course_lib.geometry import wrap_angle
 from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, room, room_depth
@@ -57,7 +58,7 @@ def test_the_filter_follows_a_walk(renderer, motion, weighting, bound):
         assert np.linalg.eigvalsh(estimate.covariance).min() > -1e-12
 
 
-@pytest.mark.parametrize("scheme", ["systematic", "stratified", "multinomial", "residual"])
+@pytest.mark.parametrize("scheme", get_args(Scheme))
 def test_a_step_is_figure_1_one_equation_after_the_other(renderer, scheme):
     """Eq. (5), then (6) and (7), (8), (9) to (11), (12), and 3.4, each by its own function."""
     depth = room_depth(SMALL, walk(1)[0])[0]
@@ -170,9 +171,12 @@ def test_particles_that_are_rendered_in_batches_are_weighed_together(weighting):
 
 def test_what_cannot_be_a_setting_a_start_or_a_frame_is_named(renderer):
     bad = {"n_particles": 0, "sigma": [0.1] * 5, "alpha": 0.0, "beta": -1.0, "motion": "tangent", "seed": -1}
-    for name, value in (*bad.items(), ("resampling", "lottery")):
+    for name, value in (*bad.items(), ("resampling", "lottery"), ("weighting", likelihood)):
         with pytest.raises(ValueError, match=rf"{name} must|sigma needs|scheme must"):
             MonteCarloLocalizer(renderer, **{name: value})
+    for setting in ({"alpha": 0.2}, {"beta": 0.02}):
+        with pytest.raises(ValueError, match="beside a weighting"):
+            MonteCarloLocalizer(renderer, weighting=paper_weighting(), **setting)
     localizer = MonteCarloLocalizer(renderer, 10, SIGMA)
     with pytest.raises(RuntimeError, match="initialize"):
         localizer.step(np.ones(SMALL.shape))
