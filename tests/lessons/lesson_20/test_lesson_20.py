@@ -132,7 +132,7 @@ def test_the_lesson_runs_on_a_recording_of_one_frame(stand_in, tmp_path, monkeyp
         names |= {"MY_SEQUENCE": str(tmp_path / "mine")} if cell == "20-mine" else {}
     assert len(names["found"].frames) == len(names["sequence"]) == 1
     panel = reading_panel(names["mine"])
-    assert panel.draw(**panel.defaults() | {"frame": panel.controls["frame"].greatest}).alt.startswith("Frame 0,")
+    assert panel.draw(**panel.defaults() | {"frame": panel.controls["frame"].maximum}).alt.startswith("Frame 0,")
 
 
 def test_a_folder_that_is_not_there_is_named(tmp_path):
