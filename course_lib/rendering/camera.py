@@ -83,7 +83,7 @@ class DepthCamera:
         if (np.abs(k[:2, 2] - centre) > MAX_CENTRE_OFFSET * np.array([width, height])).any():
             raise ValueError(
                 f"the principal point ({k[0, 2]:g}, {k[1, 2]:g}) lies far from the middle of {width} x {height} "
-                "pixels: these intrinsics are for another image size; scale fx, cx by the width and fy, cy by the height"
+                "pixels: these intrinsics are for another image size. Scale fx, cx by width, fy, cy by height"
             )
         return cls(width, height, k[0, 0], k[1, 1], k[0, 2], k[1, 2], near, far)
 
