@@ -6,13 +6,13 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
+from course_lib.depth_mcl.evaluation import PAPER_TABLE_1, nearest_path_error, pose_errors, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, paper_weighting, weights
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, propagate
 from course_lib.depth_mcl.particle_filter import Scheme, initial_particles, resample, weighted_mean_state
-from course_lib.geometry import wrap_angle
+from course_lib.geometry import pose_matrix, wrap_angle
 from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, room, room_depth
 
@@ -196,6 +196,15 @@ def test_the_nearest_path_error_hides_error_along_the_path_and_the_timed_error_d
     assert nearest.median == pytest.approx(0.05, abs=1e-6)
     assert timed.median == pytest.approx(np.hypot(0.4, 0.05))
     assert (nearest.within_3sigma, timed.within_3sigma) == (1.0, 0.0)
-    errors = nearest_path_error(np.array([[0, 0.3], [0, -0.4]]), np.zeros((1, 2)))
-    assert errors.sigma == pytest.approx(np.sqrt((0.09 + 0.16) / 2))
+    errors = nearest_path_error(np.array([[0, 0.299], [0, -0.301]]), np.zeros((1, 2)))
+    assert errors.sigma == pytest.approx(np.sqrt((0.299**2 + 0.301**2) / 2))
     assert errors.within_3sigma == 0.5
+    assert PAPER_TABLE_1 == {"proposed method": (0.07, 0.10, 99.0), "Fallon et al. [2]": (0.30, None, 90.0)}
+
+
+def test_pose_errors_are_metres_and_radians_in_space():
+    true = pose_matrix([1.0, 2.0, 3.0, 0.0, 0.0, 0.5])
+    estimated = pose_matrix([[1.2, 2.1, 3.2, 0.0, 0.0, 0.2], [1.0, 2.0, 3.0, 0.4, 0.0, 0.5]])
+    metres, radians = pose_errors(estimated, true)
+    assert metres == pytest.approx([0.3, 0.0])
+    assert radians == pytest.approx([0.3, 0.4])

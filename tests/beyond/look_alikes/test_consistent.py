@@ -41,6 +41,7 @@ def test_one_plant_tells_the_two_apart_a_false_observation_is_left_unmatched_and
     assert found.used_pairs == tuple((k, k) for k in range(6))
     assert found.confidence > MIN_CONFIDENCE
     assert found.rms_residual < 0.01
+    assert np.array_equal(found.covariance, found.alternatives[0].covariance)
     seen = observed(PLANTED, POSE)
     false = seen[0]._replace(x=seen[0].x + 1.4, y=seen[0].y - 1.0)
     found = localizer(PLANTED).localize_observations([false, *seen])

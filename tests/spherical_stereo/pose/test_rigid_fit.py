@@ -87,6 +87,18 @@ def test_points_without_a_pose_have_a_reason(source, target, reason, says):
     assert caught.value.reason == reason
 
 
+def test_of_a_mirror_image_the_error_says_what_the_best_rotation_and_the_best_reflection_leave_over():
+    """The best rotation is found by trying every heading."""
+    source = TRIANGLE - TRIANGLE.mean(axis=0)
+    target = source * [1, -1]
+    tried = [
+        np.sqrt(((Pose2D(0, 0, one).apply(source) - target) ** 2).sum(axis=1).mean()) for one in np.arange(0, 7, 1e-3)
+    ]
+    says = rf"reflection the residual is 0\.000 m, with a rotation {min(tried):.3f} m"
+    with pytest.raises(rigid_fit.RigidFitError, match=says):
+        fit_rigid_2d(source, target)
+
+
 @given(st.integers(2, 8), angles, st.integers(0, 1000))
 def test_points_on_a_line_are_no_mirror_image(n, theta, seed):
     line = np.stack([np.linspace(0, 4, n), np.zeros(n)], axis=1)
