@@ -88,7 +88,7 @@ def test_every_lesson_and_project_has_its_entry_with_its_time_and_a_question(num
 
 @pytest.mark.parametrize(("number", "quoted"), re.findall(r"\b(\d\d\.\d|P\d\.\d) \"([^\"]+)\"", TEACHING))
 def test_a_quoted_mistake_is_a_hint_of_that_exercise(number, quoted):
-    hints = [mistake.hint for mistake in find_exercise(number).mistakes]
+    hints = [mistake.hint for mistake in find_exercise(number).known]
     assert any(" ".join(quoted.split()) in hint for hint in hints), hints
 
 
@@ -160,9 +160,9 @@ def test_the_example_exercise_is_one():
     assert isinstance(stub, types.FunctionType)
     assert judge(exercise, stub).status == "not attempted"
     assert all(judge(exercise, solution, seed).status == "right" for seed in range(3))
-    for mistake in exercise.mistakes:
-        assert mistake.hint in judge(exercise, mistake.function).message
+    for mistake in exercise.known:
+        assert mistake.hint in judge(exercise, mistake.functions[0]).message
         assert len(mistake.hint) <= 140
     assert cells["check"].strip() == f'check("{exercise.number}", {stub.__name__})'
     assert kit.N_INPUTS == int(re.search(r"special cases and (\d+) random inputs", TEACHING)[1])
-    np.testing.assert_allclose(exercise.reference(np.array([0.012, 0.12]), 220, 1.32), [2, 20])
+    np.testing.assert_allclose(exercise.solution(np.array([0.012, 0.12]), 220, 1.32), [2, 20])

@@ -5,10 +5,13 @@ error, in one form, so that a difference in git is a difference in the lesson.
 """
 
 import argparse
+import ast
+import inspect
 import math
 import os
 import re
 import sys
+import textwrap
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -22,6 +25,7 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernel
 from course_lib.commands.saved_panels import drop_widgets
 from course_lib.commands.test import OFFLINE_STARTUP
 from course_lib.files import atomic_write, temporary_folder
+from course_lib.lessons.kit.exercises import Exercise, find_exercise
 from course_lib.paths import REPOSITORY, STORE_SCENES, notebook_paths, project_paths
 
 MAX_BYTES = 400_000
@@ -41,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `refresh`."""
     what = "lessons and projects, such as 03 or P1 (default: all)"
     parser.add_argument("lessons", nargs="*", metavar="NN", help=what)
+    parser.add_argument("--solutions", action="store_true", help="write stubs and solutions only; run nothing")
     what = "seconds a cell may take (default: %(default)g)"
     parser.add_argument("--cell-timeout", type=float, default=HANGS_S, metavar="S", help=what)
 
@@ -51,6 +56,11 @@ def run(arguments: argparse.Namespace) -> int:
         raise ValueError(f"--cell-timeout must be a positive number of seconds; got {arguments.cell_timeout:g}")
     failed = 0
     for path in select(arguments.lessons):
+        if arguments.solutions:
+            notebook = nbformat.read(path, as_version=4)
+            write_solutions(notebook)
+            atomic_write(path, nbformat.writes(notebook) + "\n")
+            continue
         try:
             seconds, size = refresh(path, arguments.cell_timeout)
             print(f"{path.name}: {seconds:.1f} s, {size / 1000:.0f} kB", flush=True)
@@ -73,6 +83,7 @@ def select(lessons: list[str]) -> list[Path]:
 def refresh(path: Path, cell_timeout: float = HANGS_S) -> tuple[float, int]:
     """Run one notebook and store its outputs; returns its seconds and bytes. Raises `RefreshError`, file unchanged."""
     notebook = nbformat.read(path, as_version=4)
+    write_solutions(notebook)
     seconds = execute(notebook, path.parent, cell_timeout)
     normalize(notebook)
     text = nbformat.writes(notebook) + "\n"
@@ -81,6 +92,37 @@ def refresh(path: Path, cell_timeout: float = HANGS_S) -> tuple[float, int]:
         raise RefreshError(f"{size / 1000:.0f} kB with its outputs, at most {MAX_BYTES / 1000:.0f}: smaller pictures?")
     atomic_write(path, text)
     return seconds, size
+
+
+def write_solutions(notebook: nbformat.NotebookNode) -> None:
+    """Write the stubs and the solutions of a notebook's exercises anew, from the functions in `exercises.py`."""
+    for cell in notebook.cells:
+        tags = cell.metadata.get("tags", [])
+        if "exercise" in tags:
+            cell.source = stub_cell(find_exercise(cell.metadata["exercise"]))
+        elif "solution" in tags:
+            cell.source = solution_cell(find_exercise(cell.metadata["exercise"]))
+
+
+def stub_cell(exercise: Exercise) -> str:
+    """Return the text of an exercise's stub: the solution's first line and docstring, and `...`."""
+    head, docstring, _ = _function_text(exercise)
+    return f"{head}\n{docstring}\n    ..."
+
+
+def solution_cell(exercise: Exercise) -> str:
+    """Return the text of an exercise's solution. It has another name, so that it never overwrites a student's work."""
+    head, _, body = _function_text(exercise)
+    return f"# Solution {exercise.number}\n{head.replace('(', '_solution(', 1)}\n{body}"
+
+
+def _function_text(exercise: Exercise) -> tuple[str, str, str]:
+    """Return the first line, the docstring and the body of a solution as they are written."""
+    source = textwrap.dedent(inspect.getsource(exercise.solution))
+    docstring = ast.parse(source).body[0].body[0]
+    lines = source.rstrip().splitlines()
+    first, last = docstring.lineno - 1, docstring.end_lineno
+    return "\n".join(lines[:first]), "\n".join(lines[first:last]), "\n".join(lines[last:])
 
 
 def execute(

@@ -22,6 +22,7 @@ from course_lib.classroom.points import earned
 from course_lib.classroom.score_worlds import graded_project, score_points, score_sentence
 from course_lib.lessons.kit.attempt import attempt
 from course_lib.lessons.kit.exercises import Exercise, find_exercise, is_stub, right_on
+from course_lib.lessons.kit.general_mistakes import general_mistake
 from course_lib.lessons.kit.hints import kind_of, known_mistake
 from course_lib.lessons.kit.projects import Project, outcomes, project_names
 
@@ -99,7 +100,7 @@ def sentence_of(exercise: Exercise, arguments: list, answers: list, right: list[
         return f"not yet. Your function {troubles[0]}{where}."
     if all(answer is None for answer in answers):
         return "not yet. Your function returns None."
-    hint = known_mistake(exercise, arguments, answers)
+    hint = known_mistake(exercise, arguments, answers) or general_mistake(exercise, arguments, answers)
     if hint is not None:
         return f"not yet. {hint}"
     if any(right):

@@ -22,7 +22,8 @@ from course_lib.classroom.nbgrader_course import canary_of, write_course, write_
 from course_lib.classroom.points import points_of
 from course_lib.classroom.score_worlds import MAX_POINTS
 from course_lib.files import temporary_folder
-from course_lib.lessons.kit.exercises import Exercise, Mistake, find_exercise
+from course_lib.lessons.kit.exercises import Exercise, find_exercise
+from course_lib.lessons.kit.mistakes import Mistake
 from course_lib.lessons.kit.projects import find_project
 
 HEADER = "lesson  most  solved  untouched  mistaken (expected)  leaks  seconds"
@@ -35,7 +36,7 @@ os.write(2, b"a line below Python\\n")
 PAPER = """from course_lib.lessons.kit.projects import find_project
 return next(rival for rival in find_project({name!r}).rivals if rival.key == "paper").function({arguments})"""
 SLIP = """from course_lib.lessons.kit.exercises import find_exercise
-return find_exercise({number!r}).mistakes[{index}].function({arguments})"""
+return find_exercise({number!r}).known[{index}].functions[0]({arguments})"""
 
 
 @dataclass(frozen=True)
@@ -165,9 +166,9 @@ def telling_mistake(exercise: Exercise, seed: int) -> tuple[int, float]:
     """Which of the typical mistakes to make, and its points: the first that earns half, else the first."""
 
     def earned(mistake: Mistake) -> float:
-        return silently(exercise.number, mistake.function, seed)
+        return silently(exercise.number, mistake.functions[0], seed)
 
-    found = [(index, earned(mistake)) for index, mistake in enumerate(exercise.mistakes)]
+    found = [(index, earned(mistake)) for index, mistake in enumerate(exercise.known)]
     return next(((index, points) for index, points in found if points), found[0])
 
 

@@ -41,7 +41,7 @@ def _row(one: ExerciseCells) -> str:
 def _exercise(one: ExerciseCells) -> str:
     exercise = find_exercise(one.number)
     task = "\n".join(one.task.splitlines()[1:]).strip()
-    hints = list(dict.fromkeys(mistake.hint for mistake in exercise.mistakes))
+    hints = list(dict.fromkeys(mistake.hint for mistake in exercise.known))
     listed = "\n".join(f"* {hint}" for hint in hints)
     return (
         f"## {one.number} {one.title} · {exercise.level}, {points_of(exercise)} points\n\n{task}\n\n"

@@ -47,8 +47,8 @@ def test_all_points_half_and_none():
 
 def test_a_typical_mistake_is_answered_with_its_hint():
     exercise = find_exercise("06.1")
-    found = grade("06.1", exercise.mistakes[0].function, SEED)
-    assert found == (0.0, f"not yet. {exercise.mistakes[0].hint}")
+    found = grade("06.1", exercise.known[0].functions[0], SEED)
+    assert found == (0.0, f"not yet. {exercise.known[0].hint}")
 
 
 def test_the_inputs_are_the_secret_seeds_and_no_others():
@@ -177,4 +177,4 @@ def test_a_stream_that_was_kept_by_somebody_is_as_it_was(monkeypatch):
 def test_the_reference_has_all_points_on_other_seeds(number):
     exercise = find_exercise(number)
     for seed in (1, SEED):
-        assert grade(number, exercise.reference, seed) == (points_of(exercise), "right.")
+        assert grade(number, exercise.solution, seed) == (points_of(exercise), "right.")

@@ -81,7 +81,7 @@ def test_a_typical_mistake_gets_its_own_hint(results):
     from course_lib.lessons.kit.exercises import find_exercise
 
     for number, one in of(results, WILD).items():
-        assert one.sentence == find_exercise(number).mistakes[0].hint
+        assert one.sentence == find_exercise(number).known[0].hint
         assert one.status in ("wrong", "partly right")
 
 

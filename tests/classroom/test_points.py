@@ -38,6 +38,6 @@ def test_right_inputs_are_counted_by_the_function_that_fits_best():
 def test_right_inputs_of_an_exercise_with_many_right_answers_are_those_that_it_accepts():
     exercise = find_exercise("14.3")
     arguments = exercise.draw(np.random.default_rng(1))
-    answers = [exercise.reference(*given) for given in arguments]
+    answers = [exercise.solution(*given) for given in arguments]
     assert right_on(exercise, arguments, answers) == [True] * len(arguments)
     assert right_on(exercise, arguments, [None, -1.0, *answers[2:]])[:3] == [False, False, True]

@@ -20,13 +20,20 @@ class FigureError(ValueError):
     """A figure without a title, labels with units, or alternative text. Every figure of the course has all three."""
 
 
-def show(figure: Figure, alt: str, photograph: bool = False) -> None:
-    """Display a finished figure as one compressed picture with its alternative text.
+def described(figure: Figure, alt: str) -> Figure:
+    """Return the figure with its alternative text, which `show` uses: what it shows, for those who cannot see it."""
+    figure.set_label(alt)
+    return figure
+
+
+def show(figure: Figure, alt: str = "", photograph: bool = False) -> None:
+    """Display a finished figure as one compressed picture with its alternative text (default: of `described`).
 
     photograph: store a WebP, because a photograph in the few colours of a palette shows patches.
     Raises `FigureError` if the title, `alt` or an axis label with its unit (such as "depth Z [m]") is missing.
     """
     require_labels(figure)
+    alt = alt or str(figure.get_label())
     display(Picture(webp_bytes(figure), alt, "webp") if photograph else Picture(png_bytes(figure), alt))
 
 

@@ -1,25 +1,29 @@
 """Exercises: `check("03.1", function)` says at once: not attempted, right, or wrong with a hint.
 
-An `Exercise` has a reference function, a generator of inputs, and common mistakes. Each mistake is a wrong function
-with a hint. A student's function runs on special cases and on random inputs, and its values are compared with the
-reference's. If they differ, they are compared with the values of every known mistake. The student never sees the inputs
-or the reference. The exercises of lesson NN are the list `EXERCISES` in `course_lib/lessons/lesson_NN/exercises.py`.
+An `Exercise` has a solution, a generator of inputs, and common mistakes, each an edit of the solution with a hint. A
+student's function runs on special cases and on random inputs, and its values are compared with the solution's. If they
+differ, they are compared with the values of every known mistake. The student never sees the inputs. The exercises of
+lesson NN are the list `EXERCISES` in `course_lib/lessons/lesson_NN/exercises.py`.
 """
 
 import copy
 import dis
+import functools
 import importlib
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from course_lib.lessons.kit.attempt import TIME_LIMIT, attempt
-from course_lib.lessons.kit.hints import MISSING_RETURN, agree, agree_all, hint, kind_of, known_mistake
+from course_lib.lessons.kit.hints import MISSING_RETURN, hint, kind_of, known_mistake
+from course_lib.lessons.kit.mistakes import Mistake as _Mistake
+from course_lib.lessons.kit.mistakes import read_mistakes
 from course_lib.lessons.kit.progress_page import update_page
 from course_lib.lessons.kit.student_record import record_check, record_folder
+from course_lib.lessons.kit.values import agree, agree_all
 
 # Random inputs per check. A case that one input in five has is missed in one of 200 checks only: 0.8^24 = 0.005.
 N_INPUTS = 24
@@ -29,48 +33,51 @@ MAX_SHOWN = 1000
 Level = Literal["warm-up", "core", "challenge"]
 
 
-@dataclass(frozen=True)
-class Mistake:
-    """A common mistake: `function` makes it, and `hint` says what to look at.
-
-    others: functions that make the same mistake in another way and return other values.
-    """
-
-    function: Callable
-    hint: str
-    others: tuple[Callable, ...] = ()
-
-    @property
-    def functions(self) -> tuple[Callable, ...]:
-        """Return all functions that make the mistake."""
-        return (self.function, *self.others)
+def Mistake(function, hint, others=()):
+    return _Mistake((function, *others), hint)
 
 
 @dataclass(frozen=True)
 class Exercise:
     """One exercise.
 
-    number: such as "03.1". reference: the right function. inputs: makes one tuple of arguments from a
-    `numpy.random.Generator`. mistakes: at least three. tolerance: absolute and relative, as in `numpy.allclose`.
-    level: how hard it is. cases: like `inputs`, but each runs once in every check. They are special cases, for example
-    a seam, a mirror image, empty input, equal values. others: other functions that the task allows, for example another
-    estimator. verify: for tasks with many right answers. `verify(arguments, answer)` returns a sentence that says what
-    is wrong, or None. It replaces the comparison with the reference.
+    number: such as "03.1". solution: the right function; the notebook's solution is made of its text. inputs: makes one
+    tuple of arguments from a `numpy.random.Generator`. level: how hard it is. cases: like `inputs`, but each runs once
+    in every check. They are special cases (a seam, a mirror image, empty input, equal values); a hint may tell their
+    functions' names in words. mistakes: about nine edits of the solution with their hints (`kit.mistakes`).
+    functions: function -> hint, for mistakes that are no edit. tolerance: absolute and relative, as in
+    `numpy.allclose`. others: other functions that the task allows, for example another estimator. verify: for tasks
+    with many right answers. `verify(arguments, answer)` returns a sentence that says what is wrong, or None. It
+    replaces the comparison with the solution.
     """
 
     number: str
-    reference: Callable
+    solution: Callable
     inputs: Callable[[np.random.Generator], tuple]
-    mistakes: tuple[Mistake, ...]
-    tolerance: float = 1e-6
     level: Level = "core"
-    cases: tuple[Callable[[np.random.Generator], tuple], ...] = ()
-    others: tuple[Callable, ...] = ()
+    cases: Sequence[Callable[[np.random.Generator], tuple]] = ()
+    mistakes: str = ""
+    functions: dict[Callable, str] = field(default_factory=dict)
+    tolerance: float = 1e-6
+    others: Sequence[Callable] = ()
     verify: Callable[[tuple, object], str | None] | None = None
 
     def draw(self, rng: np.random.Generator) -> list[tuple]:
         """Return the arguments of every call of one check: the cases, then `N_INPUTS` random inputs."""
         return [make(rng) for make in (*self.cases, *[self.inputs] * N_INPUTS)]
+
+    @property
+    def case_names(self) -> list[str]:
+        """Return the special cases in words: "one point" for `one_point`."""
+        return [make.__name__.strip("_").replace("_", " ") for make in self.cases]
+
+    @functools.cached_property
+    def known(self) -> tuple[_Mistake, ...]:
+        """Return the exercise's own mistakes: its edits, then its functions."""
+        if not isinstance(self.mistakes, str):
+            return self.mistakes
+        others = tuple(_Mistake((function,), hint) for function, hint in self.functions.items())
+        return read_mistakes(self.solution, self.mistakes) + others
 
 
 @dataclass(frozen=True)
@@ -153,7 +160,7 @@ def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float 
 def right_on(exercise: Exercise, arguments: list[tuple], answers: list) -> list[bool]:
     """Return for each input whether the answer is right, so that a partly right function gets part of the points.
 
-    All answers are compared with one function: the reference, or the function of `exercise.others` that agrees with
+    All answers are compared with one function: the solution, or the function of `exercise.others` that agrees with
     more of them. An answer of None is wrong. The arguments are not changed.
     """
     if exercise.verify is not None:
@@ -167,7 +174,7 @@ def right_on(exercise: Exercise, arguments: list[tuple], answers: list) -> list[
                 agree(a, allowed(*copy.deepcopy(given)), exercise.tolerance)
                 for given, a in zip(arguments, answers, strict=True)
             ]
-            for allowed in (exercise.reference, *exercise.others)
+            for allowed in (exercise.solution, *exercise.others)
         ),
         key=sum,
     )
@@ -179,8 +186,8 @@ def fault(exercise: Exercise, arguments: list[tuple], answers: list) -> str | No
 
 
 def _compared(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """Return None if the answers agree with the reference or another allowed function, else a hint."""
-    wanted = [exercise.reference(*copy.deepcopy(given)) for given in arguments]
+    """Return None if the answers agree with the solution or another allowed function, else a hint."""
+    wanted = [exercise.solution(*copy.deepcopy(given)) for given in arguments]
     if agree_all(answers, wanted, exercise.tolerance):
         return None
     for other in exercise.others:

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from course_lib.lessons.kit.general_mistakes import general_mistake
+from course_lib.lessons.kit.values import agree, as_numbers, is_row_of, parts, shaped
+
 if TYPE_CHECKING:  # because `exercises` imports this module
     from course_lib.lessons.kit.exercises import Exercise
 
 
 MISSING_RETURN = "Your function returns None: does every way through it end in `return`?"
-
-SINGLE_PRECISION = 1e-5
-"""Tolerance [-] for answers in float32, which has seven digits."""
 
 
 def hint(exercise: Exercise, arguments: list[tuple], answers: list, wanted: list) -> str:
@@ -26,32 +26,42 @@ def hint(exercise: Exercise, arguments: list[tuple], answers: list, wanted: list
         return sentence
     if _only_reordered(answers, wanted, exercise.tolerance):
         return "The values are right, but in another order than the task names them."
-    inf_is_an_answer = any(np.isinf(np.asarray(w, dtype=np.float64)).any() for right in wanted for w in _parts(right))
+    if (sentence := general_mistake(exercise, arguments, answers)) is not None:
+        return sentence
+    inf_is_an_answer = any(np.isinf(np.asarray(w, dtype=np.float64)).any() for right in wanted for w in parts(right))
     for answer, right in zip(answers, wanted, strict=True):
         if (sentence := _difference(answer, right, inf_is_an_answer)) is not None:
             return sentence
-    right = sum(agree(a, w, exercise.tolerance) for a, w in zip(answers, wanted, strict=True))
-    if right:
-        return (
-            f"Right on {right} of {len(answers)} inputs, wrong on {len(answers) - right}: which case is left out? "
-            "Try small inputs of your own: equal values, zeros, both signs, the ends of the range."
-        )
-    return "Shape and type fit, but the values differ on every input. Work one small case by hand and compare."
+    right = [agree(a, w, exercise.tolerance) for a, w in zip(answers, wanted, strict=True)]
+    if not any(right):
+        return "Shape and type fit, but the values differ on every input. Work one small case by hand and compare."
+    return _left_out(right, exercise.case_names)
 
 
 def known_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """Return the hint of the known mistake that gives exactly these answers, or None."""
-    for mistake in exercise.mistakes:
+    """Return the hint of the exercise's own mistake that gives exactly these answers, or None."""
+    pairs = list(zip(arguments, answers, strict=True))
+    for mistake in exercise.known:
         for function in mistake.functions:
-            slips = [function(*copy.deepcopy(given)) for given in arguments]
-            if agree_all(answers, slips, exercise.tolerance):
+            if all(agree(answer, function(*copy.deepcopy(given)), exercise.tolerance) for given, answer in pairs):
                 return mistake.hint
     return None
 
 
+def _left_out(right: list[bool], names: list[str]) -> str:
+    """Return a sentence about answers that are right on some inputs. The special cases, which have names, are first."""
+    if all(right[len(names) :]):
+        missed = [name for name, is_right in zip(names, right, strict=False) if not is_right]
+        return f"Right on all ordinary inputs, wrong on a special case: {', '.join(missed)}."
+    return (
+        f"Right on {sum(right)} of {len(right)} inputs, wrong on {len(right) - sum(right)}: which case is left out? "
+        "Try small inputs of your own: equal values, zeros, both signs, the ends of the range."
+    )
+
+
 def _only_reordered(answers: list, wanted: list, tolerance: float) -> bool:
     """Return whether all answers hold the right values in the same wrong order."""
-    if not isinstance(wanted[0], tuple) or not all(_is_row_of(len(wanted[0]), answer) for answer in answers):
+    if not isinstance(wanted[0], tuple) or not all(is_row_of(len(wanted[0]), answer) for answer in answers):
         return False
     return any(
         all(agree(a, tuple(w[k] for k in order), tolerance) for a, w in zip(answers, wanted, strict=True))
@@ -61,11 +71,11 @@ def _only_reordered(answers: list, wanted: list, tolerance: float) -> bool:
 
 def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | None:
     """Return a sentence about a wrong type or shape, or an unexpected NaN or infinity. Return None if all are right."""
-    if isinstance(right, tuple) and not _is_row_of(len(right), answer):
+    if isinstance(right, tuple) and not is_row_of(len(right), answer):
         size = f" of {len(answer)}" if isinstance(answer, tuple | list) or getattr(answer, "ndim", 0) else ""
         return f"Return {len(right)} values, separated by commas; yours returns a {kind_of(answer)}{size}."
-    for a, r in zip(answer if isinstance(right, tuple) else (answer,), _parts(right), strict=True):
-        values = _shaped(_as_numbers(a), r)
+    for a, r in zip(answer if isinstance(right, tuple) else (answer,), parts(right), strict=True):
+        values = shaped(as_numbers(a), r)
         if values is None:
             return f"Return numbers; yours returns a {kind_of(a)}."
         if values.shape != np.shape(r):
@@ -83,53 +93,6 @@ def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | 
         if np.isinf(values).any() and not inf_is_an_answer:
             return "There is an infinity in your result: look for a division by zero."
     return None
-
-
-def _parts(right: object) -> tuple:
-    return right if isinstance(right, tuple) else (right,)
-
-
-def _is_row_of(n: int, answer: object) -> bool:
-    """Return whether an answer is a tuple, a list or an array of length n."""
-    if isinstance(answer, np.ndarray) and answer.ndim == 0:
-        return False
-    return isinstance(answer, tuple | list | np.ndarray) and len(answer) == n
-
-
-def agree_all(answers: list, wanted: list, tolerance: float) -> bool:
-    """Return whether each answer agrees with the wanted one."""
-    return all(agree(answer, right, tolerance) for answer, right in zip(answers, wanted, strict=True))
-
-
-def agree(answer: object, right: object, tolerance: float) -> bool:
-    """Return whether an answer has the right shape, and the right values within the tolerance.
-
-    If a number is wanted, an array with this single number is right as well.
-    """
-    if isinstance(right, tuple):
-        return _is_row_of(len(right), answer) and all(
-            agree(a, r, tolerance) for a, r in zip(answer, right, strict=True)
-        )
-    values = _shaped(_as_numbers(answer), right)
-    if values is None or values.shape != np.shape(right):
-        return False
-    if getattr(answer, "dtype", None) in (np.float16, np.float32):
-        tolerance = max(tolerance, SINGLE_PRECISION)
-    return bool(np.allclose(values.astype(np.float64), right, rtol=tolerance, atol=tolerance, equal_nan=True))
-
-
-def _shaped(values: np.ndarray | None, right: object) -> np.ndarray | None:
-    """Return `values`. If a single number is wanted, drop the axes of length one."""
-    return values.reshape(()) if values is not None and values.size == 1 and np.shape(right) == () else values
-
-
-def _as_numbers(value: object) -> np.ndarray | None:
-    """Return the value as a float array, or None if it is not real numbers (text, None, ragged lists, complex)."""
-    try:
-        array = np.asarray(value)
-    except ValueError:
-        return None
-    return array.astype(np.float64) if array.dtype.kind in "biuf" else None
 
 
 def kind_of(value: object) -> str:

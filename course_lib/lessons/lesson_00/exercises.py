@@ -222,7 +222,7 @@ EXERCISES = [
     Exercise(
         number="00.1",
         level="warm-up",
-        reference=depth_difference,
+        solution=depth_difference,
         inputs=_two_images,
         cases=(_with_a_gap_and_a_hole, _equal),
         mistakes=(
@@ -274,7 +274,7 @@ EXERCISES = [
     ),
     Exercise(
         number="00.2",
-        reference=difference_of_vote,
+        solution=difference_of_vote,
         inputs=_votes,
         cases=(_min_and_max_votes,),
         mistakes=(
@@ -331,7 +331,7 @@ EXERCISES = [
     Exercise(
         number="00.3",
         level="challenge",
-        reference=find_the_camera,
+        solution=find_the_camera,
         inputs=_a_search,
         cases=(_a_far_start, _start_at_the_top),
         verify=off_the_top,

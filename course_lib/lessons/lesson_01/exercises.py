@@ -275,7 +275,7 @@ EXERCISES = [
     Exercise(
         number="01.1",
         level="warm-up",
-        reference=to_world,
+        solution=to_world,
         inputs=_points_and_state,
         cases=(_level_camera, _one_point),
         mistakes=(
@@ -351,7 +351,7 @@ EXERCISES = [
     ),
     Exercise(
         number="01.2",
-        reference=state_of,
+        solution=state_of,
         inputs=_optical,
         cases=(_facing_back, _hardly_turned),
         mistakes=(
@@ -451,7 +451,7 @@ EXERCISES = [
     ),
     Exercise(
         number="01.3",
-        reference=motion,
+        solution=motion,
         inputs=_two_states,
         cases=(_over_the_seam, _at_rest),
         mistakes=(
@@ -516,7 +516,7 @@ EXERCISES = [
     Exercise(
         number="01.4",
         level="challenge",
-        reference=decode,
+        solution=decode,
         inputs=_some_program,
         cases=(_this_course, _an_airplane, _starts_level),
         mistakes=(

@@ -238,7 +238,7 @@ EXERCISES = [
     Exercise(
         number="02.1",
         level="warm-up",
-        reference=aim,
+        solution=aim,
         inputs=_points,
         cases=(_across_the_seam, _one_steep_point),
         mistakes=(
@@ -290,7 +290,7 @@ EXERCISES = [
     ),
     Exercise(
         number="02.2",
-        reference=station_places,
+        solution=station_places,
         inputs=_steps,
         cases=(_round_a_square, _one_step, _one_station),
         mistakes=(
@@ -350,7 +350,7 @@ EXERCISES = [
     ),
     Exercise(
         number="02.3",
-        reference=hole_share,
+        solution=hole_share,
         inputs=_places_and_map,
         cases=(_no_holes, _nothing_but_holes),
         mistakes=(
@@ -423,7 +423,7 @@ EXERCISES = [
     Exercise(
         number="02.4",
         level="challenge",
-        reference=lateral_sigma,
+        solution=lateral_sigma,
         inputs=_row_of_stations,
         cases=(_single_step, _perfect_headings, _perfect_places),
         verify=off_the_sigma,

@@ -309,7 +309,7 @@ EXERCISES = [
     Exercise(
         number="03.1",
         level="warm-up",
-        reference=linearize,
+        solution=linearize,
         inputs=_buffers,
         cases=(_nothing_drawn, _the_papers_planes),
         mistakes=(
@@ -371,7 +371,7 @@ EXERCISES = [
     ),
     Exercise(
         number="03.2",
-        reference=depth_on_edge,
+        solution=depth_on_edge,
         inputs=_edges,
         cases=(_level_edge,),
         mistakes=(
@@ -411,7 +411,7 @@ EXERCISES = [
     ),
     Exercise(
         number="03.3",
-        reference=nearest_surface,
+        solution=nearest_surface,
         inputs=_layers,
         cases=(_on_the_planes, _one_surface),
         mistakes=(
@@ -460,7 +460,7 @@ EXERCISES = [
     Exercise(
         number="03.4",
         level="challenge",
-        reference=cut_at_near,
+        solution=cut_at_near,
         inputs=_any_triangle,
         cases=(_one_before, _two_before, _all_before, _none_before, _a_corner_on_the_plane),
         verify=off_the_cut,

@@ -232,7 +232,7 @@ def _density_without_n(n: int) -> tuple[float, float]:
 EXERCISES = [
     Exercise(
         number="04.1",
-        reference=range_to_depth,
+        solution=range_to_depth,
         inputs=_range_image,
         cases=(_task_ray, _nothing_measured, _paper_camera),
         level="warm-up",
@@ -290,7 +290,7 @@ EXERCISES = [
     ),
     Exercise(
         number="04.2",
-        reference=range_from_two,
+        solution=range_from_two,
         inputs=_readings,
         cases=(_at_15_and_20, _at_20_and_15, _nearly_in_step),
         mistakes=(
@@ -361,7 +361,7 @@ EXERCISES = [
     ),
     Exercise(
         number="04.3",
-        reference=pole_share,
+        solution=pole_share,
         inputs=_pole_and_wall,
         cases=(_same_paint,),
         tolerance=1e-3,  # so that a search on a fine grid passes as well
@@ -432,7 +432,7 @@ EXERCISES = [
     ),
     Exercise(
         number="04.4",
-        reference=nearest_of,
+        solution=nearest_of,
         inputs=_how_many,
         cases=(_one_point, _two_points, _sixteen_points),
         tolerance=0.004,

@@ -328,7 +328,7 @@ def _one_frame(rng: np.random.Generator) -> tuple:
 EXERCISES = [
     Exercise(
         number="05.1",
-        reference=spread_after,
+        solution=spread_after,
         inputs=_spreads,
         cases=(_the_courses_noise, _no_frame),
         level="warm-up",
@@ -394,7 +394,7 @@ EXERCISES = [
     ),
     Exercise(
         number="05.2",
-        reference=propagate_own_axes,
+        solution=propagate_own_axes,
         inputs=_particles_and_draws,
         cases=(_four_headings,),
         mistakes=(
@@ -493,7 +493,7 @@ EXERCISES = [
     ),
     Exercise(
         number="05.3",
-        reference=share_near,
+        solution=share_near,
         inputs=_cloud_and_state,
         cases=(_at_the_seam, _nobody_near, _exactly_there),
         mistakes=(
@@ -597,7 +597,7 @@ EXERCISES = [
     ),
     Exercise(
         number="05.4",
-        reference=bayes_step,
+        solution=bayes_step,
         inputs=_corridor_with_doors,
         cases=(_nearly_at_the_end, _a_sure_sensor, _the_tasks_corridor, _five_moves, _more_moves_than_cells, _at_rest),
         mistakes=(
@@ -697,7 +697,7 @@ EXERCISES = [
     ),
     Exercise(
         number="05.5",
-        reference=min_sigma,
+        solution=min_sigma,
         inputs=_wagons,
         cases=(_the_courses_wagon, _one_frame),
         level="challenge",

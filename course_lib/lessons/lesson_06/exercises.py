@@ -262,7 +262,7 @@ FAULTS_LEFT = (
 EXERCISES = [
     Exercise(
         number="06.1",
-        reference=difference_at,
+        solution=difference_at,
         inputs=_terms,
         cases=(_the_papers_alpha,),
         level="warm-up",
@@ -315,7 +315,7 @@ EXERCISES = [
     ),
     Exercise(
         number="06.2",
-        reference=weigh,
+        solution=weigh,
         inputs=_images,
         cases=(_a_lucky_pixel, _all_alike, _nothing_measured),
         mistakes=(
@@ -389,7 +389,7 @@ EXERCISES = [
     ),
     Exercise(
         number="06.3",
-        reference=min_likelihood,
+        solution=min_likelihood,
         inputs=_unequal_likelihoods,
         cases=(_the_papers_beta, _a_large_beta),
         mistakes=(
@@ -473,7 +473,7 @@ EXERCISES = [
     ),
     Exercise(
         number="06.4",
-        reference=importance_mean,
+        solution=importance_mean,
         inputs=_samples,
         cases=(_target_is_proposal, _one_outweighs_all),
         others=(_with_bessel,),

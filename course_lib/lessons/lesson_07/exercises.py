@@ -153,7 +153,7 @@ def _light_ones_last(rng: np.random.Generator) -> tuple:
 EXERCISES = [
     Exercise(
         number="07.1",
-        reference=mean_angle,
+        solution=mean_angle,
         inputs=_angles,
         level="warm-up",
         cases=(_given(170, 175, -175, -165), _given(-20, 5, 10), _given(0, 90, 170, -90), _given(30, 30, 30)),
@@ -276,7 +276,7 @@ EXERCISES = [
     ),
     Exercise(
         number="07.2",
-        reference=residual_parts,
+        solution=residual_parts,
         inputs=_uneven_weights,
         cases=(_some_whole,),
         mistakes=(
@@ -348,7 +348,7 @@ EXERCISES = [
     ),
     Exercise(
         number="07.3",
-        reference=expected_survivors,
+        solution=expected_survivors,
         inputs=_uneven_weights,
         cases=(_all_equal, _one_has_all, _some_whole),
         mistakes=(
@@ -428,7 +428,7 @@ EXERCISES = [
     ),
     Exercise(
         number="07.4",
-        reference=stratified_error,
+        solution=stratified_error,
         inputs=_weights_and_values,
         level="challenge",
         cases=(_three_and_values, _light_ones_last),

@@ -288,7 +288,7 @@ def _fallons_run(rng: np.random.Generator) -> tuple:
 EXERCISES = [
     Exercise(
         number="08.1",
-        reference=nearest_distances,
+        solution=nearest_distances,
         inputs=_track_and_path,
         level="warm-up",
         cases=(_on_the_path, _a_single_estimate, _a_hump_in_the_floor),
@@ -365,7 +365,7 @@ EXERCISES = [
     ),
     Exercise(
         number="08.2",
-        reference=table_row,
+        solution=table_row,
         inputs=_errors,
         cases=(_all_alike,),
         mistakes=(
@@ -458,7 +458,7 @@ EXERCISES = [
     ),
     Exercise(
         number="08.3",
-        reference=lost_since,
+        solution=lost_since,
         inputs=_scores,
         cases=(
             _alternating,
@@ -537,7 +537,7 @@ EXERCISES = [
     ),
     Exercise(
         number="08.4",
-        reference=effective_frames,
+        solution=effective_frames,
         inputs=_run_length_and_likeness,
         level="challenge",
         cases=(_independent, _all_the_same, _taking_turns, _four_frames, _fallons_run),

@@ -230,7 +230,7 @@ def _shifts_never_turned(points: np.ndarray, normals: np.ndarray, offsets: np.nd
 EXERCISES = [
     Exercise(
         number="09.1",
-        reference=particles_for,
+        solution=particles_for,
         inputs=_particles,
         cases=(
             _example_1,
@@ -303,7 +303,7 @@ EXERCISES = [
     ),
     Exercise(
         number="09.2",
-        reference=mean_rotation,
+        solution=mean_rotation,
         inputs=_rotations,
         cases=(
             _half_a_radian_about_z,
@@ -367,7 +367,7 @@ EXERCISES = [
     ),
     Exercise(
         number="09.3",
-        reference=honesty,
+        solution=honesty,
         inputs=_errors_and_covariances,
         cases=(
             _example_3,
@@ -454,7 +454,7 @@ EXERCISES = [
     ),
     Exercise(
         number="09.4",
-        reference=fit_motion,
+        solution=fit_motion,
         inputs=_points_and_walls,
         tolerance=1e-4,
         cases=(

@@ -352,7 +352,7 @@ def _clustered(near: Callable = _near, order: Callable | None = None) -> Callabl
 EXERCISES = [
     Exercise(
         number="10.1",
-        reference=free_places,
+        solution=free_places,
         inputs=_grids,
         cases=(_first_of_each_cell,),
         mistakes=(
@@ -433,7 +433,7 @@ EXERCISES = [
     ),
     Exercise(
         number="10.2",
-        reference=new_shares,
+        solution=new_shares,
         inputs=_scores,
         cases=(_example_2,),
         mistakes=(
@@ -529,7 +529,7 @@ EXERCISES = [
     ),
     Exercise(
         number="10.3",
-        reference=draws_needed,
+        solution=draws_needed,
         inputs=_landings,
         cases=(
             _example_3,
@@ -608,7 +608,7 @@ EXERCISES = [
     ),
     Exercise(
         number="10.4",
-        reference=distinct_places,
+        solution=distinct_places,
         inputs=_hypotheses,
         cases=(
             _example_4,

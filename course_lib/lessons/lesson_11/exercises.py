@@ -276,7 +276,7 @@ EXERCISES = [
     Exercise(
         number="11.1",
         level="warm-up",
-        reference=direction_of,
+        solution=direction_of,
         inputs=_pixel,
         cases=(
             lambda rng: (-0.5, 319.5, 1280, 640),  # straight ahead, on the edge of the first pixel
@@ -367,7 +367,7 @@ EXERCISES = [
     ),
     Exercise(
         number="11.2",
-        reference=column_gap_deg,
+        solution=column_gap_deg,
         inputs=_columns,
         cases=(
             lambda rng: (960.0, 320.0, 1280),  # half a turn: -180, by the range
@@ -471,7 +471,7 @@ EXERCISES = [
     ),
     Exercise(
         number="11.3",
-        reference=shortest_stretch,
+        solution=shortest_stretch,
         inputs=_points_of_an_object,
         cases=(
             lambda rng: (np.array([1270.0, 2.0, 1278.0, 18.0]), 1280),
@@ -542,7 +542,7 @@ EXERCISES = [
     Exercise(
         number="11.4",
         level="challenge",
-        reference=knock,
+        solution=knock,
         inputs=_a_knock,
         cases=(_no_knock, _points_behind, _first_point_twice),
         others=(knock_linear, _from_angle_differences),

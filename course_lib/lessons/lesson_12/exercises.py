@@ -352,7 +352,7 @@ EXERCISES = [
     Exercise(
         number="12.1",
         level="warm-up",
-        reference=counts,
+        solution=counts,
         inputs=_boxes,
         cases=(
             lambda rng: (np.array([[90.0, 0, 110, 9], [91, 0, 110, 9], [92, 0, 110, 9]]), 1280, 100.25),  # halves
@@ -436,7 +436,7 @@ EXERCISES = [
     ),
     Exercise(
         number="12.2",
-        reference=overlap,
+        solution=overlap,
         inputs=_two_boxes,
         cases=(
             lambda rng: (np.array([100.0, 300, 200, 400]), np.array([740.0, 300, 840, 400]), 1280),  # half a turn apart
@@ -535,7 +535,7 @@ EXERCISES = [
     ),
     Exercise(
         number="12.3",
-        reference=surest,
+        solution=surest,
         inputs=_answers_of_a_network,
         cases=(
             lambda rng: _squares([0, 4, 8], [0, 0, 0], [0.9, 0.8, 0.7], 0.1, 0.4),  # a chain: the last one stays
@@ -626,7 +626,7 @@ EXERCISES = [
     Exercise(
         number="12.4",
         level="challenge",
-        reference=lowest_threshold,
+        solution=lowest_threshold,
         inputs=_validation_boxes,
         verify=_refused,
         cases=(

@@ -344,7 +344,7 @@ def _level_rays(rng: np.random.Generator) -> tuple:
 EXERCISES = [
     Exercise(
         number="14.1",
-        reference=place_of,
+        solution=place_of,
         inputs=_two_boxes,
         level="warm-up",
         cases=(_across_the_seam, lambda rng: _boxes_at(rng, 0.5), lambda rng: _boxes_at(rng, 0.04, wide=0.03)),
@@ -428,7 +428,7 @@ EXERCISES = [
     ),
     Exercise(
         number="14.2",
-        reference=range_sigma,
+        solution=range_sigma,
         inputs=_triangles,
         cases=(
             lambda rng: (*_triangles(rng)[:5], 0.0),
@@ -554,7 +554,7 @@ EXERCISES = [
     ),
     Exercise(
         number="14.3",
-        reference=range_of,
+        solution=range_of,
         inputs=_matches,
         verify=refuses_range,
         cases=(_one_match_is_far_off, _stranger_first, _images_swapped, lambda rng: _matches_with(rng, 9, 0, np.zeros)),
@@ -596,7 +596,7 @@ EXERCISES = [
     ),
     Exercise(
         number="14.4",
-        reference=mean_error,
+        solution=mean_error,
         inputs=_noisy_triangles,
         level="challenge",
         cases=(_level_rays,),

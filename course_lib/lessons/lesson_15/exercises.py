@@ -234,7 +234,7 @@ def _shift(formula: Callable) -> Callable:
 EXERCISES = [
     Exercise(
         number="15.1",
-        reference=hue_term,
+        solution=hue_term,
         inputs=_hues,
         level="warm-up",
         cases=(_ends_of_the_circle,),
@@ -315,7 +315,7 @@ EXERCISES = [
     ),
     Exercise(
         number="15.2",
-        reference=distance_term,
+        solution=distance_term,
         inputs=_points,
         cases=(_landmark_at_the_centroid, _one_place),
         mistakes=(
@@ -406,7 +406,7 @@ EXERCISES = [
     ),
     Exercise(
         number="15.3",
-        reference=match_with_margins,
+        solution=match_with_margins,
         inputs=_costs,
         cases=(_unlike_classes, lambda rng: (np.array([[0.3]]),), lambda rng: (np.array([[0.2, 0.5, 0.4]]),)),
         mistakes=(
@@ -507,7 +507,7 @@ EXERCISES = [
     ),
     Exercise(
         number="15.4",
-        reference=centroid_shift,
+        solution=centroid_shift,
         inputs=_places,
         level="challenge",
         cases=(

@@ -204,7 +204,7 @@ def _deviations_signed(found: np.ndarray, true: np.ndarray) -> np.ndarray:
 EXERCISES = [
     Exercise(
         number="17.1",
-        reference=judge_poses,
+        solution=judge_poses,
         inputs=_poses,
         level="warm-up",
         cases=(_close_calls,),
@@ -289,7 +289,7 @@ EXERCISES = [
     ),
     Exercise(
         number="17.2",
-        reference=combined,
+        solution=combined,
         inputs=_two_groups,
         cases=(
             lambda rng: (13, 11.94, 25.42, 5, 69.70, 47.09),
@@ -370,7 +370,7 @@ EXERCISES = [
     ),
     Exercise(
         number="17.3",
-        reference=unable_probability,
+        solution=unable_probability,
         inputs=_shares,
         cases=(
             lambda rng: (np.array([1.0, 0.3, 0.5]),),
@@ -421,7 +421,7 @@ EXERCISES = [
     ),
     Exercise(
         number="17.4",
-        reference=row_of_table,
+        solution=row_of_table,
         inputs=_poses_found,
         level="challenge",
         cases=(_round_the_wrap,),

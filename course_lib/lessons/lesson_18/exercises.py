@@ -299,7 +299,7 @@ def _answers(rng: np.random.Generator) -> tuple:
 EXERCISES = [
     Exercise(
         number="18.1",
-        reference=colour_cost,
+        solution=colour_cost,
         inputs=_colours,
         mistakes=(
             Mistake(
@@ -394,7 +394,7 @@ EXERCISES = [
     ),
     Exercise(
         number="18.2",
-        reference=pose_of_two,
+        solution=pose_of_two,
         inputs=_two_matches,
         mistakes=(
             Mistake(
@@ -466,7 +466,7 @@ EXERCISES = [
     ),
     Exercise(
         number="18.3",
-        reference=match_or_leave,
+        solution=match_or_leave,
         inputs=_nat_costs,
         mistakes=(
             Mistake(
@@ -517,7 +517,7 @@ EXERCISES = [
     ),
     Exercise(
         number="18.4",
-        reference=max_answered,
+        solution=max_answered,
         inputs=_answers,
         mistakes=(
             Mistake(

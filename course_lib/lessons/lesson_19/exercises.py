@@ -182,7 +182,7 @@ def _not_transposed(p: np.ndarray, theta: float, forward: float, left: float) ->
 EXERCISES = [
     Exercise(
         number="19.1",
-        reference=camera_on_map,
+        solution=camera_on_map,
         inputs=_mounted,
         mistakes=(
             Mistake(
@@ -238,7 +238,7 @@ EXERCISES = [
     ),
     Exercise(
         number="19.2",
-        reference=start_knowledge,
+        solution=start_knowledge,
         inputs=_knowledge,
         tolerance=1e-9,  # the variances are some 1e-5
         mistakes=(
@@ -299,7 +299,7 @@ EXERCISES = [
     ),
     Exercise(
         number="19.3",
-        reference=places_needed,
+        solution=places_needed,
         inputs=_wanted,
         mistakes=(
             Mistake(
@@ -363,7 +363,7 @@ EXERCISES = [
     ),
     Exercise(
         number="19.4",
-        reference=carried,
+        solution=carried,
         inputs=_on_a_lever,
         mistakes=(
             Mistake(

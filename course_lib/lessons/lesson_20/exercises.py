@@ -250,7 +250,7 @@ def _root_of_absolute(distance: float, reach: float) -> float:
 EXERCISES = [
     Exercise(
         number="20.1",
-        reference=to_metres,
+        solution=to_metres,
         inputs=_raw_images,
         level="warm-up",
         cases=(_nothing_measured, _all_measured),
@@ -343,7 +343,7 @@ EXERCISES = [
     ),
     Exercise(
         number="20.2",
-        reference=resized_intrinsics,
+        solution=resized_intrinsics,
         inputs=_intrinsics,
         cases=(_unchanged, _the_papers_camera),
         mistakes=(
@@ -427,7 +427,7 @@ EXERCISES = [
     ),
     Exercise(
         number="20.3",
-        reference=baseline_from_marks,
+        solution=baseline_from_marks,
         inputs=_marks,
         cases=(_exchanged, _even_number_of_marks, _signs_that_differ, _one_mark),
         mistakes=(
@@ -531,7 +531,7 @@ EXERCISES = [
     ),
     Exercise(
         number="20.4",
-        reference=baseline_needed,
+        solution=baseline_needed,
         inputs=_rig_and_limit,
         level="challenge",
         cases=(_of_the_task, _none_is_enough),

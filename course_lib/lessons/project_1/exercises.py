@@ -462,7 +462,7 @@ EXERCISES = [
     Exercise(
         number="P1.1",
         level="warm-up",
-        reference=initial_particles,
+        solution=initial_particles,
         inputs=_start,
         mistakes=(
             Mistake(
@@ -490,7 +490,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P1.2",
-        reference=propagate,
+        solution=propagate,
         inputs=_cloud,
         cases=(_facing_back, _nothing_moves, _every_noise),
         others=(_yaw_wrapped, _angles_wrapped),
@@ -528,7 +528,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P1.3",
-        reference=likelihood,
+        solution=likelihood,
         inputs=_images,
         cases=(_nothing_measured, _nothing_hit),
         mistakes=(
@@ -571,7 +571,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P1.4",
-        reference=particle_weights,
+        solution=particle_weights,
         inputs=_likelihoods,
         cases=(_the_papers_beta, _all_alike, _one_alone),
         mistakes=(
@@ -632,7 +632,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P1.5",
-        reference=estimate,
+        solution=estimate,
         inputs=_weighted_cloud,
         cases=(_on_both_sides_of_the_seam,),
         mistakes=(
@@ -681,7 +681,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P1.6",
-        reference=resample,
+        solution=resample,
         inputs=_weights_and_offset,
         cases=(_last_without_weight, _first_without_weight, _sum_short_of_one, _all_on_one, _equal_weights),
         mistakes=(
@@ -729,7 +729,7 @@ EXERCISES = [
     Exercise(
         number="P1.7",
         level="challenge",
-        reference=one_round,
+        solution=one_round,
         inputs=_a_frame,
         cases=(_all_at_one_place,),
         mistakes=(

@@ -478,7 +478,7 @@ EXERCISES = [
     Exercise(
         number="P2.1",
         level="warm-up",
-        reference=angles_of,
+        solution=angles_of,
         inputs=_box,
         cases=(_box_across_the_seam,),
         mistakes=(
@@ -540,7 +540,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P2.2",
-        reference=pair_boxes,
+        solution=pair_boxes,
         inputs=_two_images,
         cases=(_nothing_below,),
         mistakes=(
@@ -586,7 +586,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P2.3",
-        reference=places_of,
+        solution=places_of,
         inputs=_angle_pairs,
         cases=(_no_pairs,),
         mistakes=(
@@ -632,7 +632,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P2.4",
-        reference=penalties,
+        solution=penalties,
         inputs=_observed_and_mapped,
         cases=(_landmark_at_the_centroid,),
         mistakes=(
@@ -691,7 +691,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P2.5",
-        reference=associate,
+        solution=associate,
         inputs=_penalty_tables,
         cases=(_more_seen_than_mapped,),
         mistakes=(
@@ -727,7 +727,7 @@ EXERCISES = [
     Exercise(
         number="P2.6",
         level="challenge",
-        reference=fit_pose,
+        solution=fit_pose,
         inputs=_pairs,
         cases=(_turned_by_half, _mirror_image, _one_pair, _nothing, _one_place_twice, _one_landmark_twice),
         mistakes=(

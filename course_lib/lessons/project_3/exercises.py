@@ -459,7 +459,7 @@ EXERCISES = [
     Exercise(
         number="P3.1",
         level="warm-up",
-        reference=squared_distances,
+        solution=squared_distances,
         inputs=_some_scene,
         cases=(_nothing_seen,),
         mistakes=(
@@ -508,7 +508,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P3.2",
-        reference=hypotheses,
+        solution=hypotheses,
         inputs=_look_alikes,
         cases=(_one_seen,),
         verify=_verify_hypotheses,
@@ -546,7 +546,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P3.3",
-        reference=assign,
+        solution=assign,
         inputs=_distances_with_rivalry,
         cases=(_all_too_far,),
         mistakes=(
@@ -595,7 +595,7 @@ EXERCISES = [
     Exercise(
         number="P3.4",
         level="challenge",
-        reference=refit,
+        solution=refit,
         inputs=_matched_places,
         cases=(_heading_at_the_wrap,),
         verify=_verify_refit,
@@ -641,7 +641,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P3.5",
-        reference=confidence,
+        solution=confidence,
         inputs=_scored_poses,
         cases=(_high_scores, _far_below_nothing, _no_pose, _one_answer, _far_and_looking_alike),
         mistakes=(

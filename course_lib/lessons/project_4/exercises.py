@@ -432,7 +432,7 @@ EXERCISES = [
     Exercise(
         number="P4.1",
         level="warm-up",
-        reference=invalid_code,
+        solution=invalid_code,
         inputs=_raw,
         cases=tuple(lambda rng, code=code: _raw_with(code, rng) for code in (0, 1, 32_001, 65_000, 65_535)),
         mistakes=(
@@ -464,7 +464,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P4.2",
-        reference=unit_and_offset,
+        solution=unit_and_offset,
         inputs=_on_a_line,
         cases=(_no_offset,),
         mistakes=(
@@ -517,7 +517,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P4.3",
-        reference=focal_length,
+        solution=focal_length,
         inputs=_wall,
         cases=(_odd_image, _no_corners),
         mistakes=(
@@ -550,7 +550,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P4.4",
-        reference=bias_coefficients,
+        solution=bias_coefficients,
         inputs=_readings,
         cases=(_sr4000,),
         mistakes=(
@@ -602,7 +602,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P4.5",
-        reference=flying_pixels,
+        solution=flying_pixels,
         inputs=_two_surfaces,
         cases=(_steep_floor, _nothing_measured),
         mistakes=(
@@ -649,7 +649,7 @@ EXERCISES = [
     ),
     Exercise(
         number="P4.6",
-        reference=noise_by_distance,
+        solution=noise_by_distance,
         inputs=_at_rest,
         cases=(_nothing_at_all, _means_on_the_edges),
         mistakes=(
@@ -702,7 +702,7 @@ EXERCISES = [
     Exercise(
         number="P4.7",
         level="challenge",
-        reference=depth_from_raw,
+        solution=depth_from_raw,
         inputs=_one_frame,
         cases=(_nothing_came,),
         mistakes=(

@@ -23,7 +23,7 @@ def double(x):
 
 DOUBLE = Exercise(
     number="99.1",
-    reference=double,
+    solution=double,
     inputs=lambda rng: (rng.normal(size=(2, 3)),),
     mistakes=(
         Mistake(lambda x: x, "You return what you were given."),
@@ -209,12 +209,12 @@ def test_check_prints_one_line_and_shows_neither_inputs_nor_reference(capsys):
     exercise = find_exercise("03.1")
     rng = np.random.default_rng(0)
     given = exercise.inputs(rng)
-    for function in (stub, exercise.reference, exercise.mistakes[0].function, lambda b, near, far: b + 1):
+    for function in (stub, exercise.solution, exercise.known[0].functions[0], lambda b, near, far: b + 1):
         check("03.1", function)
         printed = capsys.readouterr().out
         assert printed.count("\n") == 1
         assert printed.startswith("03.1: ")
-        for number in [*given[0].ravel(), *exercise.reference(*given).ravel()]:
+        for number in [*given[0].ravel(), *exercise.solution(*given).ravel()]:
             if 0 < number < 1:
                 assert f"{number:.4f}" not in printed
 

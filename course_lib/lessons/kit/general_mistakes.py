@@ -1,0 +1,244 @@
+"""General mistakes: slips that people make in every exercise, so that no exercise lists them.
+
+A slip changes the values that the solution returns (degrees for radians), the values that it is given (two arguments
+exchanged), or one place of its code (`axis=0` for `axis=1`). A sentence belongs to each.
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+import inspect
+import textwrap
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from course_lib.lessons.kit.mistakes import compiled
+from course_lib.lessons.kit.values import agree, as_numbers, is_row_of, parts
+
+if TYPE_CHECKING:  # because `exercises` imports this module
+    from course_lib.lessons.kit.exercises import Exercise
+
+SIGN = "Look at the signs: one of them is the other way round."
+DEGREES = "Look at the units: are these degrees where radians are asked, or the reverse?"
+SQUARED = "A square or a root is missing, or there is one too many: variance or deviation?"
+TRANSPOSED = "Something is transposed: rows for columns, or a rotation for its inverse. From which frame to which?"
+ABSOLUTE = "An absolute value is missing, or one too many: try a negative number."
+AXIS = "Rows for columns: look along which axis you add, average or compare."
+EXCHANGED = "Two arguments are exchanged, or two frames: which one comes from where?"
+OFF_BY_ONE = (
+    "Off by one: look where you begin to count, and whether a loop or a slice leaves out the first or the last."
+)
+DIVISOR = "n, or n - 1? Look at what you divide by, and at `ddof`."
+MIDDLE = "A mean is not a median: which of them does the task ask for?"
+EXTREME = "Least and greatest are exchanged."
+EQUAL = "Try equal values: less than, or less than or equal?"
+QUOTIENT = "Something is multiplied where it should be divided, or the reverse."
+ARCTAN2 = "`np.arctan2` takes y first, then x."
+HALF_CIRCLE = "An arctangent of a quotient knows half of the circle only: which function is told both signs?"
+SINE = "Sine and cosine are exchanged."
+WRAP = "An angle leaves the range from -pi to pi: bring it back."
+LIMITS = "A limit at the ends of the range is missing."
+NEARLY = "Nearly right, within 1 % everywhere: is something rounded, or simulated where it can be computed?"
+CLOSE = "Within 5 % everywhere, but not equal: is something simulated, rounded, or a small term left out?"
+FACTOR = "Yours differs from the right values by one constant factor."
+OFFSET = "Yours differs from the right values by one constant summand."
+
+OF_VALUES = (
+    (SIGN, np.negative),
+    (DEGREES, np.rad2deg),
+    (DEGREES, np.deg2rad),
+    (SQUARED, np.square),
+    (SQUARED, np.sqrt),
+    (TRANSPOSED, np.transpose),
+    (ABSOLUTE, np.abs),
+)
+"""Slips of a returned value; those of `OF_ARGUMENTS` are of a given one."""
+OF_ARGUMENTS = (*OF_VALUES[:3], (TRANSPOSED, np.transpose))
+
+
+def general_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
+    """Return the sentence of the slip that gives exactly these answers, or None."""
+    with np.errstate(all="ignore"):
+        wanted = [exercise.solution(*copy.deepcopy(given)) for given in arguments]
+        for sentence, slip in value_slips(wanted):
+            if all(agree(a, slip(w), exercise.tolerance) for a, w in zip(answers, wanted, strict=True)):
+                return sentence
+        for sentence, function in [*argument_slips(exercise.solution, arguments[-1]), *code_slips(exercise.solution)]:
+            if all(_gives(function, g, a, exercise.tolerance) for g, a in zip(arguments, answers, strict=True)):
+                return sentence
+        return constant_difference(answers, wanted, exercise.tolerance)
+
+
+def _gives(function: Callable, given: tuple, answer: object, tolerance: float) -> bool:
+    try:
+        return agree(answer, function(*copy.deepcopy(given)), tolerance)
+    except Exception:  # a slip may make code that cannot run on these arguments
+        return False
+
+
+def value_slips(wanted: list) -> Iterator[tuple[str, Callable]]:
+    """Yield slips of the returned value: of all parts of a tuple, or of one part alone."""
+    n = len(parts(wanted[0]))
+    for sentence, change in OF_VALUES:
+        for which in [range(n), *([k] for k in range(n) if n > 1)]:
+            yield sentence, lambda value, change=change, which=which: _changed(value, change, which)
+    if np.asarray(parts(wanted[0])[0]).dtype.kind == "i":
+        for step in (1, -1):
+            yield OFF_BY_ONE, lambda value, step=step: _changed(value, lambda part: part + step, range(n))
+
+
+def _changed(value: object, change: Callable, which: range | list[int]) -> object:
+    changed = tuple(change(_number(p)) if k in which else p for k, p in enumerate(parts(value)))
+    return changed if isinstance(value, tuple) else changed[0]
+
+
+def _number(value: object) -> object:
+    return np.asarray(value).astype(float) if np.asarray(value).dtype.kind == "b" else np.asarray(value)
+
+
+def argument_slips(solution: Callable, given: tuple) -> Iterator[tuple[str, Callable]]:
+    """Yield slips of the given values: one argument changed, or two of the same shape exchanged."""
+    numbers = [k for k, value in enumerate(given) if np.asarray(value).dtype.kind in "if"]
+    for k in numbers:
+        for sentence, change in OF_ARGUMENTS:
+            if change is not np.transpose or np.ndim(given[k]) == 2:
+                yield sentence, lambda *g, k=k, change=change: solution(*g[:k], change(g[k]), *g[k + 1 :])
+        for j in numbers[:k]:
+            if np.shape(given[j]) == np.shape(given[k]):
+                order = list(range(len(given)))
+                order[j], order[k] = k, j
+                yield EXCHANGED, lambda *g, order=order: solution(*(g[i] for i in order))
+
+
+def code_slips(solution: Callable) -> Iterator[tuple[str, Callable]]:
+    """Yield functions with one place of the solution's code changed, then with all places of one kind of slip."""
+    source = textwrap.dedent(inspect.getsource(solution))
+    places: dict[str, list] = {}
+    for node in _expressions(ast.parse(source).body[0]):
+        start, end = (
+            _offset(source, node.lineno, node.col_offset),
+            _offset(source, node.end_lineno, node.end_col_offset),
+        )
+        for sentence, new in _changes(node):
+            places.setdefault(sentence, []).append((start, end, new))
+    for sentence, found in places.items():
+        for chosen in [*([place] for place in found), _apart(found)]:
+            text = source
+            for start, end, new in reversed(chosen):
+                text = f"{text[:start]}({new}){text[end:]}"
+            try:
+                yield sentence, compiled(solution, text)
+            except ValueError:  # such as a slip inside of an f-string
+                continue
+
+
+def _apart(places: list) -> list:
+    """Return the places that do not overlap an earlier one, in the order of the text."""
+    kept: list = []
+    for place in sorted(places):
+        if not kept or place[0] >= kept[-1][1]:
+            kept.append(place)
+    return kept
+
+
+def _expressions(node: ast.AST) -> Iterator[ast.expr]:
+    """Yield the expressions in a function. We leave out `while`, where a slip may run forever."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.expr):
+            yield child
+        if not isinstance(child, ast.While | ast.arguments):
+            yield from _expressions(child)
+
+
+def _offset(source: str, line: int, column: int) -> int:
+    lines = source.split("\n")
+    return sum(len(one) + 1 for one in lines[: line - 1]) + len(lines[line - 1].encode()[:column].decode())
+
+
+SWAPPED = {
+    "mean": ("median", MIDDLE), "median": ("mean", MIDDLE), "nanmean": ("nanmedian", MIDDLE),
+    "nanmedian": ("nanmean", MIDDLE), "argmin": ("argmax", EXTREME), "argmax": ("argmin", EXTREME),
+    "min": ("max", EXTREME), "max": ("min", EXTREME), "sin": ("cos", SINE), "cos": ("sin", SINE),
+}  # fmt: skip
+DROPPED = {"abs": ABSOLUTE, "sqrt": SQUARED, "wrap_angle": WRAP, "clip": LIMITS, "deg2rad": DEGREES, "rad2deg": DEGREES}
+STRICT = {ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">"}
+
+
+def _changes(node: ast.AST) -> Iterator[tuple[str, str]]:
+    """Yield (sentence, new code) for the slips that one expression allows."""
+    match node:
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name), args=args, keywords=keywords):
+            listed = [ast.unparse(argument) for argument in args]
+            rest = [ast.unparse(keyword) for keyword in keywords]
+            called = ast.unparse(node.func)
+            if name in SWAPPED:
+                other, sentence = SWAPPED[name]
+                if other == "median" and not called.startswith("np."):  # arrays have no method of this name
+                    listed = [called.removesuffix(f".{name}"), *listed]
+                    called = "np.mean"
+                yield sentence, f"{called.removesuffix(name)}{other}({', '.join(listed + rest)})"
+            if name in DROPPED and listed:
+                yield DROPPED[name], listed[0]
+            if name == "arctan2":
+                yield ARCTAN2, f"{called}({listed[1]}, {listed[0]})"
+                yield HALF_CIRCLE, f"{called.removesuffix('2')}({listed[0]} / ({listed[1]}))"
+            if name == "std" or name == "var":
+                other = [word for word in rest if not word.startswith("ddof")]
+                yield DIVISOR, f"{called}({', '.join(listed + other + ([] if other != rest else ['ddof=1']))})"
+            if name == "range":
+                yield OFF_BY_ONE, f"range({', '.join(listed)})[1:]"
+                yield OFF_BY_ONE, f"range({', '.join(listed)})[:-1]"
+            if name == "len":
+                yield DIVISOR, f"({ast.unparse(node)} - 1)"
+            for index, keyword in enumerate(keywords):
+                if keyword.arg == "axis" and ast.unparse(keyword.value) in ("0", "1", "-1"):
+                    other = "1" if ast.unparse(keyword.value) == "0" else "0"
+                    yield AXIS, f"{called}({', '.join([*listed, *rest[:index], f'axis={other}', *rest[index + 1 :]])})"
+        case ast.BinOp(left=left, op=op, right=right):
+            a, b = ast.unparse(left), ast.unparse(right)
+            if isinstance(op, ast.Add | ast.Sub):
+                yield SIGN, f"({a}) {'-' if isinstance(op, ast.Add) else '+'} ({b})"
+            elif isinstance(op, ast.Mult | ast.Div):
+                yield QUOTIENT, f"({a}) {'/' if isinstance(op, ast.Mult) else '*'} ({b})"
+            elif isinstance(op, ast.Pow):
+                yield SQUARED, a
+            elif isinstance(op, ast.MatMult):
+                yield TRANSPOSED, f"({a}).T @ ({b})"
+                yield TRANSPOSED, f"({a}) @ ({b}).T"
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            yield SIGN, ast.unparse(operand)
+        case ast.Attribute(value=value, attr="T", ctx=ast.Load()):
+            yield TRANSPOSED, ast.unparse(value)
+        case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in STRICT:
+            yield EQUAL, f"({ast.unparse(left)}) {STRICT[type(op)]} ({ast.unparse(right)})"
+
+
+def constant_difference(answers: list, wanted: list, tolerance: float) -> str | None:
+    """Return a sentence if all answers are nearly right, or differ by the same factor or summand; else None."""
+    pairs = [
+        (as_numbers(a), np.asarray(w, dtype=float))
+        for answer, right in zip(answers, wanted, strict=True)
+        for a, w in zip(answer if is_row_of(len(parts(right)), answer) else (answer,), parts(right), strict=False)
+    ]
+    if any(a is None or a.shape != w.shape for a, w in pairs):
+        return None
+    for share, sentence in ((0.01, NEARLY), (0.05, CLOSE)):
+        if all(np.allclose(a, w, rtol=0, atol=share * _size(w), equal_nan=True) for a, w in pairs):
+            return sentence
+    a, w = (np.concatenate([np.ravel(pair[k]) for pair in pairs]) for k in (0, 1))
+    telling = np.isfinite(a) & np.isfinite(w) & (w != 0)
+    if isinstance(wanted[0], tuple) or np.count_nonzero(telling) < 3:
+        return None
+    factor, summand = np.median(a[telling] / w[telling]), np.median(a[telling] - w[telling])
+    for sentence, right in ((FACTOR, w * factor), (OFFSET, w + summand)):
+        if np.allclose(a, right, rtol=tolerance, atol=tolerance, equal_nan=True):
+            return sentence
+    return None
+
+
+def _size(values: np.ndarray) -> float:
+    finite = np.abs(values[np.isfinite(values)])
+    return float(finite.max()) if finite.size else 0.0

@@ -1,0 +1,70 @@
+"""Every exercise: its solution is right, each of its mistakes gets its own hint, no general slip passes."""
+
+import copy
+import importlib
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from course_lib.lessons.kit.exercises import fault, find_exercise, judge, lesson_exercises, lesson_numbers
+from course_lib.lessons.kit.general_mistakes import argument_slips, code_slips, value_slips
+from course_lib.lessons.kit.values import agree_all
+
+EXERCISES = [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]
+every_exercise = pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
+# 0 is the seed of `check`. What is right or wrong must not hang on one set of inputs.
+SEEDS = (0, 1, 2)
+
+RIGHT_ANSWERS = [
+    answer
+    for path in sorted(Path(__file__).parent.glob("right_answers/*_[0-9]*.py"))
+    for answer in importlib.import_module(f"{__package__}.right_answers.{path.stem}").RIGHT
+]
+
+
+def answers_of(function, inputs: list[tuple]) -> list:
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return [function(*copy.deepcopy(given)) for given in inputs]
+
+
+@every_exercise
+def test_the_solution_is_right_and_each_mistake_gets_its_own_hint(exercise):
+    hints = [mistake.hint for mistake in exercise.known]
+    assert 3 <= len(set(hints)) == len(hints)
+    assert not any("return " in hint or len(hint) > 140 for hint in hints), "a hint is short, and not the code"
+    for seed in SEEDS:
+        inputs = exercise.draw(np.random.default_rng(seed))
+        assert fault(exercise, inputs, answers_of(exercise.solution, inputs)) is None
+        for mistake in exercise.known:
+            for function in mistake.functions:
+                assert fault(exercise, inputs, answers_of(function, inputs)) == mistake.hint
+
+
+@every_exercise
+def test_no_general_slip_passes(exercise):
+    """If a slip changes what comes out beyond the tolerance, it is wrong."""
+    if exercise.verify is not None:
+        pytest.skip("this exercise has many right answers")
+    inputs = exercise.draw(np.random.default_rng(0))
+    wanted = answers_of(exercise.solution, inputs)
+    slips = [*argument_slips(exercise.solution, inputs[-1]), *code_slips(exercise.solution)]
+    for _, function in [*slips, *((s, lambda *g, f=f: f(exercise.solution(*g))) for s, f in value_slips(wanted))]:
+        try:
+            answers = answers_of(function, inputs)
+        except Exception:  # code that cannot run is noticed anyway
+            continue
+        passed = fault(exercise, inputs, answers) is None
+        assert not passed or any(
+            agree_all(answers, answers_of(right, inputs), exercise.tolerance)
+            for right in (exercise.solution, *exercise.others)
+        )
+
+
+@pytest.mark.parametrize(("number", "answer"), RIGHT_ANSWERS, ids=lambda given: given if isinstance(given, str) else "")
+def test_another_way_to_the_right_values_passes(number, answer):
+    for seed in SEEDS[:2]:
+        verdict = judge(find_exercise(number), answer, seed)
+        assert verdict.status == "right", verdict.message
