@@ -25,7 +25,7 @@ def scale_by_svd(s, m):
 
 
 def scale_by_search(source, target):
-    x, y, theta = weighted_svd(source, target, np.ones(len(source)))
+    theta = weighted_svd(source, target, np.ones(len(source)))[2]
     a, b = source - source.mean(axis=0), target - target.mean(axis=0)
     return np.linalg.lstsq(turned(a, theta).reshape(-1, 1), b.reshape(-1), rcond=None)[0][0]
 
