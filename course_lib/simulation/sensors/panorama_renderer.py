@@ -12,6 +12,7 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkPanoramicProjectionPass, vtkRender
 
 from course_lib.geometry import optical_pose
 from course_lib.rendering.vtk_backend import off_screen_window, place_camera
+from course_lib.simulation.corridor.mesh_building import to_polydata
 from course_lib.simulation.room.scene import Lamp, Room
 from course_lib.simulation.textures import TexturedMesh
 
@@ -151,9 +152,7 @@ class _Scene:
 
 
 def _poly_data(mesh: TexturedMesh) -> vtkPolyData:
-    import pyvista
-
-    data = pyvista.PolyData.from_regular_faces(np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.int64))
+    data = to_polydata(np.asarray(mesh.vertices, np.float32), mesh.faces)
     data.active_texture_coordinates = np.asarray(mesh.texture_coordinates, np.float32)
     return data.compute_normals(
         cell_normals=False, split_vertices=True, feature_angle=FEATURE_ANGLE_DEG, consistent_normals=False
