@@ -55,6 +55,20 @@ def small(tmp_path):
     return folder
 
 
+def test_a_fresh_copy_shows_the_idea_and_not_what_was_measured(clone):
+    make_copies(clone)
+    mine = nbformat.read(clone / "work" / LESSON_06, as_version=4)
+    ours = nbformat.read(clone / "notebooks" / LESSON_06, as_version=4)
+    section, kept = "", set()
+    for copied, cell in zip(mine.cells, ours.cells, strict=True):
+        assert copied.source == cell.source
+        section = cell.source.partition("\n")[0] if cell.source.startswith("## ") else section
+        if cell.get("outputs"):
+            assert (copied.outputs == []) == (section in ("## Measure", "## Break it", "## Recap")), section
+            kept |= {section} if copied.outputs else set()
+    assert {"## The idea", "## Exercises"} <= kept
+
+
 def write_lesson(path, text):
     path.parent.mkdir(parents=True, exist_ok=True)
     nbformat.write(nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text, id="cell")]), path)
