@@ -239,7 +239,7 @@ def constant_difference(answers: list, wanted: list, tolerance: float) -> str | 
         return None
     factor, summand = np.median(a[telling] / w[telling]), np.median(a[telling] - w[telling])
     for sentence, right in ((FACTOR, w * factor), (OFFSET, w + summand)):
-        if np.allclose(a, right, rtol=tolerance, atol=tolerance, equal_nan=True):
+        if np.any(right) and np.allclose(a, right, rtol=tolerance, atol=tolerance, equal_nan=True):
             return sentence
     return None
 
