@@ -174,13 +174,10 @@ EXERCISES = [
         np.abs(measured - simulated) => np.nansum(np.abs(measured - simulated))
         np.abs(measured - simulated) => np.nanmean(np.abs(measured - simulated))
         That is one number for the whole image; here every pixel keeps its own.
-        np.abs(measured - simulated) => np.abs(measured - simulated) / measured
-        Yours is a share of the depth, without a unit. Equation (8) counts metres.
         np.abs(measured - simulated) => np.nan_to_num(np.abs(measured - simulated))
         np.abs(measured - simulated) => np.nan_to_num(np.abs(measured - simulated), posinf=np.inf)
-        Where the camera measured nothing (nan) yours says 0: full agreement. Leave nan and inf as they are.
         np.abs(measured - simulated) => np.abs(np.nan_to_num(measured) - np.nan_to_num(simulated))
-        You replace nan and inf before you subtract. What was not measured has no difference: leave it nan.
+        Where the camera measured nothing (nan) yours gives a number, as if it were known. Leave nan and inf alone.
         np.abs(measured - simulated) => np.minimum(np.abs(measured - simulated), 10.0)
         Yours stops at 10 m. Nothing in the task caps a difference: through an open door it is larger.
         np.abs(measured - simulated) => 0.1 / (0.1 + np.abs(measured - simulated))
@@ -204,8 +201,6 @@ EXERCISES = [
         alpha / vote - alpha => np.where(vote > 0, alpha / vote - alpha, np.nan)
         alpha / vote - alpha => np.where(vote > 0, alpha / vote - alpha, 0)
         A vote of 0 is neither nan nor no difference at all: only an infinite difference earns nothing.
-        alpha / vote - alpha => -alpha * np.log(np.maximum(vote, 1e-300))
-        A logarithm undoes an exponential. Equation (8) has a fraction.
         alpha / vote - alpha => 1 / vote - alpha
         You have 1 where alpha belongs: vote times (alpha + d) is alpha, not 1.
     """),

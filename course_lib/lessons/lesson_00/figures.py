@@ -14,7 +14,6 @@ from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.recording import StereoPair
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-BESIDE = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "frameon": False}
 HALF_VIEW = np.deg2rad(21.8)  # half of the SR4000's 43.6 degrees
 
 
@@ -35,11 +34,9 @@ def idea_figure(now: Moment, guess: np.ndarray) -> Figure:
     figures.depth_image(left, now.measured, "Measured by the camera", DEPTH_LIMITS)
     drawn = figures.depth_image(right, now.renderer.render(guess)[0], "Seen from the particle", DEPTH_LIMITS)
     figures.colour_bar(figure, drawn, [left, right])
-    return described(
-        figure,
-        "The corridor from above with the camera and a guess 1.2 m behind it; the depth image that the camera "
-        "measured; the depth image that the map gives for the guess.",
-    )
+    alt = """The corridor from above with the camera and a guess 1.2 m behind it; the depth image that the camera
+        measured; the depth image that the map gives for the guess."""
+    return described(figure, alt)
 
 
 def hills_figure(offsets: dict[str, np.ndarray], shares: dict[str, np.ndarray]) -> Figure:
@@ -60,7 +57,7 @@ def covered_figure(offsets: np.ndarray, shares: dict[str, np.ndarray]) -> Figure
     for index, (name, share) in enumerate(shares.items()):
         axes.plot(offsets, share, **(figures.line_style(index) | {"markersize": 4}), label=name)
     axes.set(title="Equation (8) along the corridor", xlabel="x - true x [m]", ylabel="l / m [-]", ylim=(0, 1))
-    axes.legend(**BESIDE)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     alt = (
         "l / m over the error along the corridor: a steep hill for the whole image, nearly a level line for the floor."
     )
@@ -76,7 +73,7 @@ def filter_figure(estimates: list[Estimate], true: np.ndarray) -> Figure:
     axes.plot(*true[:, :2].T, **(figures.line_style(0) | {"markersize": 7}), label="true position")
     axes.plot(*positions[:, :2].T, **figures.line_style(3), label="estimate")
     axes.set(title="The filter at work, seen from above (y enlarged)", xlabel="x [m]", ylabel="y [m]")
-    axes.legend(**BESIDE)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     alt = "Ten estimates beside ten true positions from above, with the clouds of particles around them."
     return described(figure, alt)
 
@@ -93,12 +90,10 @@ def room_figure(pair: StereoPair, found: Localization, semantic_map: SemanticMap
     draw_pose(plan, *pair.pose, figures.BLACK, "true pose")
     draw_pose(plan, *found.pose, figures.ORANGE, "estimated pose")
     map_axes(plan, semantic_map, "The semantic map, from above")
-    plan.legend(**BESIDE, fontsize=7)
+    plan.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7)
     lines = [f"{number:2d} {label}" for number, label in enumerate(labels, start=1)]
     add_list(figure, lines, 7, "the numbers in the panorama", labels)
     draw_objects(view, boxes, labels, image.shape[1])
-    return described(
-        figure,
-        "The upper panorama with a numbered box around every object found; and the room from above with the true "
-        "and the estimated pose and lines to the objects that were used.",
-    )
+    alt = """The upper panorama with a numbered box around every object found; and the room from above with the true
+        and the estimated pose and lines to the objects that were used."""
+    return described(figure, alt)

@@ -53,10 +53,9 @@ def moved(state: np.ndarray, name: str, offsets: np.ndarray) -> np.ndarray:
 
 
 def mean_votes(now: Moment, back: float) -> dict[str, tuple[float, float]]:
-    """Mean term of eq. (8), 0 to 1, of the pixels on each surface: at the true pose, and from `back` metres behind it.
+    """Mean term of eq. (8) of the pixels on each surface: at the true pose, and from `back` metres behind it.
 
-    Which surface a pixel sees is what the map shows there from the true pose: floor and ceiling by their heights,
-    the side walls with all that stands before them by the side of the camera's path on which they are.
+    The map tells which surface a pixel sees from the true pose. What stands before a side wall belongs to it.
     """
     views = now.renderer.render(np.stack([now.state, now.state - [back, 0, 0, 0, 0, 0]]))
     votes = ALPHA / (ALPHA + np.abs(now.measured - views))

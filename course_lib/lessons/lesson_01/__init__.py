@@ -2,4 +2,4 @@
 
 from course_lib.lessons.lesson_01.figures import frames_figure, lock_figure, mean_figure, order_figure, turns_figure
 from course_lib.lessons.lesson_01.panel import PANELS, drive_panel
-from course_lib.lessons.lesson_01.poses import AXES, matrix_text, turn_per_degree
+from course_lib.lessons.lesson_01.poses import AXES, turn_per_degree

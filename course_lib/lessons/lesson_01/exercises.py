@@ -189,8 +189,6 @@ EXERCISES = [
         points @ BODY_FROM_OPTICAL.T => points @ BODY_FROM_OPTICAL.T * [1, -1, 1]
         points @ BODY_FROM_OPTICAL.T => points @ BODY_FROM_OPTICAL.T * [1, 1, -1]
         The axes are right, but not their signs: right is *minus* left, and down is *minus* up.
-        body @ matrix[:3, :3].T => points @ matrix[:3, :3].T @ BODY_FROM_OPTICAL.T
-        Your R acts before B. What acts first stands next to the point: R B p.
     """),
     Exercise("01.2", state_of, an_optical_pose, cases=[facing_back, hardly_turned], mistakes="""
         @ BODY_FROM_OPTICAL.T =>
@@ -198,13 +196,12 @@ EXERCISES = [
         matrix[:3, :3] @ BODY_FROM_OPTICAL.T => BODY_FROM_OPTICAL.T @ matrix[:3, :3]
         matrix[:3, :3] @ BODY_FROM_OPTICAL.T => BODY_FROM_OPTICAL @ matrix[:3, :3]
         ... => return state_from_matrix(np.vstack([BODY_FROM_OPTICAL.T @ matrix[:3], matrix[3]]))
-        You multiply by B on the left, where the world is. The block is R B: undo B on its right, with its transpose.
+        BODY_FROM_OPTICAL.T => BODY_FROM_OPTICAL
+        The block is R B: undo B on its right, with its transpose. Yours is on the left, or applies B once more.
         *matrix[:3, 3], => *BODY_FROM_OPTICAL @ matrix[:3, 3],
         *matrix[:3, 3], => *-matrix[:3, :3].T @ matrix[:3, 3],
         *matrix[:3, 3], => 0, 0, 0,
         The position is the last column of the matrix as it is, in the world already: no B, no inverse.
-        BODY_FROM_OPTICAL.T => BODY_FROM_OPTICAL
-        You apply B once more instead of undoing it: its inverse is its transpose.
         ... => return state_of(np.linalg.inv(matrix))
         You inverted the matrix. It is camera-to-world already: its last column is the position.
         roll, pitch, yaw]) => 0, pitch, yaw])
@@ -212,22 +209,20 @@ EXERCISES = [
         Right for a wagon: in yours an angle is always 0. A camera in a hand rolls and is tilted, too.
         roll, pitch, yaw]) => *Rotation.from_matrix(R).as_euler("zyx")[::-1]])
         That is scipy's "zyx", about axes that stay put. The course's order is "ZYX", with capitals.
-        roll, pitch, yaw]) => *np.rad2deg([roll, pitch, yaw])])
-        Your angles are in degrees; a state holds radians.
         roll, pitch, yaw]) => yaw, pitch, roll])
         [*matrix[:3, 3], roll, pitch, yaw] => [roll, pitch, yaw, *matrix[:3, 3]]
         The six numbers are right, but in another order: x, y, z, roll, pitch, yaw.
         BODY_FROM_OPTICAL.T => BODY_FROM_OPTICAL.T; R = R.T
         Your R is transposed: its angles are those of the way back, from world to body.
         np.hypot(R[0, 0], R[1, 0]) => R[0, 0]
-        Your pitch divides by R00 alone, and R00 holds cos(yaw) as well: take the root of R00^2 + R10^2.
         np.arctan2(-R[2, 0], np.hypot(R[0, 0], R[1, 0])) => np.arctan(-R[2, 0])
-        -R20 is the *sine* of the pitch. arcsin undoes it; arctan wants a quotient.
+        -R20 is the *sine* of the pitch: take its arcsin, or divide by its cosine, the root of R00^2 + R10^2.
         R[2, 1], R[2, 2] => R[2, 2], R[2, 1] and also R[1, 0], R[0, 0] => R[0, 0], R[1, 0]
         np.arctan2 takes the sine part first: R21 before R22, and R10 before R00.
         roll, pitch, yaw]) => roll, pitch, yaw % (2 * np.pi)])
         roll, pitch, yaw]) => *np.mod([roll, pitch, yaw], 2 * np.pi)])
-        An angle of yours runs from 0 to 2 pi; the course keeps them between -pi and pi.
+        roll, pitch, yaw]) => *np.rad2deg([roll, pitch, yaw])])
+        A state's angles are in radians, from -pi to pi: yours are in degrees, or run from 0 to 2 pi.
     """),
     Exercise("01.3", motion, two_states, cases=[over_the_seam, at_rest], mistakes="""
         ... => return after - before

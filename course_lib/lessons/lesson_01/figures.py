@@ -14,7 +14,6 @@ STYLES = (
     {"color": figures.GREEN, "linestyle": "--", "marker": "s"},
     {"color": figures.BLUE, "linestyle": ":", "marker": "^"},
 )
-BESIDE = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "frameon": False}
 
 
 def turns_figure() -> Figure:
@@ -102,7 +101,7 @@ def mean_figure(headings: np.ndarray, as_numbers: float, on_circle: float) -> Fi
     axes.text(-1.33, 0, "the wrap,\n±180°", ha="right", va="center", fontsize=8)
     axes.set(title="A wagon on its way back, seen from above", xlabel="x [-]", ylabel="y [-]", aspect="equal")
     axes.set(xlim=(-2.1, 1.3), ylim=(-1.2, 1.2))
-    axes.legend(**BESIDE)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     alt = "Headings on a circle near 180 degrees; the mean of the numbers points away, the mean direction to them."
     return described(figure, alt)
 
@@ -115,6 +114,6 @@ def lock_figure(pitch_deg: np.ndarray, turns: np.ndarray) -> Figure:
         axes.plot(pitch_deg, turns[:, index], **figures.line_style(index), markevery=15, label=name)
     axes.set(title="How far one degree of angle change turns the camera", xlabel="pitch [degrees]")
     axes.set(ylabel="turn per change [degrees/degree]", ylim=(-0.05, 1.6), xticks=np.arange(-90, 91, 30))
-    axes.legend(**BESIDE, fontsize=8)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
     alt = "Least and greatest turn over pitch: both 1 at pitch 0; the least falls to 0 at plus and minus 90 degrees."
     return described(figure, alt)

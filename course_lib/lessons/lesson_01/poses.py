@@ -1,4 +1,4 @@
-"""Poses as numbers: the matrix of a state as text, and how far a turn moves what is seen."""
+"""The body's axes, and how far a small change of the angles turns the camera."""
 
 import numpy as np
 
@@ -17,11 +17,3 @@ def turn_per_degree(pitch: float) -> tuple[float, float]:
     before, *after = pose_matrix(base + step * np.eye(6)[[0, 3, 4, 5]] * [0, 0, 0, 1, 1, 1])[:, :3, :3]
     greatest, _, least = np.linalg.svd(rotation_log(before.T @ np.array(after)) / step, compute_uv=False)
     return least, greatest
-
-
-def matrix_text(matrix: np.ndarray) -> str:
-    """A pose matrix in columns: the body's axes and its position, in the world frame."""
-    lines = ["pose matrix" + "".join(f"{name:>10}" for name in (*AXES, "position"))]
-    for name, row in zip(("x", "y", "z", ""), np.round(matrix, 2) + 0.0, strict=True):
-        lines.append(f"{name:11}" + "".join(f"{value:10.2f}" for value in row))
-    return "\n".join(lines)

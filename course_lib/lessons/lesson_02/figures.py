@@ -7,12 +7,15 @@ from matplotlib.figure import Figure
 
 from course_lib.lessons.kit.display import described
 from course_lib.lessons.lesson_02.small_room import room
-from course_lib.lessons.lesson_02.views import cut
 from course_lib.plots import figures
+from course_lib.plots.corridor_figures import plane_cut
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.sensors.laser_survey import Scan
 
-BESIDE = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "frameon": False}
+
+def cut(scene_map: SceneMap, height: float = 1.2) -> np.ndarray:
+    """Segments `(n, 2, 2)` [m] in which a map meets the horizontal plane at `height` [m]."""
+    return plane_cut(scene_map.vertices, scene_map.faces, 2, height)
 
 
 def draw_cut(axes: Axes, scene_map: SceneMap, colour: str, width: float, label: str, height: float = 1.2):
@@ -36,12 +39,10 @@ def idea_figure(scan: Scan) -> Figure:
     axes.text(3.25, 2.62, "shadow of\nthe pillar", ha="center", fontsize=9)
     axes.set(title=f"One scan from above ({n_rays} points in this row)", aspect="equal")
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(-0.4, 5.4), ylim=(-0.4, 4.4))
-    axes.legend(**BESIDE)
-    return described(
-        figure,
-        "A room from above with a scanner in its lower left; rays end on walls, a table's edge and a pillar; behind "
-        "the pillar and the cabinet no points are measured.",
-    )
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    alt = """A room from above with a scanner in its lower left; rays end on walls, a table's edge and a pillar;
+        behind the pillar and the cabinet no points are measured."""
+    return described(figure, alt)
 
 
 def registration_figure(stations: tuple[Scan, Scan]) -> Figure:
@@ -56,11 +57,9 @@ def registration_figure(stations: tuple[Scan, Scan]) -> Figure:
         a.axhline(0, color="black", linewidth=1)
         a.set(title=f"By the {pose} poses", xlabel="x [m]", ylabel="height above the floor [mm]", ylim=(-70, 70))
     axes[1].legend(loc="upper right")
-    return described(
-        figure,
-        "Points of two stations on the floor: by the true poses at one height, by the believed poses about five "
-        "centimetres apart.",
-    )
+    alt = """Points of two stations on the floor: by the true poses at one height, by the believed poses about five
+        centimetres apart."""
+    return described(figure, alt)
 
 
 def fusion_figure(places: np.ndarray, distances: list[np.ndarray], mean: np.ndarray, crossing: float) -> Figure:
@@ -73,7 +72,7 @@ def fusion_figure(places: np.ndarray, distances: list[np.ndarray], mean: np.ndar
     axes.axvline(crossing, color="0.4", linestyle=":", label="the mean crosses zero")
     axes.set(title="A row of voxels that runs into a wall", xlabel="place along the row [m]")
     axes.set(ylabel="signed distance [m]")
-    axes.legend(**BESIDE)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     alt = "Signed distances of two stations along a row of voxels, both falling through zero near 4 m, and their mean."
     return described(figure, alt)
 
@@ -85,12 +84,10 @@ def maps_figure(maps: dict[str, SceneMap]) -> Figure:
         draw_cut(a, room().mesh(), "0.75", 3.0, "room")
         draw_cut(a, scene_map, figures.BLUE, 1.3, "map")
         a.set(title=name, xlabel="x [m]", ylabel="y [m]", xlim=(-0.3, 5.3), ylim=(-0.3, 4.3), aspect="equal")
-    a.legend(**BESIDE)
-    return described(
-        figure,
-        "Maps from one and from three stations over the room, from above: with one, pieces of wall behind the pillar "
-        "and beside the cabinet are missing.",
-    )
+    a.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    alt = """Maps from one and from three stations over the room, from above: with one, pieces of wall behind the
+        pillar and beside the cabinet are missing."""
+    return described(figure, alt)
 
 
 def views_figure(images: dict[str, np.ndarray]) -> Figure:
@@ -110,8 +107,6 @@ def corridor_figure(scene_map: SceneMap, true_world: SceneMap) -> Figure:
     axes.set(title="The corridor, cut 1 m above the floor", xlabel="x along the corridor [m]", ylabel="y [m]")
     axes.set(xlim=(5.0, 18.0), ylim=(-1.9, 2.9))
     axes.legend(loc="upper left", ncols=2, framealpha=0.95)
-    return described(
-        figure,
-        "Thirteen metres of corridor from above: the map's walls cover the world's, but doors stand at other angles, "
-        "and two people are in the world only.",
-    )
+    alt = """Thirteen metres of corridor from above: the map's walls cover the world's, but doors stand at other
+        angles, and two people are in the world only."""
+    return described(figure, alt)

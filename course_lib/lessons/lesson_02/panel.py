@@ -4,9 +4,9 @@ import numpy as np
 
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
-from course_lib.lessons.lesson_02.figures import draw_cut
-from course_lib.lessons.lesson_02.small_room import STATIONS, distances, quality, room, room_map
-from course_lib.lessons.lesson_02.views import CAMERA, camera_view, cut, row, true_view
+from course_lib.lessons.lesson_02 import small_room
+from course_lib.lessons.lesson_02.figures import cut, draw_cut
+from course_lib.lessons.lesson_02.small_room import CAMERA, STATIONS, room
 from course_lib.plots import figures
 
 VOXELS = {"20 cm": 0.2, "10 cm": 0.1, "7 cm": 0.07}
@@ -40,16 +40,16 @@ def survey_panel() -> Panel:
 
     def draw(stations: float, noise: float, registration: float, voxel: str, keep: str, door_open: bool) -> Drawing:
         n = int(stations)
-        scene_map = room_map(n, noise, registration, VOXELS[voxel], KEEP[keep], door_open)
+        scene_map = small_room.room_map(n, noise, registration, VOXELS[voxel], KEEP[keep], door_open)
         world.set_segments(cut(room(door_open).mesh()))
         mapped.set_segments(cut(scene_map))
         spots.set_data(*np.array(STATIONS[:n]).T)
-        seen = camera_view(scene_map)
+        seen = small_room.camera_view(scene_map)
         image.set_data(np.ma.masked_invalid(seen))
-        counts = np.histogram(np.minimum(1000 * distances(scene_map, door_open), 99.9), edges)[0]
+        counts = np.histogram(np.minimum(1000 * small_room.distances(scene_map, door_open), 99.9), edges)[0]
         steps.set_data(counts / counts.sum())
-        changed = np.abs(np.where(np.isfinite(seen), seen, np.nan) - true_view(door_open=True)) > 0.1
-        numbers = row(quality(scene_map, door_open))
+        changed = np.abs(np.where(np.isfinite(seen), seen, np.nan) - small_room.true_view(door_open=True)) > 0.1
+        numbers = small_room.row(small_room.quality(scene_map, door_open))
         today = f"today the door is open: {changed.mean():.0%} of the camera's pixels are more than 10 cm off the map"
         alt = (
             f"Map of a room from {n} stations, cut from above; what a camera sees of it; its distances "

@@ -1,4 +1,4 @@
-"""A small room and its laser survey, quick enough for a lesson: scans, fused maps, and how good they are."""
+"""A small room, its laser survey, its fused maps and how good they are; the corridor's map against its world."""
 
 import functools
 from typing import NamedTuple
@@ -7,7 +7,11 @@ import numpy as np
 import trimesh
 
 from course_lib.experiments.intervals import wilson_percent
+from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
 from course_lib.lessons.kit.box_world import Box, BoxWorld
+from course_lib.lessons.kit.corridor_views import wagon_run
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.mesh_building import to_polydata
 from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
@@ -16,6 +20,8 @@ from course_lib.simulation.sensors.laser_survey import Scan, ScannerModel, surve
 SIZE = (5.0, 4.0, 2.5)  # metres, the room's inside from the origin
 STATIONS = ((1.0, 1.0), (4.0, 2.6), (1.2, 3.4), (3.2, 0.6))  # x, y [m] of the scanner, in this order
 HOLE_DISTANCE = 0.10  # metres: what has no map within it counts as a hole
+CAMERA = DepthCamera.from_fov(132, 108, 70, 59)
+EYE = np.array([1.2, 2.6, 1.2, 0.0, 0.05, np.deg2rad(8)])  # beside the table, looking past the pillar to the door
 
 
 @functools.cache
@@ -80,19 +86,14 @@ def room_map(
 
 
 class MapQuality(NamedTuple):
-    """How good a map of the room is.
-
-    median, p90: of the distances from points on the map to the surveyed room [m]. holes: share of what eyes in the
-    room see that has no map within `HOLE_DISTANCE`, with its 95 % interval (Wilson's). false: share of the map's
-    surface that is farther than `HOLE_DISTANCE` from anything in the room.
-    """
+    """How good a map of the room is; the distances are from points on the map to the surveyed room."""
 
     triangles: int
-    median: float
-    p90: float
-    holes: float
-    holes_interval: tuple[float, float]
-    false: float
+    median: float  # of the distances [m]
+    p90: float  # nine in ten distances are below it [m]
+    holes: float  # share of what eyes in the room see that has no map within `HOLE_DISTANCE`
+    holes_interval: tuple[float, float]  # of 95 %, Wilson's
+    false: float  # share of the map's surface that is farther than `HOLE_DISTANCE` from anything in the room
 
 
 def quality(scene_map: SceneMap, door_open: bool = False) -> MapQuality:
@@ -135,3 +136,42 @@ def seen_places(door_open: bool) -> np.ndarray:
     directions = rng.normal(size=eyes.shape)
     distance = room(door_open).cast(eyes, directions).distance
     return (eyes + directions * distance[:, None])[np.isfinite(distance)][:n]
+
+
+def row(found: MapQuality) -> str:
+    """The numbers of a map in one line; holes with their 95 % interval."""
+    low, high = found.holes_interval
+    return (
+        f"{found.triangles} triangles; map to room: median {1000 * found.median:.1f} mm, 90 % below "
+        f"{1000 * found.p90:.0f} mm; holes {100 * found.holes:.1f} % ({100 * low:.1f} to {100 * high:.1f})"
+    )
+
+
+def camera_view(scene_map: SceneMap) -> np.ndarray:
+    """Depth image [m] of a map of the room from `EYE`."""
+    with DepthRenderer(scene_map, CAMERA, exact=True) as renderer:
+        return renderer.render(EYE)[0]
+
+
+def true_view(door_open: bool = True) -> np.ndarray:
+    """What a perfect camera at `EYE` measures of the room itself."""
+    pose = pose_matrix(EYE)
+    return room(door_open).cast(pose[:3, 3], CAMERA.rays() @ (pose[:3, :3] @ BODY_FROM_OPTICAL).T).distance
+
+
+def corridor_difference(scene_map: SceneMap, true_world: SceneMap, frames: range) -> tuple[float, float, float]:
+    """Map and true world as a perfect camera sees them on the wagon's path, compared pixel by pixel up to 11 m.
+
+    Returns the share of pixels where the map has a hole, the share where the two differ by more than 10 cm, and the
+    median difference [m] of the others.
+    """
+    recording = wagon_run()
+    states = state_from_optical_pose(recording.camera_to_world[frames])
+    images = []
+    for scene in (scene_map, true_world):
+        with DepthRenderer(scene, recording.camera(), exact=True) as renderer:
+            images.append(renderer.render(states))
+    mapped, true = (image[np.isfinite(images[1])] for image in images)
+    difference = np.abs(mapped - true)[np.isfinite(mapped)]
+    changed = difference > 0.1
+    return np.isinf(mapped).mean(), changed.sum() / len(true), np.median(difference[~changed])
