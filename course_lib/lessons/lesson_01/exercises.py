@@ -172,12 +172,15 @@ EXERCISES = [
         + matrix[:3, 3] =>
         The points are turned, but still counted from the camera: its position is missing.
         body @ matrix[:3, :3].T + matrix[:3, 3] => (body + matrix[:3, 3]) @ matrix[:3, :3].T
+        body @ matrix[:3, :3].T + matrix[:3, 3] => (points + matrix[:3, 3]) @ optical_pose(state)[:3, :3].T
         You move first and turn then, so the position is turned, too. Turn first, then move.
         matrix[:3, :3].T => Rotation.from_euler("XYZ", state[3:]).as_matrix().T
         Your turns come in another order. Rz Ry Rx: roll acts first, so it stands on the right.
         body @ matrix[:3, :3].T + matrix[:3, 3] => (points - matrix[:3, 3]) @ matrix[:3, :3] @ BODY_FROM_OPTICAL
         body @ matrix[:3, :3].T + matrix[:3, 3] => (body - matrix[:3, 3]) @ matrix[:3, :3]
         You go from the world into the camera: `pose_matrix` leads from the body to the world already, no inverse.
+        body @ matrix[:3, :3].T => points @ matrix[:3, :3].T @ BODY_FROM_OPTICAL.T
+        Your R acts before B. What acts first stands next to the point: R B p.
         pose_matrix(state) => pose_matrix(state * [1, 1, 1, 0, 0, 1])
         You use yaw alone. The camera may be tilted and rolled as well.
         pose_matrix(state) => pose_matrix(state[[0, 1, 2, 5, 4, 3]])
@@ -208,7 +211,7 @@ EXERCISES = [
         roll, pitch, yaw]) => 0, 0, yaw])
         Right for a wagon: in yours an angle is always 0. A camera in a hand rolls and is tilted, too.
         roll, pitch, yaw]) => *Rotation.from_matrix(R).as_euler("zyx")[::-1]])
-        That is scipy's "zyx", about axes that stay put. The course's order is "ZYX", with capitals.
+        The course's order is scipy's "ZYX", with capitals. Small letters turn about axes that stay put.
         roll, pitch, yaw]) => yaw, pitch, roll])
         [*matrix[:3, 3], roll, pitch, yaw] => [roll, pitch, yaw, *matrix[:3, 3]]
         The six numbers are right, but in another order: x, y, z, roll, pitch, yaw.
@@ -229,6 +232,7 @@ EXERCISES = [
         ... => return subtracted(before, after)
         You subtract the numbers. The camera's own forward is not the world's x, and turns do not subtract.
         ... => return np.r_[motion(before, after)[:3], subtracted(before, after)[3:]]
+        ... => return np.r_[motion(before, after)[:3], (after - before)[3:]]
         The step is right. The angles of two turns cannot be subtracted: multiply matrices, then read angles.
         ... => return np.r_[step_along(before * [0, 0, 0, 0, 0, 1], before, after)[:3], subtracted(before, after)[3:]]
         ... => return step_along(before * [0, 0, 0, 0, 0, 1], before, after)
@@ -236,6 +240,7 @@ EXERCISES = [
         ... => return step_along(np.zeros(6), before, after)
         The turn is right. Your step counts along the world's axes: turn it into the first camera's frame.
         ... => return inverse_behind(before, after)
+        ... => return inverse_behind(after, before)
         The inverse is on the wrong side: what is in the world must go into the first camera's frame *last*.
         np.linalg.inv(pose_matrix(before)) => pose_matrix(before)
         You go from body to world twice. One of the two has to be undone.
@@ -253,7 +258,8 @@ EXERCISES = [
         this_course, an_airplane, a_level_first_pose,
     ], mistakes="""
         ... => return np.deg2rad(new)
-        You read the columns as this course does. What do the given matrices say about that?
+        ... => return np.deg2rad(new)[:, ::-1]
+        You read the columns without a look at the given matrices. What do these say about orders and signs?
         ("XYZ", "xyz") => ("XYZ",)
         ("XYZ", "xyz") => ("xyz",)
         You multiply the turns in one way only. The first column may act first, or the last: try both.
@@ -267,6 +273,8 @@ EXERCISES = [
         You compare with the transposed matrices: those turn the other way.
         ... => return decode(angles[:1], rotations[:1], new)
         You compare the first pose alone. Where its angles are 0 every reading fits: compare all of them.
+        "ZYX" => "zyx"
+        At the end, scipy's small letters turn about axes that stay put. The course's order is "ZYX".
         [:, ::-1] =>
         The reading is right, but yours returns yaw, pitch, roll. The task asks for roll, pitch, yaw.
         permutations(names) => [names]

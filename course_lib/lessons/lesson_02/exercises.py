@@ -250,6 +250,7 @@ EXERCISES = [
         The headings are right. Every step has a place error of its own: add up n variances.
         np.sum((behind * sigma_heading) ** 2) => np.sum(behind * sigma_heading) ** 2
         ... => return n_steps * sigma_place + sigma_heading * spacing * n_steps * (n_steps - 1) / 2
+        sigma_place**2 + np.sum( => sigma_place**2) + np.sqrt(np.sum(
         You add up errors or sigmas. Independent errors partly cancel: add up their squares, the variances.
         np.sqrt( => (
         That is the variance, in square metres. The task asks for sigma.
