@@ -7,8 +7,6 @@ from course_lib.lessons.lesson_00.exercises import BUDGET, Score, off_the_top
 from course_lib.lessons.lesson_00.panel import pose_panel
 from course_lib.lessons.lesson_00.recorded import mean_votes, moment
 
-TRUTH = np.array([2.0, 2.0, 0.1])
-
 
 def test_the_panels_button_finds_the_truth():
     panel, now = pose_panel(), moment()
@@ -22,10 +20,11 @@ def test_the_surfaces_lose_no_vote_without_a_step_back():
 
 
 def test_a_score_answers_so_many_poses_alone_and_its_top_is_found_on_the_circle():
-    score = Score(TRUTH, np.arange(5))
-    assert score(TRUTH + np.vstack([np.zeros(3), 0.1 * np.eye(3)])).argmax() == 0
+    truth = np.array([2.0, 2.0, 0.1])
+    score = Score(truth, np.arange(5))
+    assert score(truth + np.vstack([np.zeros(3), 0.1 * np.eye(3)])).argmax() == 0
     with pytest.raises(RuntimeError, match=f"more than {BUDGET} poses"):
-        score(np.tile(TRUTH, (BUDGET - 3, 1)))
+        score(np.tile(truth, (BUDGET - 3, 1)))
     for off, words in (([0.02, 0.02, 2 * np.pi], None), ([0.04, 0, 0], "0.04 m"), ([0, 0, -0.026], "1.5 degrees")):
-        found = off_the_top((score, TRUTH), TRUTH + np.array(off))
+        found = off_the_top((score, truth), truth + np.array(off))
         assert found is None if words is None else words in found
