@@ -1,24 +1,5 @@
 """Lesson 00, start here: the corridor's recording beside its map, the panel that looks for eq. (8)'s peak, a room."""
 
-from course_lib.lessons.lesson_00.alternative_texts import ALT
 from course_lib.lessons.lesson_00.figures import covered_figure, filter_figure, hills_figure, idea_figure, room_figure
 from course_lib.lessons.lesson_00.panel import PANELS, pose_panel
-from course_lib.lessons.lesson_00.recorded import FRAME, PAIR, mean_votes, moment, moved, true_positions, wall_reads
-
-__all__ = [
-    "ALT",
-    "FRAME",
-    "PAIR",
-    "PANELS",
-    "covered_figure",
-    "filter_figure",
-    "hills_figure",
-    "idea_figure",
-    "mean_votes",
-    "moment",
-    "moved",
-    "pose_panel",
-    "room_figure",
-    "true_positions",
-    "wall_reads",
-]
+from course_lib.lessons.lesson_00.recorded import FRAME, mean_votes, moment, moved, wall_reads

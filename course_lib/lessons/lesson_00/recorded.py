@@ -6,26 +6,24 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.depth_mcl.likelihood import ALPHA, likelihood, valid_pixels
-from course_lib.depth_mcl.sequence import DepthSequence
-from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix, state_from_optical_pose
+from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.lessons.kit.box_world import box_map
 from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 
 FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
+DEPTH_LIMITS = (0.0, 10.0)  # metres: the range of the camera
 CEILING = 2.6  # metres above the floor, in the corridor
-_SURFACE = 0.08  # metres: what is nearer to floor or ceiling belongs to it (chosen)
-PAIR = 3  # of the room's experiment 1: most objects in view, nothing special (chosen)
+SURFACE = 0.08  # metres: what is nearer to floor or ceiling belongs to it (chosen)
+UNITS = {"x": "m", "y": "m", "yaw": "degrees"}
 
 
 class Moment(NamedTuple):
-    """One frame of the recording, with all that it is compared with."""
+    """One frame: the depths `(H, W)` [m] that were measured, the true pose `(6,)`, and a renderer of the map."""
 
     measured: np.ndarray
-    """`(H, W)` metres, NaN where nothing was measured."""
     state: np.ndarray
-    """`(6,)` the true pose."""
     renderer: DepthRenderer
 
     def share(self, states: np.ndarray) -> np.ndarray:
@@ -34,11 +32,11 @@ class Moment(NamedTuple):
 
 
 @functools.cache
-def moment(frame: int = FRAME) -> Moment:
-    """A frame of the corridor run with the map's renderer; kept, since a panel asks for it again and again."""
-    sequence = wagon_run()
-    renderer = DepthRenderer(corridor_map(), sequence.camera())
-    return Moment(sequence.depth(frame), state_from_optical_pose(sequence.camera_to_world[frame]), renderer)
+def moment() -> Moment:
+    """Frame `FRAME` of the corridor run."""
+    run = wagon_run()
+    state = state_from_optical_pose(run.camera_to_world[FRAME])
+    return Moment(run.depth(FRAME), state, DepthRenderer(corridor_map(), run.camera()))
 
 
 def wall_reads(distance: float) -> float:
@@ -50,31 +48,21 @@ def wall_reads(distance: float) -> float:
 
 def moved(state: np.ndarray, name: str, offsets: np.ndarray) -> np.ndarray:
     """States `(N, 6)`: one state, moved along "x" or "y" (metres) or turned by "yaw" (degrees)."""
-    states = np.tile(state, (len(np.atleast_1d(offsets)), 1))
-    states[:, {"x": 0, "y": 1, "yaw": 5}[name]] += np.deg2rad(offsets) if name == "yaw" else offsets
-    return states
+    by = np.deg2rad(offsets) if name == "yaw" else offsets
+    return state + np.outer(by, np.eye(6)[{"x": 0, "y": 1, "yaw": 5}[name]])
 
 
 def mean_votes(now: Moment, back: float) -> dict[str, tuple[float, float]]:
-    """Mean term of eq. (8), 0 to 1, of the pixels on each surface: at the true pose, and from `back` metres behind it.
+    """Mean term of eq. (8) of the pixels on each surface: at the true pose, and from `back` metres behind it.
 
-    Which surface a pixel sees is what the map shows there from the true pose: floor and ceiling by their heights,
-    the side walls with all that stands before them by the side of the camera's path on which they are.
+    The map tells which surface a pixel sees from the true pose. What stands before a side wall belongs to it.
     """
-    states = np.stack([now.state, now.state - [back, 0, 0, 0, 0, 0]])
-    views = now.renderer.render(states)
+    views = now.renderer.render(np.stack([now.state, now.state - [back, 0, 0, 0, 0, 0]]))
     votes = ALPHA / (ALPHA + np.abs(now.measured - views))
-    pose = pose_matrix(now.state)
-    optical = np.where(np.isfinite(views[0]), views[0], 0)[..., None] * now.renderer.camera.rays()
-    seen = optical @ (pose[:3, :3] @ BODY_FROM_OPTICAL).T + pose[:3, 3]
-    y, z = seen[..., 1], seen[..., 2]
-    floor, ceiling = z < _SURFACE, z > CEILING - _SURFACE
-    parts = {"floor": floor, "ceiling": ceiling}
-    parts |= {"left side": ~floor & ~ceiling & (y > 0), "right side": ~floor & ~ceiling & (y <= 0)}
     both = valid_pixels(now.measured) & np.isfinite(views).all(axis=0)
+    pose = optical_pose(now.state)
+    seen = now.renderer.camera.points(np.where(both, views[0], 0)) @ pose[:3, :3].T + pose[:3, 3]
+    floor, ceiling, left = seen[..., 2] < SURFACE, seen[..., 2] > CEILING - SURFACE, seen[..., 1] > 0
+    side = ~floor & ~ceiling
+    parts = {"floor": floor, "ceiling": ceiling, "left side": side & left, "right side": side & ~left}
     return {name: tuple(votes[:, part & both].mean(axis=1).tolist()) for name, part in parts.items()}
-
-
-def true_positions(sequence: DepthSequence, frames: range) -> np.ndarray:
-    """True camera positions `(T, 3)` [m] of some frames."""
-    return sequence.camera_to_world[frames.start : frames.stop : frames.step, :3, 3]

@@ -1,6 +1,5 @@
-"""Lesson 02, a map from a laser scan: what a camera sees of a small room's maps, the corridor's map, figures, panel."""
+"""Lesson 02, a map from a laser scan: a small room's maps and what a camera sees of them, the corridor's map."""
 
-from course_lib.lessons.lesson_02.alternative_texts import ALT
 from course_lib.lessons.lesson_02.figures import (
     corridor_figure,
     fusion_figure,
@@ -10,28 +9,15 @@ from course_lib.lessons.lesson_02.figures import (
     views_figure,
 )
 from course_lib.lessons.lesson_02.panel import PANELS, survey_panel
-from course_lib.lessons.lesson_02.small_room import STATIONS, distance_to_room, fusion, quality, room_map, scans
-from course_lib.lessons.lesson_02.views import camera_view, corridor_difference, row, shipped_numbers, true_view
-
-__all__ = [
-    "ALT",
-    "PANELS",
-    "STATIONS",
-    "camera_view",
-    "corridor_difference",
-    "corridor_figure",
-    "distance_to_room",
-    "fusion",
-    "fusion_figure",
-    "idea_figure",
-    "maps_figure",
-    "quality",
-    "registration_figure",
-    "room_map",
-    "row",
-    "scans",
-    "shipped_numbers",
-    "survey_panel",
-    "true_view",
-    "views_figure",
-]
+from course_lib.lessons.lesson_02.small_room import (
+    STATIONS,
+    camera_view,
+    corridor_difference,
+    distance_to_room,
+    fusion,
+    quality,
+    room_map,
+    row,
+    scans,
+    true_view,
+)

@@ -1,0 +1,58 @@
+"""Right answers to lesson 02 by other ways than its solutions."""
+
+import math
+from itertools import accumulate
+
+import numpy as np
+
+
+def aimed(points):
+    """Range, azimuth, elevation one point after the other, with the standard library."""
+    ranges = [math.dist(p, (0, 0, 0)) for p in points]
+    return ranges, [math.atan2(y, x) for x, y, _ in points], [math.asin(z) for z in points[:, 2] / ranges]
+
+
+def walked(steps):
+    """Places of a chain, with a place and a turn carried along."""
+    place, turn, places = np.zeros(3), np.eye(3), [[0.0, 0.0, 0.0]]
+    for step in steps:
+        place = place + turn @ step[:3, 3]
+        turn = turn @ step[:3, :3]
+        places.append(list(place))
+    return places
+
+
+def nearest(seen, mapped):
+    return np.linalg.norm(seen[:, None] - mapped[None], axis=2).min(axis=1)
+
+
+def simulated_sigma(n_steps, spacing, sigma_place, sigma_heading, runs=10_000):
+    """The same sigma by simulation: rows of stations with random errors."""
+    rng = np.random.default_rng(0)
+    x, y, heading = np.zeros((3, runs))
+    for _ in range(n_steps):
+        ahead, left = sigma_place * rng.normal(size=(2, runs)) + [[spacing], [0]]
+        x = x + np.cos(heading) * ahead - np.sin(heading) * left
+        y = y + np.sin(heading) * ahead + np.cos(heading) * left
+        heading = heading + sigma_heading * rng.normal(size=runs)
+    return np.std(y)
+
+
+RIGHT = [
+    ("02.1", aimed),
+    ("02.1", lambda p: np.stack([np.linalg.norm(p, axis=1), np.angle(p[:, 0] + 1j * p[:, 1]), aimed(p)[2]])),
+    (
+        "02.1",
+        lambda p: [
+            [f(q) for q in p]
+            for f in (np.linalg.norm, lambda q: math.atan2(q[1], q[0]), lambda q: math.asin(q[2] / np.linalg.norm(q)))
+        ],
+    ),
+    ("02.2", walked),
+    ("02.2", lambda steps: np.stack(list(accumulate(steps, np.matmul, initial=np.eye(4))))[:, :3, 3]),
+    ("02.3", lambda s, m, limit: np.array([np.mean(nearest(s, m) > limit)])),
+    ("02.3", lambda s, m, limit: sum(not any(np.linalg.norm(m - p, axis=1) <= limit) for p in s) / len(s)),
+    ("02.4", simulated_sigma),
+    ("02.4", lambda n, d, p, h: math.sqrt(n * p * p + sum((d * h * k) ** 2 for k in range(n)))),
+    ("02.4", lambda n, d, p, h: math.sqrt(n * p * p + (n - 1) * n * (2 * n - 1) / 6 * (d * h) ** 2)),
+]
