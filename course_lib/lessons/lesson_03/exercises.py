@@ -219,7 +219,7 @@ EXERCISES = [
     """, functions={
         last_drawn: "What is drawn last wins in yours, whatever its depth. Compare with what is there already.",
     }),
-    Exercise("03.4", cut_at_near, triangles, "challenge", cases=[a_corner_on_the_plane], verify=off_the_cut, mistakes="""
+    Exercise("03.4", cut_at_near, triangles, "challenge", [a_corner_on_the_plane], verify=off_the_cut, mistakes="""
         ... => return corners[corners[:, 2] >= near]
         You drop the corners before the plane and cut no edge: where one crosses the plane a corner is new.
         ... => return corners if (corners[:, 2] >= near).all() else np.empty((0, 3))
