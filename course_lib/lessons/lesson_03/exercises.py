@@ -164,8 +164,6 @@ EXERCISES = [
         near * far / => 1 /
         near * far / => far /
         At b = 0 the depth must be near: what is missing above the fraction line? Check the units.
-        near * far / => 1000 * near * far /
-        Yours is 1000 times too large: millimetres? The task asks for metres.
         b * (far - near)) => b * far - near)
         Mind the brackets: b multiplies the whole of far - near.
         b < 1 => ~np.isclose(b, 1)

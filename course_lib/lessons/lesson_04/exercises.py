@@ -66,6 +66,10 @@ def two_readings(rng: np.random.Generator, f_a: float, f_b: float) -> tuple:
     return (r + noise_a) % turn(f_a), f_a, (r + noise_b) % turn(f_b), f_b, 25.0
 
 
+def the_tasks_pixel(rng: np.random.Generator) -> tuple:
+    return np.array([2.007]), 15e6, np.array([4.505]), 20e6, 25.0
+
+
 def at_15_and_20_megahertz(rng: np.random.Generator) -> tuple:
     return two_readings(rng, 15e6, 20e6)
 
@@ -169,7 +173,7 @@ EXERCISES = [
         Rays are tilted to the side *and* up and down: x and y both count, and you use one of them.
     """),
     Exercise("04.2", range_from_two, readings, cases=[
-        at_15_and_20_megahertz, at_20_and_15_megahertz, clocks_nearly_in_step,
+        the_tasks_pixel, at_15_and_20_megahertz, at_20_and_15_megahertz, clocks_nearly_in_step,
     ], mistakes="""
         ... => return read_a
         That is the reading at f_a. The surface may be one or more turns of c / 2f_a farther away.
