@@ -152,6 +152,7 @@ def distinct(corners: np.ndarray) -> np.ndarray:
 EXERCISES = [
     Exercise("03.1", linearize, buffers, "warm-up", cases=[nothing_drawn, the_papers_planes], mistakes="""
         near * far / (far - b * (far - near)) => near + b * (far - near)
+        ... => return near + b * (far - near)
         You spread b evenly between near and far, but b is not linear in Z: solve the equation of b for Z.
         (far - b * (far - near)) => (near + b * (far - near))
         At b = 0 your depth is far; it must be near. Have near and far changed places?
@@ -207,6 +208,7 @@ EXERCISES = [
         ... => return nearest_surface(layers[:1], near, far)
         Yours looks at the first layer alone: compare all K of them, pixel by pixel.
         .min(axis=0) => .min(axis=0, initial=far)
+        layers, np.inf => layers, 0.0
         ... => image = nearest_surface(layers, near, far); return np.where(np.isfinite(image), image, np.nan)
         ... => image = nearest_surface(layers, near, far); return np.where(np.isfinite(image), image, 0.0)
         Where nothing is seen the depth must be inf: not far, not nan, and not 0, which is right at the lens.

@@ -41,9 +41,9 @@ def idea_figure(hits: dict[str, list[tuple[float, float]]]) -> Figure:
     axes.plot([0, 6.5], np.outer([0, 6.5], SLOPES), color="0.7", linewidth=0.8, zorder=1)
     axes.plot([1, 1], [-0.28, 0.28], color=figures.BLACK, linewidth=1.5)
     axes.annotate("screen: one ray\nper pixel centre", (1, 0.28), (0.75, 0.95), arrowprops={"arrowstyle": "-"})
-    dots = {"kept": ("kept: the least Z of its ray", {"markersize": 8}), "hidden": ("hidden: a larger Z", {"mfc": "w"})}
-    for name, (label, style) in dots.items():
-        axes.plot(*zip(*hits[name], strict=True), "o", color=figures.VERMILION, label=label, **style)
+    kept, hidden = (np.transpose(hits[name]) for name in ("kept", "hidden"))
+    axes.plot(*kept, "o", color=figures.VERMILION, markersize=8, label="kept: the least Z of its ray")
+    axes.plot(*hidden, "o", color=figures.VERMILION, mfc="white", label="hidden: a larger Z")
     for position, name in ((0.6, "near"), (6.5, "far")):
         axes.axvline(position, color=figures.PURPLE, linestyle=":", linewidth=1.6)
         axes.text(position + 0.05, -1.62, name, color=figures.PURPLE)
@@ -52,8 +52,9 @@ def idea_figure(hits: dict[str, list[tuple[float, float]]]) -> Figure:
     axes.set(xlabel="depth Z along the optical axis [m]", ylabel="height [m]", xlim=(-0.2, 7), ylim=(-1.75, 1.75))
     axes.set_title("What a z-buffer keeps, seen from the side")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
-    alt = "seven rays leave a virtual camera; each keeps its first hit on a surface and drops the later ones."
-    return described(figure, f"Side view: {alt}")
+    alt = """Side view: seven rays leave a virtual camera; each keeps its first hit on a surface and drops the later
+        ones."""
+    return described(figure, alt)
 
 
 def triangle_figure(images: list[np.ndarray]) -> Figure:
@@ -148,14 +149,14 @@ def camera_panel() -> Panel:
             off_mm = np.abs(image.astype(float) - truth) * 1000
         depth.set_data(np.ma.masked_invalid(image))
         error.set_data(np.ma.masked_invalid(np.clip(off_mm, 0.001, None)))
-        forward, left = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
+        ahead, aside = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
         slope = CAMERA.width / 2 / CAMERA.fx
         half = max(plane * slope, 0.5)  # drawn beyond the view: at 0.1 m only 8 cm of the plane are in view
         for line, points in (
             (wedge, [(0, 0), (1.6, -1.6 * slope), (1.6, 1.6 * slope), (0, 0)]),
             (near_line, [(plane, half), (plane, -half)]),
         ):
-            line.set_data(*(state[:2] + np.array(points) @ [forward, left]).T)
+            line.set_data(*(state[:2] + np.array(points) @ [ahead, aside]).T)
         middle = truth[CAMERA.height // 2, CAMERA.width // 2]
         step_mm = buffer_step(middle, plane, CAMERA.far) * 1000
         seen = f"Z = {middle:.2f} m; one step of the z-buffer there: {step_mm:.2g} mm"
@@ -164,10 +165,8 @@ def camera_panel() -> Panel:
             f"pixels where nothing is hit: {np.isinf(image).mean():.0%}; "
             f"pixels more than 1 mm off: {(off_mm > 1).mean():.0%}",
         ]
-        alt = (
-            f"Plan of the corridor with the camera at x {x:.1f} m, y {y:.1f} m, yaw {yaw:.0f} degrees; its depth "
-            f"image; and the difference from ray casting with near plane {near} m. {' '.join(lines)}"
-        )
+        alt = f"""Plan of the corridor with the camera at x {x:.1f} m, y {y:.1f} m, yaw {yaw:.0f} degrees; its depth
+            image; and the difference from ray casting with near plane {near} m. {" ".join(lines)}"""
         return Drawing(live.png(), alt, "\n".join(lines))
 
     return Panel("03 the virtual camera", CONTROLS, draw)

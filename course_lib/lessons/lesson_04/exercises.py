@@ -209,11 +209,13 @@ EXERCISES = [
     """),
     Exercise("04.3", pole_share, pole_and_wall, cases=[one_paint], tolerance=1e-3, mistakes="""
         ... => return (r2 - r) / (r2 - r1)
+        ... => return (r - r1) / (r2 - r1)
         You mix ranges. The pixel adds phasors: the nearer surface sends more light and pulls harder.
         np.sin(k * (r - r1)) => (r - r1) and also np.sin(k * (r2 - r)) => (r2 - r)
         You weigh the ranges by the light. The pixel adds *phasors*; of their sum it reads the angle.
         * np.sin(k * (r - r1)) => and also * np.sin(k * (r2 - r)) =>
-        Your share makes both hands equally long, so the pixel reads the middle. Where is r?
+        * np.sin(k * (r - r1)) => and also * np.sin(k * (r2 - r)) => and also return wall => return pole
+        Your share is the same whatever the pixel reads: where is r? It turns the sum of the two hands.
         k = 4 * np.pi * f / 299_792_458.0 => k = 1
         You take the sine of metres. The angle between two hands is 4 pi f / c times the difference in range.
         return wall => return pole

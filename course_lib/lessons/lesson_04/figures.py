@@ -14,10 +14,8 @@ from course_lib.rendering.camera import DepthCamera
 
 DEPTHS = np.linspace(-0.05, 13.15, 67)  # metres; the walls stand at whole decimetres, no edge of a bin does
 ERRORS = np.linspace(-0.4, 0.4, 42)  # edges of an odd number of bins: one is centred at zero
-SCENE_ALT = (
-    "The points of one frame in the corridor: blue ones lie on the grey true surfaces, red ones hang before the camera "
-    "where nothing is, black ones float behind the edges of people and pillars."
-)
+SCENE_ALT = """The points of one frame in the corridor: blue ones lie on the grey true surfaces, red ones hang before
+    the camera where nothing is, black ones float behind the edges of people and pillars."""
 
 
 def idea_figure(points: np.ndarray, image: np.ndarray) -> Figure:
@@ -32,8 +30,8 @@ def idea_figure(points: np.ndarray, image: np.ndarray) -> Figure:
     plan.set(xlabel="X, to the right [m]", ylabel="Z, along the optical axis [m]")
     drawn = figures.depth_image(right, image, "The same points as a depth image, eq. (7)", (0, 10))
     figures.colour_bar(figure, drawn, right)
-    alt = "the points of one frame from above: two walls of a corridor; right, the depth image made of them."
-    return described(figure, f"Left, {alt}")
+    alt = """Left, the points of one frame from above: two walls of a corridor; right, the depth image made of them."""
+    return described(figure, alt)
 
 
 def phase_figure(distances: tuple[float, ...]) -> Figure:
@@ -55,10 +53,8 @@ def phase_figure(distances: tuple[float, ...]) -> Figure:
     left.set(title="The phase of what comes back", xlim=(-1.35, 1.35), ylim=(-1.2, 1.2))
     left.legend(title="(lengths only for sight)", loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     right.set(title="What the camera reads", xlabel="true range r [m]", ylabel="range that is read [m]")
-    alt = (
-        "Left, hands of a clock for ranges of 2, 6 and 12 m: 2 and 12 m nearly coincide; right, the range read "
-        "over the true range, a saw that falls back to zero every 10 m."
-    )
+    alt = """Left, hands of a clock for ranges of 2, 6 and 12 m: 2 and 12 m nearly coincide; right, the range read over
+        the true range, a saw that falls back to zero every 10 m."""
     return described(figure, alt)
 
 
@@ -81,8 +77,9 @@ def recorded_figure(measured: np.ndarray, true: np.ndarray) -> Figure:
         drawn = figures.depth_image(axes, image, title, (0, 12))
     figures.colour_bar(figure, drawn, [left, middle])
     error_histogram(right).set_data(counts(measured - true, ERRORS))
-    alt = "A recorded depth image, the true one, and the histogram of their difference: a narrow hill at zero and a "
-    return described(figure, alt + "bar of errors of many metres at its left end.")
+    alt = """A recorded depth image, the true one, and the histogram of their difference: a narrow hill at zero and a
+        bar of errors of many metres at its left end."""
+    return described(figure, alt)
 
 
 def two_surfaces_figure(shares: np.ndarray, curves: dict[str, np.ndarray]) -> Figure:
@@ -93,10 +90,8 @@ def two_surfaces_figure(shares: np.ndarray, curves: dict[str, np.ndarray]) -> Fi
     axes.set(title="One pixel, two surfaces", xlabel="share of the pixel on the nearer surface [-]")
     axes.set(ylabel="range that is read [m]", ylim=(0, 10.2))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    alt = (
-        "Range read over the pole's share of the pixel: for a wall at 4 or 6 m it falls to 2 m from above; for a "
-        "wall at 8 m it rises beyond 8 m, jumps to zero, and comes to 2 m from below."
-    )
+    alt = """Range read over the pole's share of the pixel: for a wall at 4 or 6 m it falls to 2 m from above; for a
+        wall at 8 m it rises beyond 8 m, jumps to zero, and comes to 2 m from below."""
     return described(figure, alt)
 
 
@@ -158,10 +153,8 @@ def faults_panel() -> Panel:
             f"{(amount > 1).mean():.1%}; median |error| {np.median(amount) * 1000:.1f} mm",
         ]
         names = ", ".join(name.replace("_", "-") for name in FAULTS if name in faults) or "none"
-        alt = (
-            f"Depth image of a corridor from x = {x:.1f} m with these faults of the camera: {names}; its difference "
-            f"from the truth; histograms of depths and errors. {' '.join(lines)}"
-        )
+        alt = f"""Depth image of a corridor from x = {x:.1f} m with these faults of the camera: {names}; its difference
+            from the truth; histograms of depths and errors. {" ".join(lines)}"""
         return Drawing(live.png(), alt, "\n".join(lines))
 
     everything = dict.fromkeys(FAULTS, True)

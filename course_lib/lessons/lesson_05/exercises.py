@@ -177,6 +177,7 @@ def one_frame(rng: np.random.Generator) -> tuple:
 EXERCISES = [
     Exercise("05.1", spread_after, spreads, "warm-up", cases=[the_courses_noise, no_frame], mistakes="""
         ... => return spread0 + np.sqrt(t) * sigma
+        ... => return spread0 + sigma
         You add standard deviations. Independent things add their variances: square, add, take the root.
         spread0**2 + t * sigma**2 => t * sigma**2
         You forgot that the cloud has a spread at the start. Its variance counts, too.
@@ -281,12 +282,14 @@ EXERCISES = [
         p * bel) => p * bel * (np.arange(len(bel)) + k < len(bel)))
         What would pass the last cell gets lost in yours, and dividing by the sum hides it. It stops there.
         / corrected.sum() =>
+        / corrected.sum() => / corrected.max()
         Your belief does not sum to 1: what is eta for?
         ... => bel = bayes_step(bel, [1], doors, seen, hit, false_alarm); return bayes_step(bel, moves, doors, 1, 1, 1)
         You look first and move then. The picture was taken after the move.
         (p_door if seen else 1 - p_door) => p_door
         (p_door if seen else 1 - p_door) => (1 - p_door)
-        You always take it that a door was seen, or that none was: `seen` says which. Each has its probability.
+        (p_door if seen else 1 - p_door) => (p_door if seen else 1)
+        `seen` says whether a door was seen. Not seeing one tells as well: it has a probability of its own.
         np.where(doors, => np.where(doors == seen, and also p_door if seen else 1 - p_door => p_door
         np.where(doors, hit, false_alarm) => np.where(doors == seen, hit, 1 - hit) and also if seen else 1 - p_door =>
         Four cases of door and report, two numbers: where no door is, seeing none has 1 - false_alarm.
@@ -319,6 +322,7 @@ EXERCISES = [
         You ask that *every* particle makes the step. One of the n is enough.
         (1 - one_frame) ** (1 / n) => (1 - one_frame) / n
         (1 - one_frame) ** (1 / n) => 1 - one_frame / n
+        (1 - one_frame) ** (1 / n) => 1 - (1 - one_frame) / n
         Phi^n is no product with n: undo a power by a root.
         p ** (1 / frames) => p**frames
         You raise p to the power of the frames. p is the probability for all of them: undo that power.

@@ -12,10 +12,8 @@ from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider
 from course_lib.lessons.lesson_05.clouds import Walk, distances, wagon_states, walk
 from course_lib.plots import figures
 
-SCENE_ALT = (
-    "Two clouds of arrowheads in a corridor: a small black one, all nearly alike, and a blue one that is "
-    "metres long, not quite one wide, flat as a sheet of paper, with headings that fan out."
-)
+SCENE_ALT = """Two clouds of arrowheads in a corridor: a small black one, all nearly alike, and a blue one that is
+    metres long, not quite one wide, flat as a sheet of paper, with headings that fan out."""
 
 
 def draw_plan(axes: Axes, xlim: tuple[float, float], ylim: tuple[float, float], title: str) -> None:
@@ -34,8 +32,8 @@ def clouds_figure(clouds: np.ndarray, frames: list[int]) -> Figure:
         a.set(xlabel="")
         a.tick_params(labelbottom=frame == frames[-1])
     figure.supxlabel("x along the corridor [m]", fontsize=9)
-    alt = "three times: a cloud of 200 particles after 1, 5 and 20 frames, wider every time."
-    return described(figure, f"The corridor from above, {alt}")
+    alt = "The corridor from above, three times: a cloud of 200 particles after 1, 5 and 20 frames, wider every time."
+    return described(figure, alt)
 
 
 def beliefs_figure(beliefs: dict[str, np.ndarray], doors: list[int], shares: dict[str, np.ndarray]) -> Figure:
@@ -49,10 +47,8 @@ def beliefs_figure(beliefs: dict[str, np.ndarray], doors: list[int], shares: dic
             a.legend(loc="upper right", fontsize=8)
         a.set(title=title, xlabel="cell of the corridor [-]", ylabel="probability [-]")
         a.set(ylim=(-0.05, 0.4), xticks=np.arange(0, len(belief), 5))
-    alt = (
-        "Probabilities of 20 cells: five equal peaks at the doors; moved on by one cell and blurred, with the "
-        "shares of 200 particles scattered about them; one cell with 0.35 after the fourth look."
-    )
+    alt = """Probabilities of 20 cells: five equal peaks at the doors; moved on by one cell and blurred, with the
+        shares of 200 particles scattered about them; one cell with 0.35 after the fourth look."""
     return described(figure, alt)
 
 
@@ -80,8 +76,9 @@ def trade_figure(sigma_x: np.ndarray, errors: np.ndarray, threshold: float, expe
     axes.set(title="How near the best particle is to the wagon", xlabel="sigma along the corridor [m]")
     axes.set(ylabel="distance [m]", ylim=(1e-3, 30))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
-    alt = "metres below 0.035 m, a minimum near 0.07 m, then a steady rise."
-    return described(figure, f"Distance to the nearest particle over sigma: {alt}")
+    alt = """Distance to the nearest particle over sigma: metres below 0.035 m, a minimum near 0.07 m, then a steady
+        rise."""
+    return described(figure, alt)
 
 
 def corner_figure(true: np.ndarray, walks: dict[str, Walk], frames: list[int]) -> Figure:
@@ -95,8 +92,8 @@ def corner_figure(true: np.ndarray, walks: dict[str, Walk], frames: list[int]) -
             a.plot(*own.clouds[frame, :, :2].T, ".", color=figures.SKY_BLUE, markersize=2.5, label=cloud)
             a.plot(*true[frame, :2], "D", color=figures.VERMILION, markersize=6, label=wagon)
     axes[0].legend(loc="upper left", fontsize=8, framealpha=0.95)
-    alt = "noise along world axes falls behind, along its own axes it follows."
-    return described(figure, f"A wagon turns left into a side corridor; {alt}")
+    alt = "A wagon turns left into a side corridor; noise along world axes falls behind, along its own axes it follows."
+    return described(figure, alt)
 
 
 MAX_FRAMES = 60  # of the panel: the wagon rolls almost six metres (chosen)
@@ -167,10 +164,8 @@ def cloud_panel() -> Panel:
             f"spread in x after {t} frames: {spread[-1]:.2f} m (sqrt(t) sigma: {sigma_x * np.sqrt(t):.2f} m)",
             f"nearest particle {own.nearest[-1]:.3f} m from the wagon; within 0.10 m of it: {near_share:.0%}",
         ]
-        alt = (
-            f"Clouds of {int(n)} particles from above over {t} frames ({between}), sigma {sigma_x:.3f} m in x, "
-            f"{sigma_y:.2f} m in y, {sigma_yaw:.1f} degrees in yaw; their spread and their distance from the wagon."
-        )
+        alt = f"""Clouds of {int(n)} particles from above over {t} frames ({between}), sigma {sigma_x:.3f} m in x,
+            {sigma_y:.2f} m in y, {sigma_yaw:.1f} degrees in yaw; their spread and their distance from the wagon."""
         return Drawing(live.png(), alt, "\n".join(lines))
 
     return Panel("05 the cloud", CONTROLS, draw)
