@@ -30,7 +30,7 @@ def test_wrapping_spoils_the_end_wall_by_c_over_2f_until_the_camera_is_near_enou
 
 
 def test_drop_outs_cost_the_dark_door_and_half_the_wave_halves_the_noise():
-    end_wall = np.abs(capture(0.0, set(), SMALL).true - 12.0) < 0.01
+    end_wall = np.abs(capture(0.0, set(), SMALL)[1] - 12.0) < 0.01
     assert 0.2 < np.isnan(errors(0.0, "drop_outs")[end_wall]).mean() < 0.8
     slow, fast = (np.nanmedian(np.abs(errors(0.0, "noise", frequency=f))) for f in (15e6, 30e6))
     assert fast == pytest.approx(slow / 2, rel=0.1)

@@ -3,5 +3,5 @@
 # ruff: noqa: I001 (short lines)
 from course_lib.lessons.lesson_04.figures import PANELS, faults_panel, idea_figure, noise_figure, phase_figure
 from course_lib.lessons.lesson_04.figures import SCENE_ALT, recorded_figure, two_surfaces_figure
-from course_lib.lessons.lesson_04.time_of_flight import capture, frames_of, kinds_of, on_a_surface, returns
-from course_lib.lessons.lesson_04.time_of_flight import true_depths, wall
+from course_lib.lessons.lesson_04.time_of_flight import capture, kinds_of, on_a_surface, returns
+from course_lib.lessons.lesson_04.time_of_flight import true_depths, wall_frames

@@ -29,11 +29,6 @@ def nothing_measured(rng: np.random.Generator) -> tuple:
     return np.full((3, 4), np.nan), DepthCamera.from_fov(4, 3, 60, 45).rays()
 
 
-def the_papers_camera(rng: np.random.Generator) -> tuple:
-    camera = DepthCamera.sr4000().resized(11, 9)
-    return rng.uniform(0.3, 9.9, camera.shape), camera.rays()
-
-
 # 04.2: one range of two readings
 
 
@@ -145,9 +140,7 @@ def sixteen_points(rng: np.random.Generator) -> tuple:
 
 # fmt: off
 EXERCISES = [
-    Exercise("04.1", range_to_depth, range_image, "warm-up", cases=[
-        the_tasks_ray, nothing_measured, the_papers_camera,
-    ], mistakes="""
+    Exercise("04.1", range_to_depth, range_image, "warm-up", cases=[the_tasks_ray, nothing_measured], mistakes="""
         ranges / => ranges *
         Your depth exceeds the range. Depth is the shorter of the two, save in the middle: divide.
         ... => return ranges

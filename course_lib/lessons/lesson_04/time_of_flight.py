@@ -2,7 +2,6 @@
 
 import dataclasses
 from collections.abc import Set
-from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -46,19 +45,13 @@ CORRIDOR = BoxWorld(
 EYE_HEIGHT = 1.2  # metres
 
 
-class Capture(NamedTuple):
-    """One frame of the simulated camera beside the truth: images `(H, W)` [m], NaN = no measurement, inf = nothing."""
+def capture(
+    x: float, faults: Set[str], camera: DepthCamera, frequency: float = MODEL.frequency
+) -> tuple[np.ndarray, np.ndarray, Frame]:
+    """Measured depth, true depth `(H, W)` [m] and the camera's frame, from (x, 0, 1.2 m), with these faults alone.
 
-    depth: np.ndarray
-    true: np.ndarray
-    frame: Frame
-
-
-def capture(x: float, faults: Set[str], camera: DepthCamera, frequency: float = MODEL.frequency) -> Capture:
-    """A frame of the corridor from (x, 0, 1.2 m), looking along +x, with these faults of the camera alone.
-
-    Without "wrapping" the multiple of c / 2f that the camera cannot know is added: as if it measured with two
-    frequencies.
+    NaN is no measurement, inf is nothing there. Without "wrapping" the multiple of c / 2f that the camera cannot know
+    is added: as if it measured with two frequencies.
     """
     changes = {key: value for name, off in FAULTS.items() if name not in faults for key, value in off.items()}
     # The width of the scattered light is told in the pixels of the full image.
@@ -71,7 +64,7 @@ def capture(x: float, faults: Set[str], camera: DepthCamera, frequency: float = 
         turns = np.round((frame.nearest - frame.range) / model.unambiguous_range)
         seen = np.isfinite(turns)
         depth[seen] += (turns * model.unambiguous_range / np.linalg.norm(camera.rays(), axis=-1))[seen]
-    return Capture(depth, CORRIDOR.cast(state[:3], camera.rays() @ BODY_FROM_OPTICAL.T).distance, frame)
+    return depth, CORRIDOR.cast(state[:3], camera.rays() @ BODY_FROM_OPTICAL.T).distance, frame
 
 
 def returns(x: float, camera: DepthCamera) -> tuple[np.ndarray, np.ndarray]:
@@ -81,15 +74,11 @@ def returns(x: float, camera: DepthCamera) -> tuple[np.ndarray, np.ndarray]:
     return hits.distance.astype(np.float64), np.where(hits.face >= 0, CORRIDOR.reflectivity[hits.face] * hits.cosine, 0)
 
 
-def wall(distance: float) -> Box:
-    """A white wall across the view, `distance` metres ahead."""
-    return Box((distance, -9.0, -9.0), (distance + 0.1, 9.0, 9.0), 0.72)
-
-
-def frames_of(boxes: list[Box], n_frames: int, camera: DepthCamera, seed: int = 0) -> np.ndarray:
-    """`(n, H, W)` depth images [m] of a few boxes by one camera with all its faults, at the origin, looking along x."""
+def wall_frames(distance: float, n_frames: int, camera: DepthCamera, seed: int = 0) -> np.ndarray:
+    """`(n, H, W)` depth images [m] of a white wall across the view, by one camera with all its faults."""
     rng = np.random.default_rng(seed)
-    tof, world = TimeOfFlightCamera(camera, MODEL, rng), BoxWorld(boxes)
+    world = BoxWorld([Box((distance, -9.0, -9.0), (distance + 0.1, 9.0, 9.0), 0.72)])
+    tof = TimeOfFlightCamera(camera, MODEL, rng)
     return np.stack([tof.capture(world, np.zeros(6), rng).depth for _ in range(n_frames)])
 
 

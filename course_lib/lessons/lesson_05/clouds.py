@@ -59,12 +59,3 @@ def walk(true: np.ndarray, sigma: np.ndarray, n: int, seed: int, keep_nearest: b
 def distances(clouds: np.ndarray, true: np.ndarray) -> np.ndarray:
     """Distances `(T, N)` [m] on the floor of clouds `(T, N, 6)` from true states `(T, 6)`."""
     return np.linalg.norm((clouds - true[:, None])[..., :2], axis=-1)
-
-
-def nearest_expected(sigma_x: float, sigma_y: float, n: int) -> float:
-    """Mean distance [m] from the middle of a normal cloud of n particles in the plane to the nearest of them.
-
-    Near its middle the cloud has n / (2 pi sigma_x sigma_y) particles a square metre, and the nearest of points
-    scattered with density rho is 1 / (2 sqrt(rho)) away in the mean.
-    """
-    return 0.5 / np.sqrt(n / (2 * np.pi * sigma_x * sigma_y))

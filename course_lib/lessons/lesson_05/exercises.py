@@ -22,10 +22,6 @@ def spreads(rng: np.random.Generator) -> tuple:
     return spread0, sigma, int(rng.integers(2, 60))
 
 
-def the_courses_noise(rng: np.random.Generator) -> tuple:
-    return np.zeros(6), np.array([0.15, 0.04, 0, 0, 0, np.deg2rad(1.5)]), 100
-
-
 def no_frame(rng: np.random.Generator) -> tuple:
     return rng.uniform(0.1, 0.5, 6), rng.uniform(0.1, 0.5, 6), 0
 
@@ -165,17 +161,13 @@ def wagons(rng: np.random.Generator) -> tuple:
     return rng.uniform(0.02, 0.3), int(rng.integers(50, 2000)), int(rng.integers(20, 500)), rng.uniform(0.6, 0.99)
 
 
-def the_courses_wagon(rng: np.random.Generator) -> tuple:
-    return 0.0965, 200, 303, 0.95
-
-
 def one_frame(rng: np.random.Generator) -> tuple:
     return 0.1, 20, 1, 0.9
 
 
 # fmt: off
 EXERCISES = [
-    Exercise("05.1", spread_after, spreads, "warm-up", cases=[the_courses_noise, no_frame], mistakes="""
+    Exercise("05.1", spread_after, spreads, "warm-up", cases=[no_frame], mistakes="""
         ... => return spread0 + np.sqrt(t) * sigma
         ... => return spread0 + sigma
         You add standard deviations. Independent things add their variances: square, add, take the root.
@@ -309,7 +301,7 @@ EXERCISES = [
         + k, => + k + 1,
         You roll one cell too far: moves[0] is the probability of staying.
     """),
-    Exercise("05.5", min_sigma, wagons, "challenge", cases=[the_courses_wagon, one_frame], mistakes="""
+    Exercise("05.5", min_sigma, wagons, "challenge", cases=[one_frame], mistakes="""
         one_frame = p ** (1 / frames) => one_frame = p
         That holds for one frame. It must go well in *every* one of them: multiply the probabilities.
         (1 - one_frame) ** (1 / n) => (1 - p) ** (1 / (n * frames))
