@@ -1,31 +1,8 @@
-"""Lesson 03, GPU scene simulation: its small scenes, figures and panel."""
+"""Lesson 03, GPU scene simulation: its small scenes and what it measures on them, figures and panel."""
 
+# ruff: noqa: I001 (short lines)
 from course_lib.lessons.kit.box_world import box_map
-from course_lib.lessons.lesson_03.alternative_texts import ALT
-from course_lib.lessons.lesson_03.figures import buffer_figure, idea_figure, time_figure, window_figure
-from course_lib.lessons.lesson_03.measurements import buffer_step, seconds_per_view, slanted_wall_error, views_that_see
-from course_lib.lessons.lesson_03.panel import PANELS, camera_panel
-from course_lib.lessons.lesson_03.scenes import SLOPES, corridor, corridor_end, pole_ahead, side_view, wall_with_hole
-from course_lib.plots.figures import depth_images
-
-__all__ = [
-    "ALT",
-    "PANELS",
-    "SLOPES",
-    "box_map",
-    "buffer_figure",
-    "buffer_step",
-    "camera_panel",
-    "corridor",
-    "corridor_end",
-    "depth_images",
-    "idea_figure",
-    "pole_ahead",
-    "seconds_per_view",
-    "side_view",
-    "slanted_wall_error",
-    "time_figure",
-    "views_that_see",
-    "wall_with_hole",
-    "window_figure",
-]
+from course_lib.lessons.lesson_03.figures import PANELS, SLOPES, agree_figure, buffer_figure, camera_panel
+from course_lib.lessons.lesson_03.figures import idea_figure, side_view, time_figure, triangle_figure, window_figure
+from course_lib.lessons.lesson_03.scenes import buffer_step, corridor, corridor_end, seconds_per_view
+from course_lib.lessons.lesson_03.scenes import slanted_wall_error, views_that_see, wall_with_hole

@@ -1,6 +1,5 @@
 """Clouds of particles that walk along the wagon's path, and an oracle that keeps the nearest."""
 
-import functools
 import itertools
 from typing import NamedTuple
 
@@ -11,39 +10,29 @@ from course_lib.depth_mcl.particle_filter import initial_particles
 from course_lib.geometry import pose_matrix, state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import wagon_run
 
-_NEAR = 0.10  # m from the wagon within which a particle is called near: the wagon's step (chosen)
 
-
-@functools.cache
 def wagon_states() -> np.ndarray:
     """True states `(T, 6)` of the wagon's camera."""
-    states = state_from_optical_pose(wagon_run().camera_to_world)
-    states.setflags(write=False)
-    return states
+    return state_from_optical_pose(wagon_run().camera_to_world)
 
 
-def corner_states(step: float = 0.1) -> np.ndarray:
+def corner_states() -> np.ndarray:
     """True states `(T, 6)` of a wagon that rolls along x, turns left on an arc of 0.6 m, and goes on along y."""
     radius, before, after = 0.6, 3.1, 4.2
     quarter = radius * np.pi / 2
-    way = np.arange(0, before + quarter + after, step)
+    way = np.arange(0, before + quarter + after, 0.1)
     turn = np.clip((way - before) / radius, 0, np.pi / 2)
-    states = np.zeros((len(way), 6))
-    states[:, 0] = 14.0 + np.minimum(way, before) + radius * np.sin(turn)
-    states[:, 1] = radius - radius * np.cos(turn) + np.maximum(way - before - quarter, 0)
-    states[:, 2], states[:, 5] = 1.0, turn
-    return states
+    x = 14.0 + np.minimum(way, before) + radius * np.sin(turn)
+    y = radius - radius * np.cos(turn) + np.maximum(way - before - quarter, 0)
+    return np.column_stack([x, y, np.ones(len(way)), 0 * way, 0 * way, turn])
 
 
 class Walk(NamedTuple):
-    """A particle set over the frames."""
+    """A particle set over the frames: its clouds `(T, N, 6)`, the first being the start, and the distance `(T,)` [m]
+    on the floor from the wagon to its nearest particle."""
 
     clouds: np.ndarray
-    """`(T, N, 6)`, the first being the start."""
     nearest: np.ndarray
-    """`(T,)` distance [m] on the floor from the wagon to its nearest particle."""
-    near_share: np.ndarray
-    """`(T,)` share of the particles within 0.10 m of the wagon."""
 
 
 def walk(true: np.ndarray, sigma: np.ndarray, n: int, seed: int, keep_nearest: bool, own_axes: bool = False) -> Walk:
@@ -61,19 +50,12 @@ def walk(true: np.ndarray, sigma: np.ndarray, n: int, seed: int, keep_nearest: b
         if own_axes:
             moved[:, :2] = particles[:, :2] + (moved - particles)[:, :2] @ pose_matrix(before)[:2, :2].T
         clouds.append(moved)
-        particles = moved
-        if keep_nearest:
-            best = np.hypot(*(moved[:, :2] - state[:2]).T).argmin()
-            particles = np.repeat(moved[best : best + 1], n, axis=0)
+        nearest = np.hypot(*(moved - state)[:, :2].T).argmin()
+        particles = np.tile(moved[nearest], (n, 1)) if keep_nearest else moved
     clouds = np.array(clouds)
-    distances = np.hypot(*np.moveaxis(clouds[:, :, :2] - true[:, None, :2], -1, 0))
-    return Walk(clouds, distances.min(axis=1), (distances <= _NEAR).mean(axis=1))
+    return Walk(clouds, distances(clouds, true).min(axis=1))
 
 
-def nearest_expected(sigma_x: float, sigma_y: float, n: int) -> float:
-    """Mean distance [m] from the middle of a normal cloud of n particles in the plane to the nearest of them.
-
-    Near its middle the cloud has n / (2 pi sigma_x sigma_y) particles a square metre, and the nearest of points
-    scattered with density rho is 1 / (2 sqrt(rho)) away in the mean.
-    """
-    return 0.5 / np.sqrt(n / (2 * np.pi * sigma_x * sigma_y))
+def distances(clouds: np.ndarray, true: np.ndarray) -> np.ndarray:
+    """Distances `(T, N)` [m] on the floor of clouds `(T, N, 6)` from true states `(T, 6)`."""
+    return np.linalg.norm((clouds - true[:, None])[..., :2], axis=-1)
